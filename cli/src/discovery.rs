@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eomgen_discover::report::result::Validation;
-use eomgen_discover::{Specification, Stop, catalogue, discover_until};
+use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
 use eomgen_paper::certification::certify;
 use eomgen_records::dataset::Dataset;
@@ -50,7 +50,7 @@ pub fn compare(task: &Task<'_>) -> Result<Value> {
 pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> Result<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(task)?;
-    let effects = catalogue::effects(effects).map_err(Error::Specification)?;
+    let effects = catalogue::load_effects(effects).map_err(Error::Specification)?;
     let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
@@ -58,8 +58,8 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
         order,
     };
     let stop = match limit {
-        Some(limit) => Stop::after(seconds(limit)?),
-        None => Stop::default(),
+        Some(limit) => StopRequest::with_time_limit(seconds(limit)?),
+        None => StopRequest::default(),
     };
     let found = discover_until(specification, dataset, &effects, task.seed, &warn, &stop);
     let mut found = found.map_err(Error::discovery)?;
@@ -100,7 +100,7 @@ fn validate(path: &str, text: &str, order: Option<usize>) -> Result<Option<Valid
         checks.map(|check| check.name.clone()).collect()
     };
     Ok(Some(Validation {
-        passed: certificate.verdict != Verdict::Failed,
+        has_passed: certificate.verdict != Verdict::Failed,
         checks: names(|check| check.skipped.is_none()),
         failed: names(|check| !check.passed && check.skipped.is_none()),
     }))

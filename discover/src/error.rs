@@ -25,7 +25,7 @@ pub enum DiscoverError {
         /// Name of the effect.
         effect: String,
         /// Site of the effect.
-        on: String,
+        site: String,
         /// Error of the edit.
         error: Box<EditError>,
     },
@@ -34,9 +34,9 @@ pub enum DiscoverError {
     /// Initial states must be read from the record, but no channel measures this state.
     StateNotMeasured(String),
     /// No motion can be simulated in these windows.
-    Unfollowed(Unfollowed),
+    SimulationFailed(FailedWindows),
     /// The motion of a candidate's model cannot be simulated.
-    CandidateUnfollowed,
+    CandidateSimulationFailed,
     /// The candidate changes no output.
     NotExcited,
     /// Stop was requested.
@@ -45,25 +45,25 @@ pub enum DiscoverError {
 
 /// Windows in which the motion of a model cannot be simulated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unfollowed {
+pub struct FailedWindows {
     /// Number of failed windows.
     pub count: usize,
     /// Number of all windows.
-    pub of: usize,
+    pub total: usize,
     /// Start of the first failed window, s.
-    pub first: f64,
+    pub first_start: f64,
     /// Record of that window.
     pub record: String,
 }
 
-impl Unfollowed {
+impl FailedWindows {
     /// Summarises failed windows; `None` if there are none.
-    pub fn of(windows: &Windows<'_>, unfollowed: &[WindowId]) -> Option<Self> {
+    pub fn from_windows(windows: &Windows<'_>, unfollowed: &[WindowId]) -> Option<Self> {
         let window = &windows.list[*unfollowed.first()?];
         Some(Self {
             count: unfollowed.len(),
-            of: windows.list.len(),
-            first: window.times[0],
+            total: windows.list.len(),
+            first_start: window.times[0],
             record: windows.records[window.record].name.clone(),
         })
     }
@@ -73,7 +73,7 @@ impl Unfollowed {
 #[derive(Clone, Debug, PartialEq)]
 pub enum SimulationError {
     /// The mass matrix is not positive definite at these parameters.
-    MassMatrix,
+    IndefiniteMassMatrix,
     /// The exact propagator rejects the part that is linear between switches.
     Propagator(ExactError),
     /// The exponential integrator failed for this reason.
@@ -83,9 +83,9 @@ pub enum SimulationError {
     /// A part of the motion is too fast for the sampling.
     TooFast,
     /// The state diverged.
-    Unbounded,
+    Diverged,
     /// The records give the motion, but not that of all states.
-    NotGiven,
+    StateNotRecorded,
     /// Stop was requested.
     Stopped,
 }
@@ -93,13 +93,15 @@ pub enum SimulationError {
 impl fmt::Display for SimulationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::MassMatrix => f.write_str("the mass matrix is not positive definite"),
+            Self::IndefiniteMassMatrix => f.write_str("the mass matrix is not positive definite"),
             Self::Propagator(error) => error.fmt(f),
             Self::Integrator(reason) => f.write_str(reason),
             Self::Solver(error) => error.fmt(f),
-            Self::NotGiven => f.write_str("the records do not give the motion of all states"),
+            Self::StateNotRecorded => {
+                f.write_str("the records do not give the motion of all states")
+            }
             Self::TooFast => f.write_str("a part of the motion is too fast for the sampling"),
-            Self::Unbounded => f.write_str(
+            Self::Diverged => f.write_str(
                 "the state diverged, or a function left its domain (for example sqrt \
              of a negative number)",
             ),
@@ -118,7 +120,11 @@ impl fmt::Display for DiscoverError {
                 other => other.fmt(f),
             },
             Self::Edit(error) => error.fmt(f),
-            Self::Effect { effect, on, error } => write!(
+            Self::Effect {
+                effect,
+                site: on,
+                error,
+            } => write!(
                 f,
                 "the effect `{effect}` on `{on}` makes the specification invalid: {error}"
             ),
@@ -128,13 +134,13 @@ impl fmt::Display for DiscoverError {
                 "windows.start = \"smoothed\" needs a channel for every coordinate and first-order state, and \
                  none measures `{state}`; expected start = \"fitted\""
             ),
-            Self::Unfollowed(windows) => write!(
+            Self::SimulationFailed(windows) => write!(
                 f,
                 "the simulation of the model fails in {} of {} windows, first at t = {:.6} s of {}; expected a \
                  model that can be simulated on its records",
-                windows.count, windows.of, windows.first, windows.record
+                windows.count, windows.total, windows.first_start, windows.record
             ),
-            Self::CandidateUnfollowed => f.write_str("the simulation with this effect fails"),
+            Self::CandidateSimulationFailed => f.write_str("the simulation with this effect fails"),
             Self::NotExcited => {
                 f.write_str("the records cannot show it: it does not change the outputs")
             }

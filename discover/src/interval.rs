@@ -36,27 +36,27 @@ impl Interval {
     }
 
     /// Returns the intersection of two intervals.
-    pub fn intersection(self, other: Self) -> Self {
+    pub fn intersect(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
     /// Returns the smallest interval that contains both.
-    pub fn hull(self, other: Self) -> Self {
+    pub fn join(self, other: Self) -> Self {
         Self::new(self.low.min(other.low), self.high.max(other.high))
     }
 
     /// Subtracts `origin` from both ends.
-    pub fn relative_to(self, origin: f64) -> Self {
+    pub fn shift_origin_to(self, origin: f64) -> Self {
         Self::new(self.low - origin, self.high - origin)
     }
 
     /// Returns the smallest interval that also contains 0.
-    pub fn with_zero(self) -> Self {
-        self.hull(Self::ZERO)
+    pub fn extend_to_zero(self) -> Self {
+        self.join(Self::ZERO)
     }
 
     /// Multiplies both ends by a positive factor.
-    pub fn times(self, factor: f64) -> Self {
+    pub fn scale(self, factor: f64) -> Self {
         Self::new(factor * self.low, factor * self.high)
     }
 }

@@ -51,7 +51,7 @@ pub mod residual_force;
 pub mod search;
 pub mod thresholds;
 
-pub use model::stop::Stop;
+pub use model::stop::StopRequest;
 pub use report::origin::Specification;
 pub use report::result::{Comparison, Discovery};
 pub use report::run::{compare, discover, discover_until};

@@ -3,202 +3,202 @@
 use crate::interval::Interval;
 
 /// Prior standard deviation of the gain of a sensor: a calibrated sensor.
-pub const GAIN_PRIOR: f64 = 0.01;
+pub const GAIN_PRIOR_SD: f64 = 0.01;
 
 /// Prior standard deviation of the bias of a sensor, in standard deviations of its noise.
-pub const BIAS_PRIOR: f64 = 10.0;
+pub const BIAS_PRIOR_IN_NOISE_SD: f64 = 10.0;
 
 /// Prior standard deviation of the delay of a sensor, in samples: the value is held at an unknown
 /// time between two samples.
-pub const DELAY_PRIOR: f64 = 0.5;
+pub const DELAY_PRIOR_SAMPLES: f64 = 0.5;
 
 /// Prior standard deviation of the initial state of a window around the end of the previous window,
 /// in ranges of the state. It carries almost no information, but keeps states that the window does
 /// not show near the prior.
-pub const INITIAL_STATE_PRIOR: f64 = 0.02;
+pub const INITIAL_STATE_PRIOR_IN_RANGES: f64 = 0.02;
 
 /// Range of a state that nothing excites: the change that moves the outputs by this fraction of the
 /// noise.
-pub const UNMOVED_STATE: f64 = 1e-3;
+pub const UNMOVED_STATE_IN_NOISE: f64 = 1e-3;
 
 /// Maximum number of halvings of a record for the estimate of the ranges. A record is halved if its
 /// motion diverges.
-pub const MOST_HALVINGS: u32 = 6;
+pub const MAX_RECORD_HALVINGS: u32 = 6;
 
 /// Factor on the prior standard deviation of the initial state of a coordinate that a candidate
 /// adds, because the parameters of the candidate are still unknown.
-pub const ADDED_STATE: f64 = 10.0;
+pub const ADDED_STATE_PRIOR_FACTOR: f64 = 10.0;
 
 /// Factors of the typical size within which a shape parameter is searched, such as the Stribeck
 /// speed or the deflection of an end stop. The typical size for friction is a tenth of the usual
 /// speed. A friction that has not fallen at a third of that speed is no Stribeck friction: it would
 /// replace another friction at every speed.
-pub const SHAPE_RANGE: Interval = Interval::new(0.02, 3.0);
+pub const SHAPE_SEARCH_RANGE: Interval = Interval::new(0.02, 3.0);
 
 /// Relative squared difference below which two columns are equal: the limit of double precision.
-pub const RIDGE: f64 = 1e-11;
+pub const MIN_COLUMN_REMAINDER: f64 = 1e-11;
 
 /// Minimum relative reduction of the gap on held-out records for an accepted effect. A smaller
 /// reduction has no practical value and can be due to chance.
-pub const HELD_OUT: f64 = 0.05;
+pub const MIN_HELD_OUT_REDUCTION: f64 = 0.05;
 
 /// Minimum of that reduction in standard errors over blocks of time.
-pub const STANDARD_ERRORS: f64 = 2.0;
+pub const MIN_REDUCTION_STANDARD_ERRORS: f64 = 2.0;
 
 /// Minimum of half the reduction of the whitened squares. The best of a hundred useless candidates
 /// reaches ln 100 = 5.
-pub const INFORMATION: f64 = 10.0;
+pub const MIN_INFORMATION_GAIN: f64 = 10.0;
 
 /// Minimum size of the parameters of an accepted effect in standard deviations, with correlated
 /// residuals included.
-pub const SIGNIFICANCE: f64 = 5.0;
+pub const MIN_SIGNIFICANCE: f64 = 5.0;
 
 /// Minimum influence of an effect on the channel that shows it best, in standard deviations of the
 /// noise. Only the part that no other unknown explains counts. A smaller influence may be anything
 /// that repeats by chance.
-pub const SIZE: f64 = 1.0;
+pub const MIN_EFFECT_OVER_NOISE: f64 = 1.0;
 
 /// Ratio of the gap to the noise floor below which nothing is left to find.
-pub const AT_FLOOR: f64 = 1.1;
+pub const MAX_FLOOR_RATIO_AT_FLOOR: f64 = 1.1;
 
 /// Similarity of two responses above which both candidates are fitted.
-pub const INDISTINGUISHABLE: f64 = 0.95;
+pub const MIN_SIMILARITY_OF_RIVALS: f64 = 0.95;
 
 /// Relative difference below which two candidates form one class. Their held-out gaps differ by
 /// less than this or by less than `MIN_REDUCTION_STANDARD_ERRORS`, and their training gaps by less
 /// than this or by less than `MIN_INFORMATION_GAIN`. So small a difference may come from the fit
 /// itself.
-pub const DISTINGUISHED: f64 = 0.01;
+pub const MAX_CLASS_DIFFERENCE: f64 = 0.01;
 
 /// Similarity of two responses above which the candidates are two names of one effect. They form
 /// one class unless their residuals differ by `MIN_HELD_OUT_REDUCTION`, because windows with
 /// impacts may end in different folds.
-pub const SAME: f64 = 1.0 - 1e-6;
+pub const MIN_SIMILARITY_OF_SAME_EFFECT: f64 = 1.0 - 1e-6;
 
 /// Fraction of a response that is independent of the nuisances, below which the candidate is
 /// indistinguishable from them, unless that fraction explains `MIN_EXPLAINED_FRACTION`.
-pub const UNEXPLAINED_FRACTION: f64 = 0.01;
+pub const MIN_UNEXPLAINED_FRACTION: f64 = 0.01;
 
 /// Maximum number of added effects.
-pub const MOST_EFFECTS: usize = 4;
+pub const MAX_EFFECTS: usize = 4;
 
 /// Maximum number of full fits in one round.
-pub const MOST_FITS: usize = 4;
+pub const MAX_FULL_FITS_PER_ROUND: usize = 4;
 
 /// Ratio of the gap to the noise floor below which no further excitation window is searched. Above
 /// it, an effect of one excitation window may replace another that a further window shows better.
-pub const CLOSE: f64 = 1.5;
+pub const MAX_FLOOR_RATIO_TO_STOP: f64 = 1.5;
 
 /// Remaining fraction of the residuals below which an accepted effect is most of the answer.
 /// Further effects show more clearly once it is in the model.
-pub const MOST_OF: f64 = 0.3;
+pub const MAX_LEFT_OF_RESIDUALS: f64 = 0.3;
 
 /// Predicted reduction of the squares above which a candidate is fitted: a fifth of the reduction
 /// that corresponds to `MIN_HELD_OUT_REDUCTION`, because the linear prediction is too low for
 /// saturating effects such as damping.
-pub const PROMISE: f64 = 0.02;
+pub const MIN_PROMISED_REDUCTION: f64 = 0.02;
 
 /// The same limit when the residuals are much larger than the noise. Effects are then large, and
 /// the linear prediction is too low.
-pub const PROMISE_FAR: f64 = 0.005;
+pub const MIN_PROMISED_REDUCTION_FAR: f64 = 0.005;
 
 /// Residual RMS above which the residuals are much larger than the noise, in standard deviations.
-pub const MUCH_IS_LEFT: f64 = 3.0;
+pub const FAR_FROM_NOISE: f64 = 3.0;
 
 /// Maximum remaining fraction of the squares after a preliminary fit that is continued with a full
 /// fit, if the gap exceeds `MAX_FLOOR_RATIO_TO_STOP` floors. Of a hundred candidates above this
 /// limit none was accepted.
-pub const HELPS: f64 = 0.95;
+pub const MAX_LEFT_BY_PRELIMINARY_FIT: f64 = 0.95;
 
 /// Number of candidates that are fitted in parallel before the next decision: one for each core of
 /// a small machine.
-pub const FITS_AT_ONCE: usize = 2;
+pub const FITS_IN_PARALLEL: usize = 2;
 
 /// Predicted ratio of the squares of a pair to those of the best single candidate, below which the
 /// pair is fitted.
-pub const PAIR_PROMISE: f64 = 0.8;
+pub const MAX_PAIR_COST_RATIO: f64 = 0.8;
 
 /// Ratio of the influence of either effect to that of both, above which two effects cancel. With
 /// less noise neither would be selected.
-pub const CANCELS: f64 = 3.0;
+pub const MIN_CANCELLATION_RATIO: f64 = 3.0;
 
 /// Fraction of the gap that makes further candidates unnecessary. Effects that repeat with an
 /// angle, a dozen for each angle, are screened only if no other candidate promises this fraction. A
 /// candidate that promises it is always fitted, even if it is similar to the nuisances.
-pub const ENOUGH: f64 = 0.5;
+pub const MIN_EXPLAINED_FRACTION: f64 = 0.5;
 
 /// Maximum number of candidates, or pairs, with a preliminary fit in one round.
-pub const MOST_PRELIMINARY_FITS: usize = 8;
+pub const MAX_PRELIMINARY_FITS: usize = 8;
 
 /// Ratio of the squares to those of the best preliminary fit, below which a candidate is fitted in
 /// full.
-pub const RIVAL: f64 = 1.5;
+pub const MAX_RIVAL_COST_RATIO: f64 = 1.5;
 
 /// Maximum distance of a parameter from 0, in standard deviations of its prior, for which its term
 /// may be deleted.
-pub const PRIOR_REACH: f64 = 3.0;
+pub const MAX_PRIOR_SD_TO_ZERO: f64 = 3.0;
 
 /// Limit of the null model for declared parameters and sensors, in standard deviations of their
 /// priors. A larger deviation, by `MIN_REDUCTION_STANDARD_ERRORS` standard deviations of the
 /// estimate, is an effect; one in four hundred occurs by chance.
-pub const SHIFTED: f64 = 3.0;
+pub const MAX_PRIOR_DEVIATION: f64 = 3.0;
 
 /// Factor on the linearised uncertainty of effects. The linearisation omits quantisation that
 /// depends on the signal, correlated initial states and the curvature of the model. Two in three of
 /// forty test estimates were within 1.645 narrower standard deviations.
-pub const WIDER: f64 = 1.8;
+pub const UNCERTAINTY_FACTOR: f64 = 1.8;
 
 /// Fraction of the misfit above the noise floor that resembles the response of an effect and so
 /// biases its size. Chosen on one seed of the blind suite, with 62 sizes.
-pub const MISFIT_ALIKE: f64 = 0.3;
+pub const MISFIT_SIMILARITY: f64 = 0.3;
 
 /// Minimum fraction of the squares that a reported residual force explains. Every fitted record
 /// shows less than this.
-pub const STANDS_OUT: f64 = 0.1;
+pub const MIN_FORCE_FRACTION: f64 = 0.1;
 
 /// Minimum fraction, relative to a force that is free in each window, explained by a force that is
 /// reported as a function of rate or position.
-pub const STATE_EXPLAINS: f64 = 0.6;
+pub const MIN_STATE_FRACTION: f64 = 0.6;
 
 /// Minimum fraction, relative to a piecewise linear force, explained by one or two simple functions
 /// that describe the force.
-pub const IS_SIMPLE: f64 = 0.9;
+pub const MIN_SIMPLE_FRACTION: f64 = 0.9;
 
 /// Fraction, relative to the best equation, above which a force in another equation explains nearly
 /// as much.
-pub const AS_WELL: f64 = 0.9;
+pub const MIN_FRACTION_OF_BEST: f64 = 0.9;
 
 /// Relative error of the linearised force at a wrong motion: hidden springs and friction were
 /// estimated with errors of 1 to 5 %.
-pub const STRAIGHT: f64 = 0.05;
+pub const LINEARISATION_ERROR: f64 = 0.05;
 
 /// Ratio of the gap to the noise floor, on training and on test records, above which an unnamed
 /// expression is searched. A smaller gap may remain from the fit of the named effects.
-pub const UNNAMED_FROM: f64 = 2.0;
+pub const MIN_FLOOR_RATIO_FOR_EXPRESSION: f64 = 2.0;
 
 /// Minimum fraction of the gap to the floor, on training and on test records, that an accepted
 /// unnamed expression closes. A missing function of rates, positions and inputs can reach it; other
 /// effects cannot.
-pub const UNNAMED_CLOSES: f64 = 0.5;
+pub const MIN_EXPRESSION_CLOSURE: f64 = 0.5;
 
 /// Maximum number of terms of an unnamed expression. More terms are unreadable.
-pub const UNNAMED_TERMS: usize = 3;
+pub const MAX_EXPRESSION_TERMS: usize = 3;
 
 /// Minimum fraction of the remaining squares that each further term explains.
-pub const TERM_TAKES: f64 = 0.25;
+pub const MIN_TERM_REDUCTION: f64 = 0.25;
 
 /// Maximum number of equations of motion in which an expression is searched, among those whose
 /// force explains nearly as much. Stiffly coupled equations are indistinguishable.
-pub const UNNAMED_EQUATIONS: usize = 3;
+pub const MAX_EXPRESSION_EQUATIONS: usize = 3;
 
 // Models and their records.
 
 /// Maximum interpolation error of the output of a delayed sensor, as a fraction of the noise.
-pub const INTERPOLATED: f64 = 0.25;
+pub const MAX_INTERPOLATION_ERROR: f64 = 0.25;
 
 /// Maximum number of computed outputs per sample interval. A motion that needs more is
 /// undersampled.
-pub const MOST_BETWEEN: usize = 4;
+pub const MAX_OUTPUTS_PER_SAMPLE: usize = 4;
 
 /// Cut-off frequency of the zero-phase smoothing, as a fraction of the sampling frequency. For an
 /// initial value, faster motion is noise or quantisation.
@@ -206,98 +206,98 @@ pub const SMOOTHING_CUT_OFF: f64 = 0.02;
 
 /// Number of samples for the first value and slope of a column. A dozen samples average the noise,
 /// and a parabola still fits the motion over them.
-pub const FIRST_SAMPLES: usize = 12;
+pub const INITIAL_SLOPE_SAMPLES: usize = 12;
 
 /// Number of samples at the beginning of a record over which columns are compared with the model.
 /// Later the missing effects have moved the model too far away.
 pub const CHECKED_SAMPLES: usize = 1000;
 
 /// Minimum detrended motion of a checked channel, in standard deviations of its noise.
-pub const CHECKED_MOTION: f64 = 20.0;
+pub const MIN_CHECKED_MOTION_IN_NOISE: f64 = 20.0;
 
 /// Correlation above which two columns are one quantity.
-pub const FOLLOWS: f64 = 0.98;
+pub const MIN_SAME_CORRELATION: f64 = 0.98;
 
 /// Correlation with the model below which a channel does not follow it. Missing effects leave most
 /// of the motion intact.
-pub const ASTRAY: f64 = 0.5;
+pub const MAX_WRONG_CORRELATION: f64 = 0.5;
 
 /// Relative tolerance of a known unit factor between columns: 1 % for wrong parameters and 1 % for
 /// missing effects.
-pub const AGREES: f64 = 0.02;
+pub const FACTOR_TOLERANCE: f64 = 0.02;
 
 /// Tolerance of a factor of one, or minus one, between a column and the model. Missing effects may
 /// change the amplitude this much.
-pub const NEAR_ONE: f64 = 0.2;
+pub const UNIT_FACTOR_TOLERANCE: f64 = 0.2;
 
 /// Maximum number of switches per simulated second of a trial motion, 1/s: ten times the number of
 /// the stiffest contact of the shipped models.
-pub const FASTEST_SWITCHING: f64 = 1e5;
+pub const MAX_SWITCHES_PER_SECOND: f64 = 1e5;
 
 /// Maximum number of parts of one step between samples. A faster process, such as a drive with a
 /// lag of a thousandth of a sample, is not visible, and each part costs time.
-pub const MOST_PARTS: f64 = 4096.0;
+pub const MAX_PARTS_PER_STEP: f64 = 4096.0;
 
 /// Number of samples on which the number of steps per sample is tested.
 pub const STEP_TEST_SAMPLES: usize = 100;
 
 /// Base-2 logarithm of the maximum number of fixed steps per sample. Above it a solver with error
 /// control is used.
-pub const MOST_STEP_DOUBLINGS: u32 = 7;
+pub const MAX_STEP_DOUBLINGS: u32 = 7;
 
 /// Maximum RMS error of fixed steps in a simulation that is compared, in standard deviations of the
 /// noise.
-pub const STEP_ERROR: f64 = 0.2;
+pub const MAX_STEP_ERROR: f64 = 0.2;
 
 /// Maximum root of the summed squared errors of Runge-Kutta steps over all measured numbers, in
 /// standard deviations of the noise. It shifts each estimate by at most this fraction of its
 /// standard deviation.
-pub const SUMMED_STEP_ERROR: f64 = 0.1;
+pub const MAX_SUMMED_STEP_ERROR: f64 = 0.1;
 
 /// Relative tolerance of the solver with error control: far below the noise of any sensor.
 pub const SOLVER_TOLERANCE: f64 = 1e-7;
 
 /// Maximum number of steps of that solver in one window: some seconds of computation.
-pub const MOST_SOLVER_STEPS: u64 = 400_000;
+pub const MAX_SOLVER_STEPS: u64 = 400_000;
 
 // Fits.
 
 /// Successive fractions of a window over which initial states are fitted. A short motion is nearly
 /// linear in its initial state. Chosen on the development seeds of the blind suite.
-pub const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
+pub const INITIAL_STATE_HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
 /// Fractions of a second attempt. If impacts fold the outputs, one sequence may end in a wrong
 /// local minimum and the other in the right one.
-pub const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
+pub const OTHER_INITIAL_STATE_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
 /// Number of parts of a record that are processed in parallel from initial states of another
 /// estimate. It is independent of the machine, so that results are too.
-pub const CHAINS: usize = 2;
+pub const PARALLEL_CHAINS: usize = 2;
 
 /// Relative decrease of the cost below which the continuation ends: each step simulates all windows
 /// again.
-pub const CONTINUATION_DECREASE: f64 = 0.02;
+pub const MIN_CONTINUATION_DECREASE: f64 = 0.02;
 
 /// Maximum number of secant steps if tangents fail. Chosen on the development seeds of the blind
 /// suite.
-pub const SECANT_STEPS: usize = 6;
+pub const MAX_SECANT_STEPS: usize = 6;
 
 /// First change of an unknown for a secant, as a fraction of its scale.
-pub const FIRST_SECANT: f64 = 0.1;
+pub const FIRST_SECANT_IN_SCALES: f64 = 0.1;
 
 /// Output change of a secant, as a fraction of the residuals: far above the small folds due to
 /// impacts, and no larger than the error of the estimate.
-pub const SECANT_MOVES: f64 = 0.3;
+pub const SECANT_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Factor within which the output change of a secant is accepted.
-pub const SECANT_NEAR: f64 = 3.0;
+pub const SECANT_CHANGE_TOLERANCE: f64 = 3.0;
 
 /// Relative decrease of the cost below which Gauss-Newton steps end: far below the thresholds for
 /// an effect.
-pub const LEAST_DECREASE: f64 = 1e-3;
+pub const MIN_GAUSS_NEWTON_DECREASE: f64 = 1e-3;
 
 /// Successive trial fractions of a step of the unknowns.
-pub const STEP_PARTS: [f64; 3] = [1.0, 0.3, 0.05];
+pub const STEP_FRACTIONS: [f64; 3] = [1.0, 0.3, 0.05];
 
 /// Successive damping factors of a step of the unknowns if no fraction of it decreases the cost, in
 /// norms of the columns.
@@ -308,100 +308,100 @@ pub const STEP_DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
 pub const INITIAL_STATE_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
 
 /// Maximum number of steps of an initial state over one fraction of a window.
-pub const INNER_STEPS: usize = 6;
+pub const MAX_INNER_STEPS: usize = 6;
 
 /// Maximum number of Gauss-Newton steps over whole windows before their initial states are
 /// estimated again. Chosen on the development seeds of the blind suite.
-pub const FULL_STEPS: usize = 4;
+pub const MAX_FULL_STEPS: usize = 4;
 
 /// Maximum number of further steps over the beginnings of windows before whole windows are fitted.
-pub const FURTHER_STEPS: usize = 12;
+pub const MAX_FURTHER_STEPS: usize = 12;
 
 /// Residual RMS over whole windows, in standard deviations, above which the initial states are not
 /// estimated again. Also the ratio to the RMS of a fit above which a start is rejected.
-pub const HOPELESS: f64 = 8.0;
+pub const MAX_RMS_TO_CONTINUE: f64 = 8.0;
 
 /// Ratio of the training RMS after the first steps to that of the fit of a warm start, above which
 /// the result is judged without further steps.
-pub const FAR: f64 = 3.0;
+pub const MAX_WARM_START_RATIO: f64 = 3.0;
 
 /// Maximum number of renewed estimates of the initial states.
-pub const REFRESHES: usize = 2;
+pub const MAX_REFRESHES: usize = 2;
 
 /// Relative decrease of the cost below which the initial states are not estimated again.
-pub const REFRESH_DECREASE: f64 = 0.005;
+pub const MIN_REFRESH_DECREASE: f64 = 0.005;
 
 /// Maximum number of windows for the linearisation of candidates, spread evenly over the records.
 /// Screening a hundred candidates then costs less than one full fit.
-pub const MOST_WINDOWS: usize = 40;
+pub const MAX_SCREENING_WINDOWS: usize = 40;
 
 /// Number of windows that suffices to compare a few equations of motion.
 pub const FEW_WINDOWS: usize = 20;
 
 /// Number of blocks of time for standard errors of a set of windows. Each block is longer than the
 /// correlation of the residuals.
-pub const BLOCKS: usize = 40;
+pub const TIME_BLOCKS: usize = 40;
 
 /// Maximum number of steps of the continuation.
-pub const CONTINUATION_STEPS: usize = 5;
+pub const MAX_CONTINUATION_STEPS: usize = 5;
 
 /// Maximum number of steps of a preliminary fit if initial states are read from the record.
-pub const PRELIMINARY_STEPS: usize = 3;
+pub const MAX_PRELIMINARY_STEPS: usize = 3;
 
 /// Output change of a difference quotient, as a fraction of the residuals: far above rounding and
 /// above the small folds due to impacts.
-pub const QUOTIENT: f64 = 0.3;
+pub const QUOTIENT_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Maximum difference for a quotient, as a fraction of the range of the state.
-pub const LARGEST_QUOTIENT: f64 = 0.03;
+pub const MAX_QUOTIENT_IN_RANGES: f64 = 0.03;
 
 /// Fraction of each window, from its beginning, for preliminary fits. The motion is nearly linear
 /// in the unknowns there. Chosen on the development seeds of the blind suite.
-pub const FIRST_PART: f64 = 0.25;
+pub const PRELIMINARY_FRACTION: f64 = 0.25;
 
 /// Number of initial-state horizons of a preliminary fit.
-pub const FIRST_HORIZONS: usize = 2;
+pub const PRELIMINARY_HORIZONS: usize = 2;
 
 /// Relative decrease of the cost of a window below which the steps of its initial state end.
-pub const INNER_DECREASE: f64 = 1e-2;
+pub const MIN_INNER_DECREASE: f64 = 1e-2;
 
 /// Autocorrelation below which residuals are uncorrelated. White noise of a few hundred samples
 /// reaches this by chance.
-pub const CORRELATED: f64 = 0.05;
+pub const MIN_AUTOCORRELATION: f64 = 0.05;
 
 /// Fraction of a step by which the time between samples may exceed it.
-pub const JITTER: f64 = 0.1;
+pub const SAMPLING_JITTER: f64 = 0.1;
 
 /// Difference for the quotient by a parameter, as a fraction of its scale.
-pub const PARAMETER_QUOTIENT: f64 = 0.01;
+pub const PARAMETER_QUOTIENT_IN_SCALES: f64 = 0.01;
 
 /// Maximum relative error of tangent vectors that are integrated with a motion, without impacts.
-pub const TANGENT_ERROR: f64 = 0.1;
+pub const MAX_TANGENT_ERROR: f64 = 0.1;
 
 /// Difference for a central quotient, as a fraction of the scale of a parameter or the range of a
 /// state: far above rounding. Its error decreases with the square.
-pub const CENTRAL_QUOTIENT: f64 = 0.001;
+pub const CENTRAL_QUOTIENT_IN_SCALES: f64 = 0.001;
 
 /// Maximum number of final Gauss-Newton steps. A poorly determined direction is a curved valley and
 /// needs short steps.
-pub const LAST_STEPS: usize = 12;
+pub const MAX_FINAL_STEPS: usize = 12;
 
 /// Maximum number of corrections of the initial states after a step of the unknowns. Each removes
 /// most of the remaining error.
-pub const CORRECTIONS: usize = 4;
+pub const MAX_STATE_CORRECTIONS: usize = 4;
 
 /// Decrease of the cost, as a fraction of one squared standard deviation, below which the final
 /// steps end.
-pub const LEAST_INFORMATION: f64 = 0.01;
+pub const MIN_FINAL_DECREASE: f64 = 0.01;
 
 /// Difference for the quotient by a sensor unknown, as a fraction of its scale. The outputs are
 /// linear in it.
-pub const SENSOR_QUOTIENT: f64 = 0.1;
+pub const SENSOR_QUOTIENT_IN_SCALES: f64 = 0.1;
 
 // The catalogue.
 
 /// Maximum size of an effects file of the user, in bytes: a thousand effects.
-pub const LARGEST_EFFECTS_FILE: u64 = 1 << 20;
+pub const MAX_EFFECTS_FILE_BYTES: u64 = 1 << 20;
 
 /// Shaft orders, per turn, of candidates that repeat with an angle, in addition to numbers of
 /// teeth: those of unbalance, joints, small pinions and motor poles.
@@ -409,48 +409,48 @@ pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 
 /// Maximum order, per turn, in the spectrum of the residual force over an angle: more than twice
 /// the number of poles of usual motors.
-pub const HIGHEST_ORDER: u32 = 48;
+pub const MAX_SHAFT_ORDER: u32 = 48;
 
 /// Maximum number of orders from that spectrum, per angle, in addition to `SHAFT_ORDERS`.
-pub const MOST_ORDERS: usize = 4;
+pub const MAX_SPECTRUM_ORDERS: usize = 4;
 
 // Screening.
 
 /// Relative change of the accelerations for the linearisation of a candidate: small, but large
 /// compared with rounding.
-pub const SMALL_CHANGE: f64 = 1e-4;
+pub const LINEARISATION_ACCELERATION_CHANGE: f64 = 1e-4;
 
 /// Factors within which such a change is accepted.
-pub const SMALL_NEAR: Interval = Interval::new(0.1, 1e3);
+pub const LINEARISATION_CHANGE_FACTORS: Interval = Interval::new(0.1, 1e3);
 
 /// Factors between successive sizes within which the search for a size ends, so that results are
 /// independent of units.
-pub const SAME_SIZE: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
+pub const SAME_SIZE_FACTORS: Interval = Interval::new(1.0 - 1e-9, 1.0 + 1e-9);
 
 /// Stride of the samples of a window in that search.
-pub const SAMPLED: usize = 5;
+pub const SIZE_SAMPLE_STRIDE: usize = 5;
 
 /// Output change of a simulated response, as a fraction of the residuals.
-pub const RESPONSE_MOVES: f64 = 0.3;
+pub const RESPONSE_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Fractions of the predicted size from which a fit begins; the best is used. The linear prediction
 /// is too large if impacts fold the outputs, and too small for effects that saturate.
-pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
+pub const INITIAL_SIZE_FRACTIONS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
 /// Factors of the typical shape from which a fit is restarted.
-pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
+pub const SHAPE_RESTART_FACTORS: [f64; 2] = [0.4, 2.5];
 
 /// Maximum number of corrections of a size that is close to the target. Each costs a simulation.
-pub const SIZE_CORRECTIONS: usize = 2;
+pub const MAX_SIZE_CORRECTIONS: usize = 2;
 
 /// Maximum number of attempts to find the size for a linearisation or simulation.
-pub const SIZE_ATTEMPTS: usize = 8;
+pub const MAX_SIZE_ATTEMPTS: usize = 8;
 
 /// Maximum change of the size per attempt, as a factor.
-pub const SIZE_FACTOR: f64 = 1e6;
+pub const MAX_SIZE_FACTOR: f64 = 1e6;
 
 /// Factors of `RESPONSE_OUTPUT_CHANGE` within which a response is accepted.
-pub const RESPONSE_NEAR: Interval = Interval::new(0.2, 5.0);
+pub const RESPONSE_CHANGE_FACTORS: Interval = Interval::new(0.2, 5.0);
 
 // The residual force.
 
@@ -458,173 +458,173 @@ pub const RESPONSE_NEAR: Interval = Interval::new(0.2, 5.0);
 pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
 
 /// Maximum number of frequencies of the profile of a residual force.
-pub const MOST_FREQUENCIES: usize = 12;
+pub const MAX_FORCE_FREQUENCIES: usize = 12;
 
 /// Number of knots of a force over a whole turn.
-pub const TURN_BENDS: usize = 12;
+pub const TURN_KNOTS: usize = 12;
 
 /// Rate difference across a turning point, as a fraction of the largest rate.
-pub const TURNING: f64 = 1e-3;
+pub const TURNING_RATE_FRACTION: f64 = 1e-3;
 
 /// Output change due to a trial force, as a fraction of the residuals.
-pub const FORCE_MOVES: f64 = 0.3;
+pub const FORCE_OUTPUT_CHANGE: f64 = 0.3;
 
 /// Relative change of the accelerations due to the first trial force.
-pub const FIRST_FORCE: f64 = 1e-4;
+pub const FIRST_FORCE_ACCELERATION_CHANGE: f64 = 1e-4;
 
 /// Factor within which the output change of a trial force is accepted.
-pub const FORCE_NEAR: f64 = 10.0;
+pub const FORCE_CHANGE_FACTOR: f64 = 10.0;
 
 /// Factor by which a force is reduced if its motion leaves the domain of the model.
-pub const FORCE_SHRINKS: f64 = 1e3;
+pub const FORCE_REDUCTION_FACTOR: f64 = 1e3;
 
 /// Number of iterations for the variance of a force that differs between windows. It then changes
 /// by less than 1 %.
-pub const VARIANCE_ROUNDS: usize = 12;
+pub const VARIANCE_ITERATIONS: usize = 12;
 
 /// Maximum standard deviation of a drawn point of a profile, as a fraction of the largest force.
-pub const DRAWN: f64 = 0.5;
+pub const MAX_DRAWN_SD: f64 = 0.5;
 
 /// Minimum number of points of a drawn profile.
-pub const DRAWN_POINTS: usize = 2;
+pub const MIN_DRAWN_POINTS: usize = 2;
 
 /// Number of knots of a force over the rate on each side of rest.
-pub const RATE_BENDS: usize = 5;
+pub const RATE_KNOTS: usize = 5;
 
 /// Number of knots of a force over the position.
-pub const POSITION_BENDS: usize = 9;
+pub const POSITION_KNOTS: usize = 9;
 
 /// Number of knots of a force over the time of a window.
-pub const TIME_BENDS: usize = 8;
+pub const TIME_KNOTS: usize = 8;
 
 /// Number of profile frequencies that are the lowest whole numbers of periods per window.
-pub const FIRST_FREQUENCIES: usize = 4;
+pub const HARMONIC_FREQUENCIES: usize = 4;
 
 /// Ratio between successive higher frequencies.
 pub const FREQUENCY_RATIO: f64 = 1.6;
 
 /// Minimum number of samples per period.
-pub const PERIOD_SAMPLES: f64 = 4.0;
+pub const MIN_SAMPLES_PER_PERIOD: f64 = 4.0;
 
 // Expressions without a name.
 
 /// Maximum degree of a product. Expressions of higher degree differ only near the ends of the
 /// range.
-pub const MOST_DEGREE: u32 = 3;
+pub const MAX_PRODUCT_DEGREE: u32 = 3;
 
 /// Trial positions of a kink of a force over a position, on each side, as fractions of the largest
 /// position. The position itself is fitted.
-pub const KINKS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+pub const KINK_FRACTIONS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 /// Width of the smoothed sign over the rate, as a fraction of the largest rate. Measured friction
 /// near rest is rarely steeper, and a smooth factor can be multiplied.
-pub const STEEP: f64 = 0.03;
+pub const SIGN_WIDTH_FRACTION: f64 = 0.03;
 
 // The report.
 
 /// Remaining gap of a channel, in noise floors, above which the name of an effect is provisional.
 /// An end stop that was named as friction and a spring left 41.
-pub const MAY_STAND_IN: f64 = 3.0;
+pub const MAX_FLOORS_FOR_CERTAINTY: f64 = 3.0;
 
 /// Maximum gap of a channel for a correct model, in noise floors. Noise differs in each record.
-pub const ONE_FLOOR: f64 = 1.5;
+pub const MAX_FLOORS_OF_CORRECT_MODEL: f64 = 1.5;
 
 /// Fraction of `MAX_PRIOR_DEVIATION` above which a nuisance is at its bound, because estimates end
 /// within rounding of it.
-pub const AT_BOUND: f64 = 0.99;
+pub const BOUND_FRACTION: f64 = 0.99;
 
 /// Minimum ratio of the smallest to the largest delay of channels with a common delay.
-pub const LATE_ALIKE: f64 = 0.9;
+pub const MIN_DELAY_RATIO: f64 = 0.9;
 
 /// Minimum change of an estimate, in its standard deviations, that is written back if no effect was
 /// found. With an effect, all estimates are written because they were estimated together.
-pub const WRITTEN_FROM: f64 = 0.5;
+pub const MIN_WRITTEN_CHANGE_IN_SD: f64 = 0.5;
 
 /// Ratio of a spectral line to the mean of the others above which it is a peak, divided by the root
 /// of the number of windows. One spectrum of white noise in about a thousand has such a line.
-pub const SPECTRAL_PEAK: f64 = 10.0;
+pub const MIN_SPECTRAL_PEAK_RATIO: f64 = 10.0;
 
 /// First line of the spectrum of a window that is interpreted as a frequency. Fewer periods cannot
 /// be distinguished from drift, which detrending and the taper spread.
-pub const FIRST_LINE: usize = 3;
+pub const FIRST_SPECTRAL_LINE: usize = 3;
 
 /// Minimum reported ratio between the residuals of slow and of fast motion.
-pub const WORTH_SAYING: f64 = 1.5;
+pub const MIN_SPEED_RATIO: f64 = 1.5;
 
 /// Ratio of the RMS of the joint fit to that of the fit of each single record, above which records
 /// contradict each other. A missing effect changes the parameters slightly in each record.
-pub const CONTRADICTS: f64 = 2.0;
+pub const MIN_CONTRADICTION_RATIO: f64 = 2.0;
 
 /// Minimum relative difference of the values in records that contradict each other. One machine
 /// varies by less between two days.
-pub const CONTRADICTING_PART: f64 = 0.1;
+pub const MIN_CONTRADICTION_DIFFERENCE: f64 = 0.1;
 
 // The next experiment.
 
 /// Minimum residual RMS of the wrong member of a class in the channel that shows it best, in
 /// standard deviations of the noise: three noise floors.
-pub const SEPARATES: f64 = 3.0;
+pub const MIN_SEPARATION_IN_NOISE: f64 = 3.0;
 
 /// Maximum number of samples of an experiment without a given duration. A hundred experiments are
 /// simulated.
-pub const EXPERIMENT_SAMPLES: f64 = 4000.0;
+pub const MAX_EXPERIMENT_SAMPLES: f64 = 4000.0;
 
 /// Maximum mean number of solver steps, and of switching surface crossings, per sample of an
 /// experiment. Slower inputs, such as a load that a machine holds by friction, are skipped;
 /// rattling teeth cross a few surfaces per sample.
-pub const EXPERIMENT_STEPS: usize = 20;
+pub const MAX_EXPERIMENT_STEPS_PER_SAMPLE: usize = 20;
 
 /// Trial amplitudes of an input, as fractions of its range. Large amplitudes may violate the
 /// limits.
-pub const EXPERIMENT_SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
+pub const EXPERIMENT_AMPLITUDES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.05, 0.02];
 
 /// Maximum number of expanded terms of the rate of a spring or damper that is compared. Rates of
 /// real machines have a handful of terms.
-pub const MOST_TERMS_OF_A_RATE: usize = 64;
+pub const MAX_RATE_TERMS: usize = 64;
 
 /// Maximum power in such a rate.
-pub const HIGHEST_POWER_OF_A_RATE: u8 = 8;
+pub const MAX_RATE_POWER: u8 = 8;
 
 /// Fraction of the power of a recorded input that defines its frequency band.
-pub const RECORDED_POWER: f64 = 0.99;
+pub const RECORDED_POWER_FRACTION: f64 = 0.99;
 
 /// Fraction of the recorded range by which a channel may exceed it: records of one motion differ
 /// this much.
-pub const LIMIT_MARGIN: f64 = 0.05;
+pub const LIMIT_MARGIN_FRACTION: f64 = 0.05;
 
 /// Number of experiments, the best by linear prediction, for which the rivals are fitted again.
-pub const EXPERIMENTS_REFITTED: usize = 3;
+pub const MAX_REFITTED_EXPERIMENTS: usize = 3;
 
 /// Minimum separation by linear prediction of an experiment that shows a small effect:
 /// `MIN_SEPARATION_IN_NOISE` less the error of the linearisation.
-pub const SHOWS: f64 = 2.0;
+pub const MIN_LINEAR_SEPARATION: f64 = 2.0;
 
 /// Maximum number of untestable effects for which an experiment is searched. The experiment of one
 /// often shows the next.
-pub const MOST_SHOWN: usize = 3;
+pub const MAX_DETECTION_SEARCHES: usize = 3;
 
 /// Output change of an effect of small size, in standard deviations of the noise. The linearisation
 /// holds there.
-pub const SHOWN_BY: f64 = 3.0;
+pub const SMALL_EFFECT_IN_NOISE: f64 = 3.0;
 
 /// Factors within which that size is accepted.
-pub const SHOWN_WITHIN: Interval = Interval::new(1.0, 10.0);
+pub const SMALL_EFFECT_FACTORS: Interval = Interval::new(1.0, 10.0);
 
 /// Maximum number of steps of such a fit. A rival that is not fully converged would appear to be
 /// separated.
-pub const REFIT_STEPS: usize = 30;
+pub const MAX_REFIT_STEPS: usize = 30;
 
 /// Successive trial fractions of a step of that fit.
-pub const REFIT_PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
+pub const REFIT_STEP_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
 /// Maximum number of Newton steps for the inputs of a given motion. One step suffices if second
 /// derivatives are linear in the inputs.
-pub const REQUIRED_STEPS: usize = 12;
+pub const MAX_INVERSE_DYNAMICS_STEPS: usize = 12;
 
 /// Minimum difference for the quotient by such an input, as a fraction of the input. Otherwise the
 /// difference is the noise of its sensor.
-pub const REQUIRED_QUOTIENT: f64 = 1e-6;
+pub const MIN_INVERSE_DYNAMICS_QUOTIENT: f64 = 1e-6;
 
 /// Maximum relative error of the second derivatives at these inputs: far above rounding in a
 /// regular system, far below the resolution of any sensor.
-pub const REQUIRED_ERROR: f64 = 1e-9;
+pub const MAX_INVERSE_DYNAMICS_ERROR: f64 = 1e-9;

@@ -58,7 +58,7 @@ fn search(
     for note in &dataset.notes {
         say(&format!("note: {note}"));
     }
-    let effects = catalogue::effects(None).map_err(|found| error::specification(&found))?;
+    let effects = catalogue::load_effects(None).map_err(|found| error::specification(&found))?;
     let specification = Specification {
         path: &declared.source.path,
         text,
@@ -86,7 +86,7 @@ fn validate(extended: Source, order: Option<usize>) -> Result<Option<Validation>
         checks.map(|check| check.name.clone()).collect()
     };
     Ok(Some(Validation {
-        passed: certificate.verdict != Verdict::Failed,
+        has_passed: certificate.verdict != Verdict::Failed,
         checks: names(|check| check.skipped.is_none()),
         failed: names(|check| !check.passed && check.skipped.is_none()),
     }))

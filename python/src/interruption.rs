@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-use eomgen_discover::Stop;
+use eomgen_discover::StopRequest;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -19,7 +19,7 @@ const STACK_BYTES: usize = 16 << 20;
 /// Connection of the work to Python.
 pub struct Connection<'w, M> {
     /// Request to stop.
-    pub stop: &'w Stop,
+    pub stop: &'w StopRequest,
     send: &'w (dyn Fn(M) + Sync),
 }
 
@@ -56,7 +56,7 @@ pub fn interruptible<M: Send, T: Send>(
     hear: impl Fn(Python<'_>, M) -> PyResult<()> + Send,
     work: impl FnOnce(&Connection<'_, M>) -> T + Send,
 ) -> PyResult<T> {
-    let stop = &Stop::default();
+    let stop = &StopRequest::default();
     py.detach(move || {
         std::thread::scope(|scope| {
             let (said, heard) = channel();
@@ -70,7 +70,7 @@ pub fn interruptible<M: Send, T: Send>(
             });
             working.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
             let answer = wait(&heard, &hear);
-            stop.request();
+            stop.request_stop();
             match answer? {
                 Ok(found) => Ok(found),
                 Err(panic) => resume_unwind(panic),

@@ -9,10 +9,10 @@ use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::site::{Site, text};
+use crate::catalogue::site::{Site, format_expression};
 
 /// Returns the flexible bodies of a model.
-pub(super) fn arms(model: &Model) -> Vec<Site> {
+pub(super) fn find_arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
         // What is spread along the body; a mass at its end is none.
         let velocity = squared(
@@ -26,7 +26,7 @@ pub(super) fn arms(model: &Model) -> Vec<Site> {
                 match of.kind {
                     ExprKind::Field(id) => field = Some(id),
                     ExprKind::Definition(_) | ExprKind::Coordinate(_) => {
-                        root = Some(text(model, of))
+                        root = Some(format_expression(model, of))
                     }
                     _ => {}
                 }
@@ -45,15 +45,15 @@ pub(super) fn arms(model: &Model) -> Vec<Site> {
         }
         let mut arguments: BTreeMap<&'static str, String> = [
             ("term", term.name.clone()),
-            ("velocity", text(model, velocity)),
+            ("velocity", format_expression(model, velocity)),
             ("field", declared.name.clone()),
             ("x", declared.along.clone()),
-            ("end", text(model, &declared.to)),
+            ("end", format_expression(model, &declared.to)),
             ("lever", lever(model, &declared.from, &declared.to)),
         ]
         .into();
         arguments.extend(root.map(|root| ("root", root)));
-        arguments.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
+        arguments.extend(stiffness.map(|factor| ("stiffness", format_expression(model, factor))));
         let moving = model
             .kinetic
             .iter()
@@ -90,8 +90,12 @@ fn holds_field(expr: &Expr, field: FieldId) -> bool {
 /// The distance of a body's end from its root.
 fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
     match from.kind {
-        ExprKind::Number(0.0) => text(model, to),
-        _ => format!("({} - ({}))", text(model, to), text(model, from)),
+        ExprKind::Number(0.0) => format_expression(model, to),
+        _ => format!(
+            "({} - ({}))",
+            format_expression(model, to),
+            format_expression(model, from)
+        ),
     }
 }
 

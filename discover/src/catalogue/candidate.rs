@@ -8,9 +8,11 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
-use crate::catalogue::loads::{Load, loads};
+use crate::catalogue::loads::{Load, find_loads};
 use crate::catalogue::site::Site;
-use crate::catalogue::template::{edits, free_name, instantiated, terms};
+use crate::catalogue::template::{
+    fill_placeholders, instantiate_change, names_of_terms, reserve_name,
+};
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 use crate::interval::Interval;
@@ -18,11 +20,11 @@ use crate::model::estimation_model::is_linear;
 use crate::model::input_faults::InputFault;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
-use crate::model::unknowns::{What, sign_bounds};
+use crate::model::unknowns::{UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
 /// Effect name of a shifted parameter.
-pub const PARAMETER_OFFSET: &str = "parameter_shift";
+pub const PARAMETER_SHIFT: &str = "parameter_shift";
 
 /// An effect at a site.
 #[derive(Clone, Debug)]
@@ -30,30 +32,30 @@ pub struct Candidate {
     /// Name of the effect.
     pub effect: String,
     /// Name of the site.
-    pub on: String,
+    pub site: String,
     /// Angle and order, per turn, of a periodic effect.
-    pub order: Option<(String, u32)>,
+    pub angle_order: Option<(String, u32)>,
     /// Name of the spring or mesh whose load scales the effect.
     pub load: Option<String>,
     /// Whether the effect acts on a mesh with play.
     pub on_mesh: bool,
     /// Stiffness parameter of an effect that only scales a stiffness.
-    pub scaled: Option<String>,
+    pub scaled_stiffness: Option<String>,
     /// Parameters of the effect.
     pub parameters: Vec<CandidateParameter>,
     /// Description of the effect.
-    pub says: String,
+    pub description: String,
     /// Experiment that shows the effect best.
     pub experiment: String,
     pub(crate) changes: Vec<Edit>,
     /// Main line of the change.
     pub term: String,
     /// Unknown of the null model that loses its prior, if that is the effect.
-    pub dropped_prior: Option<What>,
+    pub dropped_prior: Option<UnknownKind>,
 }
 
 /// Multiple of the typical size at which a parameter counts as infinite.
-pub(super) const NEARLY_INFINITE: f64 = 1e12;
+pub(super) const NEARLY_INFINITE_FACTOR: f64 = 1e12;
 
 /// Parameter of a candidate.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,11 +65,11 @@ pub struct CandidateParameter {
     /// Unit.
     pub unit: String,
     /// Whether the parameter must not be negative.
-    pub positive: bool,
+    pub is_positive: bool,
     /// Whether the effect vanishes at infinity instead of 0.
-    pub inverse: bool,
+    pub is_inverse: bool,
     /// Initial size of a shape parameter, which does not scale the effect.
-    pub shape: Option<f64>,
+    pub shape_size: Option<f64>,
     /// Reference value and bounds of a parameter that exists already or that is not 0 without the
     /// effect.
     pub offset: Option<ParameterOffset>,
@@ -80,7 +82,7 @@ pub struct CandidateParameter {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterOffset {
     /// Value in the specification, SI.
-    pub from: f64,
+    pub reference: f64,
     /// Admissible values, SI.
     pub bounds: Interval,
     /// The number of its units that one SI unit is.
@@ -91,9 +93,9 @@ pub struct ParameterOffset {
 
 impl ParameterOffset {
     /// Describes a parameter that an effect adds with this value if the effect is absent.
-    pub(crate) fn new_from(from: f64, bounds: Interval) -> Self {
+    pub(crate) fn with_reference(from: f64, bounds: Interval) -> Self {
         Self {
-            from,
+            reference: from,
             bounds,
             per_si: 1.0,
             is_new: true,
@@ -103,21 +105,21 @@ impl ParameterOffset {
 
 impl CandidateParameter {
     /// Returns the value without the effect; 0 for a new parameter.
-    pub fn base(&self) -> f64 {
-        self.offset.as_ref().map_or(0.0, |offset| offset.from)
+    pub fn base_value(&self) -> f64 {
+        self.offset.as_ref().map_or(0.0, |offset| offset.reference)
     }
 
     /// Returns the value of the parameter at which the effect vanishes, or nearly vanishes.
-    pub fn absent(&self) -> f64 {
-        match (self.inverse, self.shape) {
+    pub fn neutral_value(&self) -> f64 {
+        match (self.is_inverse, self.shape_size) {
             (_, Some(shape)) => shape,
-            (true, None) => NEARLY_INFINITE * self.typical_size,
-            (false, None) => self.base(),
+            (true, None) => NEARLY_INFINITE_FACTOR * self.typical_size,
+            (false, None) => self.base_value(),
         }
     }
 
     /// Returns the value of one SI unit in the unit of the parameter.
-    pub fn per_si(&self) -> f64 {
+    pub fn units_per_si(&self) -> f64 {
         self.offset.as_ref().map_or(1.0, |offset| offset.per_si)
     }
 
@@ -125,7 +127,7 @@ impl CandidateParameter {
         match &self.offset {
             Some(offset) if !offset.is_new => Edit::SetParameter(SetParameter {
                 name: self.name.clone(),
-                value: value * self.per_si(),
+                value: value * self.units_per_si(),
                 source: source.to_owned(),
             }),
             _ => Edit::AddParameter(NewParameter {
@@ -142,8 +144,8 @@ impl CandidateParameter {
 impl Candidate {
     /// Returns effect and site, with order or load if there are several.
     pub fn label(&self) -> String {
-        let plain = format!("{} on {}", self.effect, self.on);
-        match (&self.order, &self.load) {
+        let plain = format!("{} on {}", self.effect, self.site);
+        match (&self.angle_order, &self.load) {
             (Some((angle, order)), _) => format!("{plain} ({order} per turn of {angle})"),
             (None, Some(load)) => format!("{plain} (by the load of {load})"),
             (None, None) => plain,
@@ -152,24 +154,24 @@ impl Candidate {
 
     /// Returns true for a constant error of a parameter, a sensor or an input.
     pub(crate) fn is_offset(&self) -> bool {
-        let faults = InputFault::ALL.map(InputFault::effect);
+        let faults = InputFault::ALL.map(InputFault::effect_name);
         self.dropped_prior.is_some()
-            || self.effect == PARAMETER_OFFSET
+            || self.effect == PARAMETER_SHIFT
             || faults.contains(&self.effect.as_str())
     }
 
     /// Returns true if one candidate shifts the stiffness that the other scales. Both are one
     /// effect if the stiffness belongs to a single spring.
-    pub(crate) fn is_other_name_of(&self, other: &Self) -> bool {
+    pub(crate) fn is_alias_of(&self, other: &Self) -> bool {
         let shifts = |one: &Self, other: &Self| {
-            one.effect == PARAMETER_OFFSET && other.scaled.as_ref() == Some(&one.on)
+            one.effect == PARAMETER_SHIFT && other.scaled_stiffness.as_ref() == Some(&one.site)
         };
         shifts(self, other) || shifts(other, self)
     }
 
     /// Returns true if effect and site are equal, at any order.
-    pub fn is_same_as(&self, other: &Self) -> bool {
-        (&self.effect, &self.on) == (&other.effect, &other.on)
+    pub fn is_same_effect_as(&self, other: &Self) -> bool {
+        (&self.effect, &self.site) == (&other.effect, &other.site)
     }
 
     /// Returns a specification with the effect at these values of its parameters.
@@ -177,7 +179,7 @@ impl Candidate {
     /// # Errors
     ///
     /// An edit whose place is missing in the text.
-    pub fn written(
+    pub fn write_effect(
         &self,
         text: &str,
         name: &str,
@@ -197,28 +199,28 @@ impl Candidate {
     /// # Errors
     ///
     /// An edit whose place is missing in the text.
-    pub fn added(
+    pub fn add_to_texts(
         &self,
         problem: &EstimationProblem<'_>,
         texts: &SpecificationTexts,
         values: &[f64],
     ) -> Result<SpecificationTexts, DiscoverError> {
-        let written = |text: &str| self.written(text, &problem.path, values, "");
-        let extended = written(&texts.whole)?;
+        let written = |text: &str| self.write_effect(text, &problem.path, values, "");
+        let extended = written(&texts.full)?;
         // What is linear between switches itself belongs to the linear part.
         let linear = match written(&texts.linear) {
             Ok(extended) if is_linear(&extended, &problem.path, problem.order) => extended,
             _ => texts.linear.clone(),
         };
         Ok(SpecificationTexts {
-            whole: extended,
+            full: extended,
             linear,
         })
     }
 }
 
 /// Returns the candidates for a model. `motion`: known motion of the sites.
-pub fn candidates<'e>(
+pub fn list_candidates<'e>(
     model: &Model,
     effects: impl IntoIterator<Item = &'e Effect>,
     sites: &[Site],
@@ -228,26 +230,29 @@ pub fn candidates<'e>(
         .iter()
         .filter(|site| site.kind == SiteKind::Angle)
         .collect();
-    let loads = loads(model);
+    let loads = find_loads(model);
     let mut found = Vec::new();
     for effect in effects {
-        for site in sites.iter().filter(|site| fits(effect.site, site.kind)) {
+        for site in sites
+            .iter()
+            .filter(|site| fits(effect.site_kind, site.kind))
+        {
             let own = [site];
-            let turning: &[&Site] = match effect.orders {
+            let turning: &[&Site] = match effect.has_orders {
                 true if site.kind == SiteKind::Mesh => &angles,
                 true => &own,
                 false => &[],
             };
             let orders = turning.iter().flat_map(|angle| {
                 let orders = orders(model, motion.orders(angle)).into_iter();
-                let covered = orders.filter(|order| motion.covers(angle, *order));
+                let covered = orders.filter(|order| motion.covers_period(angle, *order));
                 covered.map(|order| Some((*angle, order)))
             });
-            let orders: Vec<Option<(&Site, u32)>> = match effect.orders {
+            let orders: Vec<Option<(&Site, u32)>> = match effect.has_orders {
                 true => orders.collect(),
                 false => vec![None],
             };
-            let loads: Vec<Option<&Load>> = match effect.loads {
+            let loads: Vec<Option<&Load>> = match effect.has_loads {
                 true => loads.iter().map(Some).collect(),
                 false => vec![None],
             };
@@ -308,20 +313,20 @@ fn candidate(
         arguments.insert("load".to_owned(), load.force.clone());
         arguments.insert("per_load".to_owned(), per_load.to_owned());
     }
-    let mut taken = names(model);
+    let mut taken = names_in_use(model);
     let mut parameters = Vec::new();
     for parameter in &effect.parameters {
-        let name = free_name(&parameter.name, &site.name, &mut taken);
+        let name = reserve_name(&parameter.name, &site.name, &mut taken);
         arguments.insert(parameter.name.clone(), name.clone());
-        let unit = plain_unit(&instantiated(&parameter.unit, &arguments)?);
+        let unit = plain_unit(&fill_placeholders(&parameter.unit, &arguments)?);
         parameters.push(CandidateParameter {
             name,
             typical_size: motion.typical_size(&unit),
-            positive: parameter.positive,
-            inverse: parameter.inverse,
-            shape: parameter
+            is_positive: parameter.is_positive,
+            is_inverse: parameter.is_inverse,
+            shape_size: parameter
                 .shape
-                .map(|shape| shape.share * motion.scale(shape.scale, site, &unit)),
+                .map(|shape| shape.fraction * motion.shape_scale(shape.quantity, site, &unit)),
             unit,
             offset: None,
             doc: parameter.doc.clone(),
@@ -332,31 +337,31 @@ fn candidate(
         | Change::Definition { name, .. }
         | Change::State { name, .. } = change
         {
-            let free = free_name(name, &site.name, &mut taken);
+            let free = reserve_name(name, &site.name, &mut taken);
             arguments.insert(name.clone(), free);
         }
     }
     let mut changes = Vec::new();
     let mut term = String::new();
     for change in &effect.edits {
-        changes.extend(edits(model, change, site, &arguments)?);
+        changes.extend(instantiate_change(model, change, site, &arguments)?);
         if let Change::Term { value, .. }
         | Change::Definition { value, .. }
         | Change::Force { value, .. }
         | Change::State { rate: value, .. } = change
         {
-            term = instantiated(value, &arguments)?;
+            term = fill_placeholders(value, &arguments)?;
         }
     }
     Some(Candidate {
         effect: effect.name.clone(),
-        on: site.name.clone(),
-        order: order.map(|(angle, order)| (angle.name.clone(), order)),
+        site: site.name.clone(),
+        angle_order: order.map(|(angle, order)| (angle.name.clone(), order)),
         load: load.map(|load| load.name.clone()),
         on_mesh: site.kind == SiteKind::Mesh,
-        scaled: (site.arguments.get("k").cloned()).filter(|_| effect.scales_stiffness()),
+        scaled_stiffness: (site.arguments.get("k").cloned()).filter(|_| effect.scales_stiffness()),
         parameters,
-        says: effect.says.clone(),
+        description: effect.description.clone(),
         experiment: effect.experiment.clone(),
         changes,
         term,
@@ -365,22 +370,22 @@ fn candidate(
 }
 
 /// Returns the candidate that removes the prior of an unknown of the null model.
-pub fn dropped_prior(
+pub fn drop_prior(
     effect: &str,
     on: &str,
     says: &str,
     experiment: &str,
-    what: &What,
+    what: &UnknownKind,
 ) -> Candidate {
     Candidate {
         effect: effect.to_owned(),
-        on: on.to_owned(),
-        order: None,
+        site: on.to_owned(),
+        angle_order: None,
         load: None,
         on_mesh: false,
-        scaled: None,
+        scaled_stiffness: None,
         parameters: Vec::new(),
-        says: says.to_owned(),
+        description: says.to_owned(),
         experiment: experiment.to_owned(),
         changes: Vec::new(),
         term: String::new(),
@@ -390,7 +395,7 @@ pub fn dropped_prior(
 
 /// Returns the candidate that shifts a parameter without a declared uncertainty; `None` if the
 /// parameter is 0 or not a number.
-pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
+pub fn shift_parameter(parameter: &Parameter) -> Option<Candidate> {
     let ParameterValue::Number(from) = parameter.value else {
         return None;
     };
@@ -402,12 +407,12 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
         name: parameter.name.clone(),
         unit: parameter.unit.text.clone(),
         typical_size: from.abs(),
-        positive: false,
-        inverse: false,
-        shape: None,
+        is_positive: false,
+        is_inverse: false,
+        shape_size: None,
         offset: Some(ParameterOffset {
-            from,
-            bounds: sign_bounds(parameter, from),
+            reference: from,
+            bounds: bounds_with_sign(parameter, from),
             per_si: parameter.unit.from_si(1.0),
             is_new: false,
         }),
@@ -417,18 +422,18 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
         parameters: vec![shifted],
         dropped_prior: None,
         term: format!("{} shifted", parameter.name),
-        ..dropped_prior(
-            PARAMETER_OFFSET,
+        ..drop_prior(
+            PARAMETER_SHIFT,
             &parameter.name,
             "a parameter that differs from the specification",
             "a separate measurement of the parameter",
-            &What::Parameter(parameter.name.clone()),
+            &UnknownKind::Parameter(parameter.name.clone()),
         )
     })
 }
 
 /// Returns the names that are used in the model.
-pub(crate) fn names(model: &Model) -> Vec<String> {
+pub(crate) fn names_in_use(model: &Model) -> Vec<String> {
     let lists = [
         model
             .parameters
@@ -445,7 +450,7 @@ pub(crate) fn names(model: &Model) -> Vec<String> {
             .flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()])
             .collect(),
         model.coefficients.iter().map(|c| c.name.clone()).collect(),
-        terms(model),
+        names_of_terms(model),
     ];
     lists.concat()
 }

@@ -1,8 +1,8 @@
 //! Parameters of candidates as unknowns of an estimation.
 
-use crate::catalogue::candidate::{CandidateParameter, NEARLY_INFINITE};
+use crate::catalogue::candidate::{CandidateParameter, NEARLY_INFINITE_FACTOR};
 use crate::interval::Interval;
-use crate::model::unknowns::{Unknown, What};
+use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::thresholds;
 
 /// Parameter of a candidate with bounds and trial size, SI.
@@ -18,31 +18,31 @@ pub struct CandidateUnknown {
 
 impl CandidateUnknown {
     /// Converts a parameter of a candidate to an unknown.
-    pub fn of(parameter: &CandidateParameter) -> Self {
-        let low = match (parameter.inverse, parameter.positive) {
-            (true, _) => 1.0 / (NEARLY_INFINITE * parameter.typical_size),
+    pub fn from_parameter(parameter: &CandidateParameter) -> Self {
+        let low = match (parameter.is_inverse, parameter.is_positive) {
+            (true, _) => 1.0 / (NEARLY_INFINITE_FACTOR * parameter.typical_size),
             (false, true) => 0.0,
             (false, false) => f64::NEG_INFINITY,
         };
         let name = parameter.name.clone();
-        let base = parameter.base();
-        let bounds = match (parameter.shape, &parameter.offset) {
-            (Some(shape), _) => thresholds::SHAPE_RANGE.times(shape),
+        let base = parameter.base_value();
+        let bounds = match (parameter.shape_size, &parameter.offset) {
+            (Some(shape), _) => thresholds::SHAPE_SEARCH_RANGE.scale(shape),
             (None, Some(offset)) => offset.bounds,
             (None, None) => Interval::new(low, f64::INFINITY),
         };
         let unknown = Unknown {
             label: format!("`{name}`"),
-            what: if parameter.inverse {
-                What::Inverse(name)
+            kind: if parameter.is_inverse {
+                UnknownKind::InverseParameter(name)
             } else {
-                What::Parameter(name)
+                UnknownKind::Parameter(name)
             },
-            start: parameter.shape.unwrap_or(base.max(low)),
+            start: parameter.shape_size.unwrap_or(base.max(low)),
             prior: None,
             bounds,
-            limits: bounds,
-            scale: match (parameter.shape, parameter.inverse) {
+            bounds_without_prior: bounds,
+            scale: match (parameter.shape_size, parameter.is_inverse) {
                 (Some(shape), _) => shape,
                 (None, true) => 1e-4 / parameter.typical_size,
                 (None, false) if base == 0.0 => parameter.typical_size,
@@ -52,7 +52,7 @@ impl CandidateUnknown {
         Self {
             unknown,
             base,
-            is_shape: parameter.shape.is_some(),
+            is_shape: parameter.shape_size.is_some(),
         }
     }
 }

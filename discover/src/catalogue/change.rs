@@ -4,9 +4,9 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::table::{Entry, Record};
 
-use super::effect::{Change, DAMPER, SiteKind, Within};
-use super::fields::{new_name, some, text};
-use super::placeholders::{Placeholders, expression};
+use super::effect::{Change, DAMPER_PLACEHOLDER, SiteKind, SubstitutionScope};
+use super::fields::{read_new_name, read_nonempty_list, read_text};
+use super::placeholders::{Placeholders, read_expression};
 
 /// What an edit adds.
 #[derive(Clone, Copy)]
@@ -79,7 +79,7 @@ const KEYS: [&str; 11] = [
 ];
 
 /// Reads an edit.
-pub(super) fn change(
+pub(super) fn read_change(
     entry: &Entry<'_>,
     site: SiteKind,
     placeholders: &mut Placeholders,
@@ -98,7 +98,7 @@ pub(super) fn change(
                 && kind != site
             {
                 let wrong = Diagnostic::error("this effect has another kind of site");
-                let kind = SiteKind::WORDS.iter().find(|(_, known)| *known == kind);
+                let kind = SiteKind::KEYWORDS.iter().find(|(_, known)| *known == kind);
                 let expected = kind.map_or("", |(word, _)| word);
                 found.push(wrong.at(substitute.span(), format!("expected site = \"{expected}\"")));
             }
@@ -128,20 +128,20 @@ fn addition(
         Added::State => &["add", "name", "unit", "rate", "doc"],
     };
     let record = entry.record(known, "{ add = \"force\", ... }", found)?;
-    let name = new_name(&record, found);
+    let name = read_new_name(&record, found);
     Some(match what {
         Added::Term(section) => Change::Term {
             section,
-            value: expression(&record, "value", placeholders, found)?,
+            value: read_expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Definition => Change::Definition {
-            value: expression(&record, "value", placeholders, found)?,
+            value: read_expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Force => Change::Force {
-            on: expression(&record, "on", placeholders, found)?,
-            value: expression(&record, "value", placeholders, found)?,
+            target: read_expression(&record, "on", placeholders, found)?,
+            value: read_expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Coordinate => Change::Coordinate {
@@ -151,7 +151,7 @@ fn addition(
         },
         Added::State => Change::State {
             unit: unit(&record, placeholders, found)?,
-            rate: expression(&record, "rate", placeholders, found)?,
+            rate: read_expression(&record, "rate", placeholders, found)?,
             doc: doc(&record, found)?,
             name: name?,
         },
@@ -164,14 +164,14 @@ fn unit(
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<String> {
-    let unit = text(record, "unit", "\"rad\"", found)?;
-    placeholders.note(&unit, found);
+    let unit = read_text(record, "unit", "\"rad\"", found)?;
+    placeholders.check_placeholders(&unit, found);
     Some(unit.text)
 }
 
 /// What is added, in words.
 fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
-    Some(text(record, "doc", "\"description of the quantity\"", found)?.text)
+    Some(read_text(record, "doc", "\"description of the quantity\"", found)?.text)
 }
 
 fn substitution(
@@ -189,29 +189,31 @@ fn substitution(
     let record = entry.record(known, "{ substitute = \"mesh\", ... }", found)?;
     // Nothing else fills this one.
     if let Replaced::Dampers = within {
-        placeholders.known.push(DAMPER.to_owned());
+        placeholders.known.push(DAMPER_PLACEHOLDER.to_owned());
     }
-    let find = expression(&record, "find", placeholders, found);
-    let replace = expression(&record, "replace", placeholders, found);
-    placeholders.known.retain(|known| known != DAMPER);
+    let find = read_expression(&record, "find", placeholders, found);
+    let replace = read_expression(&record, "replace", placeholders, found);
+    placeholders
+        .known
+        .retain(|known| known != DAMPER_PLACEHOLDER);
     let within = match within {
-        Replaced::Site(_) => Within::Site,
-        Replaced::Dampers => Within::Dampers,
-        Replaced::Measured => Within::Measured,
-        Replaced::Input => Within::Input,
+        Replaced::Site(_) => SubstitutionScope::Site,
+        Replaced::Dampers => SubstitutionScope::Dampers,
+        Replaced::Measured => SubstitutionScope::Measured,
+        Replaced::Input => SubstitutionScope::Input,
         Replaced::Kinetic => {
             let mut terms = Vec::new();
-            for term in some(&record, "terms", "[\"{term}\"]", found)? {
+            for term in read_nonempty_list(&record, "terms", "[\"{term}\"]", found)? {
                 let term = found.keep(term.written())?;
-                placeholders.note(&term, found);
+                placeholders.check_placeholders(&term, found);
                 terms.push(term.text);
             }
-            Within::Kinetic(terms)
+            SubstitutionScope::Kinetic(terms)
         }
     };
     Some(Change::Substitution {
-        within,
-        find: find?,
-        replace: replace?,
+        scope: within,
+        pattern: find?,
+        replacement: replace?,
     })
 }

@@ -6,32 +6,34 @@ use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::model::{Expr, ExprKind, Force, Model};
 
 use crate::catalogue::polynomial::Polynomial;
-use crate::catalogue::products::{is_fixed, square, summands};
-use crate::catalogue::site::{Damper, text};
+use crate::catalogue::products::{find_squsplit_summands, is_constant};
+use crate::catalogue::site::{Damper, format_expression};
 
 /// Returns the dampers of a model that depend only on the rate of a deflection.
-pub(super) fn dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
-    let rate = Polynomial::of(model, deflection).and_then(|deflection| deflection.rate());
+pub(super) fn find_dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
+    let rate = Polynomial::from_expression(model, deflection)
+        .and_then(|deflection| deflection.differentiate());
     let Some(rate) = rate else {
         return Vec::new();
     };
     let is_along = |value: &Expr| {
-        Polynomial::of(model, value).is_some_and(|value| value.is_proportional_to(&rate))
+        Polynomial::from_expression(model, value)
+            .is_some_and(|value| value.is_proportional_to(&rate))
     };
     let mut found: Vec<Damper> = Vec::new();
     let mut note = |section: Section, term: &str, part: &Expr| {
         let damper = Damper {
             section,
             term: term.to_owned(),
-            part: text(model, part),
+            part: format_expression(model, part),
         };
         if !found.contains(&damper) {
             found.push(damper);
         }
     };
     for term in &model.dissipation {
-        for part in summands(&term.value) {
-            if square(model, part).is_some_and(|square| is_along(square.base)) {
+        for part in split_sum(&term.value) {
+            if find_square(model, part).is_some_and(|square| is_along(square.base)) {
                 note(Section::Dissipation, &term.name, part);
             }
         }
@@ -50,7 +52,7 @@ pub(super) fn dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
 /// specification names otherwise.
 fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
     let named = model.source.text.get(force.span.start..force.span.end);
-    let on = || Polynomial::of(model, &force.on)?.rate();
+    let on = || Polynomial::from_expression(model, &force.on)?.differentiate();
     named == Some(&force.name) && on().is_some_and(|on| on.is_proportional_to(rate))
 }
 
@@ -66,7 +68,7 @@ fn parts(value: &Expr) -> Vec<&Expr> {
 
 /// The only factor of a product that is not fixed.
 fn moving_factor<'m>(model: &Model, product: &'m Expr) -> Option<&'m Expr> {
-    let is_fixed = |expr: &Expr| is_fixed(model, expr, &mut Vec::new());
+    let is_fixed = |expr: &Expr| is_constant(model, expr, &mut Vec::new());
     match &product.kind {
         ExprKind::Negate(inner) => moving_factor(model, inner),
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => {

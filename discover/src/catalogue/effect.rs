@@ -8,25 +8,25 @@ pub struct Effect {
     /// Name in results.
     pub name: String,
     /// Kind of its sites.
-    pub site: SiteKind,
+    pub site_kind: SiteKind,
     /// Description, as the end of a sentence.
-    pub says: String,
+    pub description: String,
     /// Experiment that shows it best.
     pub experiment: String,
     /// Whether the effect is periodic in an angle and tried at several shaft orders.
-    pub orders: bool,
+    pub has_orders: bool,
     /// Whether the effect is tried with the load of each spring or mesh.
-    pub loads: bool,
+    pub has_loads: bool,
     /// Parameters, at least one.
     pub parameters: Vec<EffectParameter>,
     /// Edits, at least one.
     pub edits: Vec<Change>,
     /// Whether the effect is from a file of the user.
-    pub is_own: bool,
+    pub is_user_defined: bool,
 }
 
 /// Placeholder of the term of a damper in edits that replace it.
-pub const DAMPER: &str = "damper";
+pub const DAMPER_PLACEHOLDER: &str = "damper";
 
 /// Kind of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,14 +55,14 @@ impl Effect {
     /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
     /// the same.
     pub fn scales_stiffness(&self) -> bool {
-        let scales = |edit: &Change| matches!(edit, Change::Substitution { within: Within::Site, find, .. } if find == "{k}");
-        self.site == SiteKind::Spring && self.edits.iter().all(scales)
+        let scales = |edit: &Change| matches!(edit, Change::Substitution { scope: SubstitutionScope::Site, pattern, .. } if find == "{k}");
+        self.site_kind == SiteKind::Spring && self.edits.iter().all(scales)
     }
 }
 
 impl SiteKind {
     /// Kinds by their keywords in a file.
-    pub const WORDS: [(&'static str, Self); 6] = [
+    pub const KEYWORDS: [(&'static str, Self); 6] = [
         ("axis", Self::Axis),
         ("angle", Self::Angle),
         ("mesh", Self::Mesh),
@@ -101,11 +101,11 @@ pub struct EffectParameter {
     /// Unit, with placeholders.
     pub unit: String,
     /// Whether the value must not be negative.
-    pub positive: bool,
+    pub is_positive: bool,
     /// Description.
     pub doc: String,
     /// Whether the effect vanishes at infinity instead of 0.
-    pub inverse: bool,
+    pub is_inverse: bool,
     /// Initial size of a parameter that shapes the effect without scaling it.
     pub shape: Option<Shape>,
 }
@@ -114,23 +114,24 @@ pub struct EffectParameter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// Quantity that sets the scale.
-    pub scale: Scale,
+    pub quantity: ShapeScale,
     /// Fraction of that quantity.
-    pub share: f64,
+    pub fraction: f64,
 }
 
 /// Quantity of the motion of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+pub enum ShapeScale {
     /// Usual rate.
     Rate,
     /// Largest distance from 0.
     Travel,
 }
 
-impl Scale {
+impl ShapeScale {
     /// Scales by their keywords in a file.
-    pub const WORDS: [(&'static str, Self); 2] = [("rate", Self::Rate), ("travel", Self::Travel)];
+    pub const KEYWORDS: [(&'static str, Self); 2] =
+        [("rate", Self::Rate), ("travel", Self::Travel)];
 }
 
 /// A change of the specification.
@@ -157,7 +158,7 @@ pub enum Change {
         /// Name.
         name: String,
         /// Expression that the force acts on.
-        on: String,
+        target: String,
         /// Expression.
         value: String,
     },
@@ -184,17 +185,17 @@ pub enum Change {
     /// A substitution.
     Substitution {
         /// Terms in which expressions are replaced.
-        within: Within,
+        scope: SubstitutionScope,
         /// Replaced expression.
-        find: String,
+        pattern: String,
         /// New expression.
-        replace: String,
+        replacement: String,
     },
 }
 
 /// Terms in which an expression is replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Within {
+pub enum SubstitutionScope {
     /// These terms of the kinetic energy.
     Kinetic(Vec<String>),
     /// All terms of a mesh or of a spring, or the kinetic energy of a body and its load.

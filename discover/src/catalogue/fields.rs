@@ -4,7 +4,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::table::{Entry, Record, Written};
 
 /// Reads the elements of a list; reports an empty list.
-pub(super) fn some<'d>(
+pub(super) fn read_nonempty_list<'d>(
     record: &Record<'d>,
     key: &str,
     example: &str,
@@ -23,7 +23,7 @@ pub(super) fn some<'d>(
 }
 
 /// Reads the text of a required key; reports an empty text.
-pub(super) fn text(
+pub(super) fn read_text(
     record: &Record<'_>,
     key: &str,
     example: &str,
@@ -39,8 +39,8 @@ pub(super) fn text(
 }
 
 /// Reads the name of an addition to a specification.
-pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
-    let written = text(record, "name", "\"T_c\"", found)?;
+pub(super) fn read_new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
+    let written = read_text(record, "name", "\"T_c\"", found)?;
     let letter = |c: char| c.is_ascii_alphabetic();
     let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {

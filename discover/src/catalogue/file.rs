@@ -7,9 +7,9 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Name, Record, Written};
 use eomgen_model_spec::toml_file;
 
-use super::change::change;
-use super::effect::{DAMPER, Effect, EffectParameter, Scale, Shape, SiteKind};
-use super::fields::{new_name, some, text};
+use super::change::read_change;
+use super::effect::{DAMPER_PLACEHOLDER, Effect, EffectParameter, Shape, ShapeScale, SiteKind};
+use super::fields::{read_new_name, read_nonempty_list, read_text};
 use super::placeholders::Placeholders;
 
 /// Reads a file of effects.
@@ -17,7 +17,7 @@ use super::placeholders::Placeholders;
 /// # Errors
 ///
 /// All errors in the file.
-pub fn read(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
+pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
     toml_file::read(source, |entries, found| {
         let file = Name {
             text: "the file of effects".to_owned(),
@@ -46,16 +46,16 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         "edits",
     ];
     let record = entry.record(&known, "{ name = \"my_effect\" }", found)?;
-    let name = text(&record, "name", "\"my_effect\"", found);
-    let says = text(&record, "says", "\"a friction of ...\"", found);
-    let experiment = text(&record, "experiment", "\"slow motions\"", found);
+    let name = read_text(&record, "name", "\"my_effect\"", found);
+    let says = read_text(&record, "says", "\"a friction of ...\"", found);
+    let experiment = read_text(&record, "experiment", "\"slow motions\"", found);
     let site = record.require("site", "write site = \"axis\"", found);
-    let site = site.cloned().map(|site| site.word(&SiteKind::WORDS));
+    let site = site.cloned().map(|site| site.word(&SiteKind::KEYWORDS));
     let site = site.and_then(|site| found.keep(site));
     let orders = truth(&record, "orders", found);
     let loads = truth(&record, "loads", found);
-    let parameters = some(&record, "parameters", "[{ name = ... }]", found)?;
-    let edits = some(&record, "edits", "[{ add = \"force\", ... }]", found)?;
+    let parameters = read_nonempty_list(&record, "parameters", "[{ name = ... }]", found)?;
+    let edits = read_nonempty_list(&record, "edits", "[{ add = \"force\", ... }]", found)?;
     let (site, orders, loads) = (site?, orders?, loads?);
     let own: Vec<Written> = (parameters.iter().chain(&edits))
         .filter_map(|entry| named(entry))
@@ -63,7 +63,8 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let of_site = site.placeholders().iter().map(|blank| (*blank).to_owned());
     let of_site: Vec<String> = of_site.collect();
     let is_taken = |name: &str| {
-        of_site.iter().any(|blank| blank == name) || (site == SiteKind::Spring && name == DAMPER)
+        of_site.iter().any(|blank| blank == name)
+            || (site == SiteKind::Spring && name == DAMPER_PLACEHOLDER)
     };
     for name in own.iter().filter(|own| is_taken(&own.text)) {
         let wrong = format!("{} is a placeholder of this site", quoted(&name.text));
@@ -100,7 +101,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     }
     let mut changes = Vec::new();
     for entry in &edits {
-        changes.extend(change(entry, site, &mut placeholders, found));
+        changes.extend(read_change(entry, site, &mut placeholders, found));
     }
     for parameter in parameters.iter().filter_map(named) {
         if !placeholders.used.contains(&parameter.text) {
@@ -113,14 +114,14 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     }
     Some(Effect {
         name: name?.text,
-        site,
-        says: says?.text,
+        site_kind: site,
+        description: says?.text,
         experiment: experiment?.text,
-        orders,
-        loads,
+        has_orders: orders,
+        has_loads: loads,
         parameters: listed,
         edits: changes,
-        is_own: false,
+        is_user_defined: false,
     })
 }
 
@@ -147,12 +148,12 @@ fn parameter(
 ) -> Option<EffectParameter> {
     let known = ["name", "unit", "sign", "doc", "inverse", "scale", "share"];
     let record = entry.record(&known, "{ name = \"T_c\", ... }", found)?;
-    let name = new_name(&record, found);
-    let unit = text(&record, "unit", "\"{force}\"", found);
+    let name = read_new_name(&record, found);
+    let unit = read_text(&record, "unit", "\"{force}\"", found);
     if let Some(unit) = &unit {
-        placeholders.note(unit, found);
+        placeholders.check_placeholders(unit, found);
     }
-    let doc = text(&record, "doc", "\"dry friction\"", found);
+    let doc = read_text(&record, "doc", "\"dry friction\"", found);
     let sign = record.require(
         "sign",
         "write sign = \"+\", or \"\" if it may be negative",
@@ -166,9 +167,9 @@ fn parameter(
     Some(EffectParameter {
         name: name?,
         unit: unit?.text,
-        positive: positive?,
+        is_positive: positive?,
         doc: doc?.text,
-        inverse: inverse?,
+        is_inverse: inverse?,
         shape: shape(&record, found),
     })
 }
@@ -177,7 +178,7 @@ fn parameter(
 fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
     let word = match scale {
-        Some(scale) => Some(found.keep(scale.clone().word(&Scale::WORDS))?),
+        Some(scale) => Some(found.keep(scale.clone().word(&ShapeScale::KEYWORDS))?),
         None => None,
     };
     let (scale, share) = match (scale, share) {
@@ -201,7 +202,7 @@ fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
         );
     }
     word.map(|scale| Shape {
-        scale,
-        share: part.value,
+        quantity: scale,
+        fraction: part.value,
     })
 }

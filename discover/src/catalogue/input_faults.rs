@@ -3,14 +3,14 @@
 use eomgen_compiled_model::TypicalSizes;
 use eomgen_model_spec::model::{Input, Model};
 
-use crate::catalogue::candidate::{Candidate, CandidateParameter, ParameterOffset, dropped_prior};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, ParameterOffset, drop_prior};
 use crate::interval::Interval;
 use crate::model::input_faults::InputFault;
-use crate::model::input_places::{in_the_place_of, replaceable};
-use crate::model::unknowns::What;
+use crate::model::input_occurrences::{list_replaceable, replace_input};
+use crate::model::unknowns::UnknownKind;
 
 /// Returns the description of a fault and the experiment that shows it best.
-pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
+pub(crate) fn describe_fault(fault: InputFault) -> (&'static str, &'static str) {
     match fault {
         InputFault::Gain => (
             "an input with a wrong gain",
@@ -25,48 +25,51 @@ pub(crate) fn words(fault: InputFault) -> (&'static str, &'static str) {
 
 /// Returns the faults of the inputs without a parameter in the model. `path`: path of the
 /// specification, for messages.
-pub fn input_faults(model: &Model, path: &str) -> Vec<Candidate> {
-    let inputs = replaceable(model);
+pub fn list_input_faults(model: &Model, path: &str) -> Vec<Candidate> {
+    let inputs = list_replaceable(model);
     let all = inputs.flat_map(|input| InputFault::ALL.map(|fault| candidate(model, input, fault)));
     let text = &model.source.text;
     let is_written = |candidate: &Candidate| {
-        let absent = candidate.parameters.iter().map(CandidateParameter::absent);
+        let absent = candidate
+            .parameters
+            .iter()
+            .map(CandidateParameter::neutral_value);
         let absent: Vec<f64> = absent.collect();
-        candidate.written(text, path, &absent, "").is_ok()
+        candidate.write_effect(text, path, &absent, "").is_ok()
     };
     all.flatten().filter(is_written).collect()
 }
 
 fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidate> {
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
-    let name = fault.parameter(&input.name);
-    let changes = in_the_place_of(model, &input.name, &fault.acting(&input.name));
+    let name = fault.parameter_name(&input.name);
+    let changes = replace_input(model, &input.name, &fault.write_expression(&input.name));
     if changes.is_empty() {
         return None;
     }
-    let (says, experiment) = words(fault);
-    let what = What::Parameter(name.clone());
+    let (says, experiment) = describe_fault(fault);
+    let what = UnknownKind::Parameter(name.clone());
     let parameter = CandidateParameter {
         name,
         typical_size: TypicalSizes::new(model, &orders).size(input.unit.dimension),
-        unit: fault.unit(input),
-        positive: false,
-        inverse: false,
-        shape: None,
+        unit: fault.parameter_unit(input),
+        is_positive: false,
+        is_inverse: false,
+        shape_size: None,
         offset: match fault {
-            InputFault::Gain => Some(ParameterOffset::new_from(
-                fault.absent(),
+            InputFault::Gain => Some(ParameterOffset::with_reference(
+                fault.neutral_value(),
                 Interval::new(0.0, f64::INFINITY),
             )),
             InputFault::Bias => None,
         },
-        doc: fault.doc(&input.name),
+        doc: fault.describe_parameter(&input.name),
     };
     Some(Candidate {
         parameters: vec![parameter],
         changes,
         dropped_prior: None,
-        term: fault.acting(&input.name),
-        ..dropped_prior(fault.effect(), &input.name, says, experiment, &what)
+        term: fault.write_expression(&input.name),
+        ..drop_prior(fault.effect_name(), &input.name, says, experiment, &what)
     })
 }

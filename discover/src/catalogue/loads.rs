@@ -3,9 +3,9 @@
 
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
-use crate::catalogue::products::{Square, is_fixed, square, summands};
-use crate::catalogue::site::text;
-use crate::catalogue::springs::{is_deflection, name_of, units};
+use crate::catalogue::products::{Square, find_squsplit_summands, is_constant};
+use crate::catalogue::site::format_expression;
+use crate::catalogue::springs::{deflection_units, is_deflection, name_spring};
 
 /// Force that a spring or a mesh transmits.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,23 +19,23 @@ pub struct Load {
 }
 
 /// Returns the loads of a model.
-pub fn loads(model: &Model) -> Vec<Load> {
+pub fn find_loads(model: &Model) -> Vec<Load> {
     let terms = model.potential.iter();
     terms.flat_map(|term| of_term(model, term)).collect()
 }
 
 fn of_term(model: &Model, term: &Term) -> Vec<Load> {
-    let squares: Vec<(&Expr, Square<'_>)> = summands(&term.value)
+    let squares: Vec<(&Expr, Square<'_>)> = split_sum(&term.value)
         .into_iter()
-        .filter_map(|summand| Some((summand, square(model, summand)?)))
+        .filter_map(|summand| Some((summand, find_square(model, summand)?)))
         .filter(|(_, square)| !square.parameters.is_empty())
         .filter_map(|(summand, square)| is_load(model, square.base).then_some((summand, square)))
         .collect();
     let is_only = squares.len() == 1;
     let load = |(number, (summand, square)): (usize, &(&Expr, Square<'_>))| {
-        let (_, unit) = units(model, beyond_play(square.base))?;
+        let (_, unit) = deflection_units(model, beyond_play(square.base))?;
         Some(Load {
-            name: name_of(term, &square.parameters, number, is_only),
+            name: name_spring(term, &square.parameters, number, is_only),
             force: slope(model, summand, square),
             unit,
         })
@@ -47,7 +47,7 @@ fn of_term(model: &Model, term: &Term) -> Vec<Load> {
 fn is_load(model: &Model, base: &Expr) -> bool {
     let is_play = match &base.kind {
         ExprKind::Call(Function::Deadzone, arguments) => {
-            (arguments[1..].iter()).all(|play| is_fixed(model, play, &mut Vec::new()))
+            (arguments[1..].iter()).all(|play| is_constant(model, play, &mut Vec::new()))
         }
         _ => true,
     };
@@ -66,9 +66,9 @@ fn beyond_play(base: &Expr) -> &Expr {
 fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
     let source = &model.source.text;
     let part = |from: usize, to: usize| source.get(from..to).unwrap_or_default();
-    let before = part(product.span.start, square.whole.span.start);
-    let after = part(square.whole.span.end, product.span.end);
-    let halved = format!("{before}{}{after}", text(model, square.base));
+    let before = part(product.span.start, square.square.span.start);
+    let after = part(square.square.span.end, product.span.end);
+    let halved = format!("{before}{}{after}", format_expression(model, square.base));
     let halves = ["1/2*", "0.5*"].iter();
     match halves.filter_map(|half| halved.strip_prefix(half)).next() {
         Some(whole) => whole.to_owned(),
@@ -80,7 +80,7 @@ fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
 mod tests {
     use eomgen_model_spec::source::Source;
 
-    use super::{Load, loads};
+    use super::{Load, find_loads};
 
     /// The loads of a mass on a spring whose energy is this.
     fn of(energy: &str) -> Vec<Load> {
@@ -91,7 +91,7 @@ mod tests {
              [kinetic]\nm = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n[potential]\nspring = \"{energy}\"\n"
         );
         let checked = eomgen_model_spec::check(Source::new("one.toml", text.as_str()));
-        loads(&checked.unwrap_or_else(|found| panic!("{found}")).model)
+        find_loads(&checked.unwrap_or_else(|found| panic!("{found}")).model)
     }
 
     #[test]

@@ -9,11 +9,11 @@ use eomgen_model_spec::ids::CoordinateId;
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
 
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::site::{Site, text};
-use crate::catalogue::springs::{is_deflection, units};
+use crate::catalogue::site::{Site, format_expression};
+use crate::catalogue::springs::{deflection_units, is_deflection};
 
 /// Returns the meshes of a model.
-pub(super) fn meshes(model: &Model) -> Vec<Site> {
+pub(super) fn find_meshes(model: &Model) -> Vec<Site> {
     let deflections = deflections(model);
     let found = deflections.iter().filter_map(|of| mesh(model, of));
     found.collect()
@@ -52,12 +52,16 @@ fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
 
 /// Whether two deflections are written the same, however they are spaced.
 fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
-    let plain = |expr: &Expr| text(model, expr).split_whitespace().collect::<String>();
+    let plain = |expr: &Expr| {
+        format_expression(model, expr)
+            .split_whitespace()
+            .collect::<String>()
+    };
     plain(one) == plain(other)
 }
 
 /// Returns the coordinates that are deflections with play.
-pub(super) fn mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
+pub(super) fn find_mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
     let coordinate = |deflection: &Expr| match deflection.kind {
         ExprKind::Coordinate(id) => Some(id),
         _ => None,
@@ -100,7 +104,7 @@ fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
 }
 
 /// Returns the parameters that define the size of a play.
-pub fn plays(model: &Model) -> Vec<String> {
+pub fn find_play_parameters(model: &Model) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for (_, _, value) in values(model) {
         visit_play(value, &mut |_, arguments| {
@@ -136,8 +140,8 @@ fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
             None => terms.push((section, vec![name.to_owned()])),
         }
     }
-    let (unit, _) = units(model, deflection)?;
-    let p = text(model, deflection);
+    let (unit, _) = deflection_units(model, deflection)?;
+    let p = format_expression(model, deflection);
     let mut arguments: BTreeMap<&'static str, String> = [
         ("p", p.clone()),
         ("k", stiffness?),
@@ -182,7 +186,7 @@ fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
     for (_, _, value) in values(model) {
         visit_play(value, &mut |function, arguments| {
             if function == Function::Deadzone && is_same(model, &arguments[0], deflection) {
-                play = arguments.get(1).map(|half| text(model, half));
+                play = arguments.get(1).map(|half| format_expression(model, half));
             }
         });
     }

@@ -45,12 +45,15 @@ const BUILT_IN: &str = include_str!("catalogue.toml");
 /// # Errors
 ///
 /// All errors in the user's file, with line and column.
-pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
-    let mut effects = file::read(&Source::new("catalogue.toml", BUILT_IN))?;
+pub fn load_effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
+    let mut effects = file::read_effects(&Source::new("catalogue.toml", BUILT_IN))?;
     if let Some(path) = own {
-        let mut found = file::read(&toml_file::source(path, thresholds::LARGEST_EFFECTS_FILE)?)?;
+        let mut found = file::read_effects(&toml_file::source(
+            path,
+            thresholds::MAX_EFFECTS_FILE_BYTES,
+        )?)?;
         effects.retain(|known| found.iter().all(|own| own.name != known.name));
-        found.iter_mut().for_each(|own| own.is_own = true);
+        found.iter_mut().for_each(|own| own.is_user_defined = true);
         effects.extend(found);
     }
     Ok(effects)
@@ -60,7 +63,7 @@ pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
 mod tests {
     #[test]
     fn the_built_in_catalogue_can_be_read() {
-        let effects = super::effects(None).unwrap_or_else(|found| panic!("{found}"));
+        let effects = super::load_effects(None).unwrap_or_else(|found| panic!("{found}"));
         assert!(effects.len() >= 16);
     }
 }

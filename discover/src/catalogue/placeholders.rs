@@ -5,7 +5,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::table::{Record, Written};
 
-use super::fields::text;
+use super::fields::read_text;
 
 /// Placeholders that the texts of an effect may contain.
 pub(super) struct Placeholders {
@@ -17,7 +17,7 @@ pub(super) struct Placeholders {
 
 impl Placeholders {
     /// Reports unknown placeholders of a text.
-    pub(super) fn note(&mut self, written: &Written, found: &mut Diagnostics) {
+    pub(super) fn check_placeholders(&mut self, written: &Written, found: &mut Diagnostics) {
         let mut begin = 0;
         while let Some(open) = written.text[begin..].find(['{', '}']) {
             let open = begin + open;
@@ -47,14 +47,14 @@ impl Placeholders {
 }
 
 /// Reads an expression with placeholders.
-pub(super) fn expression(
+pub(super) fn read_expression(
     record: &Record<'_>,
     key: &str,
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<String> {
-    let written = text(record, key, "\"-{T_c}*sign(dot({on}))\"", found)?;
-    placeholders.note(&written, found);
+    let written = read_text(record, key, "\"-{T_c}*sign(dot({on}))\"", found)?;
+    placeholders.check_placeholders(&written, found);
     // Parentheses for braces keep every letter at its place.
     let mut plain = written.clone();
     plain.text = plain.text.replace('{', "(").replace('}', ")");

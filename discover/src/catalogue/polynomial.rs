@@ -31,12 +31,12 @@ pub(super) struct Polynomial(BTreeMap<Monomial, f64>);
 
 impl Polynomial {
     /// Expands an expression; `None` if it is not a polynomial or too long.
-    pub(super) fn of(model: &Model, expr: &Expr) -> Option<Self> {
+    pub(super) fn from_expression(model: &Model, expr: &Expr) -> Option<Self> {
         Reader::new(model).polynomial(expr)
     }
 
     /// Returns the time derivative; `None` if the polynomial contains a rate.
-    pub(super) fn rate(&self) -> Option<Self> {
+    pub(super) fn differentiate(&self) -> Option<Self> {
         let mut sum = Self::default();
         for (monomial, factor) in &self.0 {
             for (letter, power) in monomial {
@@ -160,7 +160,7 @@ impl Polynomial {
     }
 
     fn if_short(self) -> Option<Self> {
-        (self.0.len() <= thresholds::MOST_TERMS_OF_A_RATE).then_some(self)
+        (self.0.len() <= thresholds::MAX_RATE_TERMS).then_some(self)
     }
 }
 
@@ -199,7 +199,7 @@ impl<'m> Reader<'m> {
                 }
                 self.definitions[*id].clone().flatten()
             }
-            ExprKind::Dot(inner) => self.polynomial(inner)?.rate(),
+            ExprKind::Dot(inner) => self.polynomial(inner)?.differentiate(),
             ExprKind::Negate(inner) => Polynomial::default().plus(&self.polynomial(inner)?, -1.0),
             ExprKind::Binary(operator, left, right) => {
                 let (left, right) = (self.polynomial(left)?, self.polynomial(right)?);
@@ -218,7 +218,7 @@ impl<'m> Reader<'m> {
 
 /// A small whole power.
 fn power(base: &Polynomial, exponent: &Polynomial) -> Option<Polynomial> {
-    let mut powers = 1..=thresholds::HIGHEST_POWER_OF_A_RATE;
+    let mut powers = 1..=thresholds::MAX_RATE_POWER;
     let exponent = powers.find(|n| *exponent == Polynomial::number(f64::from(*n)))?;
     (1..exponent).try_fold(base.clone(), |product, _| product.times(base))
 }

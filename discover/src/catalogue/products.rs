@@ -5,7 +5,7 @@ use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 
 /// Returns the summands of a sum, without subtracted parts.
-pub(super) fn summands(expr: &Expr) -> Vec<&Expr> {
+pub(super) fn split_sum(expr: &Expr) -> Vec<&Expr> {
     let mut found = Vec::new();
     summands_of(expr, &mut found);
     found
@@ -25,7 +25,7 @@ fn summands_of<'m>(expr: &'m Expr, found: &mut Vec<&'m Expr>) {
 /// The only square in a product with constant factors.
 pub(super) struct Square<'m> {
     /// The square.
-    pub(super) whole: &'m Expr,
+    pub(super) square: &'m Expr,
     /// Squared expression.
     pub(super) base: &'m Expr,
     /// Parameters among the constant factors.
@@ -33,12 +33,12 @@ pub(super) struct Square<'m> {
 }
 
 /// Returns the only square in a product; `None` if the product contains another variable factor.
-pub(super) fn square<'m>(model: &Model, product: &'m Expr) -> Option<Square<'m>> {
+pub(super) fn find_square<'m>(model: &Model, product: &'m Expr) -> Option<Square<'m>> {
     let (mut found, mut parameters) = (None, Vec::new());
     factors(model, product, &mut found, &mut parameters)?;
     let (whole, base) = found?;
     Some(Square {
-        whole,
+        square: whole,
         base,
         parameters,
     })
@@ -59,31 +59,31 @@ fn factors<'m>(
         }
         ExprKind::Binary(BinaryOperator::Divide, above, below) => {
             factors(model, above, moving, parameters)?;
-            is_fixed(model, below, parameters).then_some(())
+            is_constant(model, below, parameters).then_some(())
         }
         ExprKind::Binary(BinaryOperator::Power, base, exponent)
             if exponent.kind == ExprKind::Number(2.0)
                 && moving.is_none()
-                && !is_fixed(model, base, &mut Vec::new()) =>
+                && !is_constant(model, base, &mut Vec::new()) =>
         {
             *moving = Some((expr, base));
             Some(())
         }
-        _ => is_fixed(model, expr, parameters).then_some(()),
+        _ => is_constant(model, expr, parameters).then_some(()),
     }
 }
 
 /// Returns true if an expression contains only parameters and numbers, and appends the parameters.
-pub(super) fn is_fixed(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
+pub(super) fn is_constant(model: &Model, expr: &Expr, parameters: &mut Vec<String>) -> bool {
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Pi => true,
         ExprKind::Parameter(id) => {
             parameters.push(model.parameters[*id].name.clone());
             true
         }
-        ExprKind::Negate(inner) => is_fixed(model, inner, parameters),
+        ExprKind::Negate(inner) => is_constant(model, inner, parameters),
         ExprKind::Binary(_, left, right) => {
-            is_fixed(model, left, parameters) && is_fixed(model, right, parameters)
+            is_constant(model, left, parameters) && is_constant(model, right, parameters)
         }
         _ => false,
     }

@@ -34,7 +34,7 @@ pub struct Damper {
 }
 
 /// Returns an expression in the notation of the specification.
-pub(super) fn text(model: &Model, expr: &Expr) -> String {
+pub(super) fn format_expression(model: &Model, expr: &Expr) -> String {
     let span = expr.span;
     let written = model
         .source

@@ -6,20 +6,20 @@ use std::collections::BTreeSet;
 use eomgen_model_spec::ids::CoordinateId;
 use eomgen_model_spec::model::{Expr, ExprKind, Input, Model};
 
-use crate::catalogue::arms::arms;
+use crate::catalogue::arms::find_arms;
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::meshes::{mesh_coordinates, meshes};
+use crate::catalogue::meshes::{find_mesh_coordinates, find_meshes};
 use crate::catalogue::site::Site;
-use crate::catalogue::springs::springs;
-use crate::model::input_places::replaceable;
+use crate::catalogue::springs::find_springs;
+use crate::model::input_occurrences::list_replaceable;
 
 /// Returns the sites of a model.
-pub fn sites(model: &Model) -> Vec<Site> {
-    let mut found = axes(model, &mesh_coordinates(model));
-    found.extend(meshes(model));
-    found.extend(arms(model));
-    found.extend(springs(model));
-    found.extend(replaceable(model).map(input));
+pub fn find_sites(model: &Model) -> Vec<Site> {
+    let mut found = axes(model, &find_mesh_coordinates(model));
+    found.extend(find_meshes(model));
+    found.extend(find_arms(model));
+    found.extend(find_springs(model));
+    found.extend(list_replaceable(model).map(input));
     found
 }
 

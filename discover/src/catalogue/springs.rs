@@ -9,13 +9,13 @@ use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::ids::DefinitionId;
 use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
-use crate::catalogue::dampers::dampers;
+use crate::catalogue::dampers::find_dampers;
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::products::{Square, is_fixed, square, summands};
-use crate::catalogue::site::{Site, text};
+use crate::catalogue::products::{Square, find_squsplit_summands, is_constant};
+use crate::catalogue::site::{Site, format_expression};
 
 /// Returns the springs of a model.
-pub(super) fn springs(model: &Model) -> Vec<Site> {
+pub(super) fn find_springs(model: &Model) -> Vec<Site> {
     model
         .potential
         .iter()
@@ -31,14 +31,14 @@ struct Spring<'m> {
 
 /// The springs of a term: one has the term's name, of several each that of its stiffness behind it.
 fn of_term(model: &Model, term: &Term) -> Vec<Site> {
-    let springs: Vec<Spring<'_>> = summands(&term.value)
+    let springs: Vec<Spring<'_>> = split_sum(&term.value)
         .into_iter()
         .filter_map(|summand| spring(model, summand))
         .collect();
     let is_only = springs.len() == 1;
     let site = |(number, spring): (usize, &Spring<'_>)| {
-        let deflection = text(model, spring.deflection);
-        let (unit, force) = units(model, spring.deflection)?;
+        let deflection = format_expression(model, spring.deflection);
+        let (unit, force) = deflection_units(model, spring.deflection)?;
         let mut arguments: Vec<(&'static str, String)> = vec![
             ("on", deflection.clone()),
             ("p", deflection),
@@ -50,10 +50,10 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
         }
         Some(Site {
             kind: SiteKind::Spring,
-            name: name_of(term, &spring.parameters, number, is_only),
+            name: name_spring(term, &spring.parameters, number, is_only),
             arguments: arguments.into_iter().collect(),
             terms: vec![(Section::Potential, vec![term.name.clone()])],
-            dampers: dampers(model, spring.deflection),
+            dampers: find_dampers(model, spring.deflection),
         })
     };
     springs.iter().enumerate().filter_map(site).collect()
@@ -61,7 +61,12 @@ fn of_term(model: &Model, term: &Term) -> Vec<Site> {
 
 /// Returns the name of a spring: the name of its term, followed by that of the stiffness if the
 /// term has several springs.
-pub(super) fn name_of(term: &Term, parameters: &[String], number: usize, is_only: bool) -> String {
+pub(super) fn name_spring(
+    term: &Term,
+    parameters: &[String],
+    number: usize,
+    is_only: bool,
+) -> String {
     match (parameters, is_only) {
         (_, true) => term.name.clone(),
         ([stiffness], false) => format!("{}_{stiffness}", term.name),
@@ -71,7 +76,10 @@ pub(super) fn name_of(term: &Term, parameters: &[String], number: usize, is_only
 
 /// Returns the units of a deflection and of its force; `None` if the deflection is neither an angle
 /// nor a length.
-pub(super) fn units(model: &Model, deflection: &Expr) -> Option<(&'static str, &'static str)> {
+pub(super) fn deflection_units(
+    model: &Model,
+    deflection: &Expr,
+) -> Option<(&'static str, &'static str)> {
     let dimension = dimension(model, deflection)?;
     match (dimension == Dimension::NONE, dimension == Dimension::LENGTH) {
         (true, _) => Some(("rad", "N m")),
@@ -84,7 +92,7 @@ pub(super) fn units(model: &Model, deflection: &Expr) -> Option<(&'static str, &
 fn spring<'m>(model: &Model, product: &'m Expr) -> Option<Spring<'m>> {
     let Square {
         base, parameters, ..
-    } = square(model, product)?;
+    } = find_square(model, product)?;
     let spring = Spring {
         deflection: base,
         parameters,
@@ -108,7 +116,7 @@ fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) ->
             !read.insert(*id) || is_position(model, &model.definitions[*id].value, read)
         }
         ExprKind::Negate(inner) => is_position(model, inner, read),
-        ExprKind::Binary(BinaryOperator::Power, ..) => is_fixed(model, expr, &mut Vec::new()),
+        ExprKind::Binary(BinaryOperator::Power, ..) => is_constant(model, expr, &mut Vec::new()),
         ExprKind::Binary(_, left, right) => {
             is_position(model, left, read) && is_position(model, right, read)
         }

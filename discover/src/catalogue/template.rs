@@ -7,21 +7,21 @@ use eomgen_model_spec::edit::{
 };
 use eomgen_model_spec::model::{Expr, Model};
 
-use crate::catalogue::effect::{Change, DAMPER, SiteKind, Within};
+use crate::catalogue::effect::{Change, DAMPER_PLACEHOLDER, SiteKind, SubstitutionScope};
 use crate::catalogue::site::{Damper, Site};
-use crate::model::input_places::standing;
+use crate::model::input_occurrences::find_occurrences;
 
 /// Returns the edits of a change with these arguments; `None` if an argument or the replaced
 /// expression is missing.
-pub(crate) fn edits(
+pub(crate) fn instantiate_change(
     model: &Model,
     change: &Change,
     site: &Site,
     arguments: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
-    let fill = |text: &String| instantiated(text, arguments);
+    let fill = |text: &String| fill_placeholders(text, arguments);
     let new = |name: &String| arguments.get(name).unwrap_or(name).clone();
-    let free = |name: &String| free_name(name, &site.name, &mut terms(model));
+    let free = |name: &String| reserve_name(name, &site.name, &mut names_of_terms(model));
     let term = |section: Section, name: String, value: &String| {
         Some(Edit::AddTerm(NewTerm {
             section,
@@ -38,7 +38,11 @@ pub(crate) fn edits(
             value,
         } => term(*section, free(name), value)?,
         Change::Definition { name, value } => term(Section::Definitions, new(name), value)?,
-        Change::Force { name, on, value } => Edit::AddForce(NewForce {
+        Change::Force {
+            name,
+            target,
+            value,
+        } => Edit::AddForce(NewForce {
             name: free(name),
             on: fill(on)?,
             value: fill(value)?,
@@ -63,9 +67,9 @@ pub(crate) fn edits(
             doc: doc.clone(),
         }),
         Change::Substitution {
-            within,
-            find,
-            replace,
+            scope,
+            pattern,
+            replacement,
         } => {
             return substitutions(model, within, site, (find, replace), arguments);
         }
@@ -75,27 +79,27 @@ pub(crate) fn edits(
 /// What is replaced, section by section; none if it is nowhere.
 fn substitutions(
     model: &Model,
-    within: &Within,
+    within: &SubstitutionScope,
     site: &Site,
     (find, replace): (&str, &str),
     arguments: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
-    let found = instantiated(find, arguments);
+    let found = fill_placeholders(find, arguments);
     let places: Vec<(Section, Vec<String>)> = match within {
-        Within::Kinetic(terms) => {
+        SubstitutionScope::Kinetic(terms) => {
             let terms: Option<Vec<String>> = terms
                 .iter()
-                .map(|term| instantiated(term, arguments))
+                .map(|term| fill_placeholders(term, arguments))
                 .collect();
             vec![(Section::Kinetic, terms?)]
         }
-        Within::Input => standing(model, found.as_deref()?),
-        Within::Site => holding(model, site, found.as_deref()?),
+        SubstitutionScope::Input => find_occurrences(model, found.as_deref()?),
+        SubstitutionScope::Site => holding(model, site, found.as_deref()?),
         // Each damper is a blank of its own.
-        Within::Dampers => return dampers(site, (find, replace), arguments),
-        Within::Measured => measured(model, found.as_deref()?),
+        SubstitutionScope::Dampers => return dampers(site, (find, replace), arguments),
+        SubstitutionScope::Measured => measured(model, found.as_deref()?),
     };
-    let (find, replace) = (found?, instantiated(replace, arguments)?);
+    let (find, replace) = (found?, fill_placeholders(replace, arguments)?);
     let substitutions: Vec<Edit> = (places.into_iter())
         .filter(|(_, terms)| !terms.is_empty())
         .map(|(section, terms)| {
@@ -118,12 +122,12 @@ fn dampers(
 ) -> Option<Vec<Edit>> {
     let substitution = |damper: &Damper| {
         let mut arguments = arguments.clone();
-        arguments.insert(DAMPER.to_owned(), damper.part.clone());
+        arguments.insert(DAMPER_PLACEHOLDER.to_owned(), damper.part.clone());
         Some(Edit::Substitute(Substitution {
             section: damper.section,
             terms: vec![damper.term.clone()],
-            find: instantiated(find, &arguments)?,
-            replace: instantiated(replace, &arguments)?,
+            find: fill_placeholders(find, &arguments)?,
+            replace: fill_placeholders(replace, &arguments)?,
         }))
     };
     let all: Option<Vec<Edit>> = site.dampers.iter().map(substitution).collect();
@@ -206,7 +210,10 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
 }
 
 /// Returns a text with its placeholders filled; `None` if an argument is missing.
-pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> Option<String> {
+pub(crate) fn fill_placeholders(
+    text: &str,
+    arguments: &BTreeMap<String, String>,
+) -> Option<String> {
     let mut out = String::new();
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('{') {
@@ -220,7 +227,7 @@ pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> 
 }
 
 /// Returns an unused name similar to the wanted one and marks it as used.
-pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
+pub(crate) fn reserve_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
     let mut name = wanted.to_owned();
     if taken.contains(&name) {
         name = format!("{wanted}_{site}");
@@ -235,7 +242,7 @@ pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> St
 }
 
 /// Returns the names of the terms and forces of a model.
-pub(crate) fn terms(model: &Model) -> Vec<String> {
+pub(crate) fn names_of_terms(model: &Model) -> Vec<String> {
     let energies = model
         .kinetic
         .iter()

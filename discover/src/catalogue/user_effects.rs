@@ -3,9 +3,9 @@
 
 use eomgen_model_spec::source::Source;
 
-use crate::catalogue::candidate::{CandidateParameter, candidates};
+use crate::catalogue::candidate::{CandidateParameter, list_candidates};
 use crate::catalogue::effect::Effect;
-use crate::catalogue::sites::sites;
+use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::error::DiscoverError;
 
@@ -15,33 +15,37 @@ use crate::error::DiscoverError;
 /// # Errors
 ///
 /// Errors of a specification with an effect.
-pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
+pub fn check_user_effects(
+    effects: &[Effect],
+    path: &str,
+    text: &str,
+) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = eomgen_model_spec::check(Source::new(path, text)) else {
         // What is wrong with the specification itself is said where it is read.
         return Ok(Vec::new());
     };
     let model = checked.model;
     let mut homeless = Vec::new();
-    for effect in effects.iter().filter(|effect| effect.is_own) {
+    for effect in effects.iter().filter(|effect| effect.is_user_defined) {
         let effect_alone = std::slice::from_ref(effect);
-        let mut found = candidates(
+        let mut found = list_candidates(
             &model,
             effect_alone,
-            &sites(&model),
+            &find_sites(&model),
             &UsualMotion::default(),
         );
         // Orders are but numbers in it.
-        found.dedup_by(|a, b| a.on == b.on);
+        found.dedup_by(|a, b| a.site == b.site);
         for candidate in &found {
             let values: Vec<f64> = candidate
                 .parameters
                 .iter()
-                .map(CandidateParameter::absent)
+                .map(CandidateParameter::neutral_value)
                 .collect();
-            let written = candidate.written(text, path, &values, "");
+            let written = candidate.write_effect(text, path, &values, "");
             written.map_err(|error| DiscoverError::Effect {
                 effect: effect.name.clone(),
-                on: candidate.on.clone(),
+                site: candidate.site.clone(),
                 error: Box::new(error),
             })?;
         }

@@ -7,7 +7,7 @@ use eomgen_compiled_model::TypicalSizes;
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::unit::Unit;
 
-use crate::catalogue::effect::Scale;
+use crate::catalogue::effect::ShapeScale;
 use crate::catalogue::site::Site;
 use crate::interval::Interval;
 
@@ -17,7 +17,7 @@ pub struct UsualMotion {
     /// RMS of the rate of an axis, by its name, SI.
     pub rates: BTreeMap<String, f64>,
     /// Range of an expression that an effect acts on, by the expression, SI.
-    pub travels: BTreeMap<String, Interval>,
+    pub ranges: BTreeMap<String, Interval>,
     /// Strongest orders, per turn, of the residual force over an angle, by the expression of the
     /// angle.
     pub orders: BTreeMap<String, Vec<u32>>,
@@ -34,10 +34,10 @@ impl UsualMotion {
 
     /// Returns the quantity that scales a shape parameter at a site, in a unit; the typical size if
     /// the motion is unknown.
-    pub(super) fn scale(&self, scale: Scale, site: &Site, unit: &str) -> f64 {
+    pub(super) fn shape_scale(&self, scale: ShapeScale, site: &Site, unit: &str) -> f64 {
         let known = match scale {
-            Scale::Rate => self.rates.get(&site.name).copied(),
-            Scale::Travel => self
+            ShapeScale::Rate => self.rates.get(&site.name).copied(),
+            ShapeScale::Travel => self
                 .travel(site)
                 .map(|travel| travel.low.abs().max(travel.high.abs())),
         };
@@ -46,7 +46,7 @@ impl UsualMotion {
     }
 
     /// Returns true if an angle covers a period of an order, or if its range is unknown.
-    pub(super) fn covers(&self, angle: &Site, order: u32) -> bool {
+    pub(super) fn covers_period(&self, angle: &Site, order: u32) -> bool {
         let covers = |travel: &Interval| f64::from(order) * (travel.high - travel.low) >= TAU;
         self.travel(angle).is_none_or(covers)
     }
@@ -59,6 +59,6 @@ impl UsualMotion {
     }
 
     fn travel(&self, site: &Site) -> Option<&Interval> {
-        self.travels.get(site.arguments.get("on")?)
+        self.ranges.get(site.arguments.get("on")?)
     }
 }

@@ -5,11 +5,11 @@
 use std::f64::consts::TAU;
 
 use crate::residual_force::equations::OperatingPoint;
-use crate::thresholds::{self, STEEP};
+use crate::thresholds::{self, SIGN_WIDTH_FRACTION};
 
 /// Argument of a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Of {
+pub enum FactorArgument {
     /// The rate.
     Rate,
     /// The position.
@@ -24,11 +24,11 @@ pub enum Function {
     /// Power with this exponent.
     Power(u32),
     /// Absolute value.
-    Size,
+    Absolute,
     /// Square with the sign of the argument.
-    Signed,
+    SignedSquare,
     /// Smooth sign function.
-    Step,
+    SmoothSign,
     /// Cosine of this order per turn.
     Cosine(u32),
     /// Sine of this order per turn.
@@ -43,7 +43,7 @@ pub enum Function {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
     /// Factors.
-    pub factors: Vec<(Of, Function)>,
+    pub factors: Vec<(FactorArgument, Function)>,
 }
 
 /// Scales of the quantities, SI; 0 for a quantity that does not move.
@@ -58,9 +58,9 @@ pub struct Scales {
 }
 
 /// Names of the quantities and of their scales in a specification.
-pub struct Words {
+pub struct ExpressionNames {
     /// Expression that the force acts on.
-    pub on: String,
+    pub target: String,
     /// Scales of rate and position.
     pub scales: [String; 2],
     /// Each input with its scale.
@@ -71,9 +71,9 @@ impl Function {
     fn at(self, scaled: f64, plain: f64) -> f64 {
         match self {
             Self::Power(power) => scaled.powi(power as i32),
-            Self::Size => scaled.abs(),
-            Self::Signed => scaled * scaled.abs(),
-            Self::Step => (scaled / STEEP).tanh(),
+            Self::Absolute => scaled.abs(),
+            Self::SignedSquare => scaled * scaled.abs(),
+            Self::SmoothSign => (scaled / SIGN_WIDTH_FRACTION).tanh(),
             Self::Cosine(order) => (f64::from(order) * plain).cos(),
             Self::Sine(order) => (f64::from(order) * plain).sin(),
             Self::Above(kink) => (scaled - kink).max(0.0),
@@ -84,9 +84,9 @@ impl Function {
     fn degree(self) -> u32 {
         match self {
             Self::Power(power) => power,
-            Self::Size | Self::Step | Self::Cosine(_) | Self::Sine(_) => 1,
+            Self::Absolute | Self::SmoothSign | Self::Cosine(_) | Self::Sine(_) => 1,
             Self::Above(_) | Self::Below(_) => 1,
-            Self::Signed => 2,
+            Self::SignedSquare => 2,
         }
     }
 
@@ -100,9 +100,9 @@ impl Function {
         match self {
             Self::Power(1) => format!("({quantity}/{scale})"),
             Self::Power(power) => format!("({quantity}/{scale})^{power}"),
-            Self::Size => format!("abs({quantity}/{scale})"),
-            Self::Signed => format!("({quantity}/{scale})*abs({quantity}/{scale})"),
-            Self::Step => format!("tanh({quantity}/({STEEP}*{scale}))"),
+            Self::Absolute => format!("abs({quantity}/{scale})"),
+            Self::SignedSquare => format!("({quantity}/{scale})*abs({quantity}/{scale})"),
+            Self::SmoothSign => format!("tanh({quantity}/({SIGN_WIDTH_FRACTION}*{scale}))"),
             Self::Cosine(order) => format!("cos({})", times(order)),
             Self::Sine(order) => format!("sin({})", times(order)),
             Self::Above(_) => format!("max({quantity}/{scale} - {kink}, 0)"),
@@ -117,12 +117,17 @@ impl Function {
 
 impl Term {
     /// Returns the value at an operating point.
-    pub fn at(&self, operating_point: &OperatingPoint, inputs: &[f64], scales: &Scales) -> f64 {
-        let factor = |(of, function): &(Of, Function)| {
+    pub fn evaluate(
+        &self,
+        operating_point: &OperatingPoint,
+        inputs: &[f64],
+        scales: &Scales,
+    ) -> f64 {
+        let factor = |(of, function): &(FactorArgument, Function)| {
             let (value, scale) = match of {
-                Of::Rate => (operating_point.rate, scales.rate),
-                Of::Position => (operating_point.position, scales.position),
-                Of::Input(input) => (inputs[*input], scales.inputs[*input]),
+                FactorArgument::Rate => (operating_point.rate, scales.rate),
+                FactorArgument::Position => (operating_point.position, scales.position),
+                FactorArgument::Input(input) => (inputs[*input], scales.inputs[*input]),
             };
             function.at(value / scale, value)
         };
@@ -152,16 +157,18 @@ impl Term {
 
     /// Returns the term in the notation of the specification, times a parameter, with another
     /// parameter as the position of its kink.
-    pub fn text(&self, parameter: &str, kink: &str, arguments: &Words) -> String {
+    pub fn format_term(&self, parameter: &str, kink: &str, arguments: &ExpressionNames) -> String {
         let mut text = parameter.to_owned();
         for (of, function) in &self.factors {
             let factor = match of {
-                Of::Rate => {
-                    let rate = format!("dot({})", arguments.on);
+                FactorArgument::Rate => {
+                    let rate = format!("dot({})", arguments.target);
                     function.text(&rate, &arguments.scales[0], kink)
                 }
-                Of::Position => function.text(&arguments.on, &arguments.scales[1], kink),
-                Of::Input(input) => {
+                FactorArgument::Position => {
+                    function.text(&arguments.target, &arguments.scales[1], kink)
+                }
+                FactorArgument::Input(input) => {
                     let (quantity, scale) = &arguments.inputs[*input];
                     function.text(quantity, scale, kink)
                 }
@@ -172,8 +179,9 @@ impl Term {
     }
 
     /// Returns true if the term contains this quantity divided by its scale.
-    pub fn scales(&self, wanted: Of) -> bool {
-        let takes = |(of, function): &(Of, Function)| *of == wanted && function.is_scaled();
+    pub fn uses_scale_of(&self, wanted: FactorArgument) -> bool {
+        let takes =
+            |(of, function): &(FactorArgument, Function)| *of == wanted && function.is_scaled();
         self.factors.iter().any(takes)
     }
 
@@ -183,25 +191,38 @@ impl Term {
 }
 
 /// Returns the terms for a force on a coordinate. `width`: range of the coordinate.
-pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
-    use Function::{Above, Below, Cosine, Power, Signed, Sine, Size, Step};
-    let rates = [Power(1), Size, Power(2), Signed, Power(3), Step].map(|f| (Of::Rate, f));
+pub fn list_terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
+    use Function::{Above, Absolute, Below, Cosine, Power, SignedSquare, Sine, SmoothSign};
+    let rates = [
+        Power(1),
+        Absolute,
+        Power(2),
+        SignedSquare,
+        Power(3),
+        SmoothSign,
+    ]
+    .map(|f| (FactorArgument::Rate, f));
     let rates = if scales.rate > 0.0 { &rates[..] } else { &[] };
     let (mut positions, mut kinks) = (Vec::new(), Vec::new());
     if scales.position > 0.0 && !(is_angle && width > TAU) {
-        let both = thresholds::KINKS
+        let both = thresholds::KINK_FRACTIONS
             .iter()
             .flat_map(|at| [Above(*at), Below(*at)]);
-        kinks.extend(both.map(|f| (Of::Position, f)));
-        positions.extend([Power(1), Power(2), Power(3)].map(|f| (Of::Position, f)));
+        kinks.extend(both.map(|f| (FactorArgument::Position, f)));
+        positions.extend([Power(1), Power(2), Power(3)].map(|f| (FactorArgument::Position, f)));
     }
     if is_angle {
-        positions.extend([Cosine(1), Sine(1), Cosine(2), Sine(2)].map(|f| (Of::Position, f)));
+        positions.extend(
+            [Cosine(1), Sine(1), Cosine(2), Sine(2)].map(|f| (FactorArgument::Position, f)),
+        );
     }
     let mut inputs = Vec::new();
     for (input, scale) in scales.inputs.iter().enumerate() {
         if *scale > 0.0 {
-            inputs.extend([Power(1), Size, Signed, Power(3)].map(|f| (Of::Input(input), f)));
+            inputs.extend(
+                [Power(1), Absolute, SignedSquare, Power(3)]
+                    .map(|f| (FactorArgument::Input(input), f)),
+            );
         }
     }
     let mut found = vec![Term {
@@ -221,23 +242,23 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     let products = with_inputs.chain(both).map(|factors| Term {
         factors: factors.to_vec(),
     });
-    found.extend(products.filter(|term| term.degree() <= thresholds::MOST_DEGREE));
+    found.extend(products.filter(|term| term.degree() <= thresholds::MAX_PRODUCT_DEGREE));
     found
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Function, Of, Scales, Term, Words, terms};
+    use super::{ExpressionNames, FactorArgument, Function, Scales, Term, list_terms};
     use crate::residual_force::equations::OperatingPoint;
 
     #[test]
     fn a_term_is_what_it_writes() {
-        let arguments = Words {
-            on: "theta".to_owned(),
+        let arguments = ExpressionNames {
+            target: "theta".to_owned(),
             scales: ["w_0", "theta_0"].map(str::to_owned),
             inputs: vec![("u".to_owned(), "u_0".to_owned())],
         };
-        let term = |factors: &[(Of, Function)]| Term {
+        let term = |factors: &[(FactorArgument, Function)]| Term {
             factors: factors.to_vec(),
         };
         let operating_point = OperatingPoint {
@@ -251,33 +272,38 @@ mod tests {
             inputs: vec![10.0],
         };
         let product = term(&[
-            (Of::Rate, Function::Signed),
-            (Of::Position, Function::Sine(2)),
+            (FactorArgument::Rate, Function::SignedSquare),
+            (FactorArgument::Position, Function::Sine(2)),
         ]);
         assert_eq!(
-            product.text("e_1", "", &arguments),
+            product.format_term("e_1", "", &arguments),
             "e_1*(dot(theta)/w_0)*abs(dot(theta)/w_0)*sin(2*theta)"
         );
-        let value = product.at(&operating_point, &[3.0], &scales);
+        let value = product.evaluate(&operating_point, &[3.0], &scales);
         assert!((value + 0.25 * 1.0_f64.sin()).abs() < 1e-15);
         let with_inputs = term(&[
-            (Of::Input(0), Function::Power(1)),
-            (Of::Position, Function::Power(2)),
+            (FactorArgument::Input(0), Function::Power(1)),
+            (FactorArgument::Position, Function::Power(2)),
         ]);
         assert_eq!(
-            with_inputs.text("e_2", "", &arguments),
+            with_inputs.format_term("e_2", "", &arguments),
             "e_2*(u/u_0)*(theta/theta_0)^2"
         );
-        assert!((with_inputs.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
-        assert!(with_inputs.scales(Of::Input(0)) && !product.scales(Of::Position));
-        assert_eq!(term(&[]).text("e_3", "", &arguments), "e_3");
+        assert!(
+            (with_inputs.evaluate(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15
+        );
+        assert!(
+            with_inputs.uses_scale_of(FactorArgument::Input(0))
+                && !product.uses_scale_of(FactorArgument::Position)
+        );
+        assert_eq!(term(&[]).format_term("e_3", "", &arguments), "e_3");
         for (function, text, value) in [
             (Function::Above(0.2), "e_4*max(theta/theta_0 - e_k, 0)", 0.3),
             (Function::Below(0.2), "e_4*min(theta/theta_0 + e_k, 0)", 0.0),
         ] {
-            let kinked = term(&[(Of::Position, function)]);
-            assert_eq!(kinked.text("e_4", "e_k", &arguments), text);
-            assert!((kinked.at(&operating_point, &[3.0], &scales) - value).abs() < 1e-15);
+            let kinked = term(&[(FactorArgument::Position, function)]);
+            assert_eq!(kinked.format_term("e_4", "e_k", &arguments), text);
+            assert!((kinked.evaluate(&operating_point, &[3.0], &scales) - value).abs() < 1e-15);
             assert_eq!(kinked.kink(), Some(0.2));
             assert_eq!(kinked.with_kink(0.4).kink(), Some(0.4));
         }
@@ -290,10 +316,16 @@ mod tests {
             position: 0.0,
             inputs: vec![0.0, 2.0],
         };
-        let all = terms(&scales, false, 0.0);
-        let still = |term: &&Term| term.scales(Of::Position) || term.scales(Of::Input(0));
+        let all = list_terms(&scales, false, 0.0);
+        let still = |term: &&Term| {
+            term.uses_scale_of(FactorArgument::Position)
+                || term.uses_scale_of(FactorArgument::Input(0))
+        };
         assert_eq!(all.iter().filter(still).count(), 0);
-        assert!(all.iter().any(|term| term.scales(Of::Input(1))));
+        assert!(
+            all.iter()
+                .any(|term| term.uses_scale_of(FactorArgument::Input(1)))
+        );
         for (number, term) in all.iter().enumerate() {
             assert!(!all[..number].contains(term), "{term:?} is there twice");
         }

@@ -3,54 +3,59 @@
 //! must pass a stricter test on held-out records. Its status is `empirical`, without another name.
 //! `expressions` defines the terms, and `chosen` selects them.
 
-pub mod chosen;
 pub mod expressions;
+pub mod term_selection;
 
 use crate::ids::{EffectId, EquationId, UnknownId};
 use eomgen_model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use eomgen_model_spec::model::Model;
 
-use crate::catalogue::candidate::{Candidate, CandidateParameter, names};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, names_in_use};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
-use crate::catalogue::template::free_name;
-use crate::empirical::chosen::{Expression, chosen};
-use crate::empirical::expressions::{Of, Term, Words};
+use crate::catalogue::template::reserve_name;
+use crate::empirical::expressions::{ExpressionNames, FactorArgument, Term};
+use crate::empirical::term_selection::{Expression, select_expression};
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::full;
-use crate::fit::preliminary::{self, WarmStart};
+use crate::fit::fit_result::Fit;
+use crate::fit::full_fit;
+use crate::fit::preliminary_fit::{self, WarmStart};
 use crate::model::problem::EstimationProblem;
-use crate::residual_force::residual_force;
+use crate::residual_force::estimate_residual_force;
 use crate::residual_force::types::RankedEquation;
-use crate::search::acceptance::{EffectUnknown, TestStatistics, acceptance_test};
-use crate::search::found::{Accepted, Found, Rejected, TestGap};
+use crate::search::acceptance::{EffectUnknown, TestStatistics, test_acceptance};
 use crate::search::rejection::Rejection;
+use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult, TestGap};
 use crate::thresholds;
 
 /// Effect name of an unnamed expression.
-pub const EMPIRICAL: &str = "empirical";
+pub const EMPIRICAL_EFFECT: &str = "empirical";
 
 /// Adds an unnamed expression if no effect is named. After a named effect the gap may be its own
 /// misfit. If only a shifted parameter was accepted and a large gap remains, an expression with a
 /// clearly smaller gap replaces it.
-pub fn unnamed(
+pub fn add_empirical_effect(
     problem: &EstimationProblem<'_>,
-    found: &mut Found,
+    found: &mut SearchResult,
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) {
-    let is_offset = |effect: &Accepted| effect.candidate.is_offset();
-    let leaves_little = found.best().leaves_less(thresholds::UNNAMED_FROM * floor);
-    if !found.accepted.iter().all(is_offset) || (leaves_little && found.last.is_some()) {
+    let is_offset = |effect: &AcceptedEffect| effect.candidate.is_offset();
+    let leaves_little = found
+        .best_fit()
+        .is_below(thresholds::MIN_FLOOR_RATIO_FOR_EXPRESSION * floor);
+    if !found.accepted.iter().all(is_offset) || (leaves_little && found.extended_fit.is_some()) {
         return;
     }
-    let (offset, with_offsets) = (std::mem::take(&mut found.accepted), found.last.take());
+    let (offset, with_offsets) = (
+        std::mem::take(&mut found.accepted),
+        found.extended_fit.take(),
+    );
     add_empirical(problem, found, floor, progress);
     if let Some(with_offsets) = with_offsets {
         let is_better =
-            (found.last.as_ref()).is_some_and(|last| last.leaves_clearly_less(&with_offsets));
+            (found.extended_fit.as_ref()).is_some_and(|last| last.is_clearly_below(&with_offsets));
         if !is_better {
-            (found.accepted, found.last) = (offset, Some(with_offsets));
+            (found.accepted, found.extended_fit) = (offset, Some(with_offsets));
         }
     }
 }
@@ -59,12 +64,12 @@ pub fn unnamed(
 /// right model would leave, in standard deviations; `progress` is told what is done.
 fn add_empirical(
     problem: &EstimationProblem<'_>,
-    found: &mut Found,
+    found: &mut SearchResult,
     floor: f64,
     progress: &dyn Fn(&str),
 ) {
-    let before = found.best();
-    let is_wide = |rms: f64| rms > thresholds::UNNAMED_FROM * floor;
+    let before = found.best_fit();
+    let is_wide = |rms: f64| rms > thresholds::MIN_FLOOR_RATIO_FOR_EXPRESSION * floor;
     if !(is_wide(before.train.rms) && is_wide(before.test.rms)) {
         return;
     }
@@ -97,22 +102,22 @@ fn add_empirical(
     ));
     match verdict {
         Ok(statistics) => {
-            found.accepted.push(Accepted {
+            found.accepted.push(AcceptedEffect {
                 candidate,
                 unknowns,
-                equivalent: Vec::new(),
+                equivalents: Vec::new(),
                 statistics,
                 test_gap: TestGap {
                     before: before.test.rms,
                     after: test,
                 },
             });
-            found.last = Some(fit);
+            found.extended_fit = Some(fit);
         }
-        Err(reason) => found.rejected.push(Rejected {
+        Err(reason) => found.rejected.push(RejectedCandidate {
             reason: format!("{}: {reason}", candidate.term),
             candidate,
-            not_testable: false,
+            is_untestable: false,
             p_value: None,
         }),
     }
@@ -120,29 +125,30 @@ fn add_empirical(
 
 /// The best expression in the equations where the residual force may sit.
 fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
-    let force = residual_force(problem, fit, None)?;
+    let force = estimate_residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
-    let explains = |ranking: &RankedEquation| ranking.by_state.max(ranking.by_time);
+    let explains =
+        |ranking: &RankedEquation| ranking.fraction_by_state.max(ranking.fraction_by_time);
     let most = force.ranking.iter().map(explains).fold(0.0, f64::max);
     let mut as_well: Vec<&RankedEquation> = (force.ranking.iter())
-        .filter(|ranking| explains(ranking) >= thresholds::AS_WELL * most)
+        .filter(|ranking| explains(ranking) >= thresholds::MIN_FRACTION_OF_BEST * most)
         .collect();
     as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-    let best = as_well.iter().take(thresholds::UNNAMED_EQUATIONS);
+    let best = as_well.iter().take(thresholds::MAX_EXPRESSION_EQUATIONS);
     let among: Vec<EquationId> = best.map(|ranking| ranking.equation).collect();
-    chosen(problem, fit, &among)
+    select_expression(problem, fit, &among)
 }
 
 /// An expression as an effect that can be written into a specification: a parameter with the
 /// unit of the force for each term, and one for each scale.
 fn written(model: &Model, expression: &Expression) -> Candidate {
     let equation = &expression.equation;
-    let mut taken = names(model);
-    let mut name = |wanted: &str| free_name(wanted, &equation.name, &mut taken);
+    let mut taken = names_in_use(model);
+    let mut name = |wanted: &str| reserve_name(wanted, &equation.name, &mut taken);
     let mut changes = Vec::new();
-    let mut scale = |of: Of, (wanted, value, unit): (&str, f64, &str), what: &str| {
+    let mut scale = |of: FactorArgument, (wanted, value, unit): (&str, f64, &str), what: &str| {
         let name = name(wanted);
-        if expression.terms.iter().any(|term| term.scales(of)) {
+        if expression.terms.iter().any(|term| term.uses_scale_of(of)) {
             changes.push(Edit::AddParameter(NewParameter {
                 name: name.clone(),
                 value: NewValue::Number(value),
@@ -160,12 +166,16 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
             _ => "m/s",
         },
     );
-    let arguments = Words {
-        on: equation.on.clone(),
+    let arguments = ExpressionNames {
+        target: equation.target.clone(),
         scales: [
-            scale(Of::Rate, ("e_rate", scales.rate, per_second), "rate"),
             scale(
-                Of::Position,
+                FactorArgument::Rate,
+                ("e_rate", scales.rate, per_second),
+                "rate",
+            ),
+            scale(
+                FactorArgument::Position,
                 (
                     "e_place",
                     scales.position,
@@ -178,7 +188,10 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
             .map(|(number, (input, size))| {
                 let wanted = format!("e_{}", input.name);
                 let of = (wanted.as_str(), *size, input.unit.text.as_str());
-                (input.name.clone(), scale(Of::Input(number), of, "input"))
+                (
+                    input.name.clone(),
+                    scale(FactorArgument::Input(number), of, "input"),
+                )
             })
             .collect(),
     };
@@ -186,16 +199,16 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         name,
         unit: equation.force_unit().to_owned(),
         typical_size: 1.0,
-        positive: false,
-        inverse: false,
-        shape: None,
+        is_positive: false,
+        is_inverse: false,
+        shape_size: None,
         offset: None,
         doc: "coefficient of a term of an empirical force".to_owned(),
     };
     let place = |name: String, at: f64| CandidateParameter {
         unit: "1".to_owned(),
-        positive: true,
-        shape: Some(at),
+        is_positive: true,
+        shape_size: Some(at),
         doc: "position of a kink of an empirical force, relative to its scale".to_owned(),
         ..size(name)
     };
@@ -205,28 +218,28 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         let own = size(name(&format!("e_{number}")));
         let kink = term.kink().map(|at| place(name("e_kink"), at));
         let at = kink.as_ref().map_or("", |kink| kink.name.as_str());
-        terms.push(term.text(&own.name, at, &arguments));
+        terms.push(term.format_term(&own.name, at, &arguments));
         parameters.push(own);
         kinks.extend(kink);
     }
     parameters.extend(kinks);
     let value = terms.join(" + ");
     changes.push(Edit::AddForce(NewForce {
-        name: name(EMPIRICAL),
-        on: equation.on.clone(),
+        name: name(EMPIRICAL_EFFECT),
+        on: equation.target.clone(),
         value: value.clone(),
         doc: "a fitted expression that does not identify the cause".to_owned(),
         source: String::new(),
     }));
     Candidate {
-        effect: EMPIRICAL.to_owned(),
-        on: equation.name.clone(),
-        order: None,
+        effect: EMPIRICAL_EFFECT.to_owned(),
+        site: equation.name.clone(),
+        angle_order: None,
         load: None,
         on_mesh: equation.is_mesh,
-        scaled: None,
+        scaled_stiffness: None,
         parameters,
-        says: "a fitted expression for the residual".to_owned(),
+        description: "a fitted expression for the residual".to_owned(),
         experiment: "records with other combinations of rates, positions and inputs".to_owned(),
         changes,
         term: value,
@@ -246,10 +259,10 @@ fn simplest(
         let fit = fitted(problem, before, &candidate, &expression)?;
         let (first, count) = (before.unknowns.len(), expression.terms.len());
         let (own, kinks) = fit.train.estimate.theta[first..].split_at(count);
-        let sizes = own.iter().zip(&fit.wider_sd[first..]);
+        let sizes = own.iter().zip(&fit.effect_sd[first..]);
         let t: Vec<f64> = sizes.map(|(value, sd)| (value / sd).abs()).collect();
         let weakest = (0..t.len()).min_by(|a, b| t[*a].total_cmp(&t[*b]));
-        match weakest.filter(|term| t.len() > 1 && t[*term] < thresholds::SIGNIFICANCE) {
+        match weakest.filter(|term| t.len() > 1 && t[*term] < thresholds::MIN_SIGNIFICANCE) {
             Some(term) => {
                 expression.sizes = own.to_vec();
                 let mut kinks = kinks.iter();
@@ -279,30 +292,31 @@ fn fitted(
     let kinks = expression.terms.iter().filter_map(Term::kink);
     let values: Vec<f64> = expression.sizes.iter().copied().chain(kinks).collect();
     let mut unknowns = fit.unknowns.clone();
-    let mut theta = fit.restarted();
+    let mut theta = fit.restart_values();
     for (parameter, value) in candidate.parameters.iter().zip(&values) {
-        let mut unknown = CandidateUnknown::of(parameter).unknown;
+        let mut unknown = CandidateUnknown::from_parameter(parameter).unknown;
         unknown.scale = value.abs();
         unknowns.push(unknown);
         theta.push(*value);
     }
-    let texts = candidate.added(problem, &fit.texts, &values)?;
+    let texts = candidate.add_to_texts(problem, &fit.texts, &values)?;
     let near = || {
         let warm_start = WarmStart {
             fit,
             cost: fit.train.estimate.cost,
-            most: f64::INFINITY,
+            max_rms: f64::INFINITY,
         };
-        let preliminary = preliminary::expected(
+        let preliminary = preliminary_fit::start_from_fit(
             problem,
             texts.clone(),
             unknowns.clone(),
             std::slice::from_ref(&theta),
             warm_start,
         )?;
-        full::complete(problem, preliminary)
+        full_fit::complete_fit(problem, preliminary)
     };
-    let restarted = || full::fit(problem, texts.clone(), unknowns.clone(), &theta);
+    let restarted =
+        || full_fit::fit_specification(problem, texts.clone(), unknowns.clone(), &theta);
     match rayon::join(near, restarted) {
         (Ok(near), Ok(restarted)) if restarted.train.rms < near.train.rms => Ok(restarted),
         (Ok(fit), _) | (Err(_), Ok(fit)) => Ok(fit),
@@ -320,30 +334,30 @@ fn accepted(
 ) -> Result<TestStatistics, Rejection> {
     let parameters = candidate.parameters.iter().zip(unknowns).enumerate();
     let own = parameters.map(|(number, (parameter, unknown))| {
-        let is_shape = parameter.shape.is_some();
+        let is_shape = parameter.shape_size.is_some();
         EffectUnknown {
             unknown: *unknown,
             // Where a kink is has no size of its own, and goes with any term.
             effect: EffectId::new(if is_shape { 0 } else { number }),
             base: 0.0,
             is_shape,
-            prior: None,
+            dropped_prior_sd: None,
         }
     });
     let own: Vec<EffectUnknown> = own.collect();
-    let statistics = acceptance_test(before, after, &own)?;
-    let asked = thresholds::INFORMATION * (1 + own.len()) as f64;
-    if statistics.information < asked {
+    let statistics = test_acceptance(before, after, &own)?;
+    let asked = thresholds::MIN_INFORMATION_GAIN * (1 + own.len()) as f64;
+    if statistics.information_gain < asked {
         return Err(Rejection::Information {
-            found: statistics.information,
-            asked,
+            gain: statistics.information_gain,
+            required: asked,
         });
     }
     let closes = |before: f64, after: f64| (before - after) / (before - floor);
     let train = closes(before.train.rms, after.train.rms);
     let test = closes(before.test.rms, after.test.rms);
-    if train.min(test) < thresholds::UNNAMED_CLOSES {
-        return Err(Rejection::Closes { train, test });
+    if train.min(test) < thresholds::MIN_EXPRESSION_CLOSURE {
+        return Err(Rejection::Closure { train, test });
     }
     Ok(statistics)
 }

@@ -14,23 +14,23 @@ pub struct Bounds {
     /// Duration, s.
     pub duration: f64,
     /// Time between the samples of the prediction, s.
-    pub sample: f64,
+    pub sample_time: f64,
     /// Number of samples for which a played value is held, because the inputs of the records are
     /// not sampled faster.
-    pub hold: usize,
+    pub samples_per_value: usize,
     /// Bounds of the inputs that have columns and are not fixed.
     pub inputs: Vec<InputBounds>,
     /// Admissible range of each channel.
     pub channels: Vec<Interval>,
     /// Origin of the bounds as a sentence.
-    pub words: String,
+    pub sources: String,
 }
 
 /// Bounds of one input, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputBounds {
     /// Index among the inputs of the model.
-    pub place: usize,
+    pub index: usize,
     /// Name.
     pub name: String,
     /// Range of the values.
@@ -43,7 +43,7 @@ pub struct InputBounds {
 
 impl Bounds {
     /// Computes the bounds of a dataset. `inputs`: names of the inputs of the model.
-    pub fn of(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
+    pub fn from_dataset(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
         let dataset = problem.dataset;
         let said = &dataset.experiment;
         let recorded_step = typical_step(&dataset.train[0].times);
@@ -57,7 +57,7 @@ impl Bounds {
         let longest = lasting.fold(0.0, f64::max);
         let duration = said
             .duration
-            .unwrap_or_else(|| longest.min(thresholds::EXPERIMENT_SAMPLES * sample));
+            .unwrap_or_else(|| longest.min(thresholds::MAX_EXPERIMENT_SAMPLES * sample));
         let mut from_records: Vec<String> = Vec::new();
         let mut input_bounds = Vec::new();
         for (place, name) in inputs.iter().enumerate() {
@@ -87,7 +87,7 @@ impl Bounds {
             let steepest = std::f64::consts::PI * band.high * (range.high - range.low);
             if range.low < range.high {
                 input_bounds.push(InputBounds {
-                    place,
+                    index: place,
                     name: name.clone(),
                     range,
                     rate: of.rate.unwrap_or(steepest),
@@ -116,18 +116,18 @@ impl Bounds {
         };
         Self {
             duration,
-            sample,
-            hold: hold as usize,
+            sample_time: sample,
+            samples_per_value: hold as usize,
             inputs: input_bounds,
             channels,
-            words,
+            sources: words,
         }
     }
 
     /// Returns the reason why the experiment is too short for a record: less than half a window or
     /// too few samples; `None` if it is long enough.
-    pub fn too_short(&self, window: Option<f64>) -> Option<String> {
-        let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample);
+    pub fn explain_too_short(&self, window: Option<f64>) -> Option<String> {
+        let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample_time);
         (self.duration < least).then(|| {
             format!(
                 "an experiment of {} s is too short for a record, which needs {least:.3} s; expected a longer \
@@ -138,9 +138,9 @@ impl Bounds {
     }
 
     /// Returns the sample times, s.
-    pub fn times(&self) -> Vec<f64> {
-        let count = (self.duration / self.sample).round() as usize + 1;
-        (0..count).map(|k| self.sample * k as f64).collect()
+    pub fn sample_times(&self) -> Vec<f64> {
+        let count = (self.duration / self.sample_time).round() as usize + 1;
+        (0..count).map(|k| self.sample_time * k as f64).collect()
     }
 }
 
@@ -169,7 +169,7 @@ fn recorded(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
             let bins = spectrum.frequency.iter().zip(&spectrum.density);
             let below = bins.take_while(|(_, density)| {
                 sum += *density;
-                sum < thresholds::RECORDED_POWER * whole
+                sum < thresholds::RECORDED_POWER_FRACTION * whole
             });
             below.last().map_or(0.0, |(frequency, _)| *frequency)
         });
@@ -186,6 +186,6 @@ fn moved(problem: &EstimationProblem<'_>, channel: ChannelId) -> Interval {
     let both = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(*value), high.max(*value))
     });
-    let margin = thresholds::LIMIT_MARGIN * (both.1 - both.0);
+    let margin = thresholds::LIMIT_MARGIN_FRACTION * (both.1 - both.0);
     Interval::new(both.0 - margin, both.1 + margin)
 }

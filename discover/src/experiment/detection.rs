@@ -28,17 +28,17 @@ const CORRECTED: Interval = Interval::new(0.2, 5.0);
 const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
 
 /// An experiment with the prediction of a fit.
-pub struct Played<'p> {
+pub struct PredictedExperiment<'p> {
     /// Index of the proposal.
-    pub place: usize,
+    pub index: usize,
     /// Proposed input.
     pub proposal: &'p Proposal,
     /// Prediction without the effect.
-    pub without: Prediction,
+    pub prediction: Prediction,
 }
 
 /// An effect that the records cannot show at any size.
-pub struct Hidden<'f> {
+pub struct HiddenEffect<'f> {
     problem: &'f EstimationProblem<'f>,
     /// The model without it.
     without: &'f Rival<'f>,
@@ -71,7 +71,7 @@ pub struct Detection {
     /// Residual of the model without the effect at that size.
     pub separation: Separation,
     /// Predicted sensor outputs with the effect, one column per channel.
-    pub predicted: Vec<Vec<f64>>,
+    pub predictions: Vec<Vec<f64>>,
 }
 
 /// An experiment with a small size of an effect.
@@ -86,13 +86,13 @@ struct Tried<'t> {
     most: f64,
 }
 
-impl<'f> Hidden<'f> {
+impl<'f> HiddenEffect<'f> {
     /// Adds a candidate to a fit.
     ///
     /// # Errors
     ///
     /// Errors of the specification with the candidate.
-    pub fn of(
+    pub fn with_candidate(
         problem: &'f EstimationProblem<'f>,
         without: &'f Rival<'f>,
         candidate: &Candidate,
@@ -102,7 +102,7 @@ impl<'f> Hidden<'f> {
         if let Some(what) = &candidate.dropped_prior {
             let mut unknowns = fit.unknowns();
             let (id, unknown) = { &mut unknowns }
-                .find(|(_, unknown)| unknown.what == *what)
+                .find(|(_, unknown)| unknown.kind == *what)
                 .ok_or(DiscoverError::NotExcited)?;
             return Ok(Self {
                 problem,
@@ -112,7 +112,10 @@ impl<'f> Hidden<'f> {
                 base: theta[id],
             });
         }
-        let unknowns = candidate.parameters.iter().map(CandidateUnknown::of);
+        let unknowns = candidate
+            .parameters
+            .iter()
+            .map(CandidateUnknown::from_parameter);
         let unknowns: Vec<CandidateUnknown> = unknowns.collect();
         let scaling = unknowns.iter().find(|of| !of.is_shape);
         let scaling = scaling.ok_or(DiscoverError::NotExcited)?;
@@ -120,18 +123,18 @@ impl<'f> Hidden<'f> {
         let present = unknowns.iter().map(|of| {
             let value = match of.is_shape {
                 true => of.unknown.start,
-                false => of.unknown.admissible(of.base + of.unknown.scale),
+                false => of.unknown.clamp(of.base + of.unknown.scale),
             };
-            of.unknown.what.stated(value)
+            of.unknown.kind.value_in_specification(value)
         });
-        let texts = candidate.added(problem, &fit.texts, &present.collect::<Vec<f64>>())?;
-        let model = problem.model(&texts.whole, Some(&texts.linear))?;
+        let texts = candidate.add_to_texts(problem, &fit.texts, &present.collect::<Vec<f64>>())?;
+        let model = problem.compile_model(&texts.full, Some(&texts.linear))?;
         let shooting = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &[]);
-        let mut values = shooting.values(theta);
+        let mut values = shooting.parameter_values(theta);
         for (parameter, of) in candidate.parameters.iter().zip(&unknowns) {
             if !of.is_shape {
-                let absent = parameter.absent();
-                model.set(&mut values, &parameter.name, absent);
+                let absent = parameter.neutral_value();
+                model.set_value(&mut values, &parameter.name, absent);
             }
         }
         Ok(Self {
@@ -147,9 +150,9 @@ impl<'f> Hidden<'f> {
     }
 
     /// Returns the scaling parameter at a size in the form of the specification, SI.
-    pub fn stated(&self, size: f64) -> f64 {
-        let value = self.unknown.admissible(self.base + size);
-        self.unknown.what.stated(value)
+    pub fn value_at_size(&self, size: f64) -> f64 {
+        let value = self.unknown.clamp(self.base + size);
+        self.unknown.kind.value_in_specification(value)
     }
 
     /// The model with the effect.
@@ -172,33 +175,33 @@ impl<'f> Hidden<'f> {
         let values = match &self.place {
             Place::Model { model, values } => {
                 let mut values = values.clone();
-                if let Some(name) = self.unknown.what.parameter() {
-                    model.set(&mut values, name, self.stated(size));
+                if let Some(name) = self.unknown.kind.parameter_name() {
+                    model.set_value(&mut values, name, self.value_at_size(size));
                 }
                 values
             }
             Place::Unknown(id) => {
                 theta[*id] = self.base + size;
-                fit.shooting(self.problem).values(&theta)
+                fit.training_shooting(self.problem).parameter_values(&theta)
             }
         };
-        let predictor = Predictor::with(self.problem, (fit, &theta), self.model(), &values);
-        predictor?.predicted(bounds, times, proposal).ok()
+        let predictor = Predictor::with_model(self.problem, (fit, &theta), self.model(), &values);
+        predictor?.predict(bounds, times, proposal).ok()
     }
 
     /// An experiment with a small size, sought from a `start`.
     fn tried<'t>(
         &self,
         within: (&Bounds, &[f64]),
-        played: &'t Played<'_>,
+        played: &'t PredictedExperiment<'_>,
         start: f64,
     ) -> Option<Tried<'t>> {
         let (size, moved, present) = self.small(within, played, start)?;
         let most = self
             .without
-            .leaves_unfitted(self.problem, self.model(), &present)?;
+            .predict_unfitted_rms(self.problem, self.model(), &present)?;
         Some(Tried {
-            place: played.place,
+            place: played.index,
             proposal: played.proposal,
             size,
             moved,
@@ -211,7 +214,7 @@ impl<'f> Hidden<'f> {
     fn small(
         &self,
         within: (&Bounds, &[f64]),
-        played: &Played<'_>,
+        played: &PredictedExperiment<'_>,
         start: f64,
     ) -> Option<(f64, f64, Prediction)> {
         let mut size = start;
@@ -220,11 +223,11 @@ impl<'f> Hidden<'f> {
                 size *= 0.1;
                 continue;
             };
-            let moved = self.moved(&played.without, &present);
-            if thresholds::SHOWN_WITHIN.clamp(moved) == moved {
+            let moved = self.moved(&played.prediction, &present);
+            if thresholds::SMALL_EFFECT_FACTORS.clamp(moved) == moved {
                 return Some((size, moved, present));
             }
-            size *= (thresholds::SHOWN_BY / moved).clamp(1e-3, 1e3);
+            size *= (thresholds::SMALL_EFFECT_IN_NOISE / moved).clamp(1e-3, 1e3);
         }
         None
     }
@@ -256,7 +259,7 @@ impl<'f> Hidden<'f> {
             if known.is_some_and(|known| of.most <= known) {
                 break;
             }
-            let left = (self.without).leaves_by_tangents(self.problem, self.model(), &of.present);
+            let left = (self.without).predict_linear_rms(self.problem, self.model(), &of.present);
             if let Some(left) = left
                 && known.is_none_or(|known| left / of.size.abs() > known)
             {
@@ -268,7 +271,11 @@ impl<'f> Hidden<'f> {
 
     /// Returns the experiment with the smallest detectable size; `None` if no experiment is
     /// admissible or has an effect.
-    pub fn best(&self, within: (&Bounds, &[f64]), family: &[Played<'_>]) -> Option<Detection> {
+    pub fn find_best_experiment(
+        &self,
+        within: (&Bounds, &[f64]),
+        family: &[PredictedExperiment<'_>],
+    ) -> Option<Detection> {
         // What is small in one experiment nearly is in the next.
         let usual = 1e-3 * self.unknown.scale;
         let (mut first, mut others) = (None, family);
@@ -287,21 +294,21 @@ impl<'f> Hidden<'f> {
             moved,
             ..
         } = tried;
-        let is_own = left * left > thresholds::UNEXPLAINED_FRACTION * moved * moved;
+        let is_own = left * left > thresholds::MIN_UNEXPLAINED_FRACTION * moved * moved;
         let mut size = match is_own {
-            true => size * thresholds::SEPARATES / left,
+            true => size * thresholds::MIN_SEPARATION_IN_NOISE / left,
             false => size,
         };
         let refitted = |size: f64| {
             let prediction = self.predicted(within, proposal, size)?;
-            let separation = self
-                .without
-                .separation(self.problem, self.model(), &prediction)?;
+            let separation =
+                self.without
+                    .compute_separation(self.problem, self.model(), &prediction)?;
             Some((prediction, separation))
         };
         let (mut prediction, mut separation) = refitted(size)?;
         for _ in 0..CORRECTIONS {
-            let off = thresholds::SEPARATES / separation.size;
+            let off = thresholds::MIN_SEPARATION_IN_NOISE / separation.rms_in_noise;
             if !is_own || CLOSE_ENOUGH.clamp(off) == off {
                 break;
             }
@@ -315,7 +322,7 @@ impl<'f> Hidden<'f> {
             proposal: place,
             size,
             separation,
-            predicted: prediction.records[0].channels.clone(),
+            predictions: prediction.records[0].channels.clone(),
         })
     }
 }

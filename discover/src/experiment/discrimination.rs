@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use crate::experiment::bounds::Bounds;
-use crate::experiment::prediction::{Excluded, Prediction, Predictor};
+use crate::experiment::prediction::{Exclusion, Prediction, Predictor};
 use crate::experiment::proposal::Proposal;
 use crate::experiment::separation::{Rival, Separation};
 use crate::model::problem::EstimationProblem;
@@ -26,7 +26,7 @@ pub struct Discrimination {
     /// Separation of each pair of members.
     pub pairs: Vec<PairSeparation>,
     /// Predicted sensor outputs of each member, one column per channel.
-    pub predicted: Vec<Vec<Vec<f64>>>,
+    pub predictions: Vec<Vec<Vec<f64>>>,
 }
 
 /// Separation of two members.
@@ -41,9 +41,9 @@ pub struct PairSeparation {
 impl PairSeparation {
     /// Returns the smaller separation, in standard deviations of the noise, because the true member
     /// is unknown.
-    pub fn least(&self) -> f64 {
+    pub fn smaller_separation(&self) -> f64 {
         let [one, other] = &self.separations;
-        one.size.min(other.size)
+        one.rms_in_noise.min(other.rms_in_noise)
     }
 }
 
@@ -54,9 +54,9 @@ pub enum NoExperiment {
     NoInput,
     /// None of this number of inputs stays within the limits. Most of them violate the limit of
     /// this quantity.
-    Leaves(usize, String),
+    LeavesLimits(usize, String),
     /// None of this number of inputs can be simulated.
-    Unfollowed(usize),
+    SimulationFailed(usize),
 }
 
 impl Members<'_> {
@@ -66,13 +66,13 @@ impl Members<'_> {
     /// # Errors
     ///
     /// The reason why no experiment is possible.
-    pub fn best(
+    pub fn find_best_experiment(
         &self,
         bounds: &Bounds,
         times: &[f64],
         family: &[Proposal],
     ) -> Result<Discrimination, NoExperiment> {
-        let promised: Vec<Result<Vec<f64>, Excluded>> = (family.par_iter())
+        let promised: Vec<Result<Vec<f64>, Exclusion>> = (family.par_iter())
             .map(|proposal| self.promised(bounds, times, proposal))
             .collect();
         let count = self.pairs().len();
@@ -83,7 +83,7 @@ impl Members<'_> {
             }
         }
         let mut counted: Vec<usize> = (0..count)
-            .filter(|pair| most[*pair] >= thresholds::SEPARATES)
+            .filter(|pair| most[*pair] >= thresholds::MIN_SEPARATION_IN_NOISE)
             .collect();
         if counted.is_empty() {
             counted = (0..count).collect();
@@ -99,12 +99,12 @@ impl Members<'_> {
             })
             .collect();
         ranking.sort_by(|a, b| b.0.total_cmp(&a.0));
-        ranking.truncate(thresholds::EXPERIMENTS_REFITTED);
+        ranking.truncate(thresholds::MAX_REFITTED_EXPERIMENTS);
         let refitted = ranking
             .iter()
             .filter_map(|(_, place)| self.refitted(bounds, times, (*place, &family[*place])));
         let best = refitted.max_by(|a, b| {
-            let least = |of: &Discrimination| least(&|pair| of.pairs[pair].least());
+            let least = |of: &Discrimination| least(&|pair| of.pairs[pair].smaller_separation());
             least(a).total_cmp(&least(b))
         });
         best.ok_or_else(|| excluded(&promised))
@@ -123,11 +123,11 @@ impl Members<'_> {
         bounds: &Bounds,
         times: &[f64],
         proposal: &Proposal,
-    ) -> Result<Vec<Prediction>, Excluded> {
+    ) -> Result<Vec<Prediction>, Exclusion> {
         let predicted = |rival: &Rival<'_>| {
-            let predictor = Predictor::of(self.problem, rival.fit);
-            let mut predictor = predictor.ok_or(Excluded::Unfollowed)?;
-            predictor.predicted(bounds, times, proposal)
+            let predictor = Predictor::from_fit(self.problem, rival.fit);
+            let mut predictor = predictor.ok_or(Exclusion::SimulationFailed)?;
+            predictor.predict(bounds, times, proposal)
         };
         self.rivals.iter().map(predicted).collect()
     }
@@ -138,17 +138,17 @@ impl Members<'_> {
         bounds: &Bounds,
         times: &[f64],
         proposal: &Proposal,
-    ) -> Result<Vec<f64>, Excluded> {
+    ) -> Result<Vec<f64>, Exclusion> {
         let predictions = self.predictions(bounds, times, proposal)?;
         let leaves = |truth: usize, rival: usize| {
             let model = &self.rivals[truth].fit.model;
             let prediction = &predictions[truth];
-            self.rivals[rival].leaves_by_tangents(self.problem, model, prediction)
+            self.rivals[rival].predict_linear_rms(self.problem, model, prediction)
         };
         let of = |[a, b]: [usize; 2]| Some(leaves(a, b)?.min(leaves(b, a)?));
         let pairs = self.pairs().into_iter();
         pairs
-            .map(|pair| of(pair).ok_or(Excluded::Unfollowed))
+            .map(|pair| of(pair).ok_or(Exclusion::SimulationFailed))
             .collect()
     }
 
@@ -162,7 +162,7 @@ impl Members<'_> {
         let predictions = self.predictions(bounds, times, proposal).ok()?;
         let separation = |truth: usize, rival: usize| {
             let model = &self.rivals[truth].fit.model;
-            self.rivals[rival].separation(self.problem, model, &predictions[truth])
+            self.rivals[rival].compute_separation(self.problem, model, &predictions[truth])
         };
         let of = |[a, b]: [usize; 2]| {
             Some(PairSeparation {
@@ -175,16 +175,16 @@ impl Members<'_> {
         Some(Discrimination {
             proposal: place,
             pairs: pairs?,
-            predicted: predictions.iter().map(seen).collect(),
+            predictions: predictions.iter().map(seen).collect(),
         })
     }
 }
 
 /// Why no experiment is left: what most of them leave.
-fn excluded<T>(promised: &[Result<T, Excluded>]) -> NoExperiment {
+fn excluded<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
     let mut left: Vec<(&str, usize)> = Vec::new();
     for of in promised {
-        let Err(Excluded::Leaves(name)) = of else {
+        let Err(Exclusion::LeavesLimits(name)) = of else {
             continue;
         };
         match left.iter_mut().find(|(known, _)| known == name) {
@@ -193,7 +193,7 @@ fn excluded<T>(promised: &[Result<T, Excluded>]) -> NoExperiment {
         }
     }
     match left.iter().max_by_key(|(_, count)| *count) {
-        Some((name, _)) => NoExperiment::Leaves(promised.len(), (*name).to_owned()),
-        None => NoExperiment::Unfollowed(promised.len()),
+        Some((name, _)) => NoExperiment::LeavesLimits(promised.len(), (*name).to_owned()),
+        None => NoExperiment::SimulationFailed(promised.len()),
     }
 }

@@ -10,9 +10,9 @@
 pub mod bounds;
 pub mod detection;
 pub mod discrimination;
+mod experiment_csv;
 mod members;
-pub mod next;
-mod played;
+pub mod next_experiment;
 pub mod prediction;
 pub mod proposal;
 pub mod separation;
@@ -24,37 +24,39 @@ use rayon::prelude::*;
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
 use crate::experiment::bounds::Bounds;
-use crate::experiment::detection::{Detection, Hidden, Played};
+use crate::experiment::detection::{Detection, HiddenEffect, PredictedExperiment};
 use crate::experiment::discrimination::{Discrimination, Members, NoExperiment, PairSeparation};
-use crate::experiment::members::equivalent_fits;
-use crate::experiment::next::{ExperimentFile, Experiments, MemberAt, NextExperiment, Pair, Shown};
+use crate::experiment::members::fit_equivalents;
+use crate::experiment::next_experiment::{
+    ClassMember, DetectableSize, ExperimentFile, Experiments, MemberPair, NextExperiment,
+};
 use crate::experiment::prediction::{Prediction, Predictor};
 use crate::experiment::proposal::Proposal;
 use crate::experiment::separation::{Rival, Separation};
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::EffectId;
-use crate::model::unknowns::What;
-use crate::search::context::Context;
-use crate::search::found::Found;
+use crate::model::unknowns::UnknownKind;
+use crate::search::context::RoundContext;
+use crate::search::search_result::SearchResult;
 use crate::thresholds;
 
 /// Proposes the next experiments for the result of a search. `context`: context of the search.
-pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
+pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> Experiments {
     let problem = context.problem;
-    let inputs = &found.null.model.specification().inputs;
+    let inputs = &found.null_fit.model.specification().inputs;
     let units = inputs.iter();
     let units = units.map(|input| Unit::coherent(input.unit.dimension).text);
     let units: Vec<String> = units.collect();
     let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
-    let bounds = Bounds::of(problem, &inputs);
-    let times = bounds.times();
+    let bounds = Bounds::from_dataset(problem, &inputs);
+    let times = bounds.sample_times();
     let impossible = match problem.dataset.gives_motion() {
         true => Some("no experiment is computed for a given motion".to_owned()),
-        false => bounds.too_short(problem.dataset.window),
+        false => bounds.explain_too_short(problem.dataset.window),
     };
     let family = match impossible {
         Some(_) => Vec::new(),
-        None => Proposal::family(&bounds, &times),
+        None => Proposal::list_all(&bounds, &times),
     };
     let plan = Plan {
         impossible,
@@ -67,11 +69,11 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
     };
     let mut experiments = Experiments::default();
     for effect in EffectId::first(found.accepted.len()) {
-        let next = match found.accepted[effect].equivalent.is_empty() {
+        let next = match found.accepted[effect].equivalents.is_empty() {
             true => None,
             false => Some(plan.of_class(found, effect, &mut experiments.files)),
         };
-        experiments.of_effects.push(next);
+        experiments.for_effects.push(next);
     }
     plan.of_not_testable(found, &mut experiments);
     experiments
@@ -79,7 +81,7 @@ pub fn experiments(context: Context<'_>, found: &Found) -> Experiments {
 
 /// What may be played.
 struct Plan<'r> {
-    context: Context<'r>,
+    context: RoundContext<'r>,
     /// The model's inputs.
     inputs: Vec<String>,
     /// The SI unit of each.
@@ -99,13 +101,13 @@ impl Plan<'_> {
             (None, true) => NoExperiment::NoInput.to_string(),
             (None, false) => return None,
         };
-        Some(NextExperiment::none(&reason, &self.bounds))
+        Some(NextExperiment::without_experiment(&reason, &self.bounds))
     }
 
     /// What separates the members of an accepted effect's class.
     fn of_class(
         &self,
-        found: &Found,
+        found: &SearchResult,
         effect: EffectId,
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
@@ -116,60 +118,68 @@ impl Plan<'_> {
         (self.context.progress)(&format!(
             "searching for an experiment that separates {} from {} others",
             accepted.candidate.label(),
-            accepted.equivalent.len()
+            accepted.equivalents.len()
         ));
-        let equivalent = equivalent_fits(self.context, found, effect);
-        let mut members = vec![(MemberAt::of(&accepted.candidate), found.best())];
+        let equivalent = fit_equivalents(self.context, found, effect);
+        let mut members = vec![(
+            ClassMember::from_candidate(&accepted.candidate),
+            found.best_fit(),
+        )];
         let mut left_out = Vec::new();
         for (candidate, fit) in &equivalent {
             match fit {
-                Some(fit) => members.push((MemberAt::of(candidate), fit)),
-                None => left_out.push(MemberAt::of(candidate)),
+                Some(fit) => members.push((ClassMember::from_candidate(candidate), fit)),
+                None => left_out.push(ClassMember::from_candidate(candidate)),
             }
         }
         if members.len() < 2 {
-            return NextExperiment::none(
+            return NextExperiment::without_experiment(
                 "no other member could be fitted together with the later effects",
                 &self.bounds,
             );
         }
-        let (at, fits): (Vec<MemberAt>, Vec<&Fit>) = members.into_iter().unzip();
+        let (at, fits): (Vec<ClassMember>, Vec<&Fit>) = members.into_iter().unzip();
         let problem = self.context.problem;
-        let rivals = fits.into_iter().map(|fit| Rival::of(problem, fit));
+        let rivals = fits
+            .into_iter()
+            .map(|fit| Rival::with_records(problem, fit));
         let members = Members {
             problem,
             rivals: rivals.collect(),
         };
-        match members.best(&self.bounds, &self.times, &self.family) {
+        match members.find_best_experiment(&self.bounds, &self.times, &self.family) {
             Ok(best) => self.told(&at, left_out, best, files),
-            Err(reason) => NextExperiment::none(&reason.to_string(), &self.bounds),
+            Err(reason) => NextExperiment::without_experiment(&reason.to_string(), &self.bounds),
         }
     }
 
     /// An experiment of a class as a result; a file if it separates some.
     fn told(
         &self,
-        at: &[MemberAt],
-        left_out: Vec<MemberAt>,
+        at: &[ClassMember],
+        left_out: Vec<ClassMember>,
         best: Discrimination,
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let proposal = &self.family[best.proposal];
         let channels = &self.context.problem.dataset.channels;
-        let separates = |pair: &&PairSeparation| pair.least() >= thresholds::SEPARATES;
+        let separates = |pair: &&PairSeparation| {
+            pair.smaller_separation() >= thresholds::MIN_SEPARATION_IN_NOISE
+        };
         let is_enough = best.pairs.iter().any(|pair| separates(&pair));
         let counted = best
             .pairs
             .iter()
             .filter(|pair| !is_enough || separates(pair));
-        let least = counted.min_by(|a, b| a.least().total_cmp(&b.least()));
+        let least =
+            counted.min_by(|a, b| a.smaller_separation().total_cmp(&b.smaller_separation()));
         let file = least.filter(|_| is_enough).map(|least| {
             self.written(
                 proposal,
-                least.members.map(|member| at[member].words()),
+                least.members.map(|member| at[member].label()),
                 [
-                    best.predicted[least.members[0]].clone(),
-                    least.separations[0].seen.clone(),
+                    best.predictions[least.members[0]].clone(),
+                    least.separations[0].sensor_outputs.clone(),
                 ],
                 files,
             )
@@ -177,10 +187,10 @@ impl Plan<'_> {
         let pair = |pair: &PairSeparation| {
             let [a, b] = pair.members.map(|member| at[member].clone());
             let [of_b, of_a] = &pair.separations;
-            let told = |truth: &MemberAt, rival: &MemberAt, of: &Separation| Pair {
+            let told = |truth: &ClassMember, rival: &ClassMember, of: &Separation| MemberPair {
                 truth: truth.clone(),
                 rival: rival.clone(),
-                separation: of.size,
+                separation: of.rms_in_noise,
                 channel: channels[of.channel].name.clone(),
             };
             [told(&a, &b, of_b), told(&b, &a, of_a)]
@@ -188,13 +198,13 @@ impl Plan<'_> {
         NextExperiment {
             file,
             input: Some(proposal.name.clone()),
-            form: Some(proposal.form.clone()),
-            separation: least.map(PairSeparation::least),
+            waveform: Some(proposal.description.clone()),
+            separation: least.map(PairSeparation::smaller_separation),
             pairs: best.pairs.iter().flat_map(pair).collect(),
-            left_out,
-            shows: None,
+            failed_members: left_out,
+            detectable: None,
             reason: None,
-            bounds: self.bounds.words.clone(),
+            bounds_source: self.bounds.sources.clone(),
         }
     }
 
@@ -206,7 +216,7 @@ impl Plan<'_> {
         predicted: [Vec<Vec<f64>>; 2],
         files: &mut Vec<ExperimentFile>,
     ) -> usize {
-        let text = played::text(
+        let text = experiment_csv::write_experiment_csv(
             (&self.bounds, &self.times),
             proposal,
             &self.inputs,
@@ -216,37 +226,37 @@ impl Plan<'_> {
             return known;
         }
         files.push(ExperimentFile {
-            name: ExperimentFile::numbered(files.len()),
+            name: ExperimentFile::numbered_name(files.len()),
             text,
             input: proposal.name.clone(),
-            unit: self.units[proposal.place].clone(),
+            unit: self.units[proposal.input_index].clone(),
             times: self.times.clone(),
             values: proposal.values.clone(),
             members,
-            predicted,
+            predictions: predicted,
         });
         files.len() - 1
     }
 
     /// What would show the effects that the records could not have shown, each at each place once.
-    fn of_not_testable(&self, found: &Found, experiments: &mut Experiments) {
+    fn of_not_testable(&self, found: &SearchResult, experiments: &mut Experiments) {
         let problem = self.context.problem;
-        experiments.of_rejected = vec![None; found.rejected.len()];
+        experiments.for_rejected = vec![None; found.rejected.len()];
         let mut wanted: Vec<usize> = Vec::new();
         for (place, rejected) in found.rejected.iter().enumerate() {
             let is_known = |other: &usize| {
                 found.rejected[*other]
                     .candidate
-                    .is_same_as(&rejected.candidate)
+                    .is_same_effect_as(&rejected.candidate)
             };
-            if rejected.not_testable && !wanted.iter().any(is_known) {
+            if rejected.is_untestable && !wanted.iter().any(is_known) {
                 wanted.push(place);
             }
         }
-        wanted.truncate(thresholds::MOST_SHOWN);
+        wanted.truncate(thresholds::MAX_DETECTION_SEARCHES);
         if let Some(none) = self.none() {
             for place in &wanted {
-                experiments.of_rejected[*place] = Some(none.clone());
+                experiments.for_rejected[*place] = Some(none.clone());
             }
             return;
         }
@@ -257,47 +267,48 @@ impl Plan<'_> {
             "searching for experiments that show {} effects the records cannot show",
             wanted.len()
         ));
-        let without = Rival::declared(found.best());
-        let family = self.largest(found.best());
+        let without = Rival::with_priors(found.best_fit());
+        let family = self.largest(found.best_fit());
         let sought = wanted.par_iter().map(|place| {
             let candidate = &found.rejected[*place].candidate;
-            let hidden = Hidden::of(problem, &without, candidate)?;
-            let best = hidden.best((&self.bounds, &self.times), &family);
+            let hidden = HiddenEffect::with_candidate(problem, &without, candidate)?;
+            let best = hidden.find_best_experiment((&self.bounds, &self.times), &family);
             Ok((hidden, best))
         });
-        let sought: Vec<Result<(Hidden<'_>, Option<Detection>), DiscoverError>> = sought.collect();
+        let sought: Vec<Result<(HiddenEffect<'_>, Option<Detection>), DiscoverError>> =
+            sought.collect();
         for (place, sought) in wanted.into_iter().zip(sought) {
             let candidate = &found.rejected[place].candidate;
             let next = match sought {
                 Ok((hidden, best)) => self.shown(&hidden, candidate, best, &mut experiments.files),
-                Err(error) => NextExperiment::none(&error.to_string(), &self.bounds),
+                Err(error) => NextExperiment::without_experiment(&error.to_string(), &self.bounds),
             };
-            experiments.of_rejected[place] = Some(next);
+            experiments.for_rejected[place] = Some(next);
         }
     }
 
     /// Of each form on each input the largest with which a fit stays within its limits.
-    fn largest(&self, fit: &Fit) -> Vec<Played<'_>> {
+    fn largest(&self, fit: &Fit) -> Vec<PredictedExperiment<'_>> {
         let numbered: Vec<(usize, &Proposal)> = self.family.iter().enumerate().collect();
         let is_same = |one: &(usize, &Proposal), other: &(usize, &Proposal)| {
-            one.1.place == other.1.place && one.1.waveform == other.1.waveform
+            one.1.input_index == other.1.input_index && one.1.waveform == other.1.waveform
         };
         let forms: Vec<&[(usize, &Proposal)]> = numbered.chunk_by(is_same).collect();
         let largest = |sizes: &&[(usize, &'_ Proposal)]| {
-            let mut predictor = Predictor::of(self.context.problem, fit)?;
+            let mut predictor = Predictor::from_fit(self.context.problem, fit)?;
             let mut sizes = sizes.iter();
             sizes.find_map(|(place, proposal)| {
-                let without = predictor.predicted(&self.bounds, &self.times, proposal);
+                let without = predictor.predict(&self.bounds, &self.times, proposal);
                 Some((*place, without.ok()?))
             })
         };
         let found: Vec<Option<(usize, Prediction)>> = forms.par_iter().map(largest).collect();
         let admitted = found.into_iter().flatten();
         admitted
-            .map(|(place, without)| Played {
-                place,
+            .map(|(place, without)| PredictedExperiment {
+                index: place,
                 proposal: &self.family[place],
-                without,
+                prediction: without,
             })
             .collect()
     }
@@ -305,60 +316,66 @@ impl Plan<'_> {
     /// What shows an effect best.
     fn shown(
         &self,
-        hidden: &Hidden<'_>,
+        hidden: &HiddenEffect<'_>,
         candidate: &Candidate,
         best: Option<Detection>,
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let Some(best) = best else {
             let reason = "no tested input within the bounds shows it";
-            return NextExperiment::none(reason, &self.bounds);
+            return NextExperiment::without_experiment(reason, &self.bounds);
         };
         let proposal = &self.family[best.proposal];
-        let is_enough = best.separation.size >= thresholds::SHOWS;
+        let is_enough = best.separation.rms_in_noise >= thresholds::MIN_LINEAR_SEPARATION;
         let file = is_enough.then(|| {
-            let label = MemberAt::of(candidate).words();
+            let label = ClassMember::from_candidate(candidate).label();
             self.written(
                 proposal,
                 [format!("with {label}"), "without it".to_owned()],
-                [best.predicted.clone(), best.separation.seen.clone()],
+                [
+                    best.predictions.clone(),
+                    best.separation.sensor_outputs.clone(),
+                ],
                 files,
             )
         });
         NextExperiment {
             file,
             input: Some(proposal.name.clone()),
-            form: Some(proposal.form.clone()),
-            separation: Some(best.separation.size),
+            waveform: Some(proposal.description.clone()),
+            separation: Some(best.separation.rms_in_noise),
             pairs: Vec::new(),
-            left_out: Vec::new(),
-            shows: is_enough
-                .then(|| self.smallest(candidate, hidden.stated(best.size)))
+            failed_members: Vec::new(),
+            detectable: is_enough
+                .then(|| self.smallest(candidate, hidden.value_at_size(best.size)))
                 .flatten(),
             reason: None,
-            bounds: self.bounds.words.clone(),
+            bounds_source: self.bounds.sources.clone(),
         }
     }
 
     /// What scales an effect and the value from which on it is shown, in its unit.
-    fn smallest(&self, candidate: &Candidate, value: f64) -> Option<Shown> {
+    fn smallest(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
         let shown = |what: &str, from: f64, unit: &str| {
-            Some(Shown {
-                what: what.to_owned(),
-                from,
+            Some(DetectableSize {
+                parameter: what.to_owned(),
+                smallest: from,
                 unit: unit.to_owned(),
             })
         };
         let channels = &self.context.problem.dataset.channels;
         match &candidate.dropped_prior {
             None => {
-                let scaling = candidate.parameters.iter().find(|of| of.shape.is_none())?;
-                shown(&scaling.name, scaling.per_si() * value, &scaling.unit)
+                let scaling = candidate
+                    .parameters
+                    .iter()
+                    .find(|of| of.shape_size.is_none())?;
+                shown(&scaling.name, scaling.units_per_si() * value, &scaling.unit)
             }
-            Some(What::Gain(_)) => shown("gain", value, "1"),
-            Some(What::Bias(channel)) => shown("bias", value, &channels[*channel].unit),
-            Some(What::Delay(_) | What::InputDelay) => shown("delay", value, "s"),
-            Some(What::Parameter(name) | What::Inverse(name)) => {
+            Some(UnknownKind::Gain(_)) => shown("gain", value, "1"),
+            Some(UnknownKind::Bias(channel)) => shown("bias", value, &channels[*channel].unit),
+            Some(UnknownKind::Delay(_) | UnknownKind::InputDelay) => shown("delay", value, "s"),
+            Some(UnknownKind::Parameter(name) | UnknownKind::InverseParameter(name)) => {
                 let model = self.context.fit.model.specification();
                 let parameter = model.parameters.iter().find(|of| of.name == *name)?;
                 let unit = &parameter.unit;

@@ -8,8 +8,8 @@ use eomgen_sim::inputs::HeldInputs;
 
 use crate::experiment::bounds::Bounds;
 use crate::experiment::proposal::Proposal;
-use crate::fit::fitted::Fit;
-use crate::fit::shooting::{Sensors, Shooting};
+use crate::fit::fit_result::Fit;
+use crate::fit::shooting::{SensorValues, Shooting};
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::{Motion, Simulation};
@@ -26,11 +26,11 @@ pub struct Prediction {
 
 /// Reason why an experiment is not proposed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Excluded {
+pub enum Exclusion {
     /// The motion cannot be simulated.
-    Unfollowed,
+    SimulationFailed,
     /// This channel or coordinate would leave its limits.
-    Leaves(String),
+    LeavesLimits(String),
 }
 
 /// A model at fixed parameters for the simulation of experiments.
@@ -39,21 +39,21 @@ pub struct Predictor<'a> {
     /// The model, which is a fit's or has something more.
     model: &'a EstimationModel,
     shooting: Shooting<'a>,
-    sensors: Sensors,
+    sensors: SensorValues,
     simulation: Simulation<'a>,
     initial: Vec<f64>,
 }
 
 impl<'a> Predictor<'a> {
     /// Creates a predictor of the fitted model; `None` if it cannot be simulated at its parameters.
-    pub fn of(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
+    pub fn from_fit(problem: &'a EstimationProblem<'a>, fit: &'a Fit) -> Option<Self> {
         let theta = &fit.train.estimate.theta;
-        let values = fit.shooting(problem).values(theta);
-        Self::with(problem, (fit, theta), &fit.model, &values)
+        let values = fit.training_shooting(problem).parameter_values(theta);
+        Self::with_model(problem, (fit, theta), &fit.model, &values)
     }
 
     /// Creates a predictor of another model at these parameters, with the sensors of a fit.
-    pub fn with(
+    pub fn with_model(
         problem: &'a EstimationProblem<'a>,
         (fit, theta): (&'a Fit, &[f64]),
         model: &'a EstimationModel,
@@ -61,18 +61,18 @@ impl<'a> Predictor<'a> {
     ) -> Option<Self> {
         let initial = match problem.dataset.initial {
             // Where a record began says nothing of where a rig can begin anew.
-            Initial::Estimate => model.initial(),
+            Initial::Estimate => model.initial_state(),
             Initial::Rest | Initial::Given(_) => {
-                problem.first_state(model, &problem.dataset.train[0])
+                problem.estimate_first_state(model, &problem.dataset.train[0])
             }
         };
-        let shooting = fit.shooting(problem);
+        let shooting = fit.training_shooting(problem);
         Some(Self {
             problem,
             model,
-            sensors: shooting.sensors(theta),
+            sensors: shooting.sensor_values(theta),
             shooting,
-            simulation: model.simulation(values).ok()?,
+            simulation: model.create_simulation(values).ok()?,
             initial,
         })
     }
@@ -82,20 +82,22 @@ impl<'a> Predictor<'a> {
     /// # Errors
     ///
     /// The reason why the experiment is not proposed.
-    pub fn predicted(
+    pub fn predict(
         &mut self,
         bounds: &Bounds,
         times: &[f64],
         proposal: &Proposal,
-    ) -> Result<Prediction, Excluded> {
+    ) -> Result<Prediction, Exclusion> {
         let count = self.model.specification().inputs.len();
-        let inputs = proposal.inputs(bounds, times, count);
+        let inputs = proposal.build_inputs(bounds, times, count);
         let output_times = self.problem.output_rate.times(times);
-        (self.simulation).limit(thresholds::EXPERIMENT_STEPS * times.len());
-        let motion = (self.simulation).motion(&self.initial, &output_times.times, &inputs);
-        let Motion { states, outputs } = motion.map_err(|_| Excluded::Unfollowed)?;
+        (self.simulation).limit_steps(thresholds::MAX_EXPERIMENT_STEPS_PER_SAMPLE * times.len());
+        let motion = (self.simulation).simulate_motion(&self.initial, &output_times.times, &inputs);
+        let Motion { states, outputs } = motion.map_err(|_| Exclusion::SimulationFailed)?;
         self.check(bounds, &states, &outputs)?;
-        let seen = self.shooting.seen(&output_times, &self.sensors, &outputs);
+        let seen = self
+            .shooting
+            .apply_sensors(&output_times, &self.sensors, &outputs);
         Ok(Prediction {
             records: vec![recorded(times, inputs, &seen, bounds.channels.len())],
             states: output_times.at_samples(states),
@@ -103,21 +105,26 @@ impl<'a> Predictor<'a> {
     }
 
     /// Whether a motion stays within its limits.
-    fn check(&self, bounds: &Bounds, states: &[Vec<f64>], outputs: &[f64]) -> Result<(), Excluded> {
+    fn check(
+        &self,
+        bounds: &Bounds,
+        states: &[Vec<f64>],
+        outputs: &[f64],
+    ) -> Result<(), Exclusion> {
         let channels = &self.problem.dataset.channels;
         for row in outputs.chunks_exact(channels.len()) {
             for ((value, limits), channel) in row.iter().zip(&bounds.channels).zip(channels) {
                 if !value.is_finite() {
-                    return Err(Excluded::Unfollowed);
+                    return Err(Exclusion::SimulationFailed);
                 }
                 if !(limits.low..=limits.high).contains(value) {
-                    return Err(Excluded::Leaves(channel.name.clone()));
+                    return Err(Exclusion::LeavesLimits(channel.name.clone()));
                 }
             }
         }
-        match states.iter().all(|state| self.model.admits(state)) {
+        match states.iter().all(|state| self.model.is_admissible(state)) {
             true => Ok(()),
-            false => Err(Excluded::Leaves("a coordinate".to_owned())),
+            false => Err(Exclusion::LeavesLimits("a coordinate".to_owned())),
         }
     }
 }

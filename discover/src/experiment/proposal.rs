@@ -12,36 +12,44 @@ use crate::thresholds;
 #[derive(Clone, Debug)]
 pub struct Proposal {
     /// Index among the inputs of the model.
-    pub place: usize,
+    pub input_index: usize,
     /// Name of the input.
     pub name: String,
     /// Waveform.
     pub waveform: Waveform,
     /// Description of the waveform and amplitude.
-    pub form: String,
+    pub description: String,
     /// Value at each sample, SI.
     pub values: Vec<f64>,
 }
 
 impl Proposal {
     /// Returns all trial inputs at these times, s.
-    pub fn family(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
+    pub fn list_all(bounds: &Bounds, times: &[f64]) -> Vec<Self> {
         let mut family: Vec<Self> = Vec::new();
-        let played_at: Vec<f64> = times.iter().copied().step_by(bounds.hold).collect();
+        let played_at: Vec<f64> = times
+            .iter()
+            .copied()
+            .step_by(bounds.samples_per_value)
+            .collect();
         for input in &bounds.inputs {
-            for form in Waveform::family(input.band) {
-                let Some(shape) = form.sampled(&played_at, bounds.duration) else {
+            for form in Waveform::list_in_band(input.band) {
+                let Some(shape) = form.sample(&played_at, bounds.duration) else {
                     continue;
                 };
-                for size in thresholds::EXPERIMENT_SIZES {
+                for size in thresholds::EXPERIMENT_AMPLITUDES {
                     family.push(Self {
-                        place: input.place,
+                        input_index: input.index,
                         name: input.name.clone(),
                         waveform: form,
-                        form: format!("{}, {:.0} % of its range", form.words(), 100.0 * size),
+                        description: format!(
+                            "{}, {:.0} % of its range",
+                            form.describe(),
+                            100.0 * size
+                        ),
                         values: held(
                             &played(&shape, size, input, bounds),
-                            bounds.hold,
+                            bounds.samples_per_value,
                             times.len(),
                         ),
                     });
@@ -52,14 +60,14 @@ impl Proposal {
     }
 
     /// Returns the `count` inputs of the model, with this one played.
-    pub fn inputs(&self, bounds: &Bounds, times: &[f64], count: usize) -> HeldInputs {
+    pub fn build_inputs(&self, bounds: &Bounds, times: &[f64], count: usize) -> HeldInputs {
         let mut row = vec![0.0; count];
         for other in &bounds.inputs {
-            row[other.place] = rest(other.range);
+            row[other.index] = rest_value(other.range);
         }
         let rows = self.values.iter().flat_map(|value| {
             let mut row = row.clone();
-            row[self.place] = *value;
+            row[self.input_index] = *value;
             row
         });
         HeldInputs::new(times.to_vec(), rows.collect(), count)
@@ -68,17 +76,17 @@ impl Proposal {
 }
 
 /// Returns the rest value of an input: 0 or the nearest admissible value.
-pub fn rest(range: Interval) -> f64 {
+pub fn rest_value(range: Interval) -> f64 {
     range.clamp(0.0)
 }
 
 /// A form on an input, so much of its range to either side of rest and no faster than it may be.
 fn played(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec<f64> {
     let Interval { low, high } = input.range;
-    let rest = rest(input.range);
+    let rest = rest_value(input.range);
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let mut present = rest;
-    let most = input.rate * bounds.sample * bounds.hold as f64;
+    let most = input.rate * bounds.sample_time * bounds.samples_per_value as f64;
     let value = |form: &f64| {
         let wanted = match form.is_nan() {
             true => rest,
@@ -104,28 +112,28 @@ mod tests {
     fn bounds(low: f64, high: f64, rate: f64) -> Bounds {
         Bounds {
             duration: 10.0,
-            sample: 0.01,
-            hold: 1,
+            sample_time: 0.01,
+            samples_per_value: 1,
             inputs: vec![InputBounds {
-                place: 0,
+                index: 0,
                 name: "u".to_owned(),
                 range: Interval::new(low, high),
                 rate,
                 band: Interval::new(0.1, 5.0),
             }],
             channels: Vec::new(),
-            words: String::new(),
+            sources: String::new(),
         }
     }
 
     #[test]
     fn what_is_played_less_often_than_predicted_is_held() {
         let bounds = Bounds {
-            hold: 5,
+            samples_per_value: 5,
             ..bounds(-1.0, 1.0, 1e3)
         };
-        let times = bounds.times();
-        for proposal in Proposal::family(&bounds, &times) {
+        let times = bounds.sample_times();
+        for proposal in Proposal::list_all(&bounds, &times) {
             assert_eq!(proposal.values.len(), times.len());
             let mut held = proposal.values.chunks(5);
             assert!(held.all(|of| of.iter().all(|value| *value == of[0])));
@@ -136,16 +144,20 @@ mod tests {
     fn whatever_is_proposed_stays_within_its_range_and_its_rate() {
         for (low, high, rate) in [(-1.0, 2.0, 3.0), (0.0, 5.0, 1e3), (2.0, 4.0, 0.1)] {
             let bounds = bounds(low, high, rate);
-            let times = bounds.times();
-            let family = Proposal::family(&bounds, &times);
+            let times = bounds.sample_times();
+            let family = Proposal::list_all(&bounds, &times);
             assert!(family.len() > 80, "{}", family.len());
             for proposal in family {
                 assert_eq!(proposal.values.len(), times.len());
                 let within = |value: &f64| (low..=high).contains(value);
-                assert!(proposal.values.iter().all(within), "{}", proposal.form);
+                assert!(
+                    proposal.values.iter().all(within),
+                    "{}",
+                    proposal.description
+                );
                 let mut steps = proposal.values.windows(2);
                 let slow = |pair: &[f64]| (pair[1] - pair[0]).abs() <= rate * 0.01 * (1.0 + 1e-9);
-                assert!(steps.all(slow), "{}", proposal.form);
+                assert!(steps.all(slow), "{}", proposal.description);
             }
         }
     }

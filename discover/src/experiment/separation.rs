@@ -8,17 +8,18 @@ use nalgebra::{DMatrix, DVector};
 use eomgen_records::windows::{Windows, judged};
 
 use crate::experiment::prediction::Prediction;
-use crate::fit::bounded_least_squares::least_squares;
-use crate::fit::fitted::Fit;
+use crate::fit::bounded_least_squares::solve_least_squares;
+use crate::fit::fit_result::Fit;
 use crate::fit::gauss_newton::{
-    Estimate, derivatives_at, evaluated, followed, moved_unknowns, reduced_blocks,
+    Estimate, apply_fraction, compute_derivatives, eliminate_initial_states, evaluate_cost,
+    follow_unknowns,
 };
-use crate::fit::information::information_of;
-use crate::fit::initial_states::known_as;
+use crate::fit::information::compute_fit_information;
+use crate::fit::initial_states::prior_from_states;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
-use crate::fit::variable_projection::{ReducedBlock, triangular_factor};
+use crate::fit::variable_projection::{ReducedBlock, compute_triangular_factor};
 use crate::interval::Interval;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
@@ -39,22 +40,22 @@ pub struct Rival<'f> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
     /// RMS residual of the channel that shows it best, in standard deviations of its noise.
-    pub size: f64,
+    pub rms_in_noise: f64,
     /// Index of that channel.
     pub channel: usize,
     /// Sensor outputs of the rival, one column per channel; NaN at samples that are not compared.
-    pub seen: Vec<Vec<f64>>,
+    pub sensor_outputs: Vec<Vec<f64>>,
 }
 
 impl<'f> Rival<'f> {
     /// Uses the information of the records of a fit.
-    pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
-        Self::with(fit, information_of(problem, fit))
+    pub fn with_records(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
+        Self::with(fit, compute_fit_information(problem, fit))
     }
 
     /// Uses only the declared priors of a fit. A large effect would have changed the information of
     /// the records.
-    pub fn declared(fit: &'f Fit) -> Self {
+    pub fn with_priors(fit: &'f Fit) -> Self {
         let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
         let weights = DVector::from_iterator(fit.unknowns.len(), weights);
@@ -76,7 +77,7 @@ impl<'f> Rival<'f> {
     /// Returns the RMS over all channels of the difference from the prediction of model `truth`
     /// before a fit. It is an upper bound of [`Rival::leaves_by_tangents`]. `None` if the motion
     /// cannot be simulated.
-    pub fn leaves_unfitted(
+    pub fn predict_unfitted_rms(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
@@ -89,7 +90,7 @@ impl<'f> Rival<'f> {
 
     /// Returns the RMS over all channels of the residual after a linearised fit to the prediction
     /// of model `truth`; `None` if the motion cannot be simulated.
-    pub fn leaves_by_tangents(
+    pub fn predict_linear_rms(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
@@ -115,14 +116,14 @@ impl<'f> Rival<'f> {
         let begin = self.begin(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
         let theta = self.theta().to_vec();
-        let present = evaluated(&shooting, &begin.prior, theta, begin.states.clone());
+        let present = evaluate_cost(&shooting, &begin.prior, theta, begin.states.clone());
         let left = of(&shooting, &begin, &present)? / windows.numbers().sqrt();
         left.is_finite().then_some(left)
     }
 
     /// Returns the residual after a fit to a prediction and to the rival's own records; `None` if
     /// the motion cannot be simulated.
-    pub fn separation(
+    pub fn compute_separation(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
@@ -132,12 +133,12 @@ impl<'f> Rival<'f> {
         let begin = self.begin(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
         let fitted = self.fitted(&shooting, &begin)?;
-        let residuals = Residuals::of(&shooting, fitted).whole();
+        let residuals = Residuals::compute(&shooting, fitted).or_infinite();
         let sizes = residuals.normalised_rms.iter().copied().enumerate();
         let (channel, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let channels = problem.noise.len();
         let mut seen = vec![vec![f64::NAN; prediction.states.len()]; channels];
-        for (window, residual) in windows.list.iter().zip(&residuals.residuals) {
+        for (window, residual) in windows.list.iter().zip(&residuals.window_residuals) {
             for sample in judged(window.times.len()) {
                 for (channel, noise) in problem.noise.iter().enumerate() {
                     let number = sample * channels + channel;
@@ -147,9 +148,9 @@ impl<'f> Rival<'f> {
             }
         }
         size.is_finite().then_some(Separation {
-            size,
+            rms_in_noise: size,
             channel,
-            seen,
+            sensor_outputs: seen,
         })
     }
 
@@ -178,7 +179,9 @@ impl<'f> Rival<'f> {
     ) -> Beginning {
         let model = &self.fit.model;
         let states: Vec<Vec<f64>> = (windows.list.iter())
-            .map(|window| model.admissible(model.mapped(truth, &prediction.states[window.first])))
+            .map(|window| {
+                model.clamp_state(model.map_state(truth, &prediction.states[window.first]))
+            })
             .collect();
         let count = prediction.states.len() as f64;
         let ranges = self.fit.ranges.iter().enumerate().map(|(state, range)| {
@@ -194,7 +197,7 @@ impl<'f> Rival<'f> {
         });
         let ranges: Vec<f64> = ranges.collect();
         Beginning {
-            prior: known_as(problem, &states, &ranges),
+            prior: prior_from_states(problem, &states, &ranges),
             states,
             ranges,
         }
@@ -206,27 +209,28 @@ impl<'f> Rival<'f> {
         let total = |estimate: &Estimate| {
             estimate.cost + (&self.information * self.change(estimate)).norm_squared()
         };
-        let mut present = evaluated(shooting, prior, self.theta().to_vec(), states.clone());
-        for _ in 0..thresholds::REFIT_STEPS {
+        let mut present = evaluate_cost(shooting, prior, self.theta().to_vec(), states.clone());
+        for _ in 0..thresholds::MAX_REFIT_STEPS {
             let blocks = blocks(shooting, prior, &present)?;
             let factor = self.factor(&blocks, &present);
             let count = self.unknowns.len();
             let bounds: Vec<Interval> = (self.unknowns.iter().zip(&present.theta))
-                .map(|(unknown, value)| unknown.bounds.relative_to(*value).with_zero())
+                .map(|(unknown, value)| unknown.bounds.shift_origin_to(*value).extend_to_zero())
                 .collect();
-            let change = least_squares(
+            let change = solve_least_squares(
                 &factor.columns(0, count).into_owned(),
                 &-factor.column(count).into_owned(),
                 &bounds,
             );
             let before = total(&present);
-            let next = thresholds::REFIT_PARTS.iter().find_map(|part| {
-                let theta = moved_unknowns(shooting, &present, &change, *part);
-                let next = followed(shooting, prior, &present, &blocks, theta);
+            let next = thresholds::REFIT_STEP_FRACTIONS.iter().find_map(|part| {
+                let theta = apply_fraction(shooting, &present, &change, *part);
+                let next = follow_unknowns(shooting, prior, &present, &blocks, theta);
                 (total(&next) < before).then_some(next)
             });
             let Some(next) = next else { break };
-            let is_converged = total(&next) > (1.0 - thresholds::LEAST_DECREASE) * before;
+            let is_converged =
+                total(&next) > (1.0 - thresholds::MIN_GAUSS_NEWTON_DECREASE) * before;
             present = next;
             if is_converged {
                 break;
@@ -249,10 +253,10 @@ impl<'f> Rival<'f> {
             .copy_from(&self.information);
         rows.set_column(count, &(&self.information * self.change(present)));
         let empty = DMatrix::zeros(count + 1, count + 1);
-        let factor = triangular_factor(&empty, &rows);
+        let factor = compute_triangular_factor(&empty, &rows);
         let windows = blocks.iter().flatten();
         windows.fold(factor, |factor, block| {
-            triangular_factor(&factor, &block.unknowns())
+            compute_triangular_factor(&factor, &block.reduced_columns())
         })
     }
 }
@@ -271,7 +275,7 @@ fn blocks(
     prior: &InitialStatePrior,
     present: &Estimate,
 ) -> Option<Vec<Option<ReducedBlock>>> {
-    let linear = derivatives_at(shooting, present);
-    let blocks = reduced_blocks(prior, present, &linear);
+    let linear = compute_derivatives(shooting, present);
+    let blocks = eliminate_initial_states(prior, present, &linear);
     blocks.iter().all(Option::is_some).then_some(blocks)
 }

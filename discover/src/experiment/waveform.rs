@@ -22,7 +22,7 @@ pub enum Waveform {
     Square(u32),
     /// Steps of relative durations 1, 2 and 1 with alternating signs, with this number of periods.
     /// A mass returns to its start.
-    Shuttle(u32),
+    DoubleReversal(u32),
     /// Linear motion to one end, to the other and back to rest, with this number of periods.
     Triangle(u32),
     /// Constant value at one end.
@@ -35,7 +35,7 @@ pub enum Waveform {
         /// Whether the upper end is used.
         is_upper: bool,
         /// Fraction of the duration.
-        part: f64,
+        fraction: f64,
     },
     /// Five levels up to the upper end, then five down to the lower end.
     Staircase,
@@ -43,7 +43,7 @@ pub enum Waveform {
 
 impl Waveform {
     /// Returns all trial waveforms in a band, Hz.
-    pub fn family(band: Interval) -> Vec<Self> {
+    pub fn list_in_band(band: Interval) -> Vec<Self> {
         let middle = (band.low * band.high).sqrt();
         let mut family = vec![
             Self::Multisine(band),
@@ -52,18 +52,21 @@ impl Waveform {
             Self::Staircase,
         ];
         family.extend([1, 2, 4, 8].map(Self::Square));
-        family.extend([1, 2, 4].map(Self::Shuttle));
+        family.extend([1, 2, 4].map(Self::DoubleReversal));
         family.extend([1, 2, 4, 8].map(Self::Triangle));
         for is_upper in [true, false] {
             family.push(Self::Constant { is_upper });
-            family.extend([0.25, 0.5].map(|part| Self::Release { is_upper, part }));
+            family.extend([0.25, 0.5].map(|part| Self::Release {
+                is_upper,
+                fraction: part,
+            }));
         }
         family
     }
 
     /// Returns the values at times from 0 to `duration`, s; `None` if the waveform is too slow for
     /// the duration.
-    pub fn sampled(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
+    pub fn sample(&self, times: &[f64], duration: f64) -> Option<Vec<f64>> {
         let at = |of: &dyn Fn(f64) -> f64| times.iter().map(|t| of(t / duration)).collect();
         Some(match *self {
             Self::Multisine(band) => multisine(band, times, duration)?,
@@ -82,7 +85,7 @@ impl Waveform {
                 true => 1.0,
                 false => -1.0,
             }),
-            Self::Shuttle(times) => at(&|part| match phase(part, times) {
+            Self::DoubleReversal(times) => at(&|part| match phase(part, times) {
                 phase if (0.25..0.75).contains(&phase) => -1.0,
                 _ => 1.0,
             }),
@@ -92,7 +95,10 @@ impl Waveform {
                 phase => 4.0 * phase - 4.0,
             }),
             Self::Constant { is_upper } => at(&|_| end(is_upper)),
-            Self::Release { is_upper, part } => at(&|now| match now < part {
+            Self::Release {
+                is_upper,
+                fraction: part,
+            } => at(&|now| match now < part {
                 true => end(is_upper),
                 false => f64::NAN,
             }),
@@ -104,7 +110,7 @@ impl Waveform {
     }
 
     /// Returns a description of the waveform.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let times = |count: u32| match count {
             1 => "once".to_owned(),
             2 => "twice".to_owned(),
@@ -118,7 +124,7 @@ impl Waveform {
             Self::Square(count) => {
                 format!("steps between both ends, {}", times(count))
             }
-            Self::Shuttle(count) => {
+            Self::DoubleReversal(count) => {
                 format!(
                     "steps of relative durations 1, 2 and 1 with alternating sign, {}",
                     times(count)
@@ -128,7 +134,10 @@ impl Waveform {
                 format!("a triangle between both ends, {}", times(count))
             }
             Self::Constant { is_upper } => format!("a constant at the {} end", end(is_upper)),
-            Self::Release { is_upper, part } => format!(
+            Self::Release {
+                is_upper,
+                fraction: part,
+            } => format!(
                 "a constant at the {} end for {:.0} % of the time, then rest",
                 end(is_upper),
                 100.0 * part

@@ -6,24 +6,24 @@ use eomgen_sim::exponential::Drives;
 use crate::model::simulation::NeighbourDrives;
 
 /// Equations of a model with one changed parameter.
-pub(crate) struct MovedEvaluator<'c> {
+pub(crate) struct PerturbedEvaluator<'c> {
     /// Evaluator of the equations.
     pub evaluator: &'c mut Evaluator,
     /// Change of the parameter, SI.
-    pub size: f64,
+    pub change: f64,
 }
 
 /// Differences between the accelerations of a model and of others, per unit of change, as drives of
 /// tangent vectors.
 pub(crate) struct AccelerationDifferences<'c> {
     base: &'c mut Evaluator,
-    moved: Vec<MovedEvaluator<'c>>,
+    moved: Vec<PerturbedEvaluator<'c>>,
     rates: [Vec<f64>; 2],
 }
 
 impl<'c> AccelerationDifferences<'c> {
     /// Combines the evaluators of the model and of the changed models.
-    pub fn new(base: &'c mut Evaluator, moved: Vec<MovedEvaluator<'c>>) -> Self {
+    pub fn new(base: &'c mut Evaluator, moved: Vec<PerturbedEvaluator<'c>>) -> Self {
         let states = base.program().states();
         Self {
             base,
@@ -33,7 +33,7 @@ impl<'c> AccelerationDifferences<'c> {
     }
 
     /// Returns the differences as drives of tangent vectors.
-    pub fn drives(&mut self) -> NeighbourDrives<'_> {
+    pub fn as_drives(&mut self) -> NeighbourDrives<'_> {
         NeighbourDrives {
             count: self.moved.len(),
             drives: self,
@@ -53,7 +53,7 @@ impl Drives for AccelerationDifferences<'_> {
                 .iter_mut()
                 .zip(moved[first..].iter().zip(&base[first..]))
             {
-                *slot = (a - b) / of.size;
+                *slot = (a - b) / of.change;
             }
         }
     }

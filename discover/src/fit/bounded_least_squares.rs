@@ -13,7 +13,11 @@ const FLAT: f64 = 1e-10;
 
 /// Returns the x within `bounds`, which contain 0, that minimises |A x - b|. Unbounded directions
 /// without influence remain 0.
-pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[Interval]) -> DVector<f64> {
+pub fn solve_least_squares(
+    a: &DMatrix<f64>,
+    b: &DVector<f64>,
+    bounds: &[Interval],
+) -> DVector<f64> {
     let columns = a.ncols();
     let mut x = DVector::zeros(columns);
     let scale: Vec<f64> = a
@@ -110,13 +114,13 @@ fn free_solution(
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::{Interval, least_squares};
+    use super::{Interval, solve_least_squares};
 
     #[test]
     fn without_bounds_it_is_least_squares() {
         let a = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
         let b = DVector::from_vec(vec![1.0, 3.0, 5.0]);
-        let x = least_squares(
+        let x = solve_least_squares(
             &a,
             &b,
             &[Interval::new(-9.0, 9.0), Interval::new(-9.0, 9.0)],
@@ -128,7 +132,7 @@ mod tests {
     fn what_is_not_a_number_moves_nothing() {
         let a = DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 0.0, 1.0]);
         let b = DVector::from_vec(vec![1.0, f64::INFINITY]);
-        let x = least_squares(
+        let x = solve_least_squares(
             &a,
             &b,
             &[Interval::new(-9.0, 9.0), Interval::new(-9.0, 9.0)],
@@ -141,7 +145,7 @@ mod tests {
         // Minimise (x + y - 1)^2 + (x - y - 3)^2: free at (2, -1); with y >= 0 at (2, 0).
         let a = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, -1.0]);
         let b = DVector::from_vec(vec![1.0, 3.0]);
-        let x = least_squares(&a, &b, &[Interval::new(-9.0, 9.0), Interval::new(0.0, 9.0)]);
+        let x = solve_least_squares(&a, &b, &[Interval::new(-9.0, 9.0), Interval::new(0.0, 9.0)]);
         assert!((x - DVector::from_vec(vec![2.0, 0.0])).norm() < 1e-12);
     }
 
@@ -150,7 +154,7 @@ mod tests {
         // The steepest way from 0 first meets x <= 0.5; the minimum lies at (-1, 2).
         let a = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 0.0, 1.0]);
         let b = DVector::from_vec(vec![-1.0, 2.0]);
-        let x = least_squares(&a, &b, &[Interval::new(-5.0, 0.5), Interval::new(0.0, 5.0)]);
+        let x = solve_least_squares(&a, &b, &[Interval::new(-5.0, 0.5), Interval::new(0.0, 5.0)]);
         assert!((x - DVector::from_vec(vec![-1.0, 2.0])).norm() < 1e-12);
     }
 }

@@ -6,7 +6,8 @@ use crate::ids::UnknownId;
 use nalgebra::DVector;
 
 use crate::fit::gauss_newton::{
-    Estimate, change_of_unknowns, derivatives_at, evaluated, moved_unknowns, reduced_blocks,
+    Estimate, apply_fraction, compute_derivatives, eliminate_initial_states, evaluate_cost,
+    solve_step,
 };
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::WindowDerivatives;
@@ -15,11 +16,11 @@ use crate::thresholds;
 
 /// Function that estimates the initial states at given unknowns, from those at other unknowns if
 /// these are known. Returns the prior and the states.
-pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> InitialStates + 'f;
+pub type EstimateInitialStates<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> InitialStates + 'f;
 
 /// Result of a continuation.
 #[derive(Default)]
-pub struct Continued {
+pub struct ContinuationResult {
     /// Prior of the initial states of the windows.
     pub prior: InitialStatePrior,
     /// The estimate.
@@ -40,18 +41,18 @@ enum Derivatives {
 /// Windows and how they are followed.
 struct Continuation<'a> {
     shooting: &'a Shooting<'a>,
-    follow: &'a Follow<'a>,
+    follow: &'a EstimateInitialStates<'a>,
     /// By how much each unknown is changed for a secant.
     sizes: Vec<f64>,
 }
 
 /// Runs the continuation from the best of several guesses, for at most `steps` steps.
-pub fn continuation(
+pub fn run_continuation(
     shooting: &Shooting<'_>,
     guesses: &[Vec<f64>],
-    follow: &Follow<'_>,
+    follow: &EstimateInitialStates<'_>,
     steps: usize,
-) -> Continued {
+) -> ContinuationResult {
     let mut path = Continuation::new(shooting, follow);
     let guessed = guesses.iter().map(|theta| path.at(theta.clone(), None));
     let best = guessed.min_by(|a, b| a.estimate.cost.total_cmp(&b.estimate.cost));
@@ -61,45 +62,49 @@ pub fn continuation(
 }
 
 /// Continues with secants if tangents fail and the residual is far above the noise.
-pub fn continuation_by_secants(
+pub fn continue_by_secants(
     shooting: &Shooting<'_>,
-    present: &mut Continued,
-    follow: &Follow<'_>,
+    present: &mut ContinuationResult,
+    follow: &EstimateInitialStates<'_>,
 ) {
-    Continuation::new(shooting, follow).go(present, thresholds::SECANT_STEPS, Derivatives::Secants);
+    Continuation::new(shooting, follow).go(
+        present,
+        thresholds::MAX_SECANT_STEPS,
+        Derivatives::Secants,
+    );
 }
 
 /// Replaces the derivatives by unknowns without a prior with secants.
-pub fn secants(
+pub fn replace_by_secants(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
     mut tangents: Vec<Option<WindowDerivatives>>,
-    follow: &Follow<'_>,
+    follow: &EstimateInitialStates<'_>,
 ) -> Vec<Option<WindowDerivatives>> {
     Continuation::new(shooting, follow).take_secants(estimate, &mut tangents);
     tangents
 }
 
 impl<'a> Continuation<'a> {
-    fn new(shooting: &'a Shooting<'a>, follow: &'a Follow<'a>) -> Self {
+    fn new(shooting: &'a Shooting<'a>, follow: &'a EstimateInitialStates<'a>) -> Self {
         let sizes = shooting.unknowns.iter();
         Self {
             shooting,
             follow,
             sizes: sizes
-                .map(|unknown| thresholds::FIRST_SECANT * unknown.scale)
+                .map(|unknown| thresholds::FIRST_SECANT_IN_SCALES * unknown.scale)
                 .collect(),
         }
     }
 
     /// The estimate at these unknowns.
-    fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> Continued {
+    fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> ContinuationResult {
         let InitialStates {
             prior,
             states: initial_states,
         } = (self.follow)(&theta, before);
-        let estimate = evaluated(self.shooting, &prior, theta, initial_states);
-        Continued {
+        let estimate = evaluate_cost(self.shooting, &prior, theta, initial_states);
+        ContinuationResult {
             prior,
             estimate,
             is_converged: false,
@@ -108,15 +113,15 @@ impl<'a> Continuation<'a> {
 
     /// The root mean square of the residuals, in standard deviations.
     fn residual_rms(&self, present: &Estimate) -> f64 {
-        let count = self.shooting.part * self.shooting.windows.numbers();
+        let count = self.shooting.fraction * self.shooting.windows.numbers();
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
     /// So many steps at most, while they are worth it.
-    fn go(&mut self, present: &mut Continued, steps: usize, derivatives: Derivatives) {
+    fn go(&mut self, present: &mut ContinuationResult, steps: usize, derivatives: Derivatives) {
         for _ in 0..steps {
             if derivatives == Derivatives::Secants
-                && self.residual_rms(&present.estimate) < thresholds::AT_FLOOR
+                && self.residual_rms(&present.estimate) < thresholds::MAX_FLOOR_RATIO_AT_FLOOR
             {
                 return;
             }
@@ -127,7 +132,7 @@ impl<'a> Continuation<'a> {
             };
             *present = next;
             present.is_converged =
-                before - present.estimate.cost < thresholds::CONTINUATION_DECREASE * before;
+                before - present.estimate.cost < thresholds::MIN_CONTINUATION_DECREASE * before;
             if present.is_converged {
                 return;
             }
@@ -135,18 +140,22 @@ impl<'a> Continuation<'a> {
     }
 
     /// The next estimate, if there is one that is better.
-    fn step(&mut self, present: &Continued, derivatives: Derivatives) -> Option<Continued> {
-        let Continued {
+    fn step(
+        &mut self,
+        present: &ContinuationResult,
+        derivatives: Derivatives,
+    ) -> Option<ContinuationResult> {
+        let ContinuationResult {
             prior, estimate, ..
         } = present;
-        let mut linear = derivatives_at(self.shooting, estimate);
+        let mut linear = compute_derivatives(self.shooting, estimate);
         if derivatives == Derivatives::Secants && !self.take_secants(estimate, &mut linear) {
             return None;
         }
-        let windows = reduced_blocks(prior, estimate, &linear);
-        let change = change_of_unknowns(self.shooting, estimate, &windows, 0.0);
-        thresholds::STEP_PARTS.iter().find_map(|part| {
-            let theta = moved_unknowns(self.shooting, estimate, &change, *part);
+        let windows = eliminate_initial_states(prior, estimate, &linear);
+        let change = solve_step(self.shooting, estimate, &windows, 0.0);
+        thresholds::STEP_FRACTIONS.iter().find_map(|part| {
+            let theta = apply_fraction(self.shooting, estimate, &change, *part);
             let next = self.at(theta, Some(&estimate.initial_states));
             (next.estimate.cost < estimate.cost).then_some(next)
         })
@@ -159,7 +168,7 @@ impl<'a> Continuation<'a> {
         linear: &mut [Option<WindowDerivatives>],
     ) -> bool {
         // If an exact fit leaves less than the noise, rounding would decide on the size.
-        let wanted = thresholds::SECANT_MOVES * self.residual_rms(estimate).max(1.0);
+        let wanted = thresholds::SECANT_OUTPUT_CHANGE * self.residual_rms(estimate).max(1.0);
         let mut taken = false;
         let all = self.shooting.unknowns;
         for (id, unknown) in UnknownId::first(all.len()).zip(all) {
@@ -169,7 +178,8 @@ impl<'a> Continuation<'a> {
             let mut secant = self.secant(estimate, linear, id);
             let moved = secant.moved();
             if moved > 0.0
-                && !(wanted / thresholds::SECANT_NEAR..wanted * thresholds::SECANT_NEAR)
+                && !(wanted / thresholds::SECANT_CHANGE_TOLERANCE
+                    ..wanted * thresholds::SECANT_CHANGE_TOLERANCE)
                     .contains(&moved)
             {
                 self.sizes[id] = secant.size * wanted / moved;
@@ -196,11 +206,11 @@ impl<'a> Continuation<'a> {
         let (unknown, size) = (&self.shooting.unknowns[of], self.sizes[of]);
         let value = estimate.theta[of];
         let mut theta = estimate.theta.clone();
-        let ends = [value + size, value - size].map(|end| unknown.admissible(end));
+        let ends = [value + size, value - size].map(|end| unknown.clamp(end));
         theta[of] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
         let size = theta[of] - value;
         let initial_states = (self.follow)(&theta, Some(&estimate.initial_states)).states;
-        let residuals = self.shooting.residuals(&theta, &initial_states);
+        let residuals = self.shooting.compute_residuals(&theta, &initial_states);
         let changed = |(residual, linear): (Option<Residual>, &Option<WindowDerivatives>)| {
             let (residual, linear) = (residual?, linear.as_ref()?);
             let change = DVector::from_vec(residual.values) - &linear.residual;

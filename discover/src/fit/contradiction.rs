@@ -4,10 +4,12 @@
 use eomgen_model_spec::model::{Parameter, ParameterValue};
 use rayon::prelude::*;
 
-use crate::fit::alone::{Alone, alone, most_left, places};
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
+use crate::fit::single_record::{
+    SingleRecordFit, fit_record_separately, largest_record_rms, list_records,
+};
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::{Unknown, What, sign_bounds};
+use crate::model::unknowns::{Unknown, UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
 /// How many records are fitted side by side before it is asked whether more are needed.
@@ -18,18 +20,18 @@ const AT_ONCE: usize = 2;
 /// single fit is much better than the joint fit. A record that cannot be fitted on its own while
 /// others can is reported with the parameters that would explain it. `floor`: noise floor, in
 /// standard deviations.
-pub fn contradictions(
+pub fn describe_contradictions(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<String> {
     // What none leaves more of than each could alone is no contradiction.
-    if most_left(problem, fit) < thresholds::CONTRADICTS * floor {
+    if largest_record_rms(problem, fit) < thresholds::MIN_CONTRADICTION_RATIO * floor {
         return Vec::new();
     }
-    let places = places(problem.dataset);
-    let mut records: Vec<Alone> = Vec::with_capacity(places.len());
+    let places = list_records(problem.dataset);
+    let mut records: Vec<SingleRecordFit> = Vec::with_capacity(places.len());
     let mut tried = 0;
     // The first by itself: of two records it may settle it.
     let (first, others) = places.split_at(1.min(places.len()));
@@ -44,14 +46,14 @@ pub fn contradictions(
         ));
         let of_its_own = some
             .par_iter()
-            .map(|place| alone(problem, fit, *place, None));
-        let of_its_own: Vec<Option<Alone>> = of_its_own.collect();
+            .map(|place| fit_record_separately(problem, fit, *place, None));
+        let of_its_own: Vec<Option<SingleRecordFit>> = of_its_own.collect();
         records.extend(of_its_own.into_iter().flatten());
         tried += some.len();
     }
     let mut sentences = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
-        if let What::Parameter(name) = &unknown.what
+        if let UnknownKind::Parameter(name) = &unknown.kind
             && let Some((a, b)) = furthest(&records, place)
         {
             sentences.push(said(fit, name, place, a, b));
@@ -64,7 +66,7 @@ pub fn contradictions(
 }
 
 /// Whether records could still contradict each other, whatever so many more came to alone.
-fn may_contradict(records: &[Alone], more: usize, floor: f64) -> bool {
+fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool {
     let of_its_own = records.iter().filter(|record| is_better_alone(record));
     if of_its_own.count() + more > 1 {
         return true;
@@ -77,8 +79,8 @@ fn may_contradict(records: &[Alone], more: usize, floor: f64) -> bool {
 }
 
 /// Whether a record is explained much better alone than with the others.
-fn is_better_alone(record: &Alone) -> bool {
-    record.rms.is_finite() && record.rms * thresholds::CONTRADICTS < record.together
+fn is_better_alone(record: &SingleRecordFit) -> bool {
+    record.rms.is_finite() && record.rms * thresholds::MIN_CONTRADICTION_RATIO < record.joint_rms
 }
 
 /// Which of some records the others do not go with, by what each leaves alone.
@@ -101,8 +103,8 @@ impl Oddness {
             let places = 0..alone.len();
             places.filter(|place| is(alone[*place])).collect()
         };
-        let explained: Vec<usize> = such(&|rms| rms < thresholds::CLOSE * usual);
-        let odd: Vec<usize> = such(&|rms| rms > thresholds::MUCH_IS_LEFT * usual);
+        let explained: Vec<usize> = such(&|rms| rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * usual);
+        let odd: Vec<usize> = such(&|rms| rms > thresholds::FAR_FROM_NOISE * usual);
         // What is missing may show in a few records only; that most show it contradicts nothing.
         match odd.len() < explained.len() {
             true => Self { odd, explained },
@@ -115,7 +117,12 @@ impl Oddness {
 }
 
 /// Records that leave much alone where most others leave little.
-fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) -> Vec<String> {
+fn odd(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    alone: &[SingleRecordFit],
+    floor: f64,
+) -> Vec<String> {
     let left: Vec<f64> = alone.iter().map(|record| record.rms).collect();
     let Oddness { odd, explained } = Oddness::of(&left, floor);
     let names: Vec<&str> = (explained.iter())
@@ -148,12 +155,12 @@ fn odd(problem: &EstimationProblem<'_>, fit: &Fit, alone: &[Alone], floor: f64) 
 fn explaining(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    record: &Alone,
+    record: &SingleRecordFit,
     floor: f64,
 ) -> Vec<String> {
     let is_known = |parameter: &Parameter| {
         let mut unknowns = fit.unknowns.iter();
-        unknowns.any(|known| known.what == What::Parameter(parameter.name.clone()))
+        unknowns.any(|known| known.kind == UnknownKind::Parameter(parameter.name.clone()))
     };
     let parameters = fit.model.specification().parameters.iter();
     let found = parameters
@@ -162,24 +169,24 @@ fn explaining(
             let ParameterValue::Number(value) = parameter.value else {
                 return None;
             };
-            let bounds = sign_bounds(parameter, value);
+            let bounds = bounds_with_sign(parameter, value);
             let unknown = Unknown {
-                what: What::Parameter(parameter.name.clone()),
+                kind: UnknownKind::Parameter(parameter.name.clone()),
                 label: format!("`{}`", parameter.name),
                 start: value,
                 prior: None,
                 bounds,
-                limits: bounds,
+                bounds_without_prior: bounds,
                 scale: value.abs(),
             };
-            let with =
-                (value != 0.0).then(|| alone(problem, fit, record.record, Some(&unknown)))??;
+            let with = (value != 0.0)
+                .then(|| fit_record_separately(problem, fit, record.record, Some(&unknown)))??;
             let estimate = *with.estimates.last()?;
-            (with.rms < thresholds::CLOSE * floor).then(|| {
+            (with.rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * floor).then(|| {
                 format!(
                     "`{}` = {}",
                     parameter.name,
-                    stated(Some(parameter), estimate)
+                    format_estimate(Some(parameter), estimate)
                 )
             })
         });
@@ -188,29 +195,33 @@ fn explaining(
 
 /// The two records that differ most in an unknown, if that is more than uncertainty makes of it and
 /// each is explained by its own value.
-fn furthest(alone: &[Alone], place: usize) -> Option<(&Alone, &Alone)> {
-    let explained: Vec<&Alone> = alone
+fn furthest(
+    alone: &[SingleRecordFit],
+    place: usize,
+) -> Option<(&SingleRecordFit, &SingleRecordFit)> {
+    let explained: Vec<&SingleRecordFit> = alone
         .iter()
         .filter(|record| is_better_alone(record))
         .collect();
-    let apart = |a: &Alone, b: &Alone| {
+    let apart = |a: &SingleRecordFit, b: &SingleRecordFit| {
         let ((x, sx), (y, sy)) = (a.estimates[place], b.estimates[place]);
-        let is_large = (x - y).abs() > thresholds::CONTRADICTING_PART * x.abs().max(y.abs());
+        let is_large =
+            (x - y).abs() > thresholds::MIN_CONTRADICTION_DIFFERENCE * x.abs().max(y.abs());
         ((x - y).abs() / f64::hypot(sx, sy), is_large)
     };
     let pairs = explained.iter().enumerate();
     let pairs = pairs.flat_map(|(n, a)| explained[n + 1..].iter().map(move |b| (*a, *b)));
     let pairs = pairs.filter(|(a, b)| {
         let (deviations, is_large) = apart(a, b);
-        is_large && deviations > thresholds::SIGNIFICANCE
+        is_large && deviations > thresholds::MIN_SIGNIFICANCE
     });
     pairs.max_by(|(a, b), (c, d)| apart(a, b).0.total_cmp(&apart(c, d).0))
 }
 
-fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
+fn said(fit: &Fit, name: &str, place: usize, a: &SingleRecordFit, b: &SingleRecordFit) -> String {
     let mut parameters = fit.model.specification().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == name);
-    let value = |record: &Alone| stated(parameter, record.estimates[place]);
+    let value = |record: &SingleRecordFit| format_estimate(parameter, record.estimates[place]);
     format!(
         "{} and {} contradict each other: separate fits give `{name}` as {} and {} with residuals of {:.1} and \
          {:.1} standard deviations, and the joint fit has {:.1} and {:.1}. Check if they were measured on one \
@@ -221,13 +232,13 @@ fn said(fit: &Fit, name: &str, place: usize, a: &Alone, b: &Alone) -> String {
         value(b),
         a.rms,
         b.rms,
-        a.together,
-        b.together
+        a.joint_rms,
+        b.joint_rms
     )
 }
 
 /// Returns an estimate and its standard deviation, given in SI, in the unit of a parameter.
-pub(crate) fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
+pub(crate) fn format_estimate(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
     match parameter {
         Some(p) => format!(
             "{:.3e} +- {:.1e} {}",
@@ -242,20 +253,20 @@ pub(crate) fn stated(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::alone::Place;
+    use crate::fit::single_record::RecordIndex;
 
-    fn record((rms, together): (f64, f64)) -> Alone {
-        Alone {
+    fn record((rms, together): (f64, f64)) -> SingleRecordFit {
+        SingleRecordFit {
             name: String::new(),
-            record: Place::Train(0),
-            together,
+            record: RecordIndex::Train(0),
+            joint_rms: together,
             rms,
             estimates: Vec::new(),
         }
     }
 
     /// Whether what was found of all records is a contradiction, but for their values.
-    fn contradicts(records: &[Alone]) -> bool {
+    fn contradicts(records: &[SingleRecordFit]) -> bool {
         let own = records.iter().filter(|of| is_better_alone(of)).count();
         let left: Vec<f64> = records.iter().map(|of| of.rms).collect();
         own > 1 || !Oddness::of(&left, 1.0).odd.is_empty()
@@ -299,11 +310,16 @@ mod tests {
         for known in 0..4 {
             for begin in all(known) {
                 for more in 0..3 {
-                    let records: Vec<Alone> = begin.iter().copied().map(record).collect();
+                    let records: Vec<SingleRecordFit> = begin.iter().copied().map(record).collect();
                     let mut ends = all(more);
                     let is_possible = ends.any(|end| {
                         let whole = [&begin[..], &end].concat();
-                        contradicts(&whole.into_iter().map(record).collect::<Vec<Alone>>())
+                        contradicts(
+                            &whole
+                                .into_iter()
+                                .map(record)
+                                .collect::<Vec<SingleRecordFit>>(),
+                        )
                     });
                     let may = may_contradict(&records, more, 1.0);
                     assert!(may || !is_possible, "{begin:?}, {more} more");

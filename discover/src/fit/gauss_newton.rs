@@ -9,11 +9,13 @@ use crate::interval::Interval;
 use crate::model::unknowns::NormalPrior;
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::bounded_least_squares::least_squares;
+use crate::fit::bounded_least_squares::solve_least_squares;
 use crate::fit::prior::InitialStatePrior;
-use crate::fit::sensitivity::{SensitivityEvaluator, WindowDerivatives, linearised};
+use crate::fit::sensitivity::{SensitivityEvaluator, WindowDerivatives, linearise_windows};
 use crate::fit::shooting::{Residual, Shooting};
-use crate::fit::variable_projection::{ReducedBlock, reduced_block, triangular_factor};
+use crate::fit::variable_projection::{
+    ReducedBlock, compute_triangular_factor, eliminate_initial_state,
+};
 use crate::thresholds;
 
 /// An estimate.
@@ -31,21 +33,21 @@ pub struct Estimate {
 }
 
 /// Estimates unknowns and initial states from start values.
-pub fn damped_gauss_newton(
+pub fn run_damped_gauss_newton(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     theta: &[f64],
     initial_states: &[Vec<f64>],
     steps: usize,
 ) -> Estimate {
-    let mut present = evaluated(shooting, prior, theta.to_vec(), initial_states.to_vec());
+    let mut present = evaluate_cost(shooting, prior, theta.to_vec(), initial_states.to_vec());
     for _ in 0..steps {
-        let linear = derivatives_at(shooting, &present);
+        let linear = compute_derivatives(shooting, &present);
         let Some(next) = step(shooting, prior, &present, &linear) else {
             break;
         };
         let decrease = present.cost - next.cost;
-        let converged = decrease < thresholds::LEAST_DECREASE * present.cost;
+        let converged = decrease < thresholds::MIN_GAUSS_NEWTON_DECREASE * present.cost;
         present = next;
         if converged {
             break;
@@ -55,39 +57,46 @@ pub fn damped_gauss_newton(
 }
 
 /// Returns the size of the residuals, in standard deviations, at least one.
-pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
+pub fn residual_level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let finite = estimate.squares.iter().filter(|s| s.is_finite());
     let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
     let samples: usize = shooting.windows.list.iter().map(|w| w.times.len()).sum();
     let per_window = samples as f64 / shooting.windows.list.len().max(1) as f64;
-    let numbers = per_window * shooting.channels() as f64 * f64::from(count.max(1));
+    let numbers = per_window * shooting.channel_count() as f64 * f64::from(count.max(1));
     (sum / numbers).sqrt().max(1.0)
 }
 
 /// Computes the residuals and derivatives of all windows at an estimate. Difference quotients are
 /// taken over the size of its residuals.
-pub(crate) fn derivatives_at(
+pub(crate) fn compute_derivatives(
     shooting: &Shooting<'_>,
     at: &Estimate,
 ) -> Vec<Option<WindowDerivatives>> {
-    linearised(shooting, &at.theta, &at.initial_states, level(shooting, at))
+    linearise_windows(
+        shooting,
+        &at.theta,
+        &at.initial_states,
+        residual_level(shooting, at),
+    )
 }
 
 /// Evaluates the cost at these unknowns and initial states.
-pub fn evaluated(
+pub fn evaluate_cost(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     theta: Vec<f64>,
     initial_states: Vec<Vec<f64>>,
 ) -> Estimate {
-    let residuals = shooting.residuals(&theta, &initial_states);
-    let squares: Vec<f64> = residuals.iter().map(square).collect();
+    let residuals = shooting.compute_residuals(&theta, &initial_states);
+    let squares: Vec<f64> = residuals.iter().map(sum_of_squares).collect();
     totalled(shooting, prior, theta, initial_states, squares)
 }
 
 /// Returns the sum of squares of a window; infinite if the simulation failed.
-pub(crate) fn square(residual: &Option<Residual>) -> f64 {
-    residual.as_ref().map_or(f64::INFINITY, Residual::square)
+pub(crate) fn sum_of_squares(residual: &Option<Residual>) -> f64 {
+    residual
+        .as_ref()
+        .map_or(f64::INFINITY, Residual::sum_of_squares)
 }
 
 /// What the unknowns' priors add to the cost.
@@ -113,7 +122,7 @@ fn totalled(
     let windows = WindowId::first(initial_states.len());
     let of_initial_states = windows
         .zip(&initial_states)
-        .map(|(window, state)| prior.cost(window, state));
+        .map(|(window, state)| prior.compute_cost(window, state));
     let cost = squares.iter().sum::<f64>()
         + of_initial_states.sum::<f64>()
         + prior_of_unknowns(shooting, &theta);
@@ -126,7 +135,7 @@ fn totalled(
 }
 
 /// Returns the unknowns after a fraction of a change, within the bounds.
-pub(crate) fn moved_unknowns(
+pub(crate) fn apply_fraction(
     shooting: &Shooting<'_>,
     present: &Estimate,
     change: &DVector<f64>,
@@ -138,12 +147,12 @@ pub(crate) fn moved_unknowns(
         .zip(change.iter())
         .zip(shooting.unknowns);
     pairs
-        .map(|((value, change), unknown)| unknown.admissible(value + part * change))
+        .map(|((value, change), unknown)| unknown.clamp(value + part * change))
         .collect()
 }
 
 /// Eliminates the initial states from the derivatives of the windows.
-pub(crate) fn reduced_blocks(
+pub(crate) fn eliminate_initial_states(
     prior: &InitialStatePrior,
     present: &Estimate,
     linear: &[Option<WindowDerivatives>],
@@ -151,7 +160,7 @@ pub(crate) fn reduced_blocks(
     let windows = WindowId::first(linear.len()).zip(linear);
     windows
         .map(|(window, linear)| {
-            Some(reduced_block(
+            Some(eliminate_initial_state(
                 linear.as_ref()?,
                 prior,
                 window,
@@ -168,23 +177,23 @@ fn step(
     present: &Estimate,
     linear: &[Option<WindowDerivatives>],
 ) -> Option<Estimate> {
-    step_with(shooting, prior, present, linear, |next| next)
+    step_with_correction(shooting, prior, present, linear, |next| next)
 }
 
 /// Returns the next estimate after a correction, if it has a lower cost.
-pub(crate) fn step_with(
+pub(crate) fn step_with_correction(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,
     linear: &[Option<WindowDerivatives>],
     correction: impl Fn(Estimate) -> Estimate,
 ) -> Option<Estimate> {
-    let windows = reduced_blocks(prior, present, linear);
+    let windows = eliminate_initial_states(prior, present, linear);
     for damping in thresholds::STEP_DAMPING {
-        let change = change_of_unknowns(shooting, present, &windows, damping);
-        for part in thresholds::STEP_PARTS {
-            let theta = moved_unknowns(shooting, present, &change, part);
-            let next = correction(followed(shooting, prior, present, &windows, theta));
+        let change = solve_step(shooting, present, &windows, damping);
+        for part in thresholds::STEP_FRACTIONS {
+            let theta = apply_fraction(shooting, present, &change, part);
+            let next = correction(follow_unknowns(shooting, prior, present, &windows, theta));
             if next.cost < present.cost {
                 return Some(next);
             }
@@ -197,7 +206,7 @@ pub(crate) fn step_with(
 }
 
 /// Returns the bounded least-squares step of the unknowns.
-pub(crate) fn change_of_unknowns(
+pub(crate) fn solve_step(
     shooting: &Shooting<'_>,
     present: &Estimate,
     windows: &[Option<ReducedBlock>],
@@ -206,7 +215,7 @@ pub(crate) fn change_of_unknowns(
     let count = shooting.unknowns.len();
     let mut factor = DMatrix::zeros(count + 1, count + 1);
     for window in windows.iter().flatten() {
-        factor = triangular_factor(&factor, &window.unknowns());
+        factor = compute_triangular_factor(&factor, &window.reduced_columns());
     }
     let mut rows = DMatrix::zeros(2 * count, count + 1);
     for (column, unknown) in shooting.unknowns.iter().enumerate() {
@@ -217,18 +226,18 @@ pub(crate) fn change_of_unknowns(
         }
         rows[(count + column, column)] = damping * factor.column(column).norm();
     }
-    let factor = triangular_factor(&factor, &rows);
+    let factor = compute_triangular_factor(&factor, &rows);
     let a = factor.columns(0, count).into_owned();
     let b = -factor.column(count).into_owned();
     let bounds: Vec<Interval> = (shooting.unknowns.iter().zip(&present.theta))
-        .map(|(unknown, value)| unknown.bounds.relative_to(*value).with_zero())
+        .map(|(unknown, value)| unknown.bounds.shift_origin_to(*value).extend_to_zero())
         .collect();
-    least_squares(&a, &b, &bounds)
+    solve_least_squares(&a, &b, &bounds)
 }
 
 /// Returns the estimate at new unknowns. Each window takes the step of its initial state that
 /// decreases its cost most.
-pub(crate) fn followed(
+pub(crate) fn follow_unknowns(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     present: &Estimate,
@@ -244,12 +253,12 @@ pub(crate) fn followed(
         pairs
             .map(|(start, window)| {
                 let window = window.as_ref().filter(|_| shooting.ranges.is_some());
-                let step = window.and_then(|w| w.initial_state_step(&change, damping, prior));
+                let step = window.and_then(|w| w.solve_initial_state_step(&change, damping, prior));
                 moved_start(shooting, start, step)
             })
             .collect()
     };
-    let mut best = evaluated(
+    let mut best = evaluate_cost(
         shooting,
         prior,
         theta.clone(),
@@ -269,7 +278,7 @@ pub(crate) fn followed(
         let damped = moved(*damping);
         let squares = some_squares(shooting, &theta, &damped, &stuck);
         for (window, square) in stuck.iter().zip(squares) {
-            let with_prior = square + prior.cost(*window, &damped[*window]);
+            let with_prior = square + prior.compute_cost(*window, &damped[*window]);
             if with_prior < total(&best, prior, *window) {
                 best.squares[*window] = square;
                 best.initial_states[*window].clone_from(&damped[*window]);
@@ -286,7 +295,7 @@ pub(crate) fn followed(
 
 /// Corrects the initial states after a long step of the unknowns, with the derivatives at its start
 /// and the residuals at its end, for each window until its cost stops decreasing.
-pub(crate) fn with_states_corrected(
+pub(crate) fn correct_initial_states(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     estimate: Estimate,
@@ -297,8 +306,8 @@ pub(crate) fn with_states_corrected(
     }
     let held = DVector::zeros(shooting.unknowns.len());
     let mut best = estimate;
-    let mut residuals = shooting.residuals(&best.theta, &best.initial_states);
-    for _ in 0..thresholds::CORRECTIONS {
+    let mut residuals = shooting.compute_residuals(&best.theta, &best.initial_states);
+    for _ in 0..thresholds::MAX_STATE_CORRECTIONS {
         let windows = WindowId::first(residuals.len()).zip(&residuals).zip(near);
         let moved = windows.map(|((window, residual), near)| {
             let start = &best.initial_states[window];
@@ -308,17 +317,18 @@ pub(crate) fn with_states_corrected(
                     residual: DVector::from_column_slice(&residual.values),
                     ..near.clone()
                 };
-                reduced_block(&here, prior, window, start).initial_state_step(&held, 0.0, prior)
+                eliminate_initial_state(&here, prior, window, start)
+                    .solve_initial_state_step(&held, 0.0, prior)
             });
             moved_start(shooting, start, step)
         });
         let moved: Vec<Vec<f64>> = moved.collect();
-        let corrected = shooting.residuals(&best.theta, &moved);
+        let corrected = shooting.compute_residuals(&best.theta, &moved);
         let before = best.cost;
         let windows = WindowId::first(residuals.len()).zip(corrected).zip(moved);
         for (((window, corrected), start), residual) in windows.zip(&mut residuals) {
-            let square = square(&corrected);
-            if square + prior.cost(window, &start) < total(&best, prior, window) {
+            let square = sum_of_squares(&corrected);
+            if square + prior.compute_cost(window, &start) < total(&best, prior, window) {
                 best.squares[window] = square;
                 best.initial_states[window] = start;
                 *residual = corrected;
@@ -331,7 +341,7 @@ pub(crate) fn with_states_corrected(
             ..
         } = best;
         best = totalled(shooting, prior, theta, initial_states, squares);
-        if before - best.cost < thresholds::LEAST_INFORMATION * shooting.prior_weight {
+        if before - best.cost < thresholds::MIN_FINAL_DECREASE * shooting.prior_weight {
             break;
         }
     }
@@ -344,11 +354,11 @@ fn moved_start(shooting: &Shooting<'_>, start: &[f64], step: Option<DVector<f64>
         return start.to_vec();
     };
     let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
-    shooting.model.admissible(moved.collect())
+    shooting.model.clamp_state(moved.collect())
 }
 
 fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {
-    estimate.squares[window] + prior.cost(window, &estimate.initial_states[window])
+    estimate.squares[window] + prior.compute_cost(window, &estimate.initial_states[window])
 }
 
 /// The sums of squares of some windows.
@@ -359,7 +369,10 @@ fn some_squares(
     windows: &[WindowId],
 ) -> Vec<f64> {
     use rayon::prelude::*;
-    let (values, sensors) = (shooting.values(theta), shooting.sensors(theta));
+    let (values, sensors) = (
+        shooting.parameter_values(theta),
+        shooting.sensor_values(theta),
+    );
     let size = windows
         .len()
         .div_ceil(rayon::current_num_threads().max(1))
@@ -367,13 +380,18 @@ fn some_squares(
     let parts: Vec<Vec<f64>> = windows
         .par_chunks(size)
         .map(|part| {
-            let mut simulation = shooting.model.simulation(&values).ok();
+            let mut simulation = shooting.model.create_simulation(&values).ok();
             part.iter()
                 .map(|window| {
                     let residual = simulation.as_mut().and_then(|simulation| {
-                        shooting.residual(simulation, &sensors, *window, &initial_states[*window])
+                        shooting.compute_residual(
+                            simulation,
+                            &sensors,
+                            *window,
+                            &initial_states[*window],
+                        )
                     });
-                    square(&residual)
+                    sum_of_squares(&residual)
                 })
                 .collect()
         })
@@ -383,7 +401,7 @@ fn some_squares(
 
 /// Fits the initial state of one window at fixed unknowns by damped steps over a growing part of
 /// the window. A short motion is nearly linear in its initial state; impacts fold a long one.
-pub fn inner_solve(
+pub fn fit_initial_state(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,
     window: WindowId,
@@ -404,26 +422,28 @@ fn inner_solve_on_part(
     window: WindowId,
     start: Vec<f64>,
 ) -> Option<Vec<f64>> {
-    let total = |residual: &Residual, start: &[f64]| residual.square() + prior.cost(window, start);
-    let mut cost = total(&sensitivities.residual(window, &start)?, &start);
+    let total = |residual: &Residual, start: &[f64]| {
+        residual.sum_of_squares() + prior.compute_cost(window, start)
+    };
+    let mut cost = total(&sensitivities.compute_residual(window, &start)?, &start);
     let mut present = start;
-    for _ in 0..thresholds::INNER_STEPS {
-        let linear = sensitivities.linear(window, &present)?;
-        let block = reduced_block(&linear, prior, window, &present);
+    for _ in 0..thresholds::MAX_INNER_STEPS {
+        let linear = sensitivities.linearise(window, &present)?;
+        let block = eliminate_initial_state(&linear, prior, window, &present);
         let held = DVector::zeros(linear.by_unknown.ncols());
         let better = thresholds::INITIAL_STATE_DAMPING
             .iter()
             .find_map(|damping| {
-                let step = block.initial_state_step(&held, *damping, prior)?;
+                let step = block.solve_initial_state_step(&held, *damping, prior)?;
                 let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
-                let moved = sensitivities.admissible(moved.collect());
-                let total = total(&sensitivities.residual(window, &moved)?, &moved);
+                let moved = sensitivities.clamp_state(moved.collect());
+                let total = total(&sensitivities.compute_residual(window, &moved)?, &moved);
                 (total < cost).then_some((moved, total))
             });
         let Some((moved, total)) = better else {
             break;
         };
-        let converged = cost - total < thresholds::INNER_DECREASE * total;
+        let converged = cost - total < thresholds::MIN_INNER_DECREASE * total;
         (present, cost) = (moved, total);
         if converged {
             break;

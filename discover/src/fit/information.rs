@@ -2,19 +2,19 @@
 
 use nalgebra::DMatrix;
 
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::derivatives_at;
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::compute_derivatives;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
-use crate::fit::variable_projection::{reduced_block, triangular_factor};
+use crate::fit::variable_projection::{compute_triangular_factor, eliminate_initial_state};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
 /// Returns a triangular R with R'R the information of windows and priors of the unknowns, initial
 /// states free. A change d of the unknowns adds |R d|^2 squared standard deviations to the cost.
-pub(crate) fn information_factor(
+pub(crate) fn compute_information_factor(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     initial_states: &[Vec<f64>],
@@ -26,11 +26,14 @@ pub(crate) fn information_factor(
         let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
     }
-    triangular_factor(&record_factor(count, prior, initial_states, linear), &rows)
+    compute_triangular_factor(
+        &compute_window_factor(count, prior, initial_states, linear),
+        &rows,
+    )
 }
 
 /// Returns the same factor without the priors of the unknowns, of which there are `count`.
-pub(crate) fn record_factor(
+pub(crate) fn compute_window_factor(
     count: usize,
     prior: &InitialStatePrior,
     initial_states: &[Vec<f64>],
@@ -39,8 +42,8 @@ pub(crate) fn record_factor(
     let mut factor = DMatrix::zeros(count + 1, count + 1);
     for (window, linear) in WindowId::first(linear.len()).zip(linear) {
         if let Some(linear) = linear {
-            let block = reduced_block(linear, prior, window, &initial_states[window]);
-            factor = triangular_factor(&factor, &block.unknowns());
+            let block = eliminate_initial_state(linear, prior, window, &initial_states[window]);
+            factor = compute_triangular_factor(&factor, &block.reduced_columns());
         }
     }
     factor.view((0, 0), (count, count)).into_owned()
@@ -48,14 +51,15 @@ pub(crate) fn record_factor(
 
 /// Returns the information factor of the training windows of a fit, reduced according to its
 /// misfit.
-pub fn information_of(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64> {
+pub fn compute_fit_information(problem: &EstimationProblem<'_>, fit: &Fit) -> DMatrix<f64> {
     let shooting = Shooting {
         prior_weight: fit.prior_weight,
-        ..fit.shooting(problem)
+        ..fit.training_shooting(problem)
     };
     let estimate = &fit.train.estimate;
-    let linear = derivatives_at(&shooting, estimate);
-    let factor = information_factor(&shooting, &fit.prior, &estimate.initial_states, &linear);
-    let inflation = fit.train.inflation();
-    factor / (thresholds::WIDER * inflation.sqrt())
+    let linear = compute_derivatives(&shooting, estimate);
+    let factor =
+        compute_information_factor(&shooting, &fit.prior, &estimate.initial_states, &linear);
+    let inflation = fit.train.variance_inflation();
+    factor / (thresholds::UNCERTAINTY_FACTOR * inflation.sqrt())
 }

@@ -5,20 +5,20 @@ use crate::ids::{WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::error::DiscoverError;
-use crate::fit::continuation::Follow;
-use crate::fit::gauss_newton::{Estimate, evaluated, inner_solve};
-use crate::fit::prior::{InitialStatePrior, InitialStates, Source};
+use crate::fit::continuation::EstimateInitialStates;
+use crate::fit::gauss_newton::{Estimate, evaluate_cost, fit_initial_state};
+use crate::fit::prior::{InitialStatePrior, InitialStates, PriorSource};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::model::smoothing::{sloped, smoothed};
+use crate::model::smoothing::{differentiate_column, smooth_column};
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::windows::{Window, Windows};
 
 /// Estimates the initial states of all windows at these unknowns.
-pub fn at_unknowns(
+pub fn estimate_at_unknowns(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
     theta: &[f64],
@@ -29,7 +29,7 @@ pub fn at_unknowns(
     if !problem.estimates_initial_states() {
         let states = match problem.dataset.gives_motion() {
             // The motion is not the model's.
-            true => vec![shooting.model.initial(); shooting.windows.list.len()],
+            true => vec![shooting.model.initial_state(); shooting.windows.list.len()],
             false => read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels)?,
         };
         return Ok(InitialStates {
@@ -39,11 +39,11 @@ pub fn at_unknowns(
     }
     let records = shooting.windows.records.iter();
     let firsts: Vec<Vec<f64>> = records
-        .map(|r| problem.first_state(shooting.model, r))
+        .map(|r| problem.estimate_first_state(shooting.model, r))
         .collect();
     let known = Known {
         firsts: &firsts,
-        sd: &spread(ranges),
+        sd: &prior_sd(ranges),
         sources: &sources(problem, shooting.windows),
     };
     Ok(followed(shooting, theta, known, horizons, before))
@@ -54,13 +54,16 @@ pub fn at_unknowns(
 /// # Errors
 ///
 /// The initial states must be read from the record and no channel measures a coordinate.
-pub fn best(
+pub fn estimate_best(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
     theta: &[f64],
     ranges: &[f64],
 ) -> Result<Vec<Vec<f64>>, DiscoverError> {
-    let sequences = [&thresholds::HORIZONS[..], &thresholds::OTHER_HORIZONS];
+    let sequences = [
+        &thresholds::INITIAL_STATE_HORIZONS[..],
+        &thresholds::OTHER_INITIAL_STATE_HORIZONS,
+    ];
     let sequences = if problem.estimates_initial_states() {
         &sequences[..]
     } else {
@@ -69,10 +72,15 @@ pub fn best(
     let found: Vec<Result<Estimate, DiscoverError>> = sequences
         .par_iter()
         .map(|horizons| {
-            let found = at_unknowns(problem, shooting, theta, ranges, horizons, None)?;
+            let found = estimate_at_unknowns(problem, shooting, theta, ranges, horizons, None)?;
             let initial_states = found.states;
             let prior = InitialStatePrior::default();
-            Ok(evaluated(shooting, &prior, theta.to_vec(), initial_states))
+            Ok(evaluate_cost(
+                shooting,
+                &prior,
+                theta.to_vec(),
+                initial_states,
+            ))
         })
         .collect();
     let found = found
@@ -89,29 +97,29 @@ pub fn best(
 
 /// Returns a function that estimates initial states for given unknowns, with this number of
 /// horizons.
-pub fn following<'f>(
+pub fn estimate_for_unknowns<'f>(
     problem: &'f EstimationProblem<'f>,
     shooting: &'f Shooting<'f>,
     ranges: &'f [f64],
     horizons: usize,
-) -> Box<Follow<'f>> {
+) -> Box<EstimateInitialStates<'f>> {
     Box::new(move |theta, before| {
-        let horizons = &thresholds::HORIZONS[..horizons];
-        at_unknowns(problem, shooting, theta, ranges, horizons, before).unwrap_or_default()
+        let horizons = &thresholds::INITIAL_STATE_HORIZONS[..horizons];
+        estimate_at_unknowns(problem, shooting, theta, ranges, horizons, before).unwrap_or_default()
     })
 }
 
 /// Returns the standard deviation of the prior of each state from the preceding window.
-pub fn spread(ranges: &[f64]) -> Vec<f64> {
+pub fn prior_sd(ranges: &[f64]) -> Vec<f64> {
     ranges
         .iter()
-        .map(|range| thresholds::INITIAL_STATE_PRIOR * range)
+        .map(|range| thresholds::INITIAL_STATE_PRIOR_IN_RANGES * range)
         .collect()
 }
 
 /// Returns the prior of these initial states with the standard deviation of a carried state. It is
 /// infinitely wide if initial states are read from the record and not estimated.
-pub fn known_as(
+pub fn prior_from_states(
     problem: &EstimationProblem<'_>,
     states: &[Vec<f64>],
     ranges: &[f64],
@@ -119,7 +127,7 @@ pub fn known_as(
     match problem.estimates_initial_states() {
         true => InitialStatePrior {
             mean: states.to_vec(),
-            sd: spread(ranges),
+            sd: prior_sd(ranges),
             ..InitialStatePrior::default()
         },
         false => InitialStatePrior::default(),
@@ -127,15 +135,15 @@ pub fn known_as(
 }
 
 /// Where what is known of each window's initial state comes from.
-fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<Source> {
+fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorSource> {
     let of = |window: &Window| {
         let is_stated = window.first == 0
             && !windows.records[window.record].is_continued
             && problem.dataset.initial != Initial::Estimate;
         match (window.follows, is_stated) {
-            (Some(_), _) => Source::Carried,
-            (None, true) => Source::Stated,
-            (None, false) => Source::Measured,
+            (Some(_), _) => PriorSource::PrecedingWindow,
+            (None, true) => PriorSource::Dataset,
+            (None, false) => PriorSource::FirstSamples,
         }
     };
     windows.list.iter().map(of).collect()
@@ -149,7 +157,7 @@ struct Known<'a> {
     /// One standard deviation of each state, where it is stated or carried.
     sd: &'a [f64],
     /// Where each window's mean comes from.
-    sources: &'a [Source],
+    sources: &'a [PriorSource],
 }
 
 /// Initial states followed from window to window: each begins where the one before ended and
@@ -163,7 +171,10 @@ fn followed(
     before: Option<&[Vec<f64>]>,
 ) -> InitialStates {
     let count = shooting.windows.list.len();
-    let chains = before.map_or(1, |_| thresholds::CHAINS).min(count).max(1);
+    let chains = before
+        .map_or(1, |_| thresholds::PARALLEL_CHAINS)
+        .min(count)
+        .max(1);
     let parts: Vec<std::ops::Range<usize>> = (0..chains)
         .map(|chain| chain * count / chains..(chain + 1) * count / chains)
         .collect();
@@ -197,20 +208,22 @@ fn followed(
 
 /// Returns the end state of each window's preceding window; `None` for the first windows of
 /// records.
-pub fn carried(
+pub fn propagate_to_next_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
     initial_states: &[Vec<f64>],
 ) -> Vec<Option<Vec<f64>>> {
     let list = &shooting.windows.list;
-    shooting.by_threads(|windows| {
-        let mut sensitivities = SensitivityEvaluator::frozen(shooting, theta, 1.0);
+    shooting.map_windows_in_parallel(|windows| {
+        let mut sensitivities = SensitivityEvaluator::with_fixed_unknowns(shooting, theta, 1.0);
         let mut of = |window: WindowId| {
             let before = WindowId::new(window.index().checked_sub(1)?);
             list[window].follows?;
-            sensitivities
-                .as_mut()?
-                .carried(before, &initial_states[before], list[window].times[0])
+            sensitivities.as_mut()?.propagate(
+                before,
+                &initial_states[before],
+                list[window].times[0],
+            )
         };
         windows.map(&mut of).collect()
     })
@@ -238,7 +251,9 @@ impl Chain<'_> {
         mut carried: Option<Vec<f64>>,
     ) -> Vec<FollowedState> {
         let shooting = self.shooting;
-        let Some(mut sensitivities) = SensitivityEvaluator::frozen(shooting, theta, 1.0) else {
+        let Some(mut sensitivities) =
+            SensitivityEvaluator::with_fixed_unknowns(shooting, theta, 1.0)
+        else {
             let nothing = vec![0.0; shooting.model.state_count()];
             let unknown = |_| FollowedState {
                 mean: nothing.clone(),
@@ -261,10 +276,11 @@ impl Chain<'_> {
                 _ => self.known.firsts[window.record].clone(),
             };
             prior.mean[id].clone_from(&mean);
-            let solved = inner_solve(&mut sensitivities, &prior, id, mean.clone(), self.horizons);
+            let solved =
+                fit_initial_state(&mut sensitivities, &prior, id, mean.clone(), self.horizons);
             let state = solved.unwrap_or_else(|| mean.clone());
             if let Some(next) = list.get(id.index() + 1) {
-                carried = sensitivities.carried(id, &state, next.times[0]);
+                carried = sensitivities.propagate(id, &state, next.times[0]);
             }
             found.push(FollowedState { mean, state });
         }
@@ -297,8 +313,8 @@ fn read_smoothed(
         let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
             .iter()
             .map(|source| {
-                let values = smoothed(&record.times, &record.channels[*source]);
-                let slopes = sloped(&record.times, &values);
+                let values = smooth_column(&record.times, &record.channels[*source]);
+                let slopes = differentiate_column(&record.times, &values);
                 (values, slopes)
             })
             .collect();
@@ -317,13 +333,13 @@ fn read_smoothed(
 
 /// Sets the prior mean of each window to the end state of the preceding window, which is valid at
 /// these unknowns only.
-pub(crate) fn carry(
+pub(crate) fn update_carried_prior(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
     theta: &[f64],
     initial_states: &[Vec<f64>],
 ) {
-    let carried = carried(shooting, theta, initial_states);
+    let carried = propagate_to_next_windows(shooting, theta, initial_states);
     for (mean, carried) in prior.mean.iter_mut().zip(carried) {
         if let Some(carried) = carried {
             *mean = carried;

@@ -7,25 +7,25 @@
 //! [`alone`].
 
 pub(crate) mod acceleration_differences;
-pub mod alone;
 pub mod bounded_least_squares;
 pub mod continuation;
 pub mod contradiction;
-pub mod fitted;
-pub mod full;
+pub mod expression_ranges;
+pub(crate) mod final_steps;
+pub mod fit_result;
+pub mod full_fit;
 pub mod gauss_newton;
 pub mod information;
 pub mod initial_states;
-pub mod linearised;
+pub mod linearised_fit;
 pub mod noise_floor;
 pub mod null_model;
-pub mod preliminary;
+pub mod preliminary_fit;
 pub mod prior;
 pub mod residual_spectrum;
 pub mod residuals;
 pub mod sensitivity;
 pub mod shooting;
-pub mod travels;
+pub mod single_record;
 pub(crate) mod uncertainty;
 pub mod variable_projection;
-pub(crate) mod whole_motions;

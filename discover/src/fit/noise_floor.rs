@@ -3,8 +3,8 @@
 //! records. The floor so includes noise, its amplification by the motion, and the error of the
 //! initial states.
 
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::evaluated;
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::evaluate_cost;
 use crate::fit::initial_states;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
@@ -25,7 +25,7 @@ pub struct NoiseFloor {
 }
 
 /// Computes the noise floor of a fit. `seed`: seed of the noise.
-pub fn noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
+pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
     let noise_alone = NoiseFloor {
         channels: problem.noise.clone(),
         rms: 1.0,
@@ -36,40 +36,44 @@ pub fn noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Noi
     let windows = Windows::cut(&records, problem.dataset.window);
     let shooting = Shooting::new(problem, &fit.model, &windows, &fit.unknowns, &fit.ranges);
     let theta = fit.train.estimate.theta.clone();
-    let Ok(initial_states) = initial_states::best(problem, &shooting, &theta, &fit.ranges) else {
+    let Ok(initial_states) = initial_states::estimate_best(problem, &shooting, &theta, &fit.ranges)
+    else {
         return noise_alone;
     };
-    let estimate = evaluated(
+    let estimate = evaluate_cost(
         &shooting,
         &InitialStatePrior::default(),
         theta,
         initial_states,
     );
-    let residuals = Residuals::of(&shooting, estimate).whole();
+    let residuals = Residuals::compute(&shooting, estimate).or_infinite();
     if !residuals.rms.is_finite() {
         return noise_alone;
     }
     NoiseFloor {
-        channels: residuals.channels,
+        channels: residuals.channel_rms,
         rms: residuals.rms.max(f64::MIN_POSITIVE),
     }
 }
 
 /// The training records as the fitted model would have made them.
 fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec<Record>> {
-    let shooting = fit.shooting(problem);
+    let shooting = fit.training_shooting(problem);
     let theta = &fit.train.estimate.theta;
-    let sensors = shooting.sensors(theta);
-    let mut simulation = fit.model.simulation(&shooting.values(theta)).ok()?;
+    let sensors = shooting.sensor_values(theta);
+    let mut simulation = fit
+        .model
+        .create_simulation(&shooting.parameter_values(theta))
+        .ok()?;
     let mut draw = Normal::new(seed ^ 0x9e37_79b9_7f4a_7c15);
     let mut replicas = Vec::new();
     for record in &problem.dataset.train {
-        let first = problem.first_state(&fit.model, record);
+        let first = problem.estimate_first_state(&fit.model, record);
         let times = problem.output_rate.times(&record.times);
         let outputs = simulation
-            .outputs(&first, &times.times, &record.inputs)
+            .simulate_outputs(&first, &times.times, &record.inputs)
             .ok()?;
-        let seen = shooting.seen(&times, &sensors, &outputs.values);
+        let seen = shooting.apply_sensors(&times, &sensors, &outputs.values);
         let count = problem.noise.len();
         let mut replica = record.clone();
         for (channel, column) in replica.channels.iter_mut().enumerate() {

@@ -6,13 +6,13 @@ use nalgebra::{DMatrix, DVector};
 
 /// Source of the mean of a prior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum PriorSource {
     /// The dataset: the known state at the beginning of the record.
-    Stated,
+    Dataset,
     /// The end state of the preceding window.
-    Carried,
+    PrecedingWindow,
     /// The first samples of a record. States that they do not show are known to about their range.
-    Measured,
+    FirstSamples,
 }
 
 /// Prior of the initial state of each window: mean and standard deviation.
@@ -23,7 +23,7 @@ pub struct InitialStatePrior {
     /// Standard deviation of each state, if the mean is from the dataset or the preceding window.
     pub sd: Vec<f64>,
     /// Source of each mean. If empty, all means are from the preceding window.
-    pub sources: Vec<Source>,
+    pub sources: Vec<PriorSource>,
     /// Rows that transform measured initial states to unit variance, if the covariance of the
     /// states is known.
     pub whitening: Option<DMatrix<f64>>,
@@ -31,38 +31,38 @@ pub struct InitialStatePrior {
 
 impl InitialStatePrior {
     /// Returns the cost of an initial state of a window.
-    pub fn cost(&self, window: WindowId, start: &[f64]) -> f64 {
+    pub fn compute_cost(&self, window: WindowId, start: &[f64]) -> f64 {
         let Some(mean) = self.mean.get(window.index()) else {
             return 0.0;
         };
         let deviation = start.iter().zip(mean).map(|(x, m)| x - m);
         let deviation = DVector::from_iterator(start.len().min(mean.len()), deviation);
-        (self.rows(window) * deviation).norm_squared()
+        (self.deviation_rows(window) * deviation).norm_squared()
     }
 
     /// Returns the rows that transform the deviation from the mean to standard deviations.
-    pub fn rows(&self, window: WindowId) -> DMatrix<f64> {
+    pub fn deviation_rows(&self, window: WindowId) -> DMatrix<f64> {
         let source = self.sources.get(window.index());
         match (&self.whitening, source) {
-            (Some(rows), Some(Source::Measured)) => rows.clone(),
-            _ => reciprocals(self.sd_in(window)),
+            (Some(rows), Some(PriorSource::FirstSamples)) => rows.clone(),
+            _ => reciprocals(self.window_sd(window)),
         }
     }
 
     /// Returns the rows that damp a step of an initial state.
     pub fn damping_rows(&self) -> DMatrix<f64> {
         match &self.whitening {
-            Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR,
+            Some(rows) => rows / thresholds::INITIAL_STATE_PRIOR_IN_RANGES,
             None => reciprocals(self.sd.iter().copied()),
         }
     }
 
     /// Returns the prior without means from preceding windows. They are valid at the present
     /// unknowns only and would add information that the records do not contain.
-    pub fn without_carried(&self) -> Self {
-        let unknown = |source: &Source| match source {
-            Source::Stated => Source::Stated,
-            Source::Carried | Source::Measured => Source::Measured,
+    pub fn without_preceding(&self) -> Self {
+        let unknown = |source: &PriorSource| match source {
+            PriorSource::Dataset => PriorSource::Dataset,
+            PriorSource::PrecedingWindow | PriorSource::FirstSamples => PriorSource::FirstSamples,
         };
         Self {
             sources: self.sources.iter().map(unknown).collect(),
@@ -71,11 +71,11 @@ impl InitialStatePrior {
     }
 
     /// Returns the standard deviation of each state of a window.
-    pub fn sd_in(&self, window: WindowId) -> impl Iterator<Item = f64> {
+    pub fn window_sd(&self, window: WindowId) -> impl Iterator<Item = f64> {
         let source = self.sources.get(window.index());
-        let times = match source.unwrap_or(&Source::Carried) {
-            Source::Stated | Source::Carried => 1.0,
-            Source::Measured => 1.0 / thresholds::INITIAL_STATE_PRIOR,
+        let times = match source.unwrap_or(&PriorSource::PrecedingWindow) {
+            PriorSource::Dataset | PriorSource::PrecedingWindow => 1.0,
+            PriorSource::FirstSamples => 1.0 / thresholds::INITIAL_STATE_PRIOR_IN_RANGES,
         };
         self.sd.iter().map(move |sd| times * sd)
     }

@@ -2,8 +2,8 @@
 
 use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
 
-use crate::fit::fitted::Fit;
-use crate::fit::residuals::residual_column;
+use crate::fit::fit_result::Fit;
+use crate::fit::residuals::channel_residuals;
 use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
@@ -17,24 +17,24 @@ const FEWEST: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpectralPeak {
     /// Line at this frequency, Hz.
-    At(f64),
+    Frequency(f64),
     /// Most of the power is below a few periods per window.
-    Slow,
+    BelowResolution,
 }
 
 /// Returns the peak frequency of the residual of the channel with the largest residual, Hz; `None`
 /// if there is no peak.
-pub fn peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
+pub fn find_peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
     let sizes = &fit.train.normalised_rms;
     let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
-    match training_peak(problem, fit, worst)? {
-        SpectralPeak::At(frequency) => Some(frequency),
-        SpectralPeak::Slow => None,
+    match find_training_peak(problem, fit, worst)? {
+        SpectralPeak::Frequency(frequency) => Some(frequency),
+        SpectralPeak::BelowResolution => None,
     }
 }
 
 /// Returns the spectral peak of the residuals of a channel on the training records.
-pub fn training_peak(
+pub fn find_training_peak(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     channel: ChannelId,
@@ -43,16 +43,17 @@ pub fn training_peak(
         .train
         .list
         .iter()
-        .zip(fit.train.residuals.iter().map(Vec::as_slice))
+        .zip(fit.train.window_residuals.iter().map(Vec::as_slice))
         .collect();
-    let (spectrum, count) = residual_spectrum(&windows, channel.index(), problem.noise.len())?;
+    let (spectrum, count) =
+        compute_residual_spectrum(&windows, channel.index(), problem.noise.len())?;
     peak(&spectrum, count)
 }
 
 /// Returns the spectrum of the residuals of a channel and the number of averaged windows. Each
 /// window starts from its own state, so its linear trend is removed and its ends are tapered.
 /// Windows shorter than the longest are ignored.
-pub fn residual_spectrum(
+pub fn compute_residual_spectrum(
     windows: &[(&Window, &[f64])],
     channel: usize,
     channels: usize,
@@ -61,7 +62,7 @@ pub fn residual_spectrum(
         .iter()
         .filter(|(_, residual)| !residual.is_empty())
         .map(|(window, residual)| {
-            let column = residual_column(window, residual, (channel, channels));
+            let column = channel_residuals(window, residual, (channel, channels));
             bridged(&column[judged(column.len())])
         })
         .collect();
@@ -117,12 +118,12 @@ fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     // A tapered line spreads over both neighbours.
     let others = lines.filter(|line| line.abs_diff(peak) > 2);
     let (sum, count) = others.fold((0.0, 0.0), |(sum, n), line| (sum + density[line], n + 1.0));
-    let expected = 1.0 + thresholds::SPECTRAL_PEAK / (windows as f64).sqrt();
+    let expected = 1.0 + thresholds::MIN_SPECTRAL_PEAK_RATIO / (windows as f64).sqrt();
     let stands_out = density[peak] * count > expected * sum && density[peak] > 0.0;
-    match peak < thresholds::FIRST_LINE {
+    match peak < thresholds::FIRST_SPECTRAL_LINE {
         _ if !stands_out => None,
-        true => Some(SpectralPeak::Slow),
-        false => Some(SpectralPeak::At(spectrum.frequency[peak])),
+        true => Some(SpectralPeak::BelowResolution),
+        false => Some(SpectralPeak::Frequency(spectrum.frequency[peak])),
     }
 }
 
@@ -154,7 +155,7 @@ mod tests {
             .iter()
             .map(|(window, residual)| (window, residual.as_slice()))
             .collect();
-        let (spectrum, count) = residual_spectrum(&pairs, 0, 1)?;
+        let (spectrum, count) = compute_residual_spectrum(&pairs, 0, 1)?;
         peak(&spectrum, count)
     }
 
@@ -169,7 +170,7 @@ mod tests {
             let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);
             assert_eq!(
                 found(samples, 12, drift),
-                Some(SpectralPeak::Slow),
+                Some(SpectralPeak::BelowResolution),
                 "{samples}"
             );
         }
@@ -180,7 +181,7 @@ mod tests {
         let line =
             |t: f64, inside: f64| (std::f64::consts::TAU * 7.0 * t).sin() + 0.3 * inside + noise(t);
         for samples in [100, 200, 400] {
-            let Some(SpectralPeak::At(frequency)) = found(samples, 8, line) else {
+            let Some(SpectralPeak::Frequency(frequency)) = found(samples, 8, line) else {
                 panic!("{samples}: no line");
             };
             assert!(

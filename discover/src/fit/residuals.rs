@@ -13,28 +13,28 @@ pub struct Residuals {
     /// Initial states, unknowns and sums of squares.
     pub estimate: Estimate,
     /// Residuals of each window, in standard deviations.
-    pub residuals: Vec<Vec<f64>>,
+    pub window_residuals: Vec<Vec<f64>>,
     /// Sum of squares of each block of time.
-    pub blocks: Vec<f64>,
+    pub block_squares: Vec<f64>,
     /// RMS of each channel, SI.
-    pub channels: Vec<f64>,
+    pub channel_rms: Vec<f64>,
     /// RMS of each channel, in standard deviations.
     pub normalised_rms: Vec<f64>,
     /// RMS of all channels, in standard deviations.
     pub rms: f64,
     /// Number of samples over which a residual is correlated.
-    pub correlation: f64,
+    pub correlation_samples: f64,
     /// Windows whose simulation failed. The other fields contain the remaining windows only.
-    pub unfollowed: Vec<WindowId>,
+    pub failed_windows: Vec<WindowId>,
 }
 
 impl Residuals {
     /// Returns the residuals, with infinite values if the simulation of a window failed, because
     /// the other windows do not represent it.
-    pub fn whole(mut self) -> Self {
-        if !self.unfollowed.is_empty() {
+    pub fn or_infinite(mut self) -> Self {
+        if !self.failed_windows.is_empty() {
             self.rms = f64::INFINITY;
-            self.channels.fill(f64::INFINITY);
+            self.channel_rms.fill(f64::INFINITY);
             self.normalised_rms.fill(f64::INFINITY);
         }
         self
@@ -45,15 +45,15 @@ impl Residuals {
     /// Returns the variance of estimates relative to white noise of one standard deviation. It is
     /// at least 1, plus the variance of the residuals due to their correlation. Residuals far below
     /// the noise add nothing: their correlation is due to rounding.
-    pub(crate) fn inflation(&self) -> f64 {
+    pub(crate) fn variance_inflation(&self) -> f64 {
         let variance = self.rms * self.rms;
-        variance.max(1.0) + (self.correlation - 1.0) * variance
+        variance.max(1.0) + (self.correlation_samples - 1.0) * variance
     }
 
     /// Computes the residuals of an estimate.
-    pub fn of(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
-        let channels = shooting.channels();
-        let residuals = shooting.residuals(&estimate.theta, &estimate.initial_states);
+    pub fn compute(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
+        let channels = shooting.channel_count();
+        let residuals = shooting.compute_residuals(&estimate.theta, &estimate.initial_states);
         let unfollowed: Vec<WindowId> = WindowId::first(residuals.len())
             .filter(|window| residuals[*window].is_none())
             .collect();
@@ -74,25 +74,25 @@ impl Residuals {
         let squares: Vec<f64> = sums.iter().map(|sum| mean_square(*sum)).collect();
         let rms = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
         Self {
-            blocks: blocks(&residuals),
-            channels: squares
+            block_squares: blocks(&residuals),
+            channel_rms: squares
                 .iter()
                 .zip(shooting.noise)
                 .map(|(s, noise)| s.sqrt() * noise)
                 .collect(),
             normalised_rms: squares.iter().map(|s| s.sqrt()).collect(),
             rms,
-            correlation: correlation(&residuals, channels),
-            residuals,
+            correlation_samples: compute_correlation_samples(&residuals, channels),
+            window_residuals: residuals,
             estimate,
-            unfollowed,
+            failed_windows: unfollowed,
         }
     }
 }
 
 /// Returns the residuals of one channel at the samples of a window, in standard deviations; NaN at
 /// samples that are missing or not compared, and if the simulation failed.
-pub(crate) fn residual_column(
+pub(crate) fn channel_residuals(
     window: &Window,
     residual: &[f64],
     (channel, channels): (usize, usize),
@@ -110,7 +110,7 @@ pub(crate) fn residual_column(
 
 /// Sums of squares of blocks of time: windows parted, or put together, into about so many.
 fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
-    let parts = thresholds::BLOCKS.div_ceil(residuals.len().max(1));
+    let parts = thresholds::TIME_BLOCKS.div_ceil(residuals.len().max(1));
     let of_window = |residual: &Vec<f64>| {
         let size = residual.len().div_ceil(parts).max(1);
         let sums = residual
@@ -124,7 +124,7 @@ fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
 /// Returns the number of samples over which a residual is correlated: one plus twice the sum of its
 /// autocorrelations up to the first that is not positive, for the channel with the longest
 /// correlation.
-pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
+pub(crate) fn compute_correlation_samples(residuals: &[Vec<f64>], channels: usize) -> f64 {
     let of_channel = |channel: usize| {
         let columns: Vec<Vec<f64>> = residuals
             .iter()
@@ -145,7 +145,7 @@ pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
         for lag in 1..longest / 2 {
             let part = at(lag) / whole;
             // What white noise shows by chance is none.
-            if part.is_nan() || part < thresholds::CORRELATED {
+            if part.is_nan() || part < thresholds::MIN_AUTOCORRELATION {
                 break;
             }
             time += 2.0 * part;
@@ -162,10 +162,10 @@ mod tests {
     fn inflation(rms: f64, correlation: f64) -> f64 {
         let residuals = Residuals {
             rms,
-            correlation,
+            correlation_samples: correlation,
             ..Residuals::default()
         };
-        residuals.inflation()
+        residuals.variance_inflation()
     }
 
     #[test]

@@ -5,12 +5,12 @@ use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};
-use crate::fit::shooting::{Residual, Sensors, Shooting};
+use crate::fit::acceleration_differences::{AccelerationDifferences, PerturbedEvaluator};
+use crate::fit::shooting::{Residual, SensorValues, Shooting};
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::output_times::OutputTimes;
 use crate::model::simulation::{NeighbourDrives, OutputTangents, Outputs, Simulation};
-use crate::model::unknowns::{Unknown, What};
+use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::thresholds;
 use eomgen_records::windows::Window;
 use eomgen_sim::exponential::MovedParameters;
@@ -26,7 +26,7 @@ pub struct WindowDerivatives {
     /// Derivatives by the unknowns.
     pub by_unknown: DMatrix<f64>,
     /// State at the end of the window.
-    pub last: Vec<f64>,
+    pub end_state: Vec<f64>,
 }
 
 /// The model at the unknowns and at changed values of each parameter.
@@ -35,7 +35,7 @@ pub struct SensitivityEvaluator<'a> {
     base: Simulation<'a>,
     /// The base's equations.
     equations: Evaluator,
-    sensors: Sensors,
+    sensors: SensorValues,
     /// For each unknown that is a parameter the neighbouring model and the step.
     neighbours: Vec<Option<SteppedNeighbour<'a>>>,
     level: f64,
@@ -61,44 +61,44 @@ enum Neighbour<'a> {
 
 impl<'a> SensitivityEvaluator<'a> {
     /// Moves a state into the domain of the model.
-    pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
-        self.shooting.model.admissible(state)
+    pub fn clamp_state(&self, state: Vec<f64>) -> Vec<f64> {
+        self.shooting.model.clamp_state(state)
     }
 
     /// Creates the evaluator at these unknowns; `None` if the model cannot be simulated.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
-        let values = shooting.values(theta);
-        let mut base = shooting.model.simulation(&values).ok()?;
-        let equations = shooting.model.evaluator(&values);
-        let is_differentiated = base.differentiates_exactly();
+        let values = shooting.parameter_values(theta);
+        let mut base = shooting.model.create_simulation(&values).ok()?;
+        let equations = shooting.model.create_evaluator(&values);
+        let is_differentiated = base.has_exact_derivatives();
         if is_differentiated {
             base.differentiate_by(&values, moved_parameters(shooting, theta));
         }
         let mut neighbours = Vec::with_capacity(theta.len());
         for (number, unknown) in shooting.unknowns.iter().enumerate() {
-            if !unknown.is_of_model() {
+            if !unknown.is_model_parameter() {
                 neighbours.push(None);
                 continue;
             }
             let step = quotient_step(unknown, theta[number]);
             let mut moved = theta.to_vec();
             moved[number] += step;
-            let values = shooting.values(&moved);
-            let neighbour = if base.carries_tangents() {
-                let evaluator = || Box::new(shooting.model.evaluator(&values));
+            let values = shooting.parameter_values(&moved);
+            let neighbour = if base.has_tangents() {
+                let evaluator = || Box::new(shooting.model.create_evaluator(&values));
                 Neighbour::Drives {
                     evaluator: (!is_differentiated).then(evaluator),
-                    linear_outputs: shooting.model.linear_outputs(&values),
+                    linear_outputs: shooting.model.derive_linear_outputs(&values),
                 }
             } else {
-                Neighbour::Runs(Box::new(shooting.model.simulation(&values).ok()?))
+                Neighbour::Runs(Box::new(shooting.model.create_simulation(&values).ok()?))
             };
             neighbours.push(Some(SteppedNeighbour { neighbour, step }));
         }
         Some(Self {
             base,
             equations,
-            sensors: shooting.sensors(theta),
+            sensors: shooting.sensor_values(theta),
             neighbours,
             level,
             shooting: *shooting,
@@ -106,12 +106,12 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// Creates the evaluator at these unknowns without derivatives by them.
-    pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
-        let values = shooting.values(theta);
+    pub fn with_fixed_unknowns(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
+        let values = shooting.parameter_values(theta);
         Some(Self {
-            base: shooting.model.simulation(&values).ok()?,
-            equations: shooting.model.evaluator(&values),
-            sensors: shooting.sensors(theta),
+            base: shooting.model.create_simulation(&values).ok()?,
+            equations: shooting.model.create_evaluator(&values),
+            sensors: shooting.sensor_values(theta),
             neighbours: Vec::new(),
             level,
             shooting: *shooting,
@@ -120,29 +120,29 @@ impl<'a> SensitivityEvaluator<'a> {
 
     /// Compares only this fraction of each window, from its beginning.
     pub fn truncate(&mut self, part: f64) {
-        self.shooting.part = part;
+        self.shooting.fraction = part;
     }
 
     /// Returns the state of the motion of a window at a time, s.
-    pub fn carried(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
+    pub fn propagate(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
         let samples = &self.shooting.windows.list[window];
         let inputs = self.shooting.windows.inputs(samples);
         // Steps end where inputs change.
         let before = samples.times.iter().filter(|t| **t < until);
         let times: Vec<f64> = before.copied().chain([until]).collect();
-        let states = self.base.states(start, &times, inputs).ok()?;
+        let states = self.base.simulate_states(start, &times, inputs).ok()?;
         states.into_iter().next_back()
     }
 
     /// Computes the residuals of a window.
-    pub fn residual(&mut self, window: WindowId, start: &[f64]) -> Option<Residual> {
+    pub fn compute_residual(&mut self, window: WindowId, start: &[f64]) -> Option<Residual> {
         let shooting = self.shooting;
-        shooting.residual(&mut self.base, &self.sensors, window, start)
+        shooting.compute_residual(&mut self.base, &self.sensors, window, start)
     }
 
     /// Computes the residuals and derivatives of a window.
-    pub fn linear(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
-        let found = match self.base.carries_tangents() {
+    pub fn linearise(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
+        let found = match self.base.has_tangents() {
             true => self.by_tangents(window, start)?,
             false => self.by_quotients(window, start)?,
         };
@@ -165,24 +165,24 @@ impl<'a> SensitivityEvaluator<'a> {
             Neighbour::Drives {
                 evaluator: Some(evaluator),
                 ..
-            } => Some(MovedEvaluator {
+            } => Some(PerturbedEvaluator {
                 evaluator,
-                size: of.step,
+                change: of.step,
             }),
             Neighbour::Drives { .. } | Neighbour::Runs(_) => None,
         });
         let mut differences = AccelerationDifferences::new(&mut self.equations, moved.collect());
-        let driven = differences.drives();
+        let driven = differences.as_drives();
         let by_state = shooting.ranges.is_some();
         let directions = (by_state, count - driven.count);
-        let integrated = self
-            .base
-            .linearised(start, &times.times, inputs, directions, driven)?;
-        let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
-        let residual = DVector::from_vec(shooting.normalised(samples, &seen));
+        let integrated =
+            self.base
+                .simulate_with_tangents(start, &times.times, inputs, directions, driven)?;
+        let seen = shooting.apply_sensors(times, &self.sensors, &integrated.outputs.values);
+        let residual = DVector::from_vec(shooting.normalise_differences(samples, &seen));
         let states = if by_state { start.len() } else { 0 };
         let by_state = self.columns(samples, times, states, &integrated.by_state);
-        let by_drive = self.columns(samples, times, count, &integrated.by_drive);
+        let by_drive = self.columns(samples, times, count, &integrated.by_parameter_and_drive);
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
         let mut drive = 0;
         for (column, neighbour) in self.neighbours.iter().enumerate() {
@@ -217,13 +217,13 @@ impl<'a> SensitivityEvaluator<'a> {
             residual,
             by_state,
             by_unknown,
-            last: integrated.outputs.last,
+            end_state: integrated.outputs.end_state,
         })
     }
 
     /// Returns the response of the residuals of a window to each drive, one column per drive;
     /// `None` if tangent vectors are not available.
-    pub(crate) fn drive_response(
+    pub(crate) fn compute_drive_response(
         &mut self,
         window: WindowId,
         start: &[f64],
@@ -234,10 +234,10 @@ impl<'a> SensitivityEvaluator<'a> {
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
         let count = driven.count;
-        let found = self
-            .base
-            .linearised(start, &times.times, inputs, (false, 0), driven)?;
-        Some(self.columns(samples, times, count, &found.by_drive))
+        let found =
+            self.base
+                .simulate_with_tangents(start, &times.times, inputs, (false, 0), driven)?;
+        Some(self.columns(samples, times, count, &found.by_parameter_and_drive))
     }
 
     /// The same by difference quotients.
@@ -247,18 +247,25 @@ impl<'a> SensitivityEvaluator<'a> {
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
         let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
-            .map(|range| thresholds::LARGEST_QUOTIENT * range)
+            .map(|range| thresholds::MAX_QUOTIENT_IN_RANGES * range)
             .collect();
         let tangents = match shooting.ranges {
-            Some(_) => self.base.tangents(start, &times.times, inputs, &steps),
+            Some(_) => self
+                .base
+                .propagate_with_tangents(start, &times.times, inputs, &steps),
             None => None,
         };
         let (outputs, derivatives) = match tangents {
             Some(OutputTangents { outputs, by_state }) => (outputs, Some(by_state)),
-            None => (self.base.outputs(start, &times.times, inputs).ok()?, None),
+            None => (
+                self.base
+                    .simulate_outputs(start, &times.times, inputs)
+                    .ok()?,
+                None,
+            ),
         };
-        let seen = shooting.seen(times, &self.sensors, &outputs.values);
-        let residual = DVector::from_vec(shooting.normalised(samples, &seen));
+        let seen = shooting.apply_sensors(times, &self.sensors, &outputs.values);
+        let residual = DVector::from_vec(shooting.normalise_differences(samples, &seen));
         if residual.iter().any(|r| !r.is_finite()) {
             return None;
         }
@@ -277,9 +284,11 @@ impl<'a> SensitivityEvaluator<'a> {
             let Neighbour::Runs(simulation) = neighbour else {
                 return None;
             };
-            let moved = simulation.outputs(start, &times.times, inputs).ok()?;
-            let moved = shooting.seen(times, &self.sensors, &moved.values);
-            let moved = shooting.normalised(samples, &moved);
+            let moved = simulation
+                .simulate_outputs(start, &times.times, inputs)
+                .ok()?;
+            let moved = shooting.apply_sensors(times, &self.sensors, &moved.values);
+            let moved = shooting.normalise_differences(samples, &moved);
             for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
                 by_unknown[(row, column)] = (after - before) / *step;
             }
@@ -292,7 +301,7 @@ impl<'a> SensitivityEvaluator<'a> {
             residual,
             by_state,
             by_unknown,
-            last: outputs.last,
+            end_state: outputs.end_state,
         })
     }
 
@@ -304,11 +313,13 @@ impl<'a> SensitivityEvaluator<'a> {
         unknown: &Unknown,
         outputs: &Outputs,
     ) -> DVector<f64> {
-        let step = thresholds::SENSOR_QUOTIENT * unknown.scale;
+        let step = thresholds::SENSOR_QUOTIENT_IN_SCALES * unknown.scale;
         let [after, before] = [step, -step].map(|step| {
             let sensors = moved_sensors(&self.sensors, unknown, step);
-            let seen = self.shooting.seen(times, &sensors, &outputs.values);
-            DVector::from_vec(self.shooting.normalised(samples, &seen))
+            let seen = self
+                .shooting
+                .apply_sensors(times, &sensors, &outputs.values);
+            DVector::from_vec(self.shooting.normalise_differences(samples, &seen))
         });
         (after - before) / (2.0 * step)
     }
@@ -323,8 +334,8 @@ impl<'a> SensitivityEvaluator<'a> {
         derivatives: &[f64],
     ) -> DMatrix<f64> {
         let shooting = &self.shooting;
-        let channels = shooting.channels();
-        let sensors = Sensors {
+        let channels = shooting.channel_count();
+        let sensors = SensorValues {
             bias: vec![0.0; channels],
             ..self.sensors.clone()
         };
@@ -336,8 +347,8 @@ impl<'a> SensitivityEvaluator<'a> {
                 let to = place * channels;
                 column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
             }
-            let seen = shooting.seen(times, &sensors, &column);
-            let differences = shooting.differences(samples, &seen, |seen, _| seen);
+            let seen = shooting.apply_sensors(times, &sensors, &column);
+            let differences = shooting.map_differences(samples, &seen, |seen, _| seen);
             matrix.column_mut(number).copy_from_slice(&differences);
         }
         matrix
@@ -357,13 +368,13 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut matrix = DMatrix::zeros(residual.len(), start.len());
         let mut moved = start.to_vec();
         for state in 0..start.len() {
-            let largest = thresholds::LARGEST_QUOTIENT * ranges[state];
+            let largest = thresholds::MAX_QUOTIENT_IN_RANGES * ranges[state];
             let mut step = largest;
             // The step that moves the outputs as wanted is found by trying: what a state does
             // to them differs by orders of magnitude.
             for _ in 0..3 {
                 moved[state] = start[state] + step;
-                let after = self.residual(window, &moved)?;
+                let after = self.compute_residual(window, &moved)?;
                 let differences = after.values.iter().zip(residual.iter()).map(|(a, b)| a - b);
                 let mut column = matrix.column_mut(state);
                 let mut furthest: f64 = 0.0;
@@ -371,7 +382,7 @@ impl<'a> SensitivityEvaluator<'a> {
                     *slot = difference / step;
                     furthest = furthest.max(difference.abs());
                 }
-                let wanted = thresholds::QUOTIENT * self.level * 4.0;
+                let wanted = thresholds::QUOTIENT_OUTPUT_CHANGE * self.level * 4.0;
                 if furthest <= 4.0 * wanted {
                     break;
                 }
@@ -385,19 +396,19 @@ impl<'a> SensitivityEvaluator<'a> {
 
 /// Computes the residuals and derivatives of all windows. `level`: size of the residuals, in
 /// standard deviations, for difference quotients.
-pub fn linearised(
+pub fn linearise_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
     initial_states: &[Vec<f64>],
     level: f64,
 ) -> Vec<Option<WindowDerivatives>> {
-    shooting.by_threads(|windows| {
+    shooting.map_windows_in_parallel(|windows| {
         let mut sensitivities = SensitivityEvaluator::new(shooting, theta, level);
         windows
             .map(|window| {
                 sensitivities
                     .as_mut()?
-                    .linear(window, &initial_states[window])
+                    .linearise(window, &initial_states[window])
             })
             .collect()
     })
@@ -406,16 +417,16 @@ pub fn linearised(
 /// Values of the model's parameters to both sides of each unknown that is one of them, within its bounds.
 fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedParameters>> {
     let unknowns = shooting.unknowns.iter().enumerate();
-    let of_model = unknowns.filter(|(_, unknown)| unknown.is_of_model());
+    let of_model = unknowns.filter(|(_, unknown)| unknown.is_model_parameter());
     let moved = of_model.map(|(number, unknown)| {
-        let size = thresholds::CENTRAL_QUOTIENT * unknown.scale;
+        let size = thresholds::CENTRAL_QUOTIENT_IN_SCALES * unknown.scale;
         // Beyond a bound that a prior sets there is motion too.
-        let reach = unknown.bounds.hull(unknown.limits);
+        let reach = unknown.bounds.join(unknown.bounds_without_prior);
         let ends = [-size, size].map(|change| {
             let mut moved = theta.to_vec();
             moved[number] = reach.clamp(theta[number] + change);
             MovedParameters {
-                values: shooting.values(&moved),
+                values: shooting.parameter_values(&moved),
                 change: moved[number] - theta[number],
             }
         });
@@ -426,7 +437,7 @@ fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedPara
 
 /// The step of a parameter's difference quotient; away from a bound that is near.
 fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
-    let step = thresholds::PARAMETER_QUOTIENT * unknown.scale;
+    let step = thresholds::PARAMETER_QUOTIENT_IN_SCALES * unknown.scale;
     if value + step > unknown.bounds.high {
         -step
     } else {
@@ -435,14 +446,14 @@ fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
 }
 
 /// The sensors with one unknown moved by a step.
-fn moved_sensors(sensors: &Sensors, unknown: &Unknown, step: f64) -> Sensors {
+fn moved_sensors(sensors: &SensorValues, unknown: &Unknown, step: f64) -> SensorValues {
     let mut moved = sensors.clone();
-    match unknown.what {
-        What::Gain(channel) => moved.gain[channel] += step,
-        What::Bias(channel) => moved.bias[channel] += step,
-        What::Delay(channel) => moved.delay[channel] += step,
-        What::InputDelay => moved.delay.iter_mut().for_each(|delay| *delay += step),
-        What::Parameter(_) | What::Inverse(_) => {}
+    match unknown.kind {
+        UnknownKind::Gain(channel) => moved.gain[channel] += step,
+        UnknownKind::Bias(channel) => moved.bias[channel] += step,
+        UnknownKind::Delay(channel) => moved.delay[channel] += step,
+        UnknownKind::InputDelay => moved.delay.iter_mut().for_each(|delay| *delay += step),
+        UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => {}
     }
     moved
 }

@@ -8,12 +8,12 @@ use crate::model::estimation_model::EstimationModel;
 use crate::model::output_times::{OutputRate, OutputTimes, lagrange_weight};
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
-use crate::model::unknowns::{Unknown, What, expected_input_delay};
+use crate::model::unknowns::{Unknown, UnknownKind, expected_input_delay};
 use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD, Window, Windows, judged};
 
 /// Unknowns of the sensors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensors {
+pub struct SensorValues {
     /// Gain of each channel.
     pub gain: Vec<f64>,
     /// Bias of each channel, SI.
@@ -40,7 +40,7 @@ pub struct Shooting<'a> {
     /// Number of computed outputs per sample interval.
     pub output_rate: OutputRate,
     /// Compared fraction of each window, from its beginning.
-    pub part: f64,
+    pub fraction: f64,
     /// Weight of the priors of the unknowns against the residuals: the squared ratio of the misfit
     /// to the noise, times the number of correlated samples. A misfit contains no information on a
     /// sensor beyond its own size.
@@ -53,12 +53,12 @@ pub struct Residual {
     /// for missing measurements.
     pub values: Vec<f64>,
     /// State at the end of the window.
-    pub last: Vec<f64>,
+    pub end_state: Vec<f64>,
 }
 
 impl Residual {
     /// Returns the sum of squares.
-    pub fn square(&self) -> f64 {
+    pub fn sum_of_squares(&self) -> f64 {
         self.values.iter().map(|r| r * r).sum()
     }
 }
@@ -80,46 +80,51 @@ impl<'a> Shooting<'a> {
             input_delay: expected_input_delay(&problem.dataset.inputs, model.specification()),
             ranges: problem.estimates_initial_states().then_some(ranges),
             output_rate: problem.output_rate,
-            part: 1.0,
+            fraction: 1.0,
             prior_weight: 1.0,
         }
     }
 
     /// Returns the number of channels.
-    pub fn channels(&self) -> usize {
+    pub fn channel_count(&self) -> usize {
         self.noise.len()
     }
 
     /// Returns the parameters of the model at these unknowns.
-    pub fn values(&self, theta: &[f64]) -> Vec<f64> {
+    pub fn parameter_values(&self, theta: &[f64]) -> Vec<f64> {
         let mut values = self.model.values.clone();
         for (unknown, value) in self.unknowns.iter().zip(theta) {
-            match &unknown.what {
-                What::Parameter(name) => self.model.set(&mut values, name, *value),
-                What::Inverse(name) => self.model.set(&mut values, name, 1.0 / value),
-                What::Gain(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => {}
+            match &unknown.kind {
+                UnknownKind::Parameter(name) => self.model.set_value(&mut values, name, *value),
+                UnknownKind::InverseParameter(name) => {
+                    self.model.set_value(&mut values, name, 1.0 / value)
+                }
+                UnknownKind::Gain(_)
+                | UnknownKind::Bias(_)
+                | UnknownKind::Delay(_)
+                | UnknownKind::InputDelay => {}
             }
         }
         values
     }
 
     /// Returns the sensor values at these unknowns.
-    pub fn sensors(&self, theta: &[f64]) -> Sensors {
+    pub fn sensor_values(&self, theta: &[f64]) -> SensorValues {
         // What is expected of a sensor holds until it is estimated.
         let expected = || self.model.sensors.iter();
-        let mut sensors = Sensors {
+        let mut sensors = SensorValues {
             gain: expected().map(|sensor| sensor.gain).collect(),
             bias: expected().map(|sensor| sensor.bias).collect(),
             delay: expected().map(|sensor| sensor.delay).collect(),
         };
         let mut input_delay = self.input_delay;
         for (unknown, value) in self.unknowns.iter().zip(theta) {
-            match unknown.what {
-                What::Parameter(_) | What::Inverse(_) => {}
-                What::InputDelay => input_delay = *value,
-                What::Gain(channel) => sensors.gain[channel] = *value,
-                What::Bias(channel) => sensors.bias[channel] = *value,
-                What::Delay(channel) => sensors.delay[channel] = *value,
+            match unknown.kind {
+                UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => {}
+                UnknownKind::InputDelay => input_delay = *value,
+                UnknownKind::Gain(channel) => sensors.gain[channel] = *value,
+                UnknownKind::Bias(channel) => sensors.bias[channel] = *value,
+                UnknownKind::Delay(channel) => sensors.delay[channel] = *value,
             }
         }
         if input_delay != 0.0 {
@@ -143,50 +148,61 @@ impl<'a> Shooting<'a> {
 
     /// Computes the residuals of all windows from these initial states; `None` for a failed
     /// simulation.
-    pub fn residuals(&self, theta: &[f64], initial_states: &[Vec<f64>]) -> Vec<Option<Residual>> {
-        let (values, sensors) = (self.values(theta), self.sensors(theta));
-        self.by_threads(|windows| {
-            let Ok(mut simulation) = self.model.simulation(&values) else {
+    pub fn compute_residuals(
+        &self,
+        theta: &[f64],
+        initial_states: &[Vec<f64>],
+    ) -> Vec<Option<Residual>> {
+        let (values, sensors) = (self.parameter_values(theta), self.sensor_values(theta));
+        self.map_windows_in_parallel(|windows| {
+            let Ok(mut simulation) = self.model.create_simulation(&values) else {
                 return windows.map(|_| None).collect();
             };
             windows
                 .map(|window| {
                     let start = &initial_states[window];
-                    self.residual(&mut simulation, &sensors, window, start)
+                    self.compute_residual(&mut simulation, &sensors, window, start)
                 })
                 .collect()
         })
     }
 
     /// Computes the residuals of one window.
-    pub fn residual(
+    pub fn compute_residual(
         &self,
         simulation: &mut Simulation<'_>,
-        sensors: &Sensors,
+        sensors: &SensorValues,
         window: WindowId,
         start: &[f64],
     ) -> Option<Residual> {
         let window = &self.windows.list[window];
         let inputs = self.windows.inputs(window);
         let times = self.output_times(window);
-        let outputs = simulation.outputs(start, &times.times, inputs).ok()?;
-        let seen = self.seen(&times, sensors, &outputs.values);
-        let values = self.normalised(window, &seen);
+        let outputs = simulation
+            .simulate_outputs(start, &times.times, inputs)
+            .ok()?;
+        let seen = self.apply_sensors(&times, sensors, &outputs.values);
+        let values = self.normalise_differences(window, &seen);
         (values.iter().all(|r| r.is_finite())).then_some(Residual {
             values,
-            last: outputs.last,
+            end_state: outputs.end_state,
         })
     }
 
     /// Returns the output times of the compared part of a window.
     pub fn output_times<'w>(&self, window: &'w Window) -> OutputTimes<'w> {
-        let samples = samples_in(window, self.part);
+        let samples = count_samples(window, self.fraction);
         self.output_rate.times(&window.times[..samples])
     }
 
     /// Returns the sensor outputs for the quantities of a window, a row per sample.
-    pub fn seen(&self, times: &OutputTimes<'_>, sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
-        let channels = self.channels();
+    pub fn apply_sensors(
+        &self,
+        times: &OutputTimes<'_>,
+        sensors: &SensorValues,
+        quantities: &[f64],
+    ) -> Vec<f64> {
+        let channels = self.channel_count();
         let samples = times.samples();
         let mut seen = vec![0.0; samples * channels];
         for channel in ChannelId::first(channels) {
@@ -213,19 +229,19 @@ impl<'a> Shooting<'a> {
     }
 
     /// Returns the differences from the measurements, in standard deviations.
-    pub(crate) fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
-        self.differences(window, seen, |seen, measured| seen - measured)
+    pub(crate) fn normalise_differences(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
+        self.map_differences(window, seen, |seen, measured| seen - measured)
     }
 
     /// Applies a function to sensor outputs and measurements, in standard deviations; 0 for samples
     /// that are not compared.
-    pub(crate) fn differences(
+    pub(crate) fn map_differences(
         &self,
         window: &Window,
         seen: &[f64],
         of: impl Fn(f64, f64) -> f64,
     ) -> Vec<f64> {
-        let channels = self.channels();
+        let channels = self.channel_count();
         let samples = seen.len() / channels;
         let inside = judged(samples);
         let pairs = seen.iter().zip(&window.measured).enumerate();
@@ -241,7 +257,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// Distributes consecutive windows over the threads and returns the results in order.
-    pub(crate) fn by_threads<T: Send>(
+    pub(crate) fn map_windows_in_parallel<T: Send>(
         &self,
         work: impl Fn(WindowRange) -> Vec<T> + Send + Sync,
     ) -> Vec<T> {
@@ -259,7 +275,7 @@ impl<'a> Shooting<'a> {
 }
 
 /// Returns the number of samples in a fraction of a window.
-pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
+pub(crate) fn count_samples(window: &Window, part: f64) -> usize {
     let count = window.times.len();
     ((part * count as f64) as usize).clamp(count.min(8), count)
 }

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::gauss_newton::Estimate;
-use crate::fit::information::information_factor;
+use crate::fit::information::compute_information_factor;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::Shooting;
@@ -14,29 +14,29 @@ use crate::fit::shooting::Shooting;
 #[derive(Clone, Copy)]
 pub(crate) struct Uncertainty {
     /// Part due to noise in the records.
-    pub by_noise: f64,
+    pub from_noise: f64,
     /// Part due to the priors of the unknowns, within which nuisances may vary.
-    pub by_priors: f64,
+    pub from_priors: f64,
 }
 
 impl Uncertainty {
     /// Returns the total standard deviation with the part due to noise multiplied by `wider`.
-    pub fn sd(self, wider: f64) -> f64 {
-        (wider * self.by_noise).hypot(self.by_priors)
+    pub fn combine(self, wider: f64) -> f64 {
+        (wider * self.from_noise).hypot(self.from_priors)
     }
 
     /// The larger of each part.
     fn max(self, other: Self) -> Self {
         Self {
-            by_noise: self.by_noise.max(other.by_noise),
-            by_priors: self.by_priors.max(other.by_priors),
+            from_noise: self.from_noise.max(other.from_noise),
+            from_priors: self.from_priors.max(other.from_priors),
         }
     }
 }
 
 /// Returns the uncertainty of each unknown: the largest over several approximations of the
 /// derivatives.
-pub(crate) fn uncertainties(
+pub(crate) fn compute_uncertainties(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     found: &Estimate,
@@ -56,7 +56,7 @@ fn by_derivatives(
     found: &Estimate,
     linear: &[Option<WindowDerivatives>],
 ) -> Vec<Uncertainty> {
-    let factor = information_factor(shooting, prior, &found.initial_states, linear);
+    let factor = compute_information_factor(shooting, prior, &found.initial_states, linear);
     let weights = shooting.unknowns.iter().map(|unknown| {
         let of = |sd: f64| shooting.prior_weight / (sd * sd);
         unknown.prior.map_or(0.0, |prior| of(prior.sd))
@@ -76,13 +76,13 @@ fn uncertainty(factor: &DMatrix<f64>, weights: &DVector<f64>, column: usize) -> 
     let covariances = half.as_ref().and_then(|v| factor.solve_upper_triangular(v));
     let (Some(half), Some(covariances)) = (half, covariances) else {
         return Uncertainty {
-            by_noise: f64::INFINITY,
-            by_priors: f64::INFINITY,
+            from_noise: f64::INFINITY,
+            from_priors: f64::INFINITY,
         };
     };
     let by_priors = covariances.component_mul(&covariances).dot(weights);
     Uncertainty {
-        by_noise: (half.norm_squared() - by_priors).max(0.0).sqrt(),
-        by_priors: by_priors.sqrt(),
+        from_noise: (half.norm_squared() - by_priors).max(0.0).sqrt(),
+        from_priors: by_priors.sqrt(),
     }
 }

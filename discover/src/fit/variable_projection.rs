@@ -17,7 +17,7 @@ pub struct ReducedBlock {
 }
 
 /// Eliminates the initial state of a window.
-pub fn reduced_block(
+pub fn eliminate_initial_state(
     linear: &WindowDerivatives,
     prior: &InitialStatePrior,
     window: WindowId,
@@ -40,7 +40,7 @@ pub fn reduced_block(
         .view_mut((0, states + unknowns), (rows, 1))
         .copy_from(&linear.residual);
     if let Some(mean) = prior.mean.get(window.index()) {
-        let weights = prior.rows(window);
+        let weights = prior.deviation_rows(window);
         if states > 0 {
             matrix
                 .view_mut((rows, 0), (states, states))
@@ -60,7 +60,7 @@ pub fn reduced_block(
 
 impl ReducedBlock {
     /// Returns the columns of unknowns and residual after the elimination.
-    pub fn unknowns(&self) -> DMatrix<f64> {
+    pub fn reduced_columns(&self) -> DMatrix<f64> {
         let remaining = self.factor.ncols() - self.states;
         self.factor
             .view((self.states, self.states), (remaining, remaining))
@@ -69,7 +69,7 @@ impl ReducedBlock {
 
     /// Returns the step of the initial state for a step of the unknowns, with a damping in weights
     /// of its prior.
-    pub fn initial_state_step(
+    pub fn solve_initial_state_step(
         &self,
         unknowns: &DVector<f64>,
         damping: f64,
@@ -121,7 +121,7 @@ impl StateProjection {
             .copy_from(&linear.by_state);
         let mut prior_residual = DVector::zeros(states);
         if let Some(mean) = prior.mean.get(window.index()) {
-            let weights = prior.rows(window);
+            let weights = prior.deviation_rows(window);
             if states > 0 {
                 let deviation = DVector::from_fn(states, |state, _| start[state] - mean[state]);
                 by_state
@@ -139,7 +139,7 @@ impl StateProjection {
     }
 
     /// Returns the products of columns, the residual last, after the elimination.
-    pub fn products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn compute_products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, count) = columns.shape();
         let states = self.by_state.ncols();
         let mut whole = columns.transpose() * columns;
@@ -156,7 +156,7 @@ impl StateProjection {
     }
 
     /// Returns the part of a residual that the initial state cannot remove.
-    pub fn projected(&self, residual: &DVector<f64>) -> DVector<f64> {
+    pub fn project(&self, residual: &DVector<f64>) -> DVector<f64> {
         let (rows, states) = (residual.len(), self.by_state.ncols());
         if states == 0 {
             return residual.clone();
@@ -170,7 +170,7 @@ impl StateProjection {
 }
 
 /// Returns the triangular factor of two stacked blocks of rows.
-pub fn triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn compute_triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     let columns = a.ncols();
     let mut both = DMatrix::zeros((a.nrows() + b.nrows()).max(columns), columns);
     both.view_mut((0, 0), a.shape()).copy_from(a);

@@ -26,8 +26,8 @@ const FACTORS: [(f64, &str, &str); 6] = [
 
 /// Returns a description of a factor between two units, relative to `expected`; `None` for other
 /// factors.
-pub(crate) fn factor_of_units(factor: f64, expected: &str) -> Option<String> {
-    let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::AGREES;
+pub(crate) fn describe_unit_factor(factor: f64, expected: &str) -> Option<String> {
+    let is_near = |unit: f64| (factor / unit - 1.0).abs() < thresholds::FACTOR_TOLERANCE;
     let (_, times, as_units) = FACTORS.iter().find(|(unit, _, _)| is_near(*unit))?;
     Some(format!("{times} {expected}{as_units}"))
 }
@@ -37,18 +37,18 @@ pub(crate) fn factor_of_units(factor: f64, expected: &str) -> Option<String> {
 /// # Errors
 ///
 /// A column with a wrong name.
-pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
+pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let record = &problem.dataset.train[0];
-    let Ok(model) = problem.model(text, None) else {
+    let Ok(model) = problem.compile_model(text, None) else {
         return Ok(notes);
     };
-    let first = problem.first_state(&model, record);
+    let first = problem.estimate_first_state(&model, record);
     let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
     let times = &record.times[..samples];
     let run = model
-        .simulation(&model.values)
-        .and_then(|mut simulation| simulation.outputs(&first, times, &record.inputs));
+        .create_simulation(&model.values)
+        .and_then(|mut simulation| simulation.simulate_outputs(&first, times, &record.inputs));
     // A model that cannot be run so far is tested by its fit.
     let Ok(run) = run else { return Ok(notes) };
     let channels = &problem.dataset.channels;
@@ -68,7 +68,8 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
                 format!("channel `{}`: {message}", channel.name),
             ))
         };
-        if own.correlation < -thresholds::FOLLOWS && (own.factor + 1.0).abs() < thresholds::NEAR_ONE
+        if own.correlation < -thresholds::MIN_SAME_CORRELATION
+            && (own.factor + 1.0).abs() < thresholds::UNIT_FACTOR_TOLERANCE
         {
             return refuse(
                 "its column has the opposite sign of the model; change the sign of the column or of the \
@@ -76,19 +77,19 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
                     .to_owned(),
             );
         }
-        if own.correlation > thresholds::FOLLOWS {
-            if let Some(words) = factor_of_units(own.factor, "the expected value") {
+        if own.correlation > thresholds::MIN_SAME_CORRELATION {
+            if let Some(words) = describe_unit_factor(own.factor, "the expected value") {
                 return refuse(format!("its column is {words}; check its unit"));
             }
-            if (own.factor - 1.0).abs() < thresholds::NEAR_ONE {
+            if (own.factor - 1.0).abs() < thresholds::UNIT_FACTOR_TOLERANCE {
                 continue;
             }
         }
         for (other, instead) in channels.iter().enumerate() {
             let swapped = Correspondence::of(times, &expected[other], measured, channel.noise);
             if other != own_index
-                && swapped.correlation > thresholds::FOLLOWS
-                && (swapped.factor - 1.0).abs() < thresholds::AGREES
+                && swapped.correlation > thresholds::MIN_SAME_CORRELATION
+                && (swapped.factor - 1.0).abs() < thresholds::FACTOR_TOLERANCE
             {
                 return refuse(format!(
                     "its column matches the expected values of `{}`; check if columns are exchanged",
@@ -96,7 +97,7 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
                 ));
             }
         }
-        if own.correlation.abs() < thresholds::ASTRAY && own.shows {
+        if own.correlation.abs() < thresholds::MAX_WRONG_CORRELATION && own.shows {
             notes.push(format!(
                 "{}: `{}` does not follow the model (correlation {:.2}); check its column and those of the \
                  inputs",
@@ -135,7 +136,8 @@ impl Correspondence {
         let (a, b) = (of(expected), of(measured));
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let (aa, ab, bb) = (dot(&a, &a), dot(&a, &b), dot(&b, &b));
-        let shows = (bb / known.len() as f64).sqrt() > thresholds::CHECKED_MOTION * noise;
+        let shows =
+            (bb / known.len() as f64).sqrt() > thresholds::MIN_CHECKED_MOTION_IN_NOISE * noise;
         if !(shows && aa > 0.0 && ab.is_finite()) {
             return none;
         }
@@ -160,11 +162,11 @@ fn without_line(pairs: &[(f64, f64)]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Correspondence, factor_of_units, without_line};
+    use super::{Correspondence, describe_unit_factor, without_line};
 
     #[test]
     fn a_factor_between_units_is_known_and_no_other() {
-        let words = |factor: f64| factor_of_units(factor, "that");
+        let words = |factor: f64| describe_unit_factor(factor, "that");
         assert_eq!(words(998.5).as_deref(), Some("a thousand times that"));
         assert_eq!(
             words(0.01742).as_deref(),

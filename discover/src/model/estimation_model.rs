@@ -20,7 +20,7 @@ use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::observed_rates::add_observed_rates;
 use crate::model::output_times::OutputRate;
 use crate::model::simulation::Simulation;
-use crate::model::stop::Stop;
+use crate::model::stop::StopRequest;
 use crate::model::unknowns::ExpectedSensor;
 use crate::thresholds;
 use eomgen_records::dataset::Channel;
@@ -53,7 +53,7 @@ pub struct EstimationModel {
     sample: f64,
     refinement: f64,
     /// Stop request of its simulations.
-    pub(crate) stop: Stop,
+    pub(crate) stop: StopRequest,
 }
 
 /// Differences between Runge-Kutta steps of one length and of half of it are so many times the error of
@@ -82,14 +82,14 @@ impl EstimationModel {
     /// # Errors
     ///
     /// An invalid text.
-    pub fn of(
+    pub fn derive(
         text: &str,
         linear: Option<&str>,
         name: &str,
         order: Option<usize>,
         channels: &[Channel],
     ) -> Result<Self, Error> {
-        let mut model = Self::equations(text, name, order, channels)?;
+        let mut model = Self::derive_equations(text, name, order, channels)?;
         model.linear = match (model.compiled.piecewise_linear(), linear) {
             (Ok(_), _) => Some(LinearPart::Whole),
             (Err(_), Some(linear)) => linear_part(linear, name, order, &model),
@@ -103,7 +103,7 @@ impl EstimationModel {
     /// # Errors
     ///
     /// As [`EstimationModel::of`].
-    pub fn equations(
+    pub fn derive_equations(
         text: &str,
         name: &str,
         order: Option<usize>,
@@ -127,7 +127,7 @@ impl EstimationModel {
                 .collect(),
             sensors: channels
                 .iter()
-                .map(|channel| ExpectedSensor::of(channel, compiled.model()))
+                .map(|channel| ExpectedSensor::from_channel(channel, compiled.model()))
                 .collect(),
             parameters,
             values: program.default_parameters(),
@@ -137,13 +137,13 @@ impl EstimationModel {
             longest_step: None,
             sample: 0.0,
             refinement: 1.0,
-            stop: Stop::default(),
+            stop: StopRequest::default(),
             compiled,
         })
     }
 
     /// Moves a state into the domain of the model.
-    pub fn admissible(&self, mut state: Vec<f64>) -> Vec<f64> {
+    pub fn clamp_state(&self, mut state: Vec<f64>) -> Vec<f64> {
         for (entry, range) in state.iter_mut().zip(&self.ranges) {
             if let Some((low, high)) = range {
                 *entry = entry.clamp(*low, *high);
@@ -153,7 +153,7 @@ impl EstimationModel {
     }
 
     /// Converts a state of another model to this one. States that exist only in this model are 0.
-    pub fn mapped(&self, other: &Self, state: &[f64]) -> Vec<f64> {
+    pub fn map_state(&self, other: &Self, state: &[f64]) -> Vec<f64> {
         let value = |name: &String| {
             let index = other.states.iter().position(|known| known == name);
             index.map_or(0.0, |index| state[index])
@@ -162,7 +162,7 @@ impl EstimationModel {
     }
 
     /// Returns true if a state is in the domain of the model.
-    pub fn admits(&self, state: &[f64]) -> bool {
+    pub fn is_admissible(&self, state: &[f64]) -> bool {
         let ranged = state.iter().zip(&self.ranges);
         ranged
             .filter_map(|(entry, range)| Some((entry, (*range)?)))
@@ -190,20 +190,20 @@ impl EstimationModel {
     }
 
     /// Returns the index of an independent parameter.
-    pub fn parameter(&self, name: &str) -> Option<ParameterId> {
+    pub fn find_parameter(&self, name: &str) -> Option<ParameterId> {
         let index = self.parameters.iter().position(|known| known == name)?;
         Some(ParameterId::new(index))
     }
 
     /// Sets the value of an independent parameter, SI.
-    pub fn set(&self, values: &mut [f64], parameter: &str, value: f64) {
-        if let Some(parameter) = self.parameter(parameter) {
+    pub fn set_value(&self, values: &mut [f64], parameter: &str, value: f64) {
+        if let Some(parameter) = self.find_parameter(parameter) {
             values[parameter.index()] = value;
         }
     }
 
     /// Returns the index of a measured channel.
-    pub fn channel(&self, name: &str) -> Option<ChannelId> {
+    pub fn find_channel(&self, name: &str) -> Option<ChannelId> {
         let index = self.channels.iter().position(|channel| channel == name)?;
         Some(ChannelId::new(index))
     }
@@ -225,7 +225,7 @@ impl EstimationModel {
     }
 
     /// Returns the initial state of the specification.
-    pub fn initial(&self) -> Vec<f64> {
+    pub fn initial_state(&self) -> Vec<f64> {
         let given = self.compiled.model().initial_state(self.compiled.orders());
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
@@ -254,19 +254,21 @@ impl EstimationModel {
             } else {
                 model.longest_step = Some(LongestStep(model.sample / f64::from(1 << doubling)));
             }
-            let mut simulation = model.simulation(&model.values).ok()?;
-            if has_linear_part && !simulation.is_integrated() {
+            let mut simulation = model.create_simulation(&model.values).ok()?;
+            if has_linear_part && !simulation.uses_integrator() {
                 return None;
             }
-            let outputs = simulation.outputs(initial, times, &record.inputs).ok()?;
+            let outputs = simulation
+                .simulate_outputs(initial, times, &record.inputs)
+                .ok()?;
             Some(outputs.values)
         };
         let error = match has_linear_part {
-            true => thresholds::STEP_ERROR,
-            false => thresholds::SUMMED_STEP_ERROR * RUNGE_KUTTA_GAIN / numbers.sqrt(),
+            true => thresholds::MAX_STEP_ERROR,
+            false => thresholds::MAX_SUMMED_STEP_ERROR * RUNGE_KUTTA_GAIN / numbers.sqrt(),
         };
         let mut coarse = run(self, 0);
-        for doubling in 1..thresholds::MOST_STEP_DOUBLINGS {
+        for doubling in 1..thresholds::MAX_STEP_DOUBLINGS {
             let fine = run(self, doubling);
             let near = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
                 let pairs = coarse.iter().zip(fine).enumerate();
@@ -296,37 +298,37 @@ impl EstimationModel {
     /// # Errors
     ///
     /// Values at which the model cannot be simulated; [`SimulationError::Stopped`].
-    pub fn simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
+    pub fn create_simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
         if self.stop.is_requested() {
             return Err(SimulationError::Stopped);
         }
         let mut evaluator = self.compiled.evaluator(values);
         if !evaluator.pivots_are_positive() {
-            return Err(SimulationError::MassMatrix);
+            return Err(SimulationError::IndefiniteMassMatrix);
         }
         if !self.measured.inputs().is_empty() {
-            let given = GivenMotion::of(&evaluator, &self.measured);
-            let given = given.ok_or(SimulationError::NotGiven)?;
+            let given = GivenMotion::from_measured_inputs(&evaluator, &self.measured);
+            let given = given.ok_or(SimulationError::StateNotRecorded)?;
             let of = (&self.measured, self.typical_sizes());
             let mut simulation = Simulation::new(of, evaluator, None, None);
             simulation.stop = self.stop.clone();
-            simulation.give(given);
+            simulation.use_given_motion(given);
             return Ok(simulation);
         }
-        let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
+        let linear_outputs = LinearOutputs::linearise_outputs(&self.measured, &mut evaluator);
         let longest_step = self.longest_step;
         let of = (&self.measured, self.typical_sizes());
         let mut simulation = Simulation::new(of, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
         if self.measured.has_rates() {
             // What cannot be derived with sides is not held either.
-            simulation.measure_at_rest(self.compiled.sided(values).ok().flatten());
+            simulation.measure_sticking(self.compiled.sided(values).ok().flatten());
         }
         let (linear, own) = match &self.linear {
             None => {
                 // What cannot be derived with sides was derived without: it is followed without.
                 if let Ok(Some(sided)) = self.compiled.sided(values) {
-                    simulation.hold(sided);
+                    simulation.use_sticking(sided);
                 }
                 return Ok(simulation);
             }
@@ -345,19 +347,19 @@ impl EstimationModel {
         match (integrator, self.is_linear()) {
             // A part that moves that much faster than the samples show is no longer seen to move.
             (Err(NotIntegrated::Steps(steps)), _)
-                if steps.is_nan() || steps > thresholds::MOST_PARTS =>
+                if steps.is_nan() || steps > thresholds::MAX_PARTS_PER_STEP =>
             {
                 return Err(SimulationError::TooFast);
             }
             (Err(_), true) => {
                 let exact = exact.at(values).map_err(SimulationError::Propagator)?;
-                simulation.propagate(exact);
+                simulation.use_propagator(exact);
             }
-            (Ok(integrator), true) => simulation.integrate(integrator, None),
+            (Ok(integrator), true) => simulation.use_integrator(integrator, None),
             (Ok(integrator), false) => {
                 let whole = self.compiled.evaluator(values);
                 let remainder = NonlinearRemainder::new(whole, linear.evaluator(&own));
-                simulation.integrate(integrator, Some(remainder));
+                simulation.use_integrator(integrator, Some(remainder));
             }
             (Err(_), false) => {}
         }
@@ -365,13 +367,13 @@ impl EstimationModel {
     }
 
     /// Creates an evaluator of the equations at these parameter values.
-    pub(crate) fn evaluator(&self, values: &[f64]) -> Evaluator {
+    pub(crate) fn create_evaluator(&self, values: &[f64]) -> Evaluator {
         self.compiled.evaluator(values)
     }
 
     /// Returns the measured outputs as linear functions of the state, if they are linear.
-    pub(crate) fn linear_outputs(&self, values: &[f64]) -> Option<LinearOutputs> {
-        LinearOutputs::of(&self.measured, &mut self.evaluator(values))
+    pub(crate) fn derive_linear_outputs(&self, values: &[f64]) -> Option<LinearOutputs> {
+        LinearOutputs::linearise_outputs(&self.measured, &mut self.create_evaluator(values))
     }
 }
 
@@ -392,7 +394,7 @@ fn linear_part(
         return None;
     }
     let own = part.piecewise_linear().ok()?.parameters();
-    let parameters = own.iter().map(|name| model.parameter(name));
+    let parameters = own.iter().map(|name| model.find_parameter(name));
     let parameters = parameters.collect::<Option<Vec<ParameterId>>>()?;
     Some(LinearPart::Part(Box::new(LinearTerms {
         parameters,
@@ -423,8 +425,9 @@ masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
 
     #[test]
     fn an_initial_state_stays_where_the_model_lives() {
-        let model = EstimationModel::equations(SPEAKER, "speaker", None, &[]).expect("a model");
-        let moved = |x: f64| model.admissible(vec![9.0, x, 9.0, 9.0]);
+        let model =
+            EstimationModel::derive_equations(SPEAKER, "speaker", None, &[]).expect("a model");
+        let moved = |x: f64| model.clamp_state(vec![9.0, x, 9.0, 9.0]);
         assert_eq!(moved(0.02), [9.0, 0.005, 9.0, 9.0]);
         assert_eq!(moved(-0.02), [9.0, -0.005, 9.0, 9.0]);
         assert_eq!(moved(0.002), [9.0, 0.002, 9.0, 9.0]);

@@ -11,13 +11,13 @@ use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
 
 /// Estimates the first state of a record.
-pub fn first_state(
+pub fn estimate_first_state(
     model: &EstimationModel,
     record: &Record,
     channels: &[Channel],
     initial: &Initial,
 ) -> Vec<f64> {
-    let mut state = model.initial();
+    let mut state = model.initial_state();
     match initial {
         // What is known of the beginning does not hold later.
         _ if record.is_continued => measured(model, record, channels, state),
@@ -59,7 +59,7 @@ fn measured(
         }
     }
     // Noise may put what is measured beyond where the model lives.
-    model.admissible(state)
+    model.clamp_state(state)
 }
 
 /// The parabola through a column's first samples at the first time: value and slope. A line
@@ -67,7 +67,7 @@ fn measured(
 fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
     let points: Vec<(f64, f64)> = (times.iter().zip(column))
         .filter(|(_, value)| value.is_finite())
-        .take(thresholds::FIRST_SAMPLES)
+        .take(thresholds::INITIAL_SLOPE_SAMPLES)
         .map(|(t, value)| (t - times[0], *value))
         .collect();
     let Some(span) = points.last().map(|(t, _)| *t).filter(|span| *span > 0.0) else {
@@ -84,14 +84,14 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
 /// Returns the range of each state in the motion due to the recorded inputs, SI: the RMS about the
 /// mean. `values`: parameters of the model, which may have a strong influence; `noise`: standard
 /// deviation of each channel, SI.
-pub fn ranges(
+pub fn compute_state_ranges(
     model: &EstimationModel,
     values: &[f64],
     records: &[Record],
     initial: &[f64],
     noise: &[f64],
 ) -> Vec<f64> {
-    let Ok(mut simulation) = model.simulation(values) else {
+    let Ok(mut simulation) = model.create_simulation(values) else {
         return vec![1.0; model.state_count()];
     };
     let moved = moved(&mut simulation, records, initial);
@@ -108,11 +108,13 @@ pub fn ranges(
 /// The range of each state in the records, or in the longest beginnings of them that can be followed; 0
 /// if it does not move.
 fn moved(simulation: &mut Simulation<'_>, records: &[Record], initial: &[f64]) -> Vec<f64> {
-    for halving in 0..=thresholds::MOST_HALVINGS {
+    for halving in 0..=thresholds::MAX_RECORD_HALVINGS {
         let motions = records.iter().filter_map(|record| {
             let count = record.times.len() >> halving;
             let times = &record.times[..count];
-            simulation.states(initial, times, &record.inputs).ok()
+            simulation
+                .simulate_states(initial, times, &record.inputs)
+                .ok()
         });
         // Every tenth sample is enough for a range.
         let states = motions.flat_map(|states| states.into_iter().step_by(10));
@@ -142,23 +144,32 @@ fn unmoved(
     state: usize,
 ) -> Option<f64> {
     let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLES)];
-    let own = simulation.outputs(initial, times, &record.inputs).ok()?;
+    let own = simulation
+        .simulate_outputs(initial, times, &record.inputs)
+        .ok()?;
     let mut moved_by = |size: f64| {
         let mut moved = initial.to_vec();
         moved[state] += size;
-        let moved = simulation.outputs(&moved, times, &record.inputs).ok()?;
+        let moved = simulation
+            .simulate_outputs(&moved, times, &record.inputs)
+            .ok()?;
         let pairs = moved.values.iter().zip(&own.values).enumerate();
         let squares = pairs.map(|(place, (a, b))| ((a - b) / noise[place % noise.len()]).powi(2));
         Some((squares.sum::<f64>() / own.values.len() as f64).sqrt())
     };
     let mut size = 1.0;
-    for _ in 0..thresholds::SIZE_ATTEMPTS {
+    for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
         let factor = match moved_by(size) {
-            Some(moved) if moved.is_finite() && moved > 0.0 => thresholds::UNMOVED_STATE / moved,
-            Some(0.0) => thresholds::SIZE_FACTOR,
+            Some(moved) if moved.is_finite() && moved > 0.0 => {
+                thresholds::UNMOVED_STATE_IN_NOISE / moved
+            }
+            Some(0.0) => thresholds::MAX_SIZE_FACTOR,
             _ => 1e-3,
         };
-        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
+        size *= factor.clamp(
+            1.0 / thresholds::MAX_SIZE_FACTOR,
+            thresholds::MAX_SIZE_FACTOR,
+        );
         if (0.5..2.0).contains(&factor) {
             return Some(size);
         }

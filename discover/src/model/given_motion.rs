@@ -22,7 +22,7 @@ pub(crate) struct GivenMotion {
 impl GivenMotion {
     /// Creates the given motion of a model with measured inputs; `None` if a state is missing in
     /// the records.
-    pub fn of(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
+    pub fn from_measured_inputs(evaluator: &Evaluator, measured: &MeasuredOutputs) -> Option<Self> {
         let program = evaluator.program();
         let (states, degrees) = (program.states(), program.degrees_of_freedom());
         let required = measured.inputs().to_vec();
@@ -35,7 +35,7 @@ impl GivenMotion {
     }
 
     /// Returns the state in a row of a record; `None` if the row is from another model.
-    pub fn state<'r>(&self, row: &'r [f64]) -> Option<&'r [f64]> {
+    pub fn state_of_row<'r>(&self, row: &'r [f64]) -> Option<&'r [f64]> {
         let is_own = row.len() == self.inputs + 3 * self.degrees;
         is_own.then(|| &row[self.inputs..self.inputs + 2 * self.degrees])
     }
@@ -43,8 +43,13 @@ impl GivenMotion {
     /// Returns the inputs at a row of a record, including the required ones, for which the model
     /// has the recorded second derivatives; `None` if there are none. Second derivatives are linear
     /// in most inputs, so that one Newton step suffices.
-    pub fn required(&mut self, evaluator: &mut Evaluator, t: f64, row: &[f64]) -> Option<Vec<f64>> {
-        let state = self.state(row)?;
+    pub fn solve_inputs(
+        &mut self,
+        evaluator: &mut Evaluator,
+        t: f64,
+        row: &[f64],
+    ) -> Option<Vec<f64>> {
+        let state = self.state_of_row(row)?;
         let given = &row[self.inputs + 2 * self.degrees..];
         let mut inputs = row[..self.inputs].to_vec();
         for MeasuredInput { place, .. } in &self.required {
@@ -57,11 +62,11 @@ impl GivenMotion {
         };
         let wanted = DVector::from_column_slice(given);
         let mut present = at(&inputs);
-        for _ in 0..thresholds::REQUIRED_STEPS {
+        for _ in 0..thresholds::MAX_INVERSE_DYNAMICS_STEPS {
             let mut columns = Vec::with_capacity(self.degrees);
             for MeasuredInput { place, noise } in &self.required {
                 let here = inputs[*place];
-                let size = noise.max(thresholds::REQUIRED_QUOTIENT * here.abs());
+                let size = noise.max(thresholds::MIN_INVERSE_DYNAMICS_QUOTIENT * here.abs());
                 inputs[*place] = here + size;
                 columns.push((at(&inputs) - &present) / size);
                 inputs[*place] = here;
@@ -79,7 +84,8 @@ impl GivenMotion {
             let sizes = wanted.abs() + left.abs() + matrix.abs() * applied;
             let missed = (&wanted - &present).abs();
             let mut pairs = missed.iter().zip(&sizes);
-            if pairs.all(|(missed, size)| *missed <= thresholds::REQUIRED_ERROR * size) {
+            if pairs.all(|(missed, size)| *missed <= thresholds::MAX_INVERSE_DYNAMICS_ERROR * size)
+            {
                 return Some(inputs);
             }
         }
@@ -129,9 +135,11 @@ second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
     #[test]
     fn inputs_that_move_a_model_are_found_again() {
         let channels = [channel("v", 1), channel("u", 0)];
-        let model = EstimationModel::equations(ARM, "arm", None, &channels).expect("a model");
-        let mut evaluator = model.evaluator(&model.values);
-        let mut given = GivenMotion::of(&evaluator, &model.measured).expect("a motion");
+        let model =
+            EstimationModel::derive_equations(ARM, "arm", None, &channels).expect("a model");
+        let mut evaluator = model.create_evaluator(&model.values);
+        let mut given =
+            GivenMotion::from_measured_inputs(&evaluator, &model.measured).expect("a motion");
         for turn in 0..50 {
             let number = |k: i32| 2.0 * f64::from(k + 7 * turn).sin();
             let inputs = [number(1), number(2)];
@@ -144,7 +152,9 @@ second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
             };
             evaluator.rates(point, &mut rates);
             let row = [&[9.0, 9.0], &state[..], &rates[2..]].concat();
-            let found = given.required(&mut evaluator, 0.0, &row).expect("inputs");
+            let found = given
+                .solve_inputs(&mut evaluator, 0.0, &row)
+                .expect("inputs");
             for (found, wanted) in found.iter().zip(inputs) {
                 assert!((found - wanted).abs() < 1e-7, "{found} {wanted}");
             }
@@ -157,7 +167,14 @@ second = { on = "q", value = "v*(2 + sin(v/k)/2)" }
             + "[states]\nF = { unit = \"N*m\", rate = \"(u - F)*w\" }\n";
         let late = late.replace("k = {", "w = { value = 3, unit = \"1/s\" }\nk = {");
         let channels = [channel("v", 1), channel("u", 0)];
-        let model = EstimationModel::equations(&late, "arm", None, &channels).expect("a model");
-        assert!(GivenMotion::of(&model.evaluator(&model.values), &model.measured).is_none());
+        let model =
+            EstimationModel::derive_equations(&late, "arm", None, &channels).expect("a model");
+        assert!(
+            GivenMotion::from_measured_inputs(
+                &model.create_evaluator(&model.values),
+                &model.measured
+            )
+            .is_none()
+        );
     }
 }

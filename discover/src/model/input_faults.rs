@@ -9,10 +9,10 @@ use eomgen_model_spec::model::Input;
 use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::{Expected, InputPriors};
 
-use crate::model::input_places::in_the_place_of;
+use crate::model::input_occurrences::replace_input;
 
 /// Effect name of an input with an additional delay.
-pub const INPUT_DELAY: &str = "input_delay";
+pub const INPUT_DELAY_EFFECT: &str = "input_delay";
 
 /// Error of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ impl InputFault {
     pub const ALL: [Self; 2] = [Self::Gain, Self::Bias];
 
     /// Returns the name of the error.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Gain => "gain",
             Self::Bias => "bias",
@@ -37,7 +37,7 @@ impl InputFault {
 
     /// Returns the name of the effect, used if the error exceeds its declared prior or none is
     /// declared.
-    pub fn effect(self) -> &'static str {
+    pub fn effect_name(self) -> &'static str {
         match self {
             Self::Gain => "input_gain",
             Self::Bias => "input_bias",
@@ -45,7 +45,7 @@ impl InputFault {
     }
 
     /// Returns the value without an error.
-    pub fn absent(self) -> f64 {
+    pub fn neutral_value(self) -> f64 {
         match self {
             Self::Gain => 1.0,
             Self::Bias => 0.0,
@@ -53,12 +53,12 @@ impl InputFault {
     }
 
     /// Returns the name of the parameter in the specification.
-    pub fn parameter(self, input: &str) -> String {
-        format!("{input}_{}", self.word())
+    pub fn parameter_name(self, input: &str) -> String {
+        format!("{input}_{}", self.name())
     }
 
     /// Returns the unit of the parameter.
-    pub fn unit(self, input: &Input) -> String {
+    pub fn parameter_unit(self, input: &Input) -> String {
         match self {
             Self::Gain => "1".to_owned(),
             Self::Bias => input.unit.text.clone(),
@@ -66,13 +66,13 @@ impl InputFault {
     }
 
     /// Returns a description of the parameter.
-    pub fn doc(self, input: &str) -> String {
-        format!("{} of the input {input}", self.word())
+    pub fn describe_parameter(self, input: &str) -> String {
+        format!("{} of the input {input}", self.name())
     }
 
     /// Returns the expression that replaces an input.
-    pub fn acting(self, input: &str) -> String {
-        let parameter = self.parameter(input);
+    pub fn write_expression(self, input: &str) -> String {
+        let parameter = self.parameter_name(input);
         match self {
             Self::Gain => format!("{parameter}*{input}"),
             Self::Bias => format!("{input} + {parameter}"),
@@ -88,7 +88,7 @@ impl InputFault {
 }
 
 /// Returns input, error and prior for a parameter that represents a declared error of an input.
-pub fn declared<'p>(
+pub fn find_declared<'p>(
     inputs: &'p [InputPriors],
     parameter: &str,
 ) -> Option<(&'p str, InputFault, Expected)> {
@@ -97,11 +97,11 @@ pub fn declared<'p>(
         faults.filter_map(move |fault| Some((input.name.as_str(), fault, fault.prior(input)?)))
     });
     let mut all = all;
-    all.find(|(input, fault, _)| fault.parameter(input) == parameter)
+    all.find(|(input, fault, _)| fault.parameter_name(input) == parameter)
 }
 
 /// Returns the input with a declared delay and the prior of the delay.
-pub fn delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
+pub fn find_delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
     let mut delayed = inputs.iter();
     delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
 }
@@ -112,7 +112,11 @@ pub fn delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
 /// # Errors
 ///
 /// An input that cannot be replaced in the text.
-pub fn with_declared(text: &str, path: &str, inputs: &[InputPriors]) -> Result<String, EditError> {
+pub fn add_declared_faults(
+    text: &str,
+    path: &str,
+    inputs: &[InputPriors],
+) -> Result<String, EditError> {
     let mut text = text.to_owned();
     for priors in inputs {
         for fault in InputFault::ALL {
@@ -124,12 +128,12 @@ pub fn with_declared(text: &str, path: &str, inputs: &[InputPriors]) -> Result<S
                 // What is wrong with a text is said where it is derived.
                 return Ok(text);
             };
-            let (model, name) = (&checked.model, fault.parameter(&priors.name));
+            let (model, name) = (&checked.model, fault.parameter_name(&priors.name));
             let mut declared = model.inputs.iter();
             let Some(input) = declared.find(|input| input.name == priors.name) else {
                 continue;
             };
-            let doc = fault.doc(&priors.name);
+            let doc = fault.describe_parameter(&priors.name);
             // One of that name that is something else is refused as taken.
             let mut known = model.parameters.iter();
             if known.any(|known| known.name == name && known.doc == doc) {
@@ -137,15 +141,15 @@ pub fn with_declared(text: &str, path: &str, inputs: &[InputPriors]) -> Result<S
             }
             let mut edits = vec![Edit::AddParameter(NewParameter {
                 name,
-                value: NewValue::Number(expected.mean.unwrap_or(fault.absent())),
-                unit: fault.unit(input),
+                value: NewValue::Number(expected.mean.unwrap_or(fault.neutral_value())),
+                unit: fault.parameter_unit(input),
                 doc,
                 source: String::new(),
             })];
-            edits.extend(in_the_place_of(
+            edits.extend(replace_input(
                 model,
                 &priors.name,
-                &fault.acting(&priors.name),
+                &fault.write_expression(&priors.name),
             ));
             text = edit::apply(&source, &edits)?;
         }

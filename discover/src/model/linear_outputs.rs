@@ -17,7 +17,10 @@ impl LinearOutputs {
     /// Returns the outputs at the parameters of an evaluator; `None` if they are nonlinear or
     /// depend on more than the state. Measured inputs and accelerations are excluded: a force
     /// changes them at once.
-    pub(crate) fn of(outputs: &MeasuredOutputs, evaluator: &mut Evaluator) -> Option<Self> {
+    pub(crate) fn linearise_outputs(
+        outputs: &MeasuredOutputs,
+        evaluator: &mut Evaluator,
+    ) -> Option<Self> {
         if outputs.has_rates() || !outputs.inputs().is_empty() {
             return None;
         }
@@ -29,7 +32,7 @@ impl LinearOutputs {
         }
         let n = evaluator.program().states();
         let inputs = vec![0.0; evaluator.program().inputs.len()];
-        let mut buffers = outputs.buffers();
+        let mut buffers = outputs.create_buffers();
         let mut quantities = |state: &[f64]| -> Vec<f64> {
             let mut values = Vec::with_capacity(outputs.count());
             let (t, inputs) = (0.0, &inputs[..]);
@@ -107,9 +110,9 @@ flow = "sqrt(1 - p/p_s)"
             noise: 1e-3,
             priors: TransducerPriors::default(),
         };
-        let model = EstimationModel::equations(CYLINDER, "cylinder", None, &[channel]);
+        let model = EstimationModel::derive_equations(CYLINDER, "cylinder", None, &[channel]);
         let model = model.expect("a model");
-        model.linear_outputs(&model.values)
+        model.derive_linear_outputs(&model.values)
     }
 
     #[test]

@@ -9,8 +9,8 @@ pub(crate) struct LongestStep(pub f64);
 impl LongestStep {
     /// Returns the number of steps for an interval, s. A small delay of a sample needs no further
     /// step.
-    pub fn steps(self, time: f64) -> usize {
-        let steps = (time / self.0 - thresholds::JITTER).ceil();
+    pub fn count_steps(self, time: f64) -> usize {
+        let steps = (time / self.0 - thresholds::SAMPLING_JITTER).ceil();
         steps.max(1.0) as usize
     }
 }
@@ -22,10 +22,10 @@ mod tests {
     #[test]
     fn a_time_of_many_samples_has_as_many_steps_as_they() {
         let longest = LongestStep(0.005);
-        assert_eq!(longest.steps(0.005), 1);
-        assert_eq!(longest.steps(0.00502), 1);
-        assert_eq!(longest.steps(0.0001), 1);
-        assert_eq!(longest.steps(0.01), 2);
-        assert_eq!(longest.steps(1.5), 300);
+        assert_eq!(longest.count_steps(0.005), 1);
+        assert_eq!(longest.count_steps(0.00502), 1);
+        assert_eq!(longest.count_steps(0.0001), 1);
+        assert_eq!(longest.count_steps(0.01), 2);
+        assert_eq!(longest.count_steps(1.5), 300);
     }
 }

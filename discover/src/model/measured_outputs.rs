@@ -26,7 +26,7 @@ pub(crate) struct ObservedAcceleration {
     /// Index of the derivative.
     pub place: usize,
     /// Index of the differentiated observable, which contains rates.
-    pub of: usize,
+    pub observable: usize,
 }
 
 /// A measured input.
@@ -39,7 +39,7 @@ pub(crate) struct MeasuredInput {
 }
 
 /// Work arrays for values other than states.
-pub(crate) struct Buffers {
+pub(crate) struct OutputBuffers {
     observables: Vec<f64>,
     rates: Vec<f64>,
     /// Sticking surfaces of the motion, if any; evaluation with sign(0) = 0 does not show them.
@@ -115,8 +115,8 @@ impl MeasuredOutputs {
     }
 
     /// Creates the work arrays for [`MeasuredOutputs::append`].
-    pub fn buffers(&self) -> Buffers {
-        Buffers {
+    pub fn create_buffers(&self) -> OutputBuffers {
+        OutputBuffers {
             observables: vec![0.0; self.observables],
             rates: vec![0.0; if self.has_rates() { self.states } else { 0 }],
             rest: None,
@@ -149,7 +149,10 @@ impl MeasuredOutputs {
         for (value, output) in row.iter_mut().zip(&self.outputs) {
             match (output, &ends) {
                 (Output::Rate(state), _) => *value += changes[state - degrees],
-                (Output::Acceleration(ObservedAcceleration { of, .. }), Some([after, before])) => {
+                (
+                    Output::Acceleration(ObservedAcceleration { observable: of, .. }),
+                    Some([after, before]),
+                ) => {
                     *value += (after[*of] - before[*of]) / (2.0 * over);
                 }
                 _ => {}
@@ -162,7 +165,7 @@ impl MeasuredOutputs {
         &self,
         evaluator: &mut Evaluator,
         point: Point<'_>,
-        buffers: &mut Buffers,
+        buffers: &mut OutputBuffers,
         values: &mut Vec<f64>,
     ) {
         let is_observable =

@@ -12,7 +12,7 @@ pub mod estimation_model;
 pub mod first_state;
 pub(crate) mod given_motion;
 pub mod input_faults;
-pub mod input_places;
+pub mod input_occurrences;
 pub mod linear_outputs;
 pub(crate) mod longest_step;
 pub(crate) mod measured_outputs;

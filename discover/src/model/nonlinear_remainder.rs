@@ -131,7 +131,7 @@ mod tests {
             is_continued: false,
         };
         let mut integrated =
-            EstimationModel::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
+            EstimationModel::derive(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
         let mut initial = vec![0.0; integrated.state_count()];
         initial[0] = 60e-6;
         integrated.choose_steps(&record, &initial, &[1e-7], 400.0, OutputRate::SAMPLES);
@@ -141,11 +141,14 @@ mod tests {
     #[test]
     fn teeth_touch_where_the_whole_model_says() {
         let (integrated, with, record, channels, initial) = integrated();
-        let solved = EstimationModel::equations(&with, "rig", Some(4), &channels).expect("a model");
+        let solved =
+            EstimationModel::derive_equations(&with, "rig", Some(4), &channels).expect("a model");
         let states = |model: &EstimationModel| {
-            let mut simulation = model.simulation(&model.values).expect("a simulation");
-            let found = simulation.states(&initial, &record.times, &record.inputs);
-            (simulation.carries_tangents(), found.expect("a motion"))
+            let mut simulation = model
+                .create_simulation(&model.values)
+                .expect("a simulation");
+            let found = simulation.simulate_states(&initial, &record.times, &record.inputs);
+            (simulation.has_tangents(), found.expect("a motion"))
         };
         let ((carries_tangents, found), (_, wanted)) = (states(&integrated), states(&solved));
         assert!(carries_tangents);
@@ -162,7 +165,7 @@ mod tests {
     fn neighbours_feel_what_is_beyond_the_linear_part() {
         let (integrated, _, record, _, initial) = integrated();
         let mut simulation = integrated
-            .simulation(&integrated.values)
+            .create_simulation(&integrated.values)
             .expect("a simulation");
         // The teeth touch once and part before the third sample.
         let times = &record.times[..4];
@@ -171,7 +174,7 @@ mod tests {
             drives: &mut Free,
         };
         let found = simulation
-            .linearised(&initial, times, &record.inputs, (true, 0), free)
+            .simulate_with_tangents(&initial, times, &record.inputs, (true, 0), free)
             .expect("tangents");
         let count = initial.len();
         for (state, tangent) in found.by_state[3 * count..].iter().enumerate() {
@@ -179,7 +182,7 @@ mod tests {
             let [more, less] = [size, -size].map(|change| {
                 let mut moved = initial.clone();
                 moved[state] += change;
-                let states = simulation.states(&moved, times, &record.inputs);
+                let states = simulation.simulate_states(&moved, times, &record.inputs);
                 states.expect("a motion")[3][0]
             });
             let quotient = (more - less) / (2.0 * size);

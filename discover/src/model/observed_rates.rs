@@ -28,7 +28,10 @@ fn add(model: &mut Model, rate: ObservedRate) -> Output {
             times: 1,
         }),
     };
-    Output::Acceleration(ObservedAcceleration { place, of })
+    Output::Acceleration(ObservedAcceleration {
+        place,
+        observable: of,
+    })
 }
 
 #[cfg(test)]
@@ -93,10 +96,10 @@ side = "sign(x)"
     /// The quantity of such a channel at a state with these inputs.
     fn measured(name: &str, times: u8, state: &[f64], inputs: &[f64]) -> f64 {
         let channel = [channel(name, times)];
-        let model = EstimationModel::equations(SUPPORTED, "supported", None, &channel);
+        let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);
         let model = model.expect("a model");
-        let mut evaluator = model.evaluator(&model.values);
-        let (mut buffers, mut values) = (model.measured.buffers(), Vec::new());
+        let mut evaluator = model.create_evaluator(&model.values);
+        let (mut buffers, mut values) = (model.measured.create_buffers(), Vec::new());
         let point = Point {
             t: 0.0,
             state,
@@ -146,7 +149,7 @@ side = "sign(x)"
         ];
         for (name, times, reason) in reasons {
             let channel = [channel(name, times)];
-            let model = EstimationModel::equations(SUPPORTED, "supported", None, &channel);
+            let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);
             let message = model.err().expect("refused").to_string();
             assert!(message.contains(reason), "{name} {times}: {message}");
             assert!(message.contains(name), "{message}");
@@ -163,9 +166,9 @@ side = "sign(x)"
             ("place", 1, 0.0),
         ] {
             let channel = [channel(name, times)];
-            let model = EstimationModel::equations(SUPPORTED, "supported", None, &channel);
+            let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);
             let model = model.expect("a model");
-            let mut evaluator = model.evaluator(&model.values);
+            let mut evaluator = model.create_evaluator(&model.values);
             let point = Point {
                 t: 0.0,
                 state: &state,

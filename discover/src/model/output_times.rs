@@ -40,7 +40,9 @@ impl OutputRate {
         });
         let mut error = error.fold(0.0, f64::max);
         let mut rate = 1;
-        while error > thresholds::INTERPOLATED && rate < thresholds::MOST_BETWEEN {
+        while error > thresholds::MAX_INTERPOLATION_ERROR
+            && rate < thresholds::MAX_OUTPUTS_PER_SAMPLE
+        {
             rate *= 2;
             error /= ORDER;
         }

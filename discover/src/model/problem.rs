@@ -9,7 +9,7 @@ use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
 use crate::model::output_times::OutputRate;
-use crate::model::stop::Stop;
+use crate::model::stop::StopRequest;
 use crate::thresholds;
 use eomgen_records::dataset::{Dataset, Start};
 use eomgen_records::record::Record;
@@ -34,19 +34,19 @@ pub struct EstimationProblem<'d> {
     /// States of the specification's own model. Other states are from candidates.
     pub states: Vec<String>,
     /// Stop request of the search.
-    pub stop: Stop,
+    pub stop: StopRequest,
     /// Number of hypotheses tested on the test records.
-    pub judged: Judged,
+    pub tested_hypotheses: TestCounter,
 }
 
 /// Number of hypotheses tested on the test records, over all threads, for the correction of
 /// p-values.
 #[derive(Debug, Default)]
-pub struct Judged(AtomicUsize);
+pub struct TestCounter(AtomicUsize);
 
-impl Judged {
+impl TestCounter {
     /// Counts one more hypothesis.
-    pub fn count(&self) {
+    pub fn increment(&self) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
 
@@ -56,7 +56,7 @@ impl Judged {
     }
 
     /// Returns a p-value corrected for all hypotheses (Bonferroni), valid for any dependence.
-    pub fn adjusted(&self, p_value: f64) -> f64 {
+    pub fn adjust_p_value(&self, p_value: f64) -> f64 {
         (p_value * self.number().max(1) as f64).min(1.0)
     }
 }
@@ -84,8 +84,8 @@ impl<'d> EstimationProblem<'d> {
             test: Windows::cut(&dataset.test, dataset.window),
             order,
             path: path.to_owned(),
-            stop: Stop::default(),
-            judged: Judged::default(),
+            stop: StopRequest::default(),
+            tested_hypotheses: TestCounter::default(),
         }
     }
 
@@ -95,25 +95,30 @@ impl<'d> EstimationProblem<'d> {
     /// # Errors
     ///
     /// An invalid text; [`DiscoverError::Stopped`].
-    pub fn model(
+    pub fn compile_model(
         &self,
         text: &str,
         linear: Option<&str>,
     ) -> Result<EstimationModel, DiscoverError> {
-        self.stop.check()?;
+        self.stop.check_not_stopped()?;
         let channels = &self.dataset.channels;
-        let mut model = EstimationModel::of(text, linear, &self.path, self.order, channels)?;
+        let mut model = EstimationModel::derive(text, linear, &self.path, self.order, channels)?;
         model.stop = self.stop.clone();
         let record = &self.dataset.train[0];
-        let first = self.first_state(&model, record);
+        let first = self.estimate_first_state(&model, record);
         let numbers = self.train.numbers();
         model.choose_steps(record, &first, &self.noise, numbers, self.output_rate);
         Ok(model)
     }
 
     /// Estimates the first state of a record.
-    pub fn first_state(&self, model: &EstimationModel, record: &Record) -> Vec<f64> {
-        first_state::first_state(model, record, &self.dataset.channels, &self.dataset.initial)
+    pub fn estimate_first_state(&self, model: &EstimationModel, record: &Record) -> Vec<f64> {
+        first_state::estimate_first_state(
+            model,
+            record,
+            &self.dataset.channels,
+            &self.dataset.initial,
+        )
     }
 
     /// Returns true if initial states are fitted. They are not if they are read from the record or
@@ -124,13 +129,18 @@ impl<'d> EstimationProblem<'d> {
 
     /// Returns the range of each state in the training records. The range of a coordinate that a
     /// candidate adds is multiplied by a factor because its motion is unknown.
-    pub fn ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
-        let first = self.first_state(model, &self.dataset.train[0]);
-        let mut ranges =
-            first_state::ranges(model, values, &self.dataset.train, &first, &self.noise);
+    pub fn compute_state_ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
+        let first = self.estimate_first_state(model, &self.dataset.train[0]);
+        let mut ranges = first_state::compute_state_ranges(
+            model,
+            values,
+            &self.dataset.train,
+            &first,
+            &self.noise,
+        );
         for (range, state) in ranges.iter_mut().zip(&model.states) {
             if !self.states.contains(state) {
-                *range *= thresholds::ADDED_STATE;
+                *range *= thresholds::ADDED_STATE_PRIOR_FACTOR;
             }
         }
         ranges

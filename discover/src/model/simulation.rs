@@ -15,9 +15,9 @@ use crate::error::SimulationError;
 use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
-use crate::model::measured_outputs::{Buffers, MeasuredOutputs};
+use crate::model::measured_outputs::{MeasuredOutputs, OutputBuffers};
 use crate::model::nonlinear_remainder::NonlinearRemainder;
-use crate::model::stop::Stop;
+use crate::model::stop::StopRequest;
 use crate::thresholds;
 use eomgen_sim::exponential::{
     Directions, Drives, ExponentialIntegrator, Force, MovedParameters, Options, Tangents,
@@ -30,7 +30,7 @@ pub struct Simulation<'m> {
     /// Typical sizes of the states, for the solver.
     typical_sizes: &'m [f64],
     evaluator: RefCell<Evaluator>,
-    buffers: Buffers,
+    buffers: OutputBuffers,
     linear_outputs: Option<LinearOutputs>,
     /// The longest Runge-Kutta step; none where a solver decides.
     longest_step: Option<LongestStep>,
@@ -46,7 +46,7 @@ pub struct Simulation<'m> {
     /// The most steps of the solver with error control in one motion.
     most_steps: u64,
     /// Stop request that ends simulations.
-    pub(crate) stop: Stop,
+    pub(crate) stop: StopRequest,
 }
 
 /// Drives of tangent vectors: differences of accelerations.
@@ -67,7 +67,7 @@ pub struct LinearisedMotion {
     /// Derivatives by the initial states: for each sample a row per state, one number per channel.
     pub by_state: Vec<f64>,
     /// Derivatives by each parameter, then by each drive, in the same layout.
-    pub by_drive: Vec<f64>,
+    pub by_parameter_and_drive: Vec<f64>,
 }
 
 /// A motion and its outputs.
@@ -85,7 +85,7 @@ pub struct Outputs {
     /// Row per sample, number per channel.
     pub values: Vec<f64>,
     /// State at the last sample.
-    pub last: Vec<f64>,
+    pub end_state: Vec<f64>,
 }
 
 /// Outputs of a window with their derivatives by its initial state.
@@ -109,7 +109,7 @@ impl<'m> Simulation<'m> {
             measured,
             typical_sizes,
             evaluator: RefCell::new(evaluator),
-            buffers: measured.buffers(),
+            buffers: measured.create_buffers(),
             linear_outputs,
             longest_step,
             integrator: None,
@@ -118,13 +118,13 @@ impl<'m> Simulation<'m> {
             sided: None,
             resting: None,
             given: None,
-            most_steps: thresholds::MOST_SOLVER_STEPS,
-            stop: Stop::default(),
+            most_steps: thresholds::MAX_SOLVER_STEPS,
+            stop: StopRequest::default(),
         }
     }
 
     /// Selects an integrator for the linear part, with a nonlinear remainder.
-    pub(crate) fn integrate(
+    pub(crate) fn use_integrator(
         &mut self,
         integrator: ExponentialIntegrator,
         remainder: Option<NonlinearRemainder>,
@@ -134,30 +134,30 @@ impl<'m> Simulation<'m> {
     }
 
     /// Selects an exact propagator.
-    pub(crate) fn propagate(&mut self, mut propagator: Propagator) {
-        propagator.max_switch_rate = thresholds::FASTEST_SWITCHING;
+    pub(crate) fn use_propagator(&mut self, mut propagator: Propagator) {
+        propagator.max_switch_rate = thresholds::MAX_SWITCHES_PER_SECOND;
         self.propagator = Some(propagator);
     }
 
     /// Adds sticking surfaces. A solver with error control is then used, because fixed steps do not
     /// handle them.
-    pub(crate) fn hold(&mut self, sided: Sided) {
+    pub(crate) fn use_sticking(&mut self, sided: Sided) {
         self.sided = Some(sided);
         self.longest_step = None;
     }
 
     /// Adds sticking surfaces for measured accelerations.
-    pub(crate) fn measure_at_rest(&mut self, sided: Option<Sided>) {
+    pub(crate) fn measure_sticking(&mut self, sided: Option<Sided>) {
         self.resting = sided;
     }
 
     /// Selects the motion of the records instead of a simulated one.
-    pub(crate) fn give(&mut self, given: GivenMotion) {
+    pub(crate) fn use_given_motion(&mut self, given: GivenMotion) {
         self.given = Some(given);
     }
 
     /// Limits the number of solver steps and of surface crossings; a motion that exceeds it fails.
-    pub fn limit(&mut self, most: usize) {
+    pub fn limit_steps(&mut self, most: usize) {
         self.most_steps = most as u64;
         if let Some(integrator) = &mut self.integrator {
             integrator.limit_crossings(most);
@@ -165,19 +165,19 @@ impl<'m> Simulation<'m> {
     }
 
     /// Returns true if the exponential integrator is used.
-    pub(crate) fn is_integrated(&self) -> bool {
+    pub(crate) fn uses_integrator(&self) -> bool {
         self.integrator.is_some()
     }
 
     /// Returns true if tangent vectors are available.
-    pub fn carries_tangents(&self) -> bool {
+    pub fn has_tangents(&self) -> bool {
         self.integrator.is_some() && self.linear_outputs.is_some()
     }
 
     /// Returns true if derivatives by parameters are exact: the whole model is linear between
     /// switches.
-    pub(crate) fn differentiates_exactly(&self) -> bool {
-        self.carries_tangents() && self.remainder.is_none()
+    pub(crate) fn has_exact_derivatives(&self) -> bool {
+        self.has_tangents() && self.remainder.is_none()
     }
 
     /// Returns the outputs if they are linear in the state.
@@ -195,7 +195,7 @@ impl<'m> Simulation<'m> {
 
     /// Simulates a motion with tangent vectors, if available: by each initial state if `by_state`,
     /// by this number of parameters, and by the drives.
-    pub fn linearised(
+    pub fn simulate_with_tangents(
         &mut self,
         initial: &[f64],
         samples: &[f64],
@@ -203,7 +203,7 @@ impl<'m> Simulation<'m> {
         (by_state, by_parameter): (bool, usize),
         driven: NeighbourDrives<'_>,
     ) -> Option<LinearisedMotion> {
-        self.stop.check().ok()?;
+        self.stop.check_not_stopped().ok()?;
         let linear_outputs = self.linear_outputs.as_ref()?;
         let integrator = self.integrator.as_mut()?;
         let n = initial.len();
@@ -236,14 +236,14 @@ impl<'m> Simulation<'m> {
                     for (number, vector) in vectors.enumerate() {
                         let out = match number < free {
                             true => &mut found.by_state,
-                            false => &mut found.by_drive,
+                            false => &mut found.by_parameter_and_drive,
                         };
                         linear_outputs.append_derivatives(&vector[..n], out);
                     }
                 },
             )
             .ok()?;
-        found.outputs.last = found.states.last().cloned().unwrap_or_default();
+        found.outputs.end_state = found.states.last().cloned().unwrap_or_default();
         Some(found)
     }
 
@@ -253,7 +253,7 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// The reason why the simulation failed.
-    pub fn states(
+    pub fn simulate_states(
         &mut self,
         initial: &[f64],
         samples: &[f64],
@@ -267,9 +267,9 @@ impl<'m> Simulation<'m> {
             return Err(SimulationError::Stopped);
         }
         if let Some(given) = &self.given {
-            let state = |t: &f64| Some(given.state(inputs.held_at(*t))?.to_vec());
+            let state = |t: &f64| Some(given.state_of_row(inputs.held_at(*t))?.to_vec());
             let states: Option<Vec<Vec<f64>>> = samples.iter().map(state).collect();
-            return states.ok_or(SimulationError::NotGiven);
+            return states.ok_or(SimulationError::StateNotRecorded);
         }
         if let Some(integrator) = &mut self.integrator {
             let mut states = Vec::with_capacity(samples.len());
@@ -290,11 +290,11 @@ impl<'m> Simulation<'m> {
         }
         if let Some(longest_step) = self.longest_step {
             let states = self.by_runge_kutta(initial, samples, inputs, longest_step);
-            return states.ok_or(SimulationError::Unbounded);
+            return states.ok_or(SimulationError::Diverged);
         }
         let settings = Settings {
             max_steps: self.most_steps,
-            max_switch_rate: thresholds::FASTEST_SWITCHING,
+            max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
             ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
         };
         let driven = Driven::new(&self.evaluator, inputs)
@@ -322,7 +322,7 @@ impl<'m> Simulation<'m> {
         let mut method = RungeKutta::new(state.len());
         let evaluator = self.evaluator.get_mut();
         for pair in samples.windows(2) {
-            let steps = longest_step.steps(pair[1] - pair[0]);
+            let steps = longest_step.count_steps(pair[1] - pair[0]);
             let h = (pair[1] - pair[0]) / steps as f64;
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
@@ -346,16 +346,16 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// As [`Simulation::states`].
-    pub fn outputs(
+    pub fn simulate_outputs(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
     ) -> Result<Outputs, SimulationError> {
-        let Motion { states, outputs } = self.motion(initial, samples, inputs)?;
+        let Motion { states, outputs } = self.simulate_motion(initial, samples, inputs)?;
         Ok(Outputs {
             values: outputs,
-            last: states.into_iter().next_back().unwrap_or_default(),
+            end_state: states.into_iter().next_back().unwrap_or_default(),
         })
     }
 
@@ -365,13 +365,13 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// As [`Simulation::states`].
-    pub fn motion(
+    pub fn simulate_motion(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
     ) -> Result<Motion, SimulationError> {
-        let states = self.states(initial, samples, inputs)?;
+        let states = self.simulate_states(initial, samples, inputs)?;
         let mut outputs = Vec::with_capacity(samples.len() * self.measured.count());
         self.look_at((samples, &states), inputs);
         for (t, state) in samples.iter().zip(&states) {
@@ -384,14 +384,14 @@ impl<'m> Simulation<'m> {
     /// Returns the quantities of the channels and their derivatives by each initial state, if the
     /// exact propagator is used: for each sample a row per state, one number per channel. `steps`:
     /// difference in each state for nonlinear observables.
-    pub fn tangents(
+    pub fn propagate_with_tangents(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
         steps: &[f64],
     ) -> Option<OutputTangents> {
-        self.stop.check().ok()?;
+        self.stop.check_not_stopped().ok()?;
         let span = (*samples.first()?, *samples.last()?);
         let count = initial.len();
         let unit = |state: usize| {
@@ -424,7 +424,7 @@ impl<'m> Simulation<'m> {
             }
         }
         self.look_away();
-        outputs.last = found.states.into_iter().next_back().unwrap_or_default();
+        outputs.end_state = found.states.into_iter().next_back().unwrap_or_default();
         Some(OutputTangents {
             outputs,
             by_state: derivatives,
@@ -452,7 +452,7 @@ impl<'m> Simulation<'m> {
         let evaluator = self.evaluator.get_mut();
         let required = match &mut self.given {
             None => None,
-            Some(given) => match given.required(evaluator, t, inputs) {
+            Some(given) => match given.solve_inputs(evaluator, t, inputs) {
                 Some(required) => Some(required),
                 None => {
                     values.resize(values.len() + self.measured.count(), f64::NAN);
@@ -467,7 +467,7 @@ impl<'m> Simulation<'m> {
     }
 
     /// Returns the rates of a state.
-    pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
+    pub fn compute_rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; state.len()];
         let point = Point { t, state, inputs };
         self.evaluator.get_mut().rates(point, &mut rates);

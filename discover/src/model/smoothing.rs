@@ -6,8 +6,8 @@ use crate::thresholds;
 
 /// Smooths a column by a second-order Butterworth filter, forwards and backwards. Missing samples
 /// are interpolated first.
-pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
-    let mut values = bridged(times, column);
+pub fn smooth_column(times: &[f64], column: &[f64]) -> Vec<f64> {
+    let mut values = fill_missing(times, column);
     let padding = values
         .len()
         .saturating_sub(1)
@@ -22,7 +22,7 @@ pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the slope of a smooth column by central differences.
-pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
+pub fn differentiate_column(times: &[f64], values: &[f64]) -> Vec<f64> {
     let last = values.len() - 1;
     (0..values.len())
         .map(|sample| {
@@ -33,7 +33,7 @@ pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Replaces missing samples by linear interpolation.
-pub fn bridged(times: &[f64], column: &[f64]) -> Vec<f64> {
+pub fn fill_missing(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = column.to_vec();
     let known: Vec<usize> = (0..values.len())
         .filter(|i| values[*i].is_finite())
@@ -84,14 +84,14 @@ fn low_pass(values: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{sloped, smoothed};
+    use super::{differentiate_column, smooth_column};
 
     #[test]
     fn a_slow_motion_passes_without_delay() {
         let times: Vec<f64> = (0..4000).map(|i| f64::from(i) * 1e-3).collect();
         let motion: Vec<f64> = times.iter().map(|t| (3.0 * t).sin()).collect();
-        let smooth = smoothed(&times, &motion);
-        let slope = sloped(&times, &smooth);
+        let smooth = smooth_column(&times, &motion);
+        let slope = differentiate_column(&times, &smooth);
         for sample in 0..times.len() {
             assert!((smooth[sample] - motion[sample]).abs() < 1e-4);
         }
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn a_missing_sample_is_bridged() {
         let times = [0.0, 1.0, 2.0, 3.0];
-        let values = super::bridged(&times, &[1.0, f64::NAN, f64::NAN, 4.0]);
+        let values = super::fill_missing(&times, &[1.0, f64::NAN, f64::NAN, 4.0]);
         assert_eq!(values, [1.0, 2.0, 3.0, 4.0]);
     }
 }

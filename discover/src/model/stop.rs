@@ -9,7 +9,7 @@ use crate::error::DiscoverError;
 /// Request to stop a search, from any thread. All later simulations fail, so that later results are
 /// invalid.
 #[derive(Clone, Debug)]
-pub struct Stop {
+pub struct StopRequest {
     is_requested: Arc<AtomicBool>,
     begin: Instant,
     /// How long the search may take.
@@ -18,7 +18,7 @@ pub struct Stop {
     limit: Arc<AtomicU64>,
 }
 
-impl Default for Stop {
+impl Default for StopRequest {
     fn default() -> Self {
         Self {
             is_requested: Arc::default(),
@@ -29,19 +29,19 @@ impl Default for Stop {
     }
 }
 
-impl Stop {
+impl StopRequest {
     /// Requests a stop.
-    pub fn request(&self) {
+    pub fn request_stop(&self) {
         self.is_requested.store(true, Ordering::Relaxed);
     }
 
     /// Returns true if a stop was requested or the time limit has passed.
     pub fn is_requested(&self) -> bool {
-        self.is_requested.load(Ordering::Relaxed) || self.is_late()
+        self.is_requested.load(Ordering::Relaxed) || self.is_time_over()
     }
 
     /// Creates a request that ends the search after a time, with the results until then.
-    pub fn after(most: Duration) -> Self {
+    pub fn with_time_limit(most: Duration) -> Self {
         Self {
             most: Some(most),
             ..Self::default()
@@ -49,12 +49,12 @@ impl Stop {
     }
 
     /// Returns the time limit of the search.
-    pub(crate) fn most(&self) -> Option<Duration> {
+    pub(crate) fn time_limit(&self) -> Option<Duration> {
         self.most
     }
 
     /// Starts the time limit, if there is one.
-    pub(crate) fn arm(&self) {
+    pub(crate) fn start_timer(&self) {
         if let Some(most) = self.most {
             let limit = u64::try_from(most.as_nanos()).unwrap_or(u64::MAX - 1);
             self.limit.store(limit.min(u64::MAX - 1), Ordering::Relaxed);
@@ -62,12 +62,12 @@ impl Stop {
     }
 
     /// Removes the time limit for the remaining work.
-    pub(crate) fn lift(&self) {
+    pub(crate) fn remove_time_limit(&self) {
         self.limit.store(u64::MAX, Ordering::Relaxed);
     }
 
     /// Returns true if the time limit has passed.
-    pub(crate) fn is_late(&self) -> bool {
+    pub(crate) fn is_time_over(&self) -> bool {
         let limit = self.limit.load(Ordering::Relaxed);
         limit != u64::MAX && self.begin.elapsed() >= Duration::from_nanos(limit)
     }
@@ -77,7 +77,7 @@ impl Stop {
     /// # Errors
     ///
     /// [`DiscoverError::Stopped`].
-    pub(crate) fn check(&self) -> Result<(), DiscoverError> {
+    pub(crate) fn check_not_stopped(&self) -> Result<(), DiscoverError> {
         match self.is_requested() {
             true => Err(DiscoverError::Stopped),
             false => Ok(()),

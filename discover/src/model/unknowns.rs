@@ -5,7 +5,7 @@ use crate::ids::ChannelId;
 use crate::interval::Interval;
 use eomgen_model_spec::model::{Model, Parameter};
 
-use crate::model::input_faults::{InputFault, declared, delayed_input};
+use crate::model::input_faults::{InputFault, find_declared, find_delayed_input};
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Dataset, Expected, InputPriors};
 use eomgen_records::record::Record;
@@ -14,11 +14,11 @@ use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
 
 /// Kind of an unknown.
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum UnknownKind {
     /// Parameter, by name.
     Parameter(String),
     /// Inverse of a parameter, by name, for an effect that vanishes at infinity.
-    Inverse(String),
+    InverseParameter(String),
     /// Gain of a channel.
     Gain(ChannelId),
     /// Bias of a channel, SI.
@@ -29,19 +29,19 @@ pub enum What {
     InputDelay,
 }
 
-impl What {
+impl UnknownKind {
     /// Returns the name of the parameter, also for its inverse.
-    pub fn parameter(&self) -> Option<&str> {
+    pub fn parameter_name(&self) -> Option<&str> {
         match self {
-            Self::Parameter(name) | Self::Inverse(name) => Some(name),
+            Self::Parameter(name) | Self::InverseParameter(name) => Some(name),
             Self::Gain(_) | Self::Bias(_) | Self::Delay(_) | Self::InputDelay => None,
         }
     }
 
     /// Returns the value in the form of the specification, from its estimate, SI.
-    pub fn stated(&self, value: f64) -> f64 {
+    pub fn value_in_specification(&self, value: f64) -> f64 {
         match self {
-            Self::Inverse(_) => 1.0 / value,
+            Self::InverseParameter(_) => 1.0 / value,
             Self::Parameter(_)
             | Self::Gain(_)
             | Self::Bias(_)
@@ -64,7 +64,7 @@ pub struct NormalPrior {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
     /// Kind of the unknown.
-    pub what: What,
+    pub kind: UnknownKind,
     /// Name in messages.
     pub label: String,
     /// Start value, SI.
@@ -74,19 +74,22 @@ pub struct Unknown {
     /// Admissible values, SI.
     pub bounds: Interval,
     /// Admissible values without the declared prior, SI.
-    pub limits: Interval,
+    pub bounds_without_prior: Interval,
     /// Significant change, SI.
     pub scale: f64,
 }
 
 impl Unknown {
     /// Returns true for parameters of the model, false for those of sensors.
-    pub(crate) fn is_of_model(&self) -> bool {
-        matches!(self.what, What::Parameter(_) | What::Inverse(_))
+    pub(crate) fn is_model_parameter(&self) -> bool {
+        matches!(
+            self.kind,
+            UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_)
+        )
     }
 
     /// Returns the nearest admissible value.
-    pub fn admissible(&self, value: f64) -> f64 {
+    pub fn clamp(&self, value: f64) -> f64 {
         self.bounds.clamp(value)
     }
 
@@ -94,23 +97,27 @@ impl Unknown {
     pub fn without_prior(&self) -> Self {
         Self {
             prior: None,
-            bounds: self.limits,
+            bounds: self.bounds_without_prior,
             ..self.clone()
         }
     }
 
     /// One of the null model: within so many standard deviations of what was declared, because
     /// beyond it is an effect.
-    fn declared((what, label): (What, String), prior: NormalPrior, limits: Interval) -> Self {
+    fn declared(
+        (what, label): (UnknownKind, String),
+        prior: NormalPrior,
+        limits: Interval,
+    ) -> Self {
         let NormalPrior { mean, sd } = prior;
-        let reach = thresholds::SHIFTED * sd;
+        let reach = thresholds::MAX_PRIOR_DEVIATION * sd;
         Self {
-            what,
+            kind: what,
             label,
             start: mean,
             prior: Some(prior),
-            bounds: limits.intersection(Interval::new(mean - reach, mean + reach)),
-            limits,
+            bounds: limits.intersect(Interval::new(mean - reach, mean + reach)),
+            bounds_without_prior: limits,
             scale: sd,
         }
     }
@@ -118,7 +125,11 @@ impl Unknown {
 
 /// Returns the unknowns of the null model: parameters declared uncertain, declared gains and biases
 /// of inputs and, if the data can determine them, the sensors.
-pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)]) -> Vec<Unknown> {
+pub fn list_null_unknowns(
+    dataset: &Dataset,
+    model: &Model,
+    values: &[(String, f64)],
+) -> Vec<Unknown> {
     let mut unknowns = Vec::new();
     for uncertain in &dataset.uncertain {
         let value = values.iter().find(|(name, _)| *name == uncertain.name);
@@ -128,19 +139,19 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         };
         let sd = uncertain.relative * value.abs();
         let name = &uncertain.name;
-        let what = (What::Parameter(name.clone()), format!("`{name}`"));
-        let limits = sign_bounds(parameter, *value);
+        let what = (UnknownKind::Parameter(name.clone()), format!("`{name}`"));
+        let limits = bounds_with_sign(parameter, *value);
         let prior = NormalPrior { mean: *value, sd };
         unknowns.push(Unknown::declared(what, prior, limits));
     }
     for (name, value) in values {
-        let Some((input, fault, expected)) = declared(&dataset.inputs, name) else {
+        let Some((input, fault, expected)) = find_declared(&dataset.inputs, name) else {
             continue;
         };
         if expected.sd == 0.0 {
             continue;
         }
-        let label = format!("the {} of the input `{input}`", fault.word());
+        let label = format!("the {} of the input `{input}`", fault.name());
         let limits = match fault {
             InputFault::Gain if *value > 0.0 => Interval::new(0.0, f64::INFINITY),
             _ => Interval::ALL,
@@ -149,7 +160,7 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
             mean: *value,
             sd: expected.sd,
         };
-        let what = (What::Parameter(name.clone()), label);
+        let what = (UnknownKind::Parameter(name.clone()), label);
         unknowns.push(Unknown::declared(what, prior, limits));
     }
     let step = dataset
@@ -159,18 +170,18 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
     unknowns.extend(of_input_delay(dataset, model, step));
     let ids = ChannelId::first(dataset.channels.len());
     for (id, channel) in ids.zip(&dataset.channels) {
-        unknowns.extend(of_sensor(id, channel, model, step));
+        unknowns.extend(list_sensor_unknowns(id, channel, model, step));
     }
     unknowns
 }
 
 /// The delay of the input, if the dataset says how far it is known.
 fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
-    let (input, expected) = delayed_input(&dataset.inputs)?;
+    let (input, expected) = find_delayed_input(&dataset.inputs)?;
     let mean = expected_input_delay(&dataset.inputs, model);
     let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
     let what = (
-        What::InputDelay,
+        UnknownKind::InputDelay,
         format!("the delay of the input `{input}`"),
     );
     let prior = NormalPrior {
@@ -178,7 +189,7 @@ fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown
         sd: expected.sd,
     };
     (expected.sd > 0.0).then(|| Unknown {
-        limits: Interval::new(mean.min(0.0), late.high),
+        bounds_without_prior: Interval::new(mean.min(0.0), late.high),
         ..Unknown::declared(what, prior, late)
     })
 }
@@ -186,7 +197,7 @@ fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown
 /// Returns the delay of the input before a fit, s. If the specification describes sensors, an
 /// earlier fit has added the delay of the input to theirs.
 pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
-    let said = delayed_input(inputs).and_then(|(_, delay)| delay.mean);
+    let said = find_delayed_input(inputs).and_then(|(_, delay)| delay.mean);
     match model.sensors.is_empty() {
         true => said.unwrap_or(0.0),
         false => 0.0,
@@ -194,8 +205,8 @@ pub fn expected_input_delay(inputs: &[InputPriors], model: &Model) -> f64 {
 }
 
 /// Returns a note if the mean delay of the dataset is not added to that in the specification.
-pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
-    let (input, expected) = delayed_input(inputs)?;
+pub fn note_input_delay(inputs: &[InputPriors], model: &Model) -> Option<String> {
+    let (input, expected) = find_delayed_input(inputs)?;
     let mean = expected.mean.filter(|mean| *mean != 0.0)?;
     (!model.sensors.is_empty()).then(|| {
         format!(
@@ -207,32 +218,41 @@ pub fn note_of_input_delay(inputs: &[InputPriors], model: &Model) -> Option<Stri
 
 /// Returns the unknowns of a sensor, with the priors of its channel or the default priors. Values
 /// that are declared exact are not included.
-pub fn of_sensor(id: ChannelId, channel: &Channel, model: &Model, step: f64) -> Vec<Unknown> {
-    let expected = ExpectedSensor::of(channel, model);
+pub fn list_sensor_unknowns(
+    id: ChannelId,
+    channel: &Channel,
+    model: &Model,
+    step: f64,
+) -> Vec<Unknown> {
+    let expected = ExpectedSensor::from_channel(channel, model);
     let sd = |said: Option<Expected>, usual: f64| said.map_or(usual, |said| said.sd);
-    let gain = sd(channel.priors.gain, thresholds::GAIN_PRIOR);
-    let bias = sd(channel.priors.bias, thresholds::BIAS_PRIOR * channel.noise);
-    let delay = sd(channel.priors.delay, thresholds::DELAY_PRIOR * step);
+    let gain = sd(channel.priors.gain, thresholds::GAIN_PRIOR_SD);
+    let bias = sd(
+        channel.priors.bias,
+        thresholds::BIAS_PRIOR_IN_NOISE_SD * channel.noise,
+    );
+    let delay = sd(channel.priors.delay, thresholds::DELAY_PRIOR_SAMPLES * step);
     let free = Interval::ALL;
     let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
     let prior = |mean: f64, sd: f64| NormalPrior { mean, sd };
-    let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
+    let called =
+        |what: UnknownKind, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     let unknowns = [
         Unknown::declared(
-            called(What::Gain(id), "gain"),
+            called(UnknownKind::Gain(id), "gain"),
             prior(expected.gain, gain),
             free,
         ),
         Unknown::declared(
-            called(What::Bias(id), "bias"),
+            called(UnknownKind::Bias(id), "bias"),
             prior(expected.bias, bias),
             free,
         ),
         // What no prior holds is late: no sensor sees ahead.
         Unknown {
-            limits: Interval::new(expected.delay.min(0.0), late.high),
+            bounds_without_prior: Interval::new(expected.delay.min(0.0), late.high),
             ..Unknown::declared(
-                called(What::Delay(id), "delay"),
+                called(UnknownKind::Delay(id), "delay"),
                 prior(expected.delay, delay),
                 late,
             )
@@ -257,7 +277,7 @@ impl ExpectedSensor {
     /// Returns the values of the specification, otherwise of the dataset, otherwise of an ideal
     /// sensor. A later search so continues from the values that a fit has written into the
     /// specification.
-    pub fn of(channel: &Channel, model: &Model) -> Self {
+    pub fn from_channel(channel: &Channel, model: &Model) -> Self {
         let written = model.sensors.iter().find(|s| s.channel == channel.name);
         let said = |prior: Option<Expected>| prior.and_then(|prior| prior.mean);
         match written {
@@ -276,13 +296,13 @@ impl ExpectedSensor {
 }
 
 /// Returns the bounds of a parameter in the specification, restricted to its sign.
-pub fn sign_bounds(parameter: &Parameter, value: f64) -> Interval {
+pub fn bounds_with_sign(parameter: &Parameter, value: f64) -> Interval {
     let of_sign = match value {
         v if v > 0.0 => Interval::new(0.0, f64::INFINITY),
         v if v < 0.0 => Interval::new(f64::NEG_INFINITY, 0.0),
         _ => Interval::ALL,
     };
-    of_sign.intersection(Interval::new(
+    of_sign.intersect(Interval::new(
         parameter.min.unwrap_or(f64::NEG_INFINITY),
         parameter.max.unwrap_or(f64::INFINITY),
     ))

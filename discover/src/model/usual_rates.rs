@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use eomgen_model_spec::model::Model;
 
-use crate::model::smoothing::{sloped, smoothed};
+use crate::model::smoothing::{differentiate_column, smooth_column};
 use eomgen_records::dataset::{Dataset, Quantity};
 
 /// Returns the usual rate of each measured observable and coordinate, by its name in the model: the
 /// RMS of its slope, or of the rate if it is measured or given.
-pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
+pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();
     for (place, coordinate) in dataset.motion.iter().enumerate() {
@@ -18,7 +18,7 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     }
     let channels = dataset.channels.iter().zip(&record.channels);
     for (channel, column) in channels {
-        let smooth = smoothed(&record.times, column);
+        let smooth = smooth_column(&record.times, column);
         let (name, slopes) = match channel.quantity {
             // How fast something moves is not known from how its speed changes, and nothing else moves.
             Quantity::Acceleration(_) | Quantity::State(_) | Quantity::Input(_) => continue,
@@ -27,11 +27,11 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
             Quantity::Rate(coordinate) => (&model.coordinates[coordinate].name, smooth),
             Quantity::Observable(observable) => (
                 &model.observables[observable].name,
-                sloped(&record.times, &smooth),
+                differentiate_column(&record.times, &smooth),
             ),
             Quantity::Coordinate(coordinate) => (
                 &model.coordinates[coordinate].name,
-                sloped(&record.times, &smooth),
+                differentiate_column(&record.times, &smooth),
             ),
         };
         rates.insert(name.clone(), root_mean_square(&slopes));

@@ -5,30 +5,30 @@ use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
 
-use crate::empirical::EMPIRICAL;
-use crate::experiment::next::{Experiments, NextExperiment};
-use crate::fit::fitted::Fit;
+use crate::empirical::EMPIRICAL_EFFECT;
+use crate::experiment::next_experiment::{Experiments, NextExperiment};
+use crate::fit::fit_result::Fit;
 use crate::fit::noise_floor::NoiseFloor;
-use crate::model::input_faults::{declared, delayed_input};
-use crate::model::problem::{EstimationProblem, Judged};
-use crate::model::unknowns::{Unknown, What};
-use crate::report::quantity::{estimate, quantity};
+use crate::model::input_faults::{find_declared, find_delayed_input};
+use crate::model::problem::{EstimationProblem, TestCounter};
+use crate::model::unknowns::{Unknown, UnknownKind};
+use crate::report::quantity::{format_estimate, format_quantity};
 use crate::report::result::{
-    ChannelGap, EffectAt, Estimated, FoundEffect, Nuisance, OnRecords, RejectedEffect, Sensor,
-    ShaftOrder, Status, Step,
+    ChannelGap, EffectSite, EffectStatus, EstimateWithUnit, FoundEffect, Nuisance, RejectedEffect,
+    SearchStep, SensorEstimate, ShaftOrder, TrainTest,
 };
-use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
 
 /// Computes the gap of each channel before and after the search.
-pub(crate) fn gap(
+pub(crate) fn compute_gap(
     problem: &EstimationProblem<'_>,
     before: &Fit,
     after: Option<&Fit>,
     floor: &NoiseFloor,
 ) -> BTreeMap<String, ChannelGap> {
-    let of = |fit: &Fit, channel: ChannelId| OnRecords {
-        train: fit.train.channels[channel],
-        test: fit.test.channels[channel],
+    let of = |fit: &Fit, channel: ChannelId| TrainTest {
+        train: fit.train.channel_rms[channel],
+        test: fit.test.channel_rms[channel],
     };
     by_channel(problem, |channel, entry| ChannelGap {
         unit: entry.unit.clone(),
@@ -48,70 +48,71 @@ pub(crate) struct Certainty {
 }
 
 /// Returns the accepted effects by decreasing closed gap.
-pub(crate) fn effects(
+pub(crate) fn summarise_effects(
     problem: &EstimationProblem<'_>,
-    found: &Found,
+    found: &SearchResult,
     experiments: &Experiments,
     certainty: Certainty,
 ) -> Vec<FoundEffect> {
-    let mut order: Vec<(&Accepted, &Option<NextExperiment>)> = (found.accepted.iter())
-        .zip(&experiments.of_effects)
+    let mut order: Vec<(&AcceptedEffect, &Option<NextExperiment>)> = (found.accepted.iter())
+        .zip(&experiments.for_effects)
         .collect();
     order.sort_by(|(a, _), (b, _)| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
-        let closed =
-            |effect: &Accepted| effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2);
+        let closed = |effect: &AcceptedEffect| {
+            effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2)
+        };
         closed(b).total_cmp(&closed(a))
     });
     let effects = order.into_iter();
     effects
         .map(|(effect, next)| FoundEffect {
             next_experiment: next.clone(),
-            ..found_effect(problem, found.best(), effect, certainty)
+            ..found_effect(problem, found.best_fit(), effect, certainty)
         })
         .collect()
 }
 
 /// Returns the rejected effects, testable or not.
-pub(crate) fn rejected(
-    judged: &Judged,
-    found: &Found,
+pub(crate) fn list_rejected(
+    judged: &TestCounter,
+    found: &SearchResult,
     experiments: &Experiments,
     not_testable: bool,
 ) -> Vec<RejectedEffect> {
-    let such = found.rejected.iter().zip(&experiments.of_rejected);
-    let such = such.filter(|(rejected, _)| rejected.not_testable == not_testable);
+    let such = found.rejected.iter().zip(&experiments.for_rejected);
+    let such = such.filter(|(rejected, _)| rejected.is_untestable == not_testable);
     // What is accepted, or may be meant by what is, is not rejected too: a later round knows it as
     // one more of the same.
-    let is_believed = |of: &Rejected| {
+    let is_believed = |of: &RejectedCandidate| {
         let accepted = found.accepted.iter();
         let mut believed = accepted
-            .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalent));
-        believed.any(|known| known.is_same_as(&of.candidate))
+            .flat_map(|effect| std::iter::once(&effect.candidate).chain(&effect.equivalents));
+        believed.any(|known| known.is_same_effect_as(&of.candidate))
     };
     let such = such.filter(|(rejected, _)| !is_believed(rejected));
     such.map(|(of, next)| RejectedEffect {
-        at: EffectAt {
+        at: EffectSite {
             effect: of.candidate.effect.clone(),
-            on: of.candidate.on.clone(),
+            site: of.candidate.site.clone(),
         },
         reason: reason(of),
         experiment: of.candidate.experiment.clone(),
         next_experiment: next.clone(),
-        p_values: of.p_value.map(|p| (p, judged.adjusted(p))),
+        p_values: of.p_value.map(|p| (p, judged.adjust_p_value(p))),
     })
     .collect()
 }
 
 /// Returns the test gap of the original model and after each round.
-pub(crate) fn steps(found: &Found) -> Vec<Step> {
-    let mut steps = vec![Step {
+pub(crate) fn list_steps(found: &SearchResult) -> Vec<SearchStep> {
+    let mut steps = vec![SearchStep {
         added: Vec::new(),
-        test_rms: found.null.test.rms,
+        test_rms: found.null_fit.test.rms,
     }];
     for round in found.accepted.chunk_by(|a, b| a.test_gap == b.test_gap) {
         let labels = round.iter().map(|effect| effect.candidate.label());
-        steps.push(Step {
+        steps.push(SearchStep {
             added: labels.collect(),
             test_rms: round[0].test_gap.after,
         });
@@ -120,11 +121,11 @@ pub(crate) fn steps(found: &Found) -> Vec<Step> {
 }
 
 /// Why a candidate was rejected; with the order or the load where it has one.
-fn reason(rejected: &Rejected) -> String {
-    let Rejected {
+fn reason(rejected: &RejectedCandidate) -> String {
+    let RejectedCandidate {
         candidate, reason, ..
     } = rejected;
-    match (&candidate.order, &candidate.load) {
+    match (&candidate.angle_order, &candidate.load) {
         (Some((angle, order)), _) => format!("{order} per turn of {angle}: {reason}"),
         (None, Some(load)) => format!("by the load of {load}: {reason}"),
         (None, None) => reason.clone(),
@@ -132,12 +133,16 @@ fn reason(rejected: &Rejected) -> String {
 }
 
 /// Returns the closed fraction of the gap; `None` if there was almost no gap.
-pub(crate) fn closure(before: &Fit, after: &Fit, floor: &NoiseFloor) -> OnRecords<Option<f64>> {
+pub(crate) fn compute_closure(
+    before: &Fit,
+    after: &Fit,
+    floor: &NoiseFloor,
+) -> TrainTest<Option<f64>> {
     let closed = |before: f64, after: f64| {
         let part = (before - after) / (before - floor.rms);
         (before >= 2.0 * floor.rms || before.is_nan()).then_some(part)
     };
-    OnRecords {
+    TrainTest {
         train: closed(before.train.rms, after.train.rms),
         test: closed(before.test.rms, after.test.rms),
     }
@@ -146,63 +151,64 @@ pub(crate) fn closure(before: &Fit, after: &Fit, floor: &NoiseFloor) -> OnRecord
 fn found_effect(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    effect: &Accepted,
+    effect: &AcceptedEffect,
     Certainty { is_sure, floor }: Certainty,
 ) -> FoundEffect {
     let candidate = &effect.candidate;
     let theta = &fit.train.estimate.theta;
-    let sd = |id: &UnknownId| fit.sd_beside_misfit(*id, floor);
+    let sd = |id: &UnknownId| fit.sd_with_misfit(*id, floor);
     let mut term = candidate.term.clone();
     let own = candidate.parameters.iter().zip(&effect.unknowns);
-    let mut parameters: BTreeMap<String, Estimated> = own
+    let mut parameters: BTreeMap<String, EstimateWithUnit> = own
         .map(|(parameter, id)| {
-            let (value, sd) = match fit.unknowns[*id].what {
-                What::Inverse(_) => {
+            let (value, sd) = match fit.unknowns[*id].kind {
+                UnknownKind::InverseParameter(_) => {
                     let inverse = theta[*id];
                     (1.0 / inverse, sd(id) / (inverse * inverse))
                 }
                 _ => {
-                    let per_si = parameter.per_si();
+                    let per_si = parameter.units_per_si();
                     (per_si * theta[*id], per_si * sd(id))
                 }
             };
             let unit = parameter.unit.clone();
-            (parameter.name.clone(), Estimated { value, sd, unit })
+            (parameter.name.clone(), EstimateWithUnit { value, sd, unit })
         })
         .collect();
     if candidate.dropped_prior.is_some()
         && let Some(id) = effect.unknowns.first()
-        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*id].what)
+        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*id].kind)
     {
         let value = per_si * theta[*id];
         let sd = per_si * sd(id);
         term = format!("{name} = {value}");
-        parameters.insert(name, Estimated { value, sd, unit });
+        parameters.insert(name, EstimateWithUnit { value, sd, unit });
     }
-    let equivalent = effect.equivalent.iter().map(|other| EffectAt {
+    let equivalent = effect.equivalents.iter().map(|other| EffectSite {
         effect: other.effect.clone(),
-        on: other.on.clone(),
+        site: other.site.clone(),
     });
-    let has_equivalent = !effect.equivalent.is_empty();
+    let has_equivalent = !effect.equivalents.is_empty();
     FoundEffect {
-        at: EffectAt {
+        at: EffectSite {
             effect: candidate.effect.clone(),
-            on: candidate.on.clone(),
+            site: candidate.site.clone(),
         },
-        says: candidate.says.clone(),
+        description: candidate.description.clone(),
         status: match (candidate.effect.as_str(), has_equivalent, is_sure) {
-            (EMPIRICAL, _, _) => Status::Empirical,
-            (_, true, _) => Status::Class,
-            (_, false, true) => Status::Named,
-            (_, false, false) => Status::Provisional,
+            (EMPIRICAL_EFFECT, _, _) => EffectStatus::Empirical,
+            (_, true, _) => EffectStatus::Class,
+            (_, false, true) => EffectStatus::Named,
+            (_, false, false) => EffectStatus::Provisional,
         },
-        equivalent: equivalent.collect(),
+        equivalents: equivalent.collect(),
         parameters,
         term,
         statistics: effect.statistics.clone(),
-        adjusted_p_value: (effect.statistics.p_value).map(|p| problem.judged.adjusted(p)),
+        adjusted_p_value: (effect.statistics.p_value)
+            .map(|p| problem.tested_hypotheses.adjust_p_value(p)),
         order: candidate
-            .order
+            .angle_order
             .clone()
             .map(|(angle, order)| ShaftOrder { angle, order }),
         load: candidate.load.clone(),
@@ -212,29 +218,30 @@ fn found_effect(
 }
 
 /// Returns the nuisances of a fit with their declared priors.
-pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
+pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
     let of = |(id, unknown): (UnknownId, &Unknown)| {
         let prior = unknown.prior?;
-        let (name, per_si, unit) = named(problem, fit, &unknown.what)?;
-        let (of, fault) = match &unknown.what {
-            What::Parameter(_) | What::Inverse(_) => match declared(&problem.dataset.inputs, &name)
-            {
-                Some((input, fault, _)) => (input.to_owned(), Some(fault.word())),
-                None => (name, None),
-            },
-            What::Gain(at) => (problem.dataset.channels[*at].name.clone(), Some("gain")),
-            What::Bias(at) => (problem.dataset.channels[*at].name.clone(), Some("bias")),
-            What::Delay(at) => (problem.dataset.channels[*at].name.clone(), Some("delay")),
-            What::InputDelay => (
-                delayed_input(&problem.dataset.inputs)?.0.to_owned(),
+        let (name, per_si, unit) = named(problem, fit, &unknown.kind)?;
+        let (of, fault) = match &unknown.kind {
+            UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => {
+                match find_declared(&problem.dataset.inputs, &name) {
+                    Some((input, fault, _)) => (input.to_owned(), Some(fault.name())),
+                    None => (name, None),
+                }
+            }
+            UnknownKind::Gain(at) => (problem.dataset.channels[*at].name.clone(), Some("gain")),
+            UnknownKind::Bias(at) => (problem.dataset.channels[*at].name.clone(), Some("bias")),
+            UnknownKind::Delay(at) => (problem.dataset.channels[*at].name.clone(), Some("delay")),
+            UnknownKind::InputDelay => (
+                find_delayed_input(&problem.dataset.inputs)?.0.to_owned(),
                 Some("delay"),
             ),
         };
         Some(Nuisance {
-            of,
+            name: of,
             fault,
             declared: (per_si * prior.mean, per_si * prior.sd),
-            fitted: Estimated {
+            estimate: EstimateWithUnit {
                 value: per_si * fit.train.estimate.theta[id],
                 sd: per_si * fit.sd[id],
                 unit,
@@ -245,18 +252,18 @@ pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisa
 }
 
 /// Returns notes on nuisances at their bounds.
-pub(crate) fn bound_notes(nuisances: &[Nuisance]) -> Vec<String> {
+pub(crate) fn describe_bounds(nuisances: &[Nuisance]) -> Vec<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
     let note = |of: &Nuisance| {
         let (mean, sd) = of.declared;
-        let unit = &of.fitted.unit;
+        let unit = &of.estimate.unit;
         format!(
             "{} is {}, {:.1} standard deviations from the declared value ({}), at the bound of the fit: another \
              effect may be missing",
-            of.name(),
-            quantity(of.fitted.value, 4, unit),
-            of.deviations().abs(),
-            estimate(mean, sd, unit),
+            of.full_name(),
+            format_quantity(of.estimate.value, 4, unit),
+            of.deviations_from_prior().abs(),
+            format_estimate(mean, sd, unit),
         )
     };
     at_bound.map(note).collect()
@@ -264,32 +271,41 @@ pub(crate) fn bound_notes(nuisances: &[Nuisance]) -> Vec<String> {
 
 /// What an unknown of the null model is called, the number of its units that one SI unit is, and
 /// the unit.
-fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(String, f64, String)> {
+fn named(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    what: &UnknownKind,
+) -> Option<(String, f64, String)> {
     match what {
-        What::Gain(_) => Some(("gain".to_owned(), 1.0, "1".to_owned())),
-        What::Bias(at) => {
+        UnknownKind::Gain(_) => Some(("gain".to_owned(), 1.0, "1".to_owned())),
+        UnknownKind::Bias(at) => {
             let unit = problem.dataset.channels[*at].unit.clone();
             Some(("bias".to_owned(), 1.0, unit))
         }
-        What::Delay(_) | What::InputDelay => Some(("delay".to_owned(), 1.0, "s".to_owned())),
-        What::Parameter(name) => {
+        UnknownKind::Delay(_) | UnknownKind::InputDelay => {
+            Some(("delay".to_owned(), 1.0, "s".to_owned()))
+        }
+        UnknownKind::Parameter(name) => {
             let mut parameters = fit.model.specification().parameters.iter();
             let parameter = parameters.find(|p| p.name == *name)?;
             let unit = parameter.unit.text.clone();
             Some((name.clone(), parameter.unit.from_si(1.0), unit))
         }
-        What::Inverse(_) => None,
+        UnknownKind::InverseParameter(_) => None,
     }
 }
 
 /// Returns the parameters of the null model by name.
-pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Estimated> {
+pub(crate) fn list_refitted(
+    fit: &Fit,
+    accepted: &[AcceptedEffect],
+) -> BTreeMap<String, EstimateWithUnit> {
     let mut found = BTreeMap::new();
     for (id, unknown) in fit.unknowns() {
-        let What::Parameter(name) = &unknown.what else {
+        let UnknownKind::Parameter(name) = &unknown.kind else {
             continue;
         };
-        let is_own = |effect: &Accepted| {
+        let is_own = |effect: &AcceptedEffect| {
             effect.candidate.dropped_prior.is_none() && effect.unknowns.contains(&id)
         };
         if accepted.iter().any(is_own) {
@@ -297,7 +313,7 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
         }
         let mut parameters = fit.model.specification().parameters.iter();
         if let Some(parameter) = parameters.find(|p| p.name == *name) {
-            let entry = Estimated {
+            let entry = EstimateWithUnit {
                 value: parameter.unit.from_si(fit.train.estimate.theta[id]),
                 sd: parameter.unit.from_si(fit.sd[id]),
                 unit: parameter.unit.text.clone(),
@@ -309,10 +325,13 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
 }
 
 /// Returns the sensor of each channel.
-pub(crate) fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Sensor> {
-    let shooting = fit.shooting(problem);
-    let sensors = shooting.sensors(&fit.train.estimate.theta);
-    by_channel(problem, |channel, _| Sensor {
+pub(crate) fn list_sensors(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+) -> BTreeMap<String, SensorEstimate> {
+    let shooting = fit.training_shooting(problem);
+    let sensors = shooting.sensor_values(&fit.train.estimate.theta);
+    by_channel(problem, |channel, _| SensorEstimate {
         bias: sensors.bias[channel],
         gain: sensors.gain[channel],
         delay: sensors.delay[channel],

@@ -5,25 +5,26 @@ use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_records::dataset::Channel;
 use maud::{Markup, html};
 
-use crate::experiment::next::{ExperimentFile, NextExperiment, Pair};
+use crate::experiment::next_experiment::{ExperimentFile, MemberPair, NextExperiment};
 use crate::model::problem::EstimationProblem;
-use crate::report::quantity::{plain, quantity};
+use crate::report::quantity::{format_number, format_quantity};
 use crate::thresholds;
 
 /// Returns sentences on the proposed input and its predicted result.
-pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> String {
-    let (Some(input), Some(form), Some(separation)) = (&next.input, &next.form, next.separation)
+pub(crate) fn describe_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> String {
+    let (Some(input), Some(form), Some(separation)) =
+        (&next.input, &next.waveform, next.separation)
     else {
         let reason = next.reason.as_deref().unwrap_or("no input was tested");
         return format!("No experiment is proposed: {reason}.");
     };
     let size = match separation < 0.01 {
         true => "less than 0.01".to_owned(),
-        false => plain(separation, 2),
+        false => format_number(separation, 2),
     };
-    let bounds = match next.bounds.is_empty() {
+    let bounds = match next.bounds_source.is_empty() {
         true => String::new(),
-        false => format!(" {}", next.bounds),
+        false => format!(" {}", next.bounds_source),
     };
     let Some(file) = next.file.and_then(|file| files.get(file)) else {
         return format!(
@@ -32,11 +33,11 @@ pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> Stri
         );
     };
     let played = format!("Play {}: {form} on {input}.", file.name);
-    let told = match &next.shows {
+    let told = match &next.detectable {
         Some(shown) => format!(
             "Predicted smallest detectable value of {}: {}.",
-            shown.what,
-            quantity(shown.from, 4, &shown.unit)
+            shown.parameter,
+            format_quantity(shown.smallest, 4, &shown.unit)
         ),
         None => format!(
             "Predicted residual of a wrong effect: at least {size} standard deviations of the noise."
@@ -49,9 +50,12 @@ pub(crate) fn sentences(next: &NextExperiment, files: &[ExperimentFile]) -> Stri
 fn not_told(next: &NextExperiment) -> String {
     // Pairs stand either way, one behind the other.
     let pairs = next.pairs.chunks_exact(2);
-    let is_told = |pair: &&[Pair]| pair.iter().all(|of| of.separation >= thresholds::SEPARATES);
+    let is_told = |pair: &&[MemberPair]| {
+        pair.iter()
+            .all(|of| of.separation >= thresholds::MIN_SEPARATION_IN_NOISE)
+    };
     let left = pairs.filter(|pair| !is_told(pair));
-    let left = left.map(|pair| format!("{} from {}", pair[0].truth.words(), pair[0].rival.words()));
+    let left = left.map(|pair| format!("{} from {}", pair[0].truth.label(), pair[0].rival.label()));
     match left.collect::<Vec<String>>() {
         left if left.is_empty() => String::new(),
         left => format!(" It does not separate {}.", left.join(", nor ")),
@@ -59,7 +63,10 @@ fn not_told(next: &NextExperiment) -> String {
 }
 
 /// Draws the proposed inputs and the predictions of the models.
-pub(crate) fn drawn(problem: &EstimationProblem<'_>, files: &[ExperimentFile]) -> Markup {
+pub(crate) fn draw_experiments(
+    problem: &EstimationProblem<'_>,
+    files: &[ExperimentFile],
+) -> Markup {
     if files.is_empty() {
         return html! {};
     }
@@ -79,7 +86,7 @@ pub(crate) fn drawn(problem: &EstimationProblem<'_>, files: &[ExperimentFile]) -
 }
 
 fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Markup {
-    let [first, second] = &file.predicted;
+    let [first, second] = &file.predictions;
     let columns = first.iter().zip(second);
     let differences: Vec<Vec<f64>> = columns
         .map(|(first, second)| first.iter().zip(second).map(|(a, b)| b - a).collect())

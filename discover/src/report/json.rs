@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::experiment::next::{ExperimentFile, MemberAt, NextExperiment, Pair};
-use crate::report::experiment::sentences;
+use crate::experiment::next_experiment::{ClassMember, ExperimentFile, MemberPair, NextExperiment};
+use crate::report::experiment::describe_experiment;
 use crate::report::result::{
-    ChannelGap, Compared, Comparison, Discovery, EffectAt, Estimated, FoundEffect, OnRecords,
-    RejectedEffect, Sensor,
+    ChannelGap, CommonResult, Comparison, Discovery, EffectSite, EstimateWithUnit, FoundEffect,
+    RejectedEffect, SensorEstimate, TrainTest,
 };
 use crate::report::summary::Summary;
 
@@ -17,7 +17,7 @@ const SCHEMA: u32 = 2;
 
 impl Comparison {
     /// Returns the verdict name of the documents.
-    pub fn verdict(&self) -> &'static str {
+    pub fn verdict_name(&self) -> &'static str {
         match self.has_gap {
             true => "gap_found",
             false => "no_significant_gap",
@@ -35,8 +35,8 @@ impl Comparison {
             })
         };
         let mut document = common(&self.compared, gap);
-        document["verdict"] = json!(self.verdict());
-        document["summary"] = json!(Summary::of_comparison(self).text());
+        document["verdict"] = json!(self.verdict_name());
+        document["summary"] = json!(Summary::from_comparison(self).to_text());
         document
     }
 }
@@ -57,10 +57,10 @@ impl Discovery {
             .map(|of| effect(of, &self.experiments))
             .collect();
         let rejected = self.rejected.iter().map(|r| rejected(r, None));
-        let not_testable = self.not_testable.iter();
+        let not_testable = self.untestable.iter();
         let not_testable = not_testable.map(|r| self::rejected(r, Some(&self.experiments)));
         document["verdict"] = json!(self.verdict.word());
-        document["summary"] = json!(Summary::of_discovery(self).text());
+        document["summary"] = json!(Summary::from_discovery(self).to_text());
         document["effects"] = json!(effects);
         document["rejected"] = Value::Array(rejected.collect());
         document["not_testable"] = Value::Array(not_testable.collect());
@@ -73,10 +73,10 @@ impl Discovery {
 
     /// The test gap step by step, in standard deviations of the noise.
     fn steps(&self) -> Value {
-        let step = |step: &crate::report::result::Step| json!({"added": step.added, "test_rms_over_noise": step.test_rms});
+        let step = |step: &crate::report::result::SearchStep| json!({"added": step.added, "test_rms_over_noise": step.test_rms});
         let mut steps: Vec<Value> = self.steps.iter().map(step).collect();
         if let Some(last) = steps.last_mut() {
-            last["validated"] = json!(self.validation.as_ref().map(|found| found.passed));
+            last["validated"] = json!(self.validation.as_ref().map(|found| found.has_passed));
         }
         Value::Array(steps)
     }
@@ -84,7 +84,7 @@ impl Discovery {
     fn validation(&self) -> Value {
         let found = |found: &crate::report::result::Validation| {
             json!({
-                "passed": found.passed,
+                "passed": found.has_passed,
                 "checks": found.checks,
                 "failed": found.failed,
                 "train_rms_over_noise": self.resimulation.train,
@@ -96,7 +96,7 @@ impl Discovery {
 }
 
 /// What both documents hold.
-fn common(compared: &Compared, gap: impl Fn(&ChannelGap) -> Value) -> Value {
+fn common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value {
     let gaps = compared
         .gap
         .iter()
@@ -104,33 +104,33 @@ fn common(compared: &Compared, gap: impl Fn(&ChannelGap) -> Value) -> Value {
     json!({
         "schema": SCHEMA,
         "gap": gaps.collect::<Map<String, Value>>(),
-        "refitted": estimates(&compared.refitted),
-        "sensors": sensors(&compared.sensors),
+        "refitted": estimates_to_json(&compared.refitted),
+        "sensors": sensors_to_json(&compared.sensors),
         "where": compared.location,
         "notes": compared.notes,
     })
 }
 
-fn on_records(both: OnRecords<f64>) -> Value {
+fn on_records(both: TrainTest<f64>) -> Value {
     json!({"train": both.train, "test": both.test})
 }
 
 /// Writes estimates by name.
-pub(crate) fn estimates(of: &BTreeMap<String, Estimated>) -> Value {
-    let entry = |of: &Estimated| json!({"value": of.value, "sd": of.sd, "unit": of.unit});
+pub(crate) fn estimates_to_json(of: &BTreeMap<String, EstimateWithUnit>) -> Value {
+    let entry = |of: &EstimateWithUnit| json!({"value": of.value, "sd": of.sd, "unit": of.unit});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
     Value::Object(entries.collect())
 }
 
 /// Writes sensors by the name of their channel.
-pub(crate) fn sensors(of: &BTreeMap<String, Sensor>) -> Value {
-    let entry = |of: &Sensor| json!({"bias": of.bias, "gain": of.gain, "delay": of.delay});
+pub(crate) fn sensors_to_json(of: &BTreeMap<String, SensorEstimate>) -> Value {
+    let entry = |of: &SensorEstimate| json!({"bias": of.bias, "gain": of.gain, "delay": of.delay});
     let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
     Value::Object(entries.collect())
 }
 
-fn at(of: &EffectAt) -> Value {
-    json!({"effect": of.effect, "on": of.on})
+fn at(of: &EffectSite) -> Value {
+    json!({"effect": of.effect, "on": of.site})
 }
 
 /// `files`: the experiments, for what the records could not have shown.
@@ -150,14 +150,14 @@ fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
 fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = at(&of.at);
     entry["status"] = json!(of.status.word());
-    entry["equivalent"] = of.equivalent.iter().map(at).collect();
-    entry["parameters"] = estimates(&of.parameters);
+    entry["equivalent"] = of.equivalents.iter().map(at).collect();
+    entry["parameters"] = estimates_to_json(&of.parameters);
     entry["term"] = json!(of.term);
     entry["evidence"] = json!({
-        "held_out_gap_reduction": of.statistics.held_out,
-        "held_out_z_score": of.statistics.held_out_errors,
-        "log_likelihood_gain": of.statistics.information,
-        "t": of.statistics.t,
+        "held_out_gap_reduction": of.statistics.held_out_reduction,
+        "held_out_z_score": of.statistics.reduction_in_standard_errors,
+        "log_likelihood_gain": of.statistics.information_gain,
+        "t": of.statistics.t_value,
         "p_value": of.statistics.p_value,
         "p_value_adjusted": of.adjusted_p_value,
     });
@@ -178,8 +178,8 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
 
 /// An experiment that was computed, in `next_experiment`.
 fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
-    let member = |of: &MemberAt| json!({"effect": of.effect, "on": of.on});
-    let pair = |pair: &Pair| {
+    let member = |of: &ClassMember| json!({"effect": of.effect, "on": of.site});
+    let pair = |pair: &MemberPair| {
         json!({
             "simulated": member(&pair.truth),
             "alternative": member(&pair.rival),
@@ -188,17 +188,17 @@ fn next_experiment(next: &NextExperiment, files: &[ExperimentFile]) -> Value {
         })
     };
     json!({
-        "text": sentences(next, files),
+        "text": describe_experiment(next, files),
         "file": next.file.map(|file| &files[file].name),
         "input": next.input,
-        "form": next.form,
+        "form": next.waveform,
         "separation": next.separation,
         "pairs": next.pairs.iter().map(pair).collect::<Vec<Value>>(),
-        "smallest_detectable": next.shows.as_ref().map(|shown| {
-            json!({&shown.what: {"value": shown.from, "unit": shown.unit}})
+        "smallest_detectable": next.detectable.as_ref().map(|shown| {
+            json!({&shown.parameter: {"value": shown.smallest, "unit": shown.unit}})
         }),
-        "excluded": next.left_out.iter().map(member).collect::<Vec<Value>>(),
+        "excluded": next.failed_members.iter().map(member).collect::<Vec<Value>>(),
         "reason": next.reason,
-        "bounds": next.bounds,
+        "bounds": next.bounds_source,
     })
 }

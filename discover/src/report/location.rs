@@ -1,23 +1,23 @@
 //! Sentences on the difference between model and records: channel, time, speed and frequency.
 
-use crate::fit::fitted::Fit;
-use crate::fit::residual_spectrum::{SpectralPeak, training_peak};
+use crate::fit::fit_result::Fit;
+use crate::fit::residual_spectrum::{SpectralPeak, find_training_peak};
 use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
-use crate::model::smoothing::sloped;
+use crate::model::smoothing::differentiate_column;
 use crate::residual_force::types::ResidualForce;
-use crate::residual_force::wording::described;
+use crate::residual_force::wording::describe_residual_force;
 use crate::thresholds;
 
 /// Returns the sentences, first the equation of the residual force if it was estimated.
-pub fn located(
+pub fn describe_location(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     force: Option<&ResidualForce>,
 ) -> String {
     let channel = by_channel(problem, fit);
     match force {
-        Some(force) => format!("{} {channel}", described(force)),
+        Some(force) => format!("{} {channel}", describe_residual_force(force)),
         None => channel,
     }
 }
@@ -27,7 +27,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     let count = problem.noise.len();
     let normalised_rms: Vec<f64> = fit
         .train
-        .channels
+        .channel_rms
         .iter()
         .zip(&problem.noise)
         .map(|(gap, noise)| gap / noise)
@@ -40,9 +40,9 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     let channel = &problem.dataset.channels[worst];
     let mut text = format!(
         "The residual is largest in {}: {:.3e} {} or {:.1} times its noise.",
-        channel.name, fit.train.channels[worst], channel.unit, normalised_rms[worst]
+        channel.name, fit.train.channel_rms[worst], channel.unit, normalised_rms[worst]
     );
-    if let Some(worst) = worst_window(problem, fit) {
+    if let Some(worst) = find_worst_window(problem, fit) {
         let window = &problem.train.list[worst];
         text += &format!(
             " It is largest from {:.3} s to {:.3} s of {}.",
@@ -54,11 +54,11 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     if let Some(more) = by_speed(problem, fit, worst) {
         text += &more;
     }
-    match training_peak(problem, fit, worst) {
-        Some(SpectralPeak::At(frequency)) => {
+    match find_training_peak(problem, fit, worst) {
+        Some(SpectralPeak::Frequency(frequency)) => {
             text += &format!(" Its spectrum has a peak at {frequency:.3} Hz.");
         }
-        Some(SpectralPeak::Slow) => {
+        Some(SpectralPeak::BelowResolution) => {
             text += " Most of it is below the frequency resolution of windows of this length.";
         }
         None => {}
@@ -67,7 +67,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
 }
 
 /// Returns the training window with the largest residuals; `None` if there is only one window.
-pub(crate) fn worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<WindowId> {
+pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<WindowId> {
     let squares = &fit.train.estimate.squares;
     let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;
     let windows = WindowId::first(squares.len()).filter(|_| squares.len() > 1);
@@ -78,7 +78,7 @@ pub(crate) fn worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option
 fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();
-    for (window, residual) in problem.train.list.iter().zip(&fit.train.residuals) {
+    for (window, residual) in problem.train.list.iter().zip(&fit.train.window_residuals) {
         let values: Vec<f64> = window
             .measured
             .iter()
@@ -86,8 +86,8 @@ fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> O
             .step_by(count)
             .copied()
             .collect();
-        let smooth = crate::model::smoothing::smoothed(&window.times, &values);
-        let slopes = sloped(&window.times, &smooth);
+        let smooth = crate::model::smoothing::smooth_column(&window.times, &values);
+        let slopes = differentiate_column(&window.times, &smooth);
         let speed = (slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64).sqrt();
         let own: Vec<f64> = residual
             .iter()
@@ -106,13 +106,13 @@ fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> O
     let mean =
         |part: &[(f64, f64)]| (part.iter().map(|p| p.1).sum::<f64>() / part.len() as f64).sqrt();
     let (slow, fast) = (mean(&pairs[..third]), mean(&pairs[pairs.len() - third..]));
-    if fast > thresholds::WORTH_SAYING * slow {
+    if fast > thresholds::MIN_SPEED_RATIO * slow {
         Some(format!(
             " It increases with the speed: {:.1} times as large in the fastest third of the windows as in the \
              slowest.",
             fast / slow
         ))
-    } else if slow > thresholds::WORTH_SAYING * fast {
+    } else if slow > thresholds::MIN_SPEED_RATIO * fast {
         Some(format!(
             " It decreases with the speed: {:.1} times as large in the slowest third of the windows as in the \
              fastest.",

@@ -6,11 +6,10 @@
 //! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
 //! delay (`late_channels`), the interactive model (`playback`), and the next `experiment`.
 
+mod common_delay;
 mod discovery;
 mod experiment;
 mod json;
-mod late_channels;
-mod left;
 pub mod location;
 mod motion_noise;
 pub mod origin;
@@ -19,6 +18,7 @@ mod page;
 mod pictures;
 mod playback;
 mod quantity;
+mod remaining_gap;
 pub mod resimulation;
 pub mod result;
 pub mod run;

@@ -3,13 +3,13 @@
 use eomgen_records::dataset::Quantity;
 use eomgen_records::noise;
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 
 /// Returns a note for each torque whose computed value along the first training record is noisier
 /// than its declared noise. The comparison is then dominated by noise of the motion.
-pub(crate) fn notes_of_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
+pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<String> {
     let channels = problem.dataset.channels.iter();
     let channels = ChannelId::first(problem.noise.len()).zip(channels);
     let inputs = channels.filter(|(_, channel)| matches!(channel.quantity, Quantity::Input(_)));
@@ -31,7 +31,7 @@ pub(crate) fn notes_of_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) 
 /// What a channel is computed to show along the first training record, NaN where nothing is compared, SI.
 fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
     let count = problem.noise.len();
-    let windows = problem.train.list.iter().zip(&fit.train.residuals);
+    let windows = problem.train.list.iter().zip(&fit.train.window_residuals);
     let first = windows.filter(|(window, _)| window.record == 0);
     let values = first.flat_map(|(window, residuals)| {
         let pairs = window.measured.iter().zip(residuals);

@@ -44,7 +44,11 @@ pub struct HashedFile {
 
 impl Origin {
     /// Records the origin of a result that is computed now.
-    pub(crate) fn of(specification: Specification<'_>, dataset: &Dataset, seed: u64) -> Self {
+    pub(crate) fn record_inputs(
+        specification: Specification<'_>,
+        dataset: &Dataset,
+        seed: u64,
+    ) -> Self {
         let hashed = |role: &str, path: &Path| HashedFile {
             role: role.to_owned(),
             path: path.display().to_string(),

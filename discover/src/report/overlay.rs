@@ -6,11 +6,11 @@ use eomgen_plot::{Panel, Series, TimeHistory, time_history};
 use eomgen_records::windows::{Window, Windows};
 use maud::{Markup, html};
 
-use crate::fit::fitted::Fit;
-use crate::fit::residuals::{Residuals, residual_column};
+use crate::fit::fit_result::Fit;
+use crate::fit::residuals::{Residuals, channel_residuals};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
-use crate::report::location::worst_window;
+use crate::report::location::find_worst_window;
 
 /// The part of a record that is drawn once more, larger.
 const STRETCH: f64 = 0.1;
@@ -19,7 +19,7 @@ const STRETCH: f64 = 0.1;
 const FEWEST: usize = 40;
 
 /// Draws both figures for the original model and, if effects were found, for the extended model.
-pub(crate) fn overlay(
+pub(crate) fn draw_overlays(
     problem: &EstimationProblem<'_>,
     before: &Fit,
     after: Option<&Fit>,
@@ -32,7 +32,7 @@ pub(crate) fn overlay(
     );
     let train = fits(before, after, |fit| &fit.train);
     // The window that the sentence on the page names.
-    let worst = worst_window(problem, before).unwrap_or(WindowId::new(0));
+    let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
     let record = problem.train.list[worst].record;
     let trained = Seen::of(problem, (&problem.train, record), &train);
     let stretch = trained.stretch(&problem.train.list[worst]);
@@ -92,7 +92,8 @@ impl Seen {
             let measured = |window: &Window| column(&window.measured, place, count);
             let simulated = |fit: &Residuals| -> Vec<f64> {
                 let of = |(at, window): (usize, &Window)| {
-                    let residuals = residual_column(window, &fit.residuals[at], (place, count));
+                    let residuals =
+                        channel_residuals(window, &fit.window_residuals[at], (place, count));
                     let pairs = measured(window).into_iter().zip(residuals);
                     pairs
                         .map(|(measured, residual)| measured + noise * residual)

@@ -6,22 +6,22 @@ use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum,
 use eomgen_records::windows::Window;
 use maud::{Markup, html};
 
-use crate::fit::fitted::Fit;
-use crate::fit::residual_spectrum::residual_spectrum;
-use crate::fit::residuals::residual_column;
+use crate::fit::fit_result::Fit;
+use crate::fit::residual_spectrum::compute_residual_spectrum;
+use crate::fit::residuals::channel_residuals;
 use crate::model::problem::EstimationProblem;
-use crate::residual_force::figures::figures as figures_of_force;
+use crate::residual_force::figures::draw_profiles as figures_of_force;
 use crate::residual_force::types::ResidualForce;
 
 /// Draws the comparison of the equations and the profiles of the residual force.
-pub(crate) fn force_section(force: &ResidualForce, after: Option<&ResidualForce>) -> Markup {
+pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualForce>) -> Markup {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
     let rows = html! {
         @for ranking in &force.ranking {
             tr {
                 td { (force.equations[ranking.equation].name) }
-                td { (percent(ranking.by_state)) }
-                td { (percent(ranking.by_time)) }
+                td { (percent(ranking.fraction_by_state)) }
+                td { (percent(ranking.fraction_by_time)) }
             }
         }
     };
@@ -46,7 +46,7 @@ fn drawn(svg: &str) -> Markup {
 }
 
 /// Draws residuals over time and their spectra, before and after the search.
-pub(crate) fn figures(
+pub(crate) fn draw_residuals(
     problem: &EstimationProblem<'_>,
     before: &Fit,
     after: Option<&Fit>,
@@ -62,7 +62,7 @@ pub(crate) fn figures(
     let column = |fit: &Fit, channel: usize| -> Vec<f64> {
         let windows = windows_of_first_record(problem, fit);
         let columns =
-            windows.map(|(window, residual)| residual_column(window, residual, (channel, count)));
+            windows.map(|(window, residual)| channel_residuals(window, residual, (channel, count)));
         columns
             .flatten()
             .map(|r| r * problem.noise[channel])
@@ -144,7 +144,7 @@ fn windows_of_first_record<'a>(
     problem: &'a EstimationProblem<'_>,
     fit: &'a Fit,
 ) -> impl Iterator<Item = (&'a Window, &'a [f64])> {
-    let windows = problem.test.list.iter().zip(&fit.test.residuals);
+    let windows = problem.test.list.iter().zip(&fit.test.window_residuals);
     let first = windows.filter(|(window, _)| window.record == 0);
     first.map(|(window, residual)| (window, residual.as_slice()))
 }
@@ -153,7 +153,8 @@ fn windows_of_first_record<'a>(
 /// 0 Hz; empty if windows are too short.
 fn density(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> PowerSpectrum {
     let windows: Vec<_> = windows_of_first_record(problem, fit).collect();
-    let Some((mut spectrum, _)) = residual_spectrum(&windows, channel, problem.noise.len()) else {
+    let Some((mut spectrum, _)) = compute_residual_spectrum(&windows, channel, problem.noise.len())
+    else {
         return PowerSpectrum::default();
     };
     spectrum.frequency.remove(0);

@@ -14,9 +14,9 @@ const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
 
 /// Formats a value with its standard deviation: `12.03 ± 0.02 N`. The deviation has one digit, or
 /// two if the first is 1. An unknown deviation is omitted.
-pub(crate) fn estimate(value: f64, sd: f64, unit: &str) -> String {
+pub(crate) fn format_estimate(value: f64, sd: f64, unit: &str) -> String {
     if !(sd.is_finite() && sd > 0.0) {
-        return quantity(value, 4, unit);
+        return format_quantity(value, 4, unit);
     }
     if !value.is_finite() {
         return "not known".to_owned();
@@ -27,14 +27,14 @@ pub(crate) fn estimate(value: f64, sd: f64, unit: &str) -> String {
     let last = exponent(sd) - i32::from(first_digit(sd) == 1);
     if last < exponent(value.abs().max(sd)) - MOST_DIGITS {
         // Known to more digits than anybody reads.
-        return quantity(value * scale, MOST_DIGITS, base);
+        return format_quantity(value * scale, MOST_DIGITS, base);
     }
     let (value, sd) = (to_place(value, last), to_place(sd, last));
     with_unit(&format!("{value} ± {sd}"), &unit, true)
 }
 
 /// Formats a value with this number of digits and a unit: `5.73 mm`.
-pub(crate) fn quantity(value: f64, digits: i32, unit: &str) -> String {
+pub(crate) fn format_quantity(value: f64, digits: i32, unit: &str) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
@@ -45,7 +45,7 @@ pub(crate) fn quantity(value: f64, digits: i32, unit: &str) -> String {
 }
 
 /// Formats a number with this number of digits: `57300`, `1.02`.
-pub(crate) fn plain(value: f64, digits: i32) -> String {
+pub(crate) fn format_number(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
@@ -53,12 +53,12 @@ pub(crate) fn plain(value: f64, digits: i32) -> String {
 }
 
 /// Formats a number with one decimal place.
-pub(crate) fn to_tenths(value: f64) -> String {
+pub(crate) fn format_tenths(value: f64) -> String {
     to_place(value, -1)
 }
 
 /// Formats a fraction in percent. A fraction below 1 is never shown as 100 %.
-pub(crate) fn percent(part: f64) -> String {
+pub(crate) fn format_percent(part: f64) -> String {
     match 100.0 * part {
         p if !p.is_finite() => "an unknown part".to_owned(),
         p if p >= 99.95 => "all".to_owned(),
@@ -118,7 +118,7 @@ fn to_place(value: f64, place: i32) -> String {
 }
 
 /// Replaces plain notation of numbers in a sentence by `±` and powers of ten.
-pub(crate) fn readable(text: &str) -> String {
+pub(crate) fn format_readable(text: &str) -> String {
     let words = text.split(' ').map(|word| match word {
         "+-" => "±".to_owned(),
         word => number_word(word).unwrap_or_else(|| word.to_owned()),
@@ -136,11 +136,11 @@ fn number_word(word: &str) -> Option<String> {
     let digits = mantissa.chars().filter(char::is_ascii_digit).count();
     let digits = i32::try_from(digits).unwrap_or(MOST_DIGITS).min(4);
     if (-3..5).contains(&power) {
-        return Some(plain(value, digits) + rest);
+        return Some(format_number(value, digits) + rest);
     }
     Some(
         with_unit(
-            &plain(value / 10f64.powi(power), digits),
+            &format_number(value / 10f64.powi(power), digits),
             &scaled_power(power),
             false,
         ) + rest,
@@ -183,24 +183,28 @@ mod tests {
             (f64::NAN, 1.0, "N", "not known"),
             (0.0, 0.0, "m", "0.000 m"),
         ] {
-            assert_eq!(estimate(value, sd, unit), expected, "{value} {sd} {unit}");
+            assert_eq!(
+                format_estimate(value, sd, unit),
+                expected,
+                "{value} {sd} {unit}"
+            );
         }
     }
 
     #[test]
     fn numbers_in_sentences_are_for_people() {
         assert_eq!(
-            readable("a force: 31 +- 2.2 N, 5.729e-3 m or 1.2e-9. done e5 x1e5"),
+            format_readable("a force: 31 +- 2.2 N, 5.729e-3 m or 1.2e-9. done e5 x1e5"),
             "a force: 31 ± 2.2 N, 0.005729 m or 1.2·10⁻⁹. done e5 x1e5"
         );
     }
 
     #[test]
     fn parts_are_percents() {
-        assert_eq!(percent(0.954), "95 %");
-        assert_eq!(percent(0.9949), "99.5 %");
-        assert_eq!(percent(0.99991), "all");
-        assert_eq!(to_tenths(-0.04), "0.0");
-        assert_eq!(percent(f64::NAN), "an unknown part");
+        assert_eq!(format_percent(0.954), "95 %");
+        assert_eq!(format_percent(0.9949), "99.5 %");
+        assert_eq!(format_percent(0.99991), "all");
+        assert_eq!(format_tenths(-0.04), "0.0");
+        assert_eq!(format_percent(f64::NAN), "an unknown part");
     }
 }

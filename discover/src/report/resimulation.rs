@@ -2,8 +2,8 @@
 //! the fit.
 
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::{Estimate, evaluated};
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::{Estimate, evaluate_cost};
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
@@ -25,26 +25,26 @@ pub struct Resimulation {
 /// # Errors
 ///
 /// An invalid text.
-pub fn resimulated(
+pub fn resimulate(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     text: &str,
 ) -> Result<Resimulation, DiscoverError> {
-    let model = problem.model(text, Some(&fit.texts.linear))?;
-    let ranges = fit.mapped(&model, &fit.ranges);
+    let model = problem.compile_model(text, Some(&fit.texts.linear))?;
+    let ranges = fit.map_state(&model, &fit.ranges);
     let rms = |windows: &Windows<'_>, estimate: &Estimate| {
         let shooting = Shooting::new(problem, &model, windows, &[], &ranges);
         let initial_states = estimate.initial_states.iter();
         let initial_states = initial_states
-            .map(|start| fit.mapped(&model, start))
+            .map(|start| fit.map_state(&model, start))
             .collect();
-        let estimate = evaluated(
+        let estimate = evaluate_cost(
             &shooting,
             &InitialStatePrior::default(),
             Vec::new(),
             initial_states,
         );
-        Residuals::of(&shooting, estimate).whole().rms
+        Residuals::compute(&shooting, estimate).or_infinite().rms
     };
     Ok(Resimulation {
         train: rms(&problem.train, &fit.train.estimate),

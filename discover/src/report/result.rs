@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use maud::Markup;
 
-use crate::experiment::next::{ExperimentFile, NextExperiment};
+use crate::experiment::next_experiment::{ExperimentFile, NextExperiment};
 use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
@@ -14,7 +14,7 @@ use crate::thresholds;
 
 /// A value for each set of records.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OnRecords<T> {
+pub struct TrainTest<T> {
     /// For the training records.
     pub train: T,
     /// For the held-out records.
@@ -23,7 +23,7 @@ pub struct OnRecords<T> {
 
 /// An estimate with its unit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Estimated {
+pub struct EstimateWithUnit {
     /// Value.
     pub value: f64,
     /// Standard deviation.
@@ -40,14 +40,14 @@ pub struct ChannelGap {
     /// Noise floor.
     pub floor: f64,
     /// RMS of the original model.
-    pub before: OnRecords<f64>,
+    pub before: TrainTest<f64>,
     /// RMS of the model with the found effects; `None` in a comparison.
-    pub after: Option<OnRecords<f64>>,
+    pub after: Option<TrainTest<f64>>,
 }
 
 /// Errors of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sensor {
+pub struct SensorEstimate {
     /// Bias in the SI unit of the channel.
     pub bias: f64,
     /// Gain, without unit.
@@ -58,15 +58,15 @@ pub struct Sensor {
 
 /// Results of both a comparison and a search.
 #[derive(Clone, Debug)]
-pub struct Compared {
+pub struct CommonResult {
     /// Title of the dataset; may be empty.
     pub title: String,
     /// Gap of each channel, by its name.
     pub gap: BTreeMap<String, ChannelGap>,
     /// Parameters of the null model, by name.
-    pub refitted: BTreeMap<String, Estimated>,
+    pub refitted: BTreeMap<String, EstimateWithUnit>,
     /// Sensor of each channel, by the name of the channel.
-    pub sensors: BTreeMap<String, Sensor>,
+    pub sensors: BTreeMap<String, SensorEstimate>,
     /// Sentences on the location of the difference.
     pub location: String,
     /// Notes.
@@ -76,46 +76,47 @@ pub struct Compared {
     /// Origin of the result.
     pub origin: Origin,
     /// Figures of the page.
-    pub(crate) pictures: Pictures,
+    pub(crate) pictures: ResultFigures,
 }
 
 /// A nuisance: declared and estimated value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
     /// Name of the parameter, input or channel.
-    pub of: String,
+    pub name: String,
     /// `gain`, `bias` or `delay` of a sensor or an input; `None` for a parameter.
     pub fault: Option<&'static str>,
     /// Declared mean and standard deviation, in the unit of the estimate.
     pub declared: (f64, f64),
     /// Estimated value.
-    pub fitted: Estimated,
+    pub estimate: EstimateWithUnit,
 }
 
 impl Nuisance {
     /// Returns the distance from the declared mean, in declared standard deviations.
-    pub fn deviations(&self) -> f64 {
+    pub fn deviations_from_prior(&self) -> f64 {
         let (mean, sd) = self.declared;
-        (self.fitted.value - mean) / sd
+        (self.estimate.value - mean) / sd
     }
 
     /// Returns true if the estimate is at the bound of the fit.
     pub fn is_at_bound(&self) -> bool {
-        self.deviations().abs() >= thresholds::AT_BOUND * thresholds::SHIFTED
+        self.deviations_from_prior().abs()
+            >= thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION
     }
 
     /// Returns the name for a sentence.
-    pub(crate) fn name(&self) -> String {
+    pub(crate) fn full_name(&self) -> String {
         match self.fault {
-            Some(fault) => format!("the {fault} of {}", self.of),
-            None => self.of.clone(),
+            Some(fault) => format!("the {fault} of {}", self.name),
+            None => self.name.clone(),
         }
     }
 }
 
 /// Figures, as parts of a page.
 #[derive(Clone, Debug)]
-pub(crate) struct Pictures {
+pub(crate) struct ResultFigures {
     /// Interactive simulation.
     pub playback: Playback,
     /// Measured and simulated motion.
@@ -134,7 +135,7 @@ pub struct Comparison {
     /// Whether the gap is larger than for a correct model.
     pub has_gap: bool,
     /// Results that a search also has.
-    pub compared: Compared,
+    pub compared: CommonResult,
 }
 
 /// Result of a search.
@@ -147,15 +148,15 @@ pub struct Discovery {
     /// Tested and rejected effects.
     pub rejected: Vec<RejectedEffect>,
     /// Effects that the records cannot show.
-    pub not_testable: Vec<RejectedEffect>,
+    pub untestable: Vec<RejectedEffect>,
     /// Proposed experiments.
     pub experiments: Vec<ExperimentFile>,
     /// Closed fraction of the gap; `None` if there was almost no gap.
-    pub closure: OnRecords<Option<f64>>,
+    pub closure: TrainTest<Option<f64>>,
     /// Test gap after each step.
-    pub steps: Vec<Step>,
+    pub steps: Vec<SearchStep>,
     /// Results that a comparison also has.
-    pub compared: Compared,
+    pub compared: CommonResult,
     /// The original specification.
     pub original: String,
     /// The specification with the found effects.
@@ -192,16 +193,16 @@ impl Verdict {
 
 /// An effect and its site.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EffectAt {
+pub struct EffectSite {
     /// Name of the effect.
     pub effect: String,
     /// Name of the site.
-    pub on: String,
+    pub site: String,
 }
 
 /// Certainty of the name of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum EffectStatus {
     /// The effect is identified.
     Named,
     /// The effect explains the records best, but a large gap remains or a nuisance is at its bound.
@@ -213,7 +214,7 @@ pub enum Status {
     Empirical,
 }
 
-impl Status {
+impl EffectStatus {
     /// Returns the name in documents.
     pub fn word(self) -> &'static str {
         match self {
@@ -238,15 +239,15 @@ pub struct ShaftOrder {
 #[derive(Clone, Debug)]
 pub struct FoundEffect {
     /// Effect and site.
-    pub at: EffectAt,
+    pub at: EffectSite,
     /// Description of the effect.
-    pub says: String,
+    pub description: String,
     /// Certainty of its name.
-    pub status: Status,
+    pub status: EffectStatus,
     /// Effects that the records cannot distinguish from it.
-    pub equivalent: Vec<EffectAt>,
+    pub equivalents: Vec<EffectSite>,
     /// Parameters by name.
-    pub parameters: BTreeMap<String, Estimated>,
+    pub parameters: BTreeMap<String, EstimateWithUnit>,
     /// Main line of the change of the specification.
     pub term: String,
     /// Statistics of its test.
@@ -267,7 +268,7 @@ pub struct FoundEffect {
 #[derive(Clone, Debug)]
 pub struct RejectedEffect {
     /// Effect and site.
-    pub at: EffectAt,
+    pub at: EffectSite,
     /// Reason of the rejection.
     pub reason: String,
     /// Experiment that shows the effect.
@@ -281,7 +282,7 @@ pub struct RejectedEffect {
 
 /// A step of the search.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct SearchStep {
     /// Added effects; empty in the first step.
     pub added: Vec<String>,
     /// RMS residual of the test records, in standard deviations of the noise.
@@ -292,7 +293,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 pub struct Validation {
     /// Whether all checks passed.
-    pub passed: bool,
+    pub has_passed: bool,
     /// Executed checks.
     pub checks: Vec<String>,
     /// Failed checks.

@@ -5,42 +5,45 @@ use maud::Markup;
 
 use crate::catalogue::effect::Effect;
 use crate::catalogue::user_effects;
-use crate::empirical::unnamed;
+use crate::empirical::add_empirical_effect;
 use crate::error::DiscoverError;
-use crate::experiment::experiments;
-use crate::experiment::next::Experiments;
-use crate::fit::contradiction::{contradictions, stated};
-use crate::fit::fitted::Fit;
-use crate::fit::noise_floor::{NoiseFloor, noise_floor};
-use crate::fit::null_model::null_fit;
+use crate::experiment::next_experiment::Experiments;
+use crate::experiment::propose_experiments;
+use crate::fit::contradiction::{describe_contradictions, format_estimate};
+use crate::fit::fit_result::Fit;
+use crate::fit::noise_floor::{NoiseFloor, compute_noise_floor};
+use crate::fit::null_model::fit_null_model;
 use crate::ids::UnknownId;
 use crate::model::channel_checks;
-use crate::model::input_faults::with_declared;
+use crate::model::input_faults::add_declared_faults;
 use crate::model::problem::EstimationProblem;
-use crate::model::stop::Stop;
-use crate::model::unknowns::note_of_input_delay;
+use crate::model::stop::StopRequest;
+use crate::model::unknowns::note_input_delay;
+use crate::report::common_delay::note_common_delay;
 use crate::report::discovery::{
-    Certainty, bound_notes, closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
+    Certainty, compute_closure, compute_gap, describe_bounds, list_nuisances, list_refitted,
+    list_rejected, list_sensors, list_steps, summarise_effects,
 };
-use crate::report::experiment::drawn;
-use crate::report::late_channels::note_of_late_channels;
-use crate::report::left::{Left, Stage};
-use crate::report::location::located;
-use crate::report::motion_noise::notes_of_motion_noise;
+use crate::report::experiment::draw_experiments;
+use crate::report::location::describe_location;
+use crate::report::motion_noise::note_motion_noise;
 use crate::report::origin::{Origin, Specification};
-use crate::report::overlay::overlay;
-use crate::report::pictures::{figures, force_section};
+use crate::report::overlay::draw_overlays;
+use crate::report::pictures::draw_residraw_force_sectionsection;
 use crate::report::playback::Playback;
-use crate::report::resimulation::resimulated;
-use crate::report::result::{Compared, Comparison, Discovery, Nuisance, Pictures, Verdict};
-use crate::report::units::notes_of_units;
-use crate::report::write_back::extended;
-use crate::residual_force::residual_force;
+use crate::report::remaining_gap::{ModelStage, RemainingGap};
+use crate::report::resimulation::resimulate;
+use crate::report::result::{
+    CommonResult, Comparison, Discovery, Nuisance, ResultFigures, Verdict,
+};
+use crate::report::units::note_wrong_units;
+use crate::report::write_back::write_extended;
+use crate::residual_force::estimate_residual_force;
 use crate::residual_force::types::ResidualForce;
-use crate::residual_force::wording::described_after;
-use crate::search::context::Context;
+use crate::residual_force::wording::describe_remaining_force;
+use crate::search::context::RoundContext;
 use crate::search::search;
-use crate::search::unconfirmed::Unconfirmed;
+use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
 
 /// Receiver of progress lines.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
@@ -64,39 +67,36 @@ pub fn compare(
     progress: &Progress<'_>,
 ) -> Result<Comparison, DiscoverError> {
     let Specification { path, text, order } = specification;
-    let text = &with_declared(text, path, &dataset.inputs)?;
+    let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let problem = EstimationProblem::new(dataset, order, path, text);
     let Null { fit, floor, force } = null(&problem, text, seed, progress)?;
-    let pictures = Pictures {
-        playback: Playback::None,
-        overlay: overlay(&problem, &fit, None),
-        residuals: figures(&problem, &fit, None),
+    let pictures = ResultFigures {
+        playback: Playback::NotNeeded,
+        overlay: draw_overlays(&problem, &fit, None),
+        residuals: draw_residuals(&problem, &fit, None),
         experiments: Markup::default(),
         force: force.as_ref().map(|force| {
-            let equation = force.profiled_equation().to_owned();
-            (equation, force_section(force, None))
+            let equation = force.profiled_equation_name().to_owned();
+            (equation, draw_force_section(force, None))
         }),
     };
-    let nuisances = nuisances(&problem, &fit);
-    let mut notes = [dataset.notes.clone(), bound_notes(&nuisances)].concat();
-    notes.extend(note_of_input_delay(
-        &dataset.inputs,
-        fit.model.specification(),
-    ));
-    notes.extend(note_of_late_channels(&problem, &fit));
-    notes.extend(notes_of_motion_noise(&problem, &fit));
+    let nuisances = list_nuisances(&problem, &fit);
+    let mut notes = [dataset.notes.clone(), describe_bounds(&nuisances)].concat();
+    notes.extend(note_input_delay(&dataset.inputs, fit.model.specification()));
+    notes.extend(note_common_delay(&problem, &fit));
+    notes.extend(note_motion_noise(&problem, &fit));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
-        compared: Compared {
+        compared: CommonResult {
             title: dataset.title.clone(),
-            gap: gap(&problem, &fit, None, &floor),
-            refitted: refitted(&fit, &[]),
-            sensors: sensors(&problem, &fit),
-            location: located(&problem, &fit, force.as_ref()),
+            gap: compute_gap(&problem, &fit, None, &floor),
+            refitted: list_refitted(&fit, &[]),
+            sensors: list_sensors(&problem, &fit),
+            location: describe_location(&problem, &fit, force.as_ref()),
             notes,
             nuisances,
-            origin: Origin::of(specification, dataset, seed),
+            origin: Origin::record_inputs(specification, dataset, seed),
             pictures,
         },
     })
@@ -116,7 +116,7 @@ pub fn discover(
     seed: u64,
     progress: &Progress<'_>,
 ) -> Result<Discovery, DiscoverError> {
-    let stop = Stop::default();
+    let stop = StopRequest::default();
     discover_until(specification, dataset, catalogue, seed, progress, &stop)
 }
 
@@ -131,49 +131,50 @@ pub fn discover_until(
     catalogue: &[Effect],
     seed: u64,
     progress: &Progress<'_>,
-    stop: &Stop,
+    stop: &StopRequest,
 ) -> Result<Discovery, DiscoverError> {
     let Specification { path, text, order } = specification;
-    let without_site = user_effects::check(catalogue, path, text)?;
+    let without_site = user_effects::check_user_effects(catalogue, path, text)?;
     for note in &without_site {
         progress(&format!("note: {note}"));
     }
     dataset.notes.extend(without_site);
     let original = text;
-    let text = &with_declared(text, path, &dataset.inputs)?;
+    let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let mut problem = EstimationProblem::new(&dataset, order, path, text);
     problem.stop = stop.clone();
     let null = null(&problem, text, seed, progress);
     // What failed because somebody asked to stop says nothing of the records.
-    stop.check()?;
+    stop.check_not_stopped()?;
     let Null {
         fit,
         floor: before,
         force,
     } = null?;
-    let mut location = located(&problem, &fit, force.as_ref());
-    stop.arm();
+    let mut location = describe_location(&problem, &fit, force.as_ref());
+    stop.start_timer();
     let found = search(&problem, fit, catalogue, before.rms, progress);
-    stop.check()?;
+    stop.check_not_stopped()?;
     let mut found = found?;
     if found.unfinished.is_none() {
-        unnamed(&problem, &mut found, before.rms, progress);
+        add_empirical_effect(&problem, &mut found, before.rms, progress);
     }
-    stop.check()?;
+    stop.check_not_stopped()?;
     let floor = match found.accepted.is_empty() {
         true => before,
-        false => noise_floor(&problem, found.best(), seed),
+        false => compute_noise_floor(&problem, found.best_fit(), seed),
     };
-    let (null, best) = (&found.null, found.best());
-    let after = force.as_ref().zip(found.last.as_ref());
-    let after = after
-        .and_then(|(force, last)| residual_force(&problem, last, Some(force.profiled_equation())));
+    let (null, best) = (&found.null_fit, found.best_fit());
+    let after = force.as_ref().zip(found.extended_fit.as_ref());
+    let after = after.and_then(|(force, last)| {
+        estimate_residual_force(&problem, last, Some(force.profiled_equation_name()))
+    });
     if let Some(after) = &after {
-        location += &format!(" {}", described_after(after));
+        location += &format!(" {}", describe_remaining_force(after));
     }
-    stop.check()?;
-    let extended = extended(&problem, text, best, &found.accepted)?;
-    let context = Context {
+    stop.check_not_stopped()?;
+    let extended = write_extended(&problem, text, best, &found.accepted)?;
+    let context = RoundContext {
         problem: &problem,
         fit: null,
         floor: floor.rms,
@@ -182,38 +183,38 @@ pub fn discover_until(
     };
     // An experiment takes as long as some fits: not after a limit.
     let experiments = match &found.unfinished {
-        None => experiments(context, &found),
-        Some(_) => Experiments::none(found.accepted.len(), found.rejected.len()),
+        None => propose_experiments(context, &found),
+        Some(_) => Experiments::empty(found.accepted.len(), found.rejected.len()),
     };
-    stop.check()?;
-    let pictures = Pictures {
-        playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
-        overlay: overlay(&problem, null, found.last.as_ref()),
-        residuals: figures(&problem, null, found.last.as_ref()),
-        experiments: drawn(&problem, &experiments.files),
+    stop.check_not_stopped()?;
+    let pictures = ResultFigures {
+        playback: Playback::build(&problem, (null, best), &found.accepted, &extended),
+        overlay: draw_overlays(&problem, null, found.extended_fit.as_ref()),
+        residuals: draw_residuals(&problem, null, found.extended_fit.as_ref()),
+        experiments: draw_experiments(&problem, &experiments.files),
         force: force.as_ref().map(|force| {
-            let equation = force.profiled_equation().to_owned();
-            (equation, force_section(force, after.as_ref()))
+            let equation = force.profiled_equation_name().to_owned();
+            (equation, draw_force_section(force, after.as_ref()))
         }),
     };
-    let gap = gap(&problem, null, Some(best), &floor);
-    let nuisances = nuisances(&problem, best);
-    let mut notes = [problem.dataset.notes.clone(), bound_notes(&nuisances)].concat();
-    notes.extend(note_of_input_delay(
+    let gap = compute_gap(&problem, null, Some(best), &floor);
+    let nuisances = list_nuisances(&problem, best);
+    let mut notes = [problem.dataset.notes.clone(), describe_bounds(&nuisances)].concat();
+    notes.extend(note_input_delay(
         &problem.dataset.inputs,
         null.model.specification(),
     ));
-    let late = note_of_late_channels(&problem, best);
+    let late = note_common_delay(&problem, best);
     for note in (late.into_iter())
-        .chain(Left::of(&gap, Stage::After).note())
-        .chain(notes_of_motion_noise(&problem, best))
-        .chain(notes_of_units(&problem, &found))
+        .chain(RemainingGap::from_channels(&gap, ModelStage::Extended).note_missing_in_training())
+        .chain(note_motion_noise(&problem, best))
+        .chain(note_wrong_units(&problem, &found))
     {
         progress(&format!("note: {note}"));
         notes.push(note);
     }
     if let Some(unfinished) = &found.unfinished {
-        let most = stop.most().map_or(0.0, |most| most.as_secs_f64());
+        let most = stop.time_limit().map_or(0.0, |most| most.as_secs_f64());
         let note = format!("the search reached its time limit of {most} s: {unfinished}");
         progress(&format!("note: {note}"));
         notes.push(note);
@@ -222,7 +223,7 @@ pub fn discover_until(
     if found.unfinished.is_none() {
         // What has no name explains the records instead.
         let unconfirmed = found.unconfirmed.as_ref();
-        let unconfirmed = unconfirmed.filter(|_| found.last.is_none());
+        let unconfirmed = unconfirmed.filter(|_| found.extended_fit.is_none());
         if let Some(of) = unconfirmed {
             let note = note_of_unconfirmed(of, null, floor.rms);
             progress(&format!("note: {note}"));
@@ -231,9 +232,9 @@ pub fn discover_until(
         let fit = unconfirmed.map_or(best, |of| &of.fit);
         notes.extend(contradicting(&problem, fit, floor.rms, progress));
     }
-    stop.check()?;
-    let is_sure =
-        !Left::of(&gap, Stage::After).is_much() && !nuisances.iter().any(Nuisance::is_at_bound);
+    stop.check_not_stopped()?;
+    let is_sure = !RemainingGap::from_channels(&gap, ModelStage::Extended).is_large()
+        && !nuisances.iter().any(Nuisance::is_at_bound);
     let certainty = Certainty {
         is_sure,
         floor: floor.rms,
@@ -244,26 +245,26 @@ pub fn discover_until(
             (true, true) => Verdict::NoSignificantGap,
             (true, false) => Verdict::Unexplained,
         },
-        effects: effects(&problem, &found, &experiments, certainty),
-        rejected: rejected(&problem.judged, &found, &experiments, false),
-        not_testable: rejected(&problem.judged, &found, &experiments, true),
+        effects: summarise_effects(&problem, &found, &experiments, certainty),
+        rejected: list_rejected(&problem.tested_hypotheses, &found, &experiments, false),
+        untestable: list_rejected(&problem.tested_hypotheses, &found, &experiments, true),
         experiments: experiments.files,
-        closure: closure(null, best, &floor),
-        steps: steps(&found),
-        resimulation: resimulated(&problem, best, &extended)?,
+        closure: compute_closure(null, best, &floor),
+        steps: list_steps(&found),
+        resimulation: resimulate(&problem, best, &extended)?,
         validation: None,
         unfinished: found.unfinished.clone(),
         original: original.to_owned(),
         extended,
-        compared: Compared {
+        compared: CommonResult {
             title: problem.dataset.title.clone(),
             gap,
-            refitted: refitted(best, &found.accepted),
-            sensors: sensors(&problem, best),
+            refitted: list_refitted(best, &found.accepted),
+            sensors: list_sensors(&problem, best),
             location,
             notes,
             nuisances,
-            origin: Origin::of(specification, problem.dataset, seed),
+            origin: Origin::record_inputs(specification, problem.dataset, seed),
             pictures,
         },
     })
@@ -271,8 +272,12 @@ pub fn discover_until(
 
 /// What training records speak for and held-out ones do not, in a sentence. What comes behind it holds
 /// with that in the model.
-fn note_of_unconfirmed(of: &Unconfirmed, null: &Fit, floor: f64) -> String {
-    let Unconfirmed { label, own, fit } = of;
+fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> String {
+    let UnconfirmedHypothesis {
+        label,
+        effect_unknowns: own,
+        fit,
+    } = of;
     let sizes: Vec<String> = own.iter().map(|id| size(fit, *id, floor)).collect();
     format!(
         "with {label} ({}) the training residual is {:.1} standard deviations instead of {:.1}; the test \
@@ -289,17 +294,14 @@ fn note_of_unconfirmed(of: &Unconfirmed, null: &Fit, floor: f64) -> String {
 /// An unknown of a fit with its standard deviation, in its parameter's unit.
 fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
     let unknown = &fit.unknowns[id];
-    let (estimate, sd) = (
-        fit.train.estimate.theta[id],
-        fit.sd_beside_misfit(id, floor),
-    );
-    let value = unknown.what.stated(estimate);
-    let name = unknown.what.parameter().unwrap_or(&unknown.label);
+    let (estimate, sd) = (fit.train.estimate.theta[id], fit.sd_with_misfit(id, floor));
+    let value = unknown.kind.value_in_specification(estimate);
+    let name = unknown.kind.parameter_name().unwrap_or(&unknown.label);
     let mut parameters = fit.model.specification().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == name);
     format!(
         "`{name}` = {}",
-        stated(parameter, (value, (sd * value / estimate).abs()))
+        format_estimate(parameter, (value, (sd * value / estimate).abs()))
     )
 }
 
@@ -310,7 +312,7 @@ fn contradicting(
     floor: f64,
     progress: &Progress<'_>,
 ) -> Vec<String> {
-    let found = contradictions(problem, fit, floor, progress);
+    let found = describe_contradictions(problem, fit, floor, progress);
     for sentence in &found {
         progress(&format!("note: {sentence}"));
     }
@@ -324,12 +326,12 @@ fn null(
     seed: u64,
     progress: &Progress<'_>,
 ) -> Result<Null, DiscoverError> {
-    for note in channel_checks::check(problem, text)? {
+    for note in channel_checks::check_channels(problem, text)? {
         progress(&format!("note: {note}"));
     }
     progress("fitting the original model");
-    let fit = null_fit(problem, text)?;
-    let floor = noise_floor(problem, &fit, seed);
-    let force = residual_force(problem, &fit, None);
+    let fit = fit_null_model(problem, text)?;
+    let floor = compute_noise_floor(problem, &fit, seed);
+    let force = estimate_residual_force(problem, &fit, None);
     Ok(Null { fit, floor, force })
 }

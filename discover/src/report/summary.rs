@@ -1,64 +1,66 @@
 //! Summary of a result for the page, the document and the terminal: first the result and its
 //! certainty, then the evidence.
 
-use crate::report::left::{Left, Stage};
-use crate::report::quantity::{estimate, percent};
+use crate::report::quantity::{format_estimate, format_percent};
+use crate::report::remaining_gap::{ModelStage, RemainingGap};
 use crate::report::result::{
-    Comparison, Discovery, EffectAt, FoundEffect, Nuisance, OnRecords, Status, Verdict,
+    Comparison, Discovery, EffectSite, EffectStatus, FoundEffect, Nuisance, TrainTest, Verdict,
 };
 
 /// The first sentence and the following ones.
 pub(crate) struct Summary {
     /// First sentence.
-    pub(crate) first: String,
+    pub(crate) headline: String,
     /// Following sentences.
-    pub(crate) rest: String,
+    pub(crate) details: String,
 }
 
 impl Summary {
     /// Returns both parts.
-    pub(crate) fn text(&self) -> String {
-        format!("{} {}", self.first, self.rest)
+    pub(crate) fn to_text(&self) -> String {
+        format!("{} {}", self.headline, self.details)
     }
 
     /// Summarises a comparison.
-    pub(crate) fn of_comparison(comparison: &Comparison) -> Self {
-        let left = Left::of(&comparison.compared.gap, Stage::Before).words();
+    pub(crate) fn from_comparison(comparison: &Comparison) -> Self {
+        let left =
+            RemainingGap::from_channels(&comparison.compared.gap, ModelStage::Original).describe();
         match comparison.has_gap {
             true => Self {
-                first: "The model does not explain the records.".to_owned(),
-                rest: format!(
+                headline: "The model does not explain the records.".to_owned(),
+                details: format!(
                     "Its residual is {left} (1 = a correct model). Run `eomgen discover` to find the missing \
                      effect."
                 ),
             },
             false => Self {
-                first: explained(&comparison.compared.nuisances, "."),
-                rest: format!("Its residual is {left}, the level of a correct model."),
+                headline: explained(&comparison.compared.nuisances, "."),
+                details: format!("Its residual is {left}, the level of a correct model."),
             },
         }
     }
 
     /// Summarises a search.
-    pub(crate) fn of_discovery(discovery: &Discovery) -> Self {
+    pub(crate) fn from_discovery(discovery: &Discovery) -> Self {
         let gap = &discovery.compared.gap;
-        let [before, after] = [Stage::Before, Stage::After].map(|stage| Left::of(gap, stage));
+        let [before, after] = [ModelStage::Original, ModelStage::Extended]
+            .map(|stage| RemainingGap::from_channels(gap, stage));
         let answer = match discovery.verdict {
             Verdict::NoSignificantGap => Self {
-                first: explained(
+                headline: explained(
                     &discovery.compared.nuisances,
                     "; they show no missing effect.",
                 ),
-                rest: format!(
+                details: format!(
                     "The residual is {}, the level of a correct model.",
-                    after.words()
+                    after.describe()
                 ),
             },
             Verdict::Unexplained => Self {
-                first: "An effect is missing, and no tested effect explains it.".to_owned(),
-                rest: format!(
+                headline: "An effect is missing, and no tested effect explains it.".to_owned(),
+                details: format!(
                     "The residual on the held-out records is {} (1 = a correct model).",
-                    after.words()
+                    after.describe()
                 ),
             },
             Verdict::EffectsFound => found(discovery, &before, &after),
@@ -66,13 +68,13 @@ impl Summary {
         match (&discovery.unfinished, discovery.verdict) {
             (None, _) => answer,
             (Some(unfinished), Verdict::EffectsFound) => Self {
-                rest: format!("{} The search reached its time limit: {unfinished}.", answer.rest),
+                details: format!("{} The search reached its time limit: {unfinished}.", answer.details),
                 ..answer
             },
             (Some(unfinished), _) => Self {
-                first: "An effect is missing, and the search reached its time limit before it was found."
+                headline: "An effect is missing, and the search reached its time limit before it was found."
                     .to_owned(),
-                rest: format!("{} State of the search: {unfinished}.", answer.rest),
+                details: format!("{} State of the search: {unfinished}.", answer.details),
             },
         }
     }
@@ -81,7 +83,7 @@ impl Summary {
 /// What was fitted beside and is as far off as the fit admits; none if nothing is.
 fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
-    let names: Vec<String> = at_bound.map(Nuisance::name).collect();
+    let names: Vec<String> = at_bound.map(Nuisance::full_name).collect();
     let which = match &names[..] {
         [] => return None,
         [only] => only.clone(),
@@ -100,41 +102,41 @@ fn explained(nuisances: &[Nuisance], end: &str) -> String {
 }
 
 /// Of a search that found something: where that is not sure, this is said first.
-fn found(discovery: &Discovery, before: &Left, after: &Left) -> Summary {
+fn found(discovery: &Discovery, before: &RemainingGap, after: &RemainingGap) -> Summary {
     let (found, closed) = (listed(&discovery.effects), closed(discovery.closure));
     let at_bounds = at_bounds(&discovery.compared.nuisances);
     let held = at_bounds
         .as_ref()
         .map_or(String::new(), |at| format!(", {at}"));
-    let left = after.words();
-    if after.is_much() || at_bounds.is_some() {
+    let left = after.describe();
+    if after.is_large() || at_bounds.is_some() {
         return Summary {
-            first: format!(
+            headline: format!(
                 "The named effects may be substitutes for others: the extended model {closed} and leaves \
                  {left}{held}."
             ),
-            rest: format!(
+            details: format!(
                 "Found: {found}. The residual before the search was {} (1 = a correct model).",
-                before.words()
+                before.describe()
             ),
         };
     }
     Summary {
-        first: format!("Found: {found}."),
-        rest: format!(
+        headline: format!("Found: {found}."),
+        details: format!(
             "The extended model {closed}. The residual fell from {} to {left}{}.",
-            before.words(),
-            after.meaning()
+            before.describe(),
+            after.explain_level()
         ),
     }
 }
 
 /// How much of the gap is closed on the records held out.
-fn closed(closure: OnRecords<Option<f64>>) -> String {
+fn closed(closure: TrainTest<Option<f64>>) -> String {
     match closure.test {
         Some(part) if part > 0.0 => format!(
             "closes {} of the gap between model and measurement on held-out records",
-            percent(part)
+            format_percent(part)
         ),
         Some(_) => "closes none of the gap on held-out records".to_owned(),
         None => "had almost no gap to close".to_owned(),
@@ -153,14 +155,15 @@ fn listed(effects: &[FoundEffect]) -> String {
 /// An effect with its size; with what the records do not tell from it.
 fn named(effect: &FoundEffect) -> String {
     let sizes = effect.parameters.iter();
-    let sizes = sizes.map(|(name, of)| format!("{name} = {}", estimate(of.value, of.sd, &of.unit)));
+    let sizes =
+        sizes.map(|(name, of)| format!("{name} = {}", format_estimate(of.value, of.sd, &of.unit)));
     let sizes: Vec<String> = sizes.collect();
-    let mut text = words(&effect.at);
+    let mut text = describe_effect(&effect.at);
     if !sizes.is_empty() {
         text += &format!(", {}", sizes.join(" and "));
     }
-    if effect.status == Status::Class && !effect.equivalent.is_empty() {
-        let others: Vec<String> = effect.equivalent.iter().map(words).collect();
+    if effect.status == EffectStatus::Class && !effect.equivalents.is_empty() {
+        let others: Vec<String> = effect.equivalents.iter().map(describe_effect).collect();
         text += &format!(
             " (or {}; the records do not separate them)",
             others.join(", or ")
@@ -170,6 +173,6 @@ fn named(effect: &FoundEffect) -> String {
 }
 
 /// Returns name and site of an effect as words.
-pub(crate) fn words(at: &EffectAt) -> String {
-    format!("{} on {}", at.effect.replace('_', " "), at.on)
+pub(crate) fn describe_effect(at: &EffectSite) -> String {
+    format!("{} on {}", at.effect.replace('_', " "), at.site)
 }

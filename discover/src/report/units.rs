@@ -1,33 +1,39 @@
 //! Check for estimates that suggest a wrong unit.
 
-use crate::fit::fitted::Fit;
-use crate::model::channel_checks::factor_of_units;
+use crate::fit::fit_result::Fit;
+use crate::model::channel_checks::describe_unit_factor;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::What;
-use crate::search::found::Found;
+use crate::model::unknowns::UnknownKind;
+use crate::search::search_result::SearchResult;
 use eomgen_model_spec::model::ParameterValue;
 
 /// Returns a note for each estimate that is wrong by a factor between two units.
-pub(crate) fn notes_of_units(problem: &EstimationProblem<'_>, found: &Found) -> Vec<String> {
-    let best = found.best();
+pub(crate) fn note_wrong_units(
+    problem: &EstimationProblem<'_>,
+    found: &SearchResult,
+) -> Vec<String> {
+    let best = found.best_fit();
     let unknowns = found.accepted.iter().flat_map(|effect| &effect.unknowns);
-    let note = |what: &What, value: f64| match what {
-        What::Gain(channel) => {
-            let factor = factor_of_units(value, "the expected value")?;
+    let note = |what: &UnknownKind, value: f64| match what {
+        UnknownKind::Gain(channel) => {
+            let factor = describe_unit_factor(value, "the expected value")?;
             let channel = &problem.dataset.channels[*channel].name;
             Some(format!("`{channel}` is {factor}; check its unit"))
         }
-        What::Parameter(name) => {
-            let factor = value / declared(&found.null, name)?;
-            let factor = factor_of_units(factor, "the value in the specification")?;
+        UnknownKind::Parameter(name) => {
+            let factor = value / declared(&found.null_fit, name)?;
+            let factor = describe_unit_factor(factor, "the value in the specification")?;
             Some(format!(
                 "the estimate of `{name}` is {factor}; check all units"
             ))
         }
-        What::Inverse(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => None,
+        UnknownKind::InverseParameter(_)
+        | UnknownKind::Bias(_)
+        | UnknownKind::Delay(_)
+        | UnknownKind::InputDelay => None,
     };
     unknowns
-        .filter_map(|id| note(&best.unknowns[*id].what, best.train.estimate.theta[*id]))
+        .filter_map(|id| note(&best.unknowns[*id].kind, best.train.estimate.theta[*id]))
         .collect()
 }
 

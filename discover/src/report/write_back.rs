@@ -6,11 +6,11 @@ use eomgen_model_spec::edit::{self, Edit, SetParameter, SetSensor};
 use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::model::input_faults::delayed_input;
+use crate::fit::fit_result::Fit;
+use crate::model::input_faults::find_delayed_input;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::What;
-use crate::search::found::Accepted;
+use crate::model::unknowns::UnknownKind;
+use crate::search::search_result::AcceptedEffect;
 use crate::thresholds;
 
 /// Returns the text with the effects and numbers of a fit.
@@ -18,11 +18,11 @@ use crate::thresholds;
 /// # Errors
 ///
 /// An edit that is not possible.
-pub fn extended(
+pub fn write_extended(
     problem: &EstimationProblem<'_>,
     text: &str,
     fit: &Fit,
-    accepted: &[Accepted],
+    accepted: &[AcceptedEffect],
 ) -> Result<String, DiscoverError> {
     let source = provenance(problem);
     let theta = &fit.train.estimate.theta;
@@ -33,10 +33,10 @@ pub fn extended(
             .filter(|effect| effect.candidate.dropped_prior.is_none())
     };
     for effect in written() {
-        let values = fit.stated(&effect.unknowns);
+        let values = fit.values_in_specification(&effect.unknowns);
         let written = effect
             .candidate
-            .written(&text, &problem.path, &values, &source);
+            .write_effect(&text, &problem.path, &values, &source);
         text = written?;
     }
     let added: Vec<UnknownId> = written()
@@ -44,7 +44,7 @@ pub fn extended(
         .collect();
     let mut edits = Vec::new();
     for (id, unknown) in fit.unknowns() {
-        if let What::Parameter(name) = &unknown.what
+        if let UnknownKind::Parameter(name) = &unknown.kind
             && has_moved(fit, id, !accepted.is_empty())
             && !added.contains(&id)
             && let Some(parameter) = fit
@@ -91,27 +91,29 @@ fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     let least = if at_all {
         0.0
     } else {
-        thresholds::WRITTEN_FROM * fit.wider_sd[unknown]
+        thresholds::MIN_WRITTEN_CHANGE_IN_SD * fit.effect_sd[unknown]
     };
     (fit.train.estimate.theta[unknown] - fit.unknowns[unknown].start).abs() > least
 }
 
 /// The sensors that differ from true ones, at all or by more than their uncertainty.
 fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
-    let shooting = fit.shooting(problem);
-    let sensors = shooting.sensors(&fit.train.estimate.theta);
+    let shooting = fit.training_shooting(problem);
+    let sensors = shooting.sensor_values(&fit.train.estimate.theta);
     let moved = |channel: ChannelId| {
         fit.unknowns().any(|(id, unknown)| {
-            let own = match unknown.what {
-                What::Gain(of) | What::Bias(of) | What::Delay(of) => of == channel,
-                What::InputDelay => true,
-                What::Parameter(_) | What::Inverse(_) => false,
+            let own = match unknown.kind {
+                UnknownKind::Gain(of) | UnknownKind::Bias(of) | UnknownKind::Delay(of) => {
+                    of == channel
+                }
+                UnknownKind::InputDelay => true,
+                UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => false,
             };
             own && has_moved(fit, id, at_all)
         })
     };
     // The delay of the input is written with each sensor, or with none.
-    let is_late = delayed_input(&problem.dataset.inputs).is_some();
+    let is_late = find_delayed_input(&problem.dataset.inputs).is_some();
     let any = ChannelId::first(problem.dataset.channels.len()).any(moved);
     let all = &problem.dataset.channels;
     let channels = ChannelId::first(all.len()).zip(all);

@@ -10,7 +10,7 @@ use crate::thresholds;
 
 /// Argument of a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Over {
+pub enum ForceArgument {
     /// The rate.
     Rate,
     /// The position.
@@ -27,29 +27,29 @@ pub enum Over {
 
 /// Family of basis functions of a force in an equation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Family {
+pub struct BasisFamily {
     /// Equation in which the force acts.
     pub equation: EquationId,
     /// Argument of the force.
-    pub over: Over,
+    pub argument: ForceArgument,
     /// Knots in ascending order. Over the rate, 0 occurs twice.
-    pub bends: Vec<f64>,
+    pub knots: Vec<f64>,
 }
 
 /// Range of the motion in an equation over all windows.
 #[derive(Clone, Debug, Default)]
-pub struct Range {
+pub struct OperatingRange {
     /// Usual lowest and highest position.
-    pub position: (f64, f64),
+    pub position_bounds: (f64, f64),
     /// Usual largest absolute rate.
-    pub rate: f64,
+    pub largest_rate: f64,
     /// RMS of position and rate.
-    pub usual: (f64, f64),
+    pub rms: (f64, f64),
 }
 
-impl Range {
+impl OperatingRange {
     /// Computes the range of operating points, without the outer 1 % at each end.
-    pub fn of(operating_points: &[OperatingPoint]) -> Self {
+    pub fn from_operating_points(operating_points: &[OperatingPoint]) -> Self {
         let sorted = |of: &dyn Fn(&OperatingPoint) -> f64| {
             let mut values: Vec<f64> = operating_points.iter().map(of).collect();
             values.sort_by(f64::total_cmp);
@@ -67,100 +67,108 @@ impl Range {
             (sum / values.len().max(1) as f64).sqrt()
         };
         Self {
-            position: (at(&positions, 0.01), at(&positions, 0.99)),
-            rate: at(&rates, 0.99),
-            usual: (usual(&positions), usual(&rates)),
+            position_bounds: (at(&positions, 0.01), at(&positions, 0.99)),
+            largest_rate: at(&rates, 0.99),
+            rms: (usual(&positions), usual(&rates)),
         }
     }
 
     /// Returns the width of the position range.
     pub fn width(&self) -> f64 {
-        self.position.1 - self.position.0
+        self.position_bounds.1 - self.position_bounds.0
     }
 }
 
-impl Family {
+impl BasisFamily {
     /// Builds the family over the rate.
-    pub fn over_rate(equation: EquationId, range: &Range) -> Self {
+    pub fn build_over_rate(equation: EquationId, range: &OperatingRange) -> Self {
         // Closer near rest, where friction bends most.
-        let last = (thresholds::RATE_BENDS - 1) as f64;
-        let side: Vec<f64> = (0..thresholds::RATE_BENDS)
-            .map(|k| range.rate * (k as f64 / last).powi(2))
+        let last = (thresholds::RATE_KNOTS - 1) as f64;
+        let side: Vec<f64> = (0..thresholds::RATE_KNOTS)
+            .map(|k| range.largest_rate * (k as f64 / last).powi(2))
             .collect();
         let bends = side.iter().rev().map(|b| -b).chain(side.iter().copied());
         Self {
             equation,
-            over: Over::Rate,
-            bends: bends.collect(),
+            argument: ForceArgument::Rate,
+            knots: bends.collect(),
         }
     }
 
     /// Builds the family over the position, or over a turn if the motion covers a full turn.
-    pub fn over_position(equation: EquationId, range: &Range, is_angle: bool) -> Self {
+    pub fn build_over_position(
+        equation: EquationId,
+        range: &OperatingRange,
+        is_angle: bool,
+    ) -> Self {
         if is_angle && range.width() > TAU {
-            let bend = |k: usize| TAU * k as f64 / thresholds::TURN_BENDS as f64;
+            let bend = |k: usize| TAU * k as f64 / thresholds::TURN_KNOTS as f64;
             return Self {
                 equation,
-                over: Over::Turn,
-                bends: (0..thresholds::TURN_BENDS).map(bend).collect(),
+                argument: ForceArgument::Turn,
+                knots: (0..thresholds::TURN_KNOTS).map(bend).collect(),
             };
         }
         let bend = |k: usize| {
-            range.position.0 + range.width() * k as f64 / (thresholds::POSITION_BENDS - 1) as f64
+            range.position_bounds.0
+                + range.width() * k as f64 / (thresholds::POSITION_KNOTS - 1) as f64
         };
         Self {
             equation,
-            over: Over::Position,
-            bends: (0..thresholds::POSITION_BENDS).map(bend).collect(),
+            argument: ForceArgument::Position,
+            knots: (0..thresholds::POSITION_KNOTS).map(bend).collect(),
         }
     }
 
     /// Builds the family over the time of a window of this length, s.
-    pub fn over_time(equation: EquationId, length: f64) -> Self {
-        let bend = |k: usize| length * k as f64 / (thresholds::TIME_BENDS - 1) as f64;
+    pub fn build_over_time(equation: EquationId, length: f64) -> Self {
+        let bend = |k: usize| length * k as f64 / (thresholds::TIME_KNOTS - 1) as f64;
         Self {
             equation,
-            over: Over::Time,
-            bends: (0..thresholds::TIME_BENDS).map(bend).collect(),
+            argument: ForceArgument::Time,
+            knots: (0..thresholds::TIME_KNOTS).map(bend).collect(),
         }
     }
 
     /// Builds the sine and cosine of a wave.
-    pub fn wave(equation: EquationId, over: Over) -> Self {
+    pub fn build_wave(equation: EquationId, over: ForceArgument) -> Self {
         Self {
             equation,
-            over,
-            bends: Vec::new(),
+            argument: over,
+            knots: Vec::new(),
         }
     }
 
     /// Returns the number of basis functions.
     pub fn count(&self) -> usize {
-        match self.over {
-            Over::Order(_) | Over::Frequency(_) => 2,
-            Over::Rate | Over::Position | Over::Turn | Over::Time => self.bends.len(),
+        match self.argument {
+            ForceArgument::Order(_) | ForceArgument::Frequency(_) => 2,
+            ForceArgument::Rate
+            | ForceArgument::Position
+            | ForceArgument::Turn
+            | ForceArgument::Time => self.knots.len(),
         }
     }
 
     /// Evaluates the basis functions at an operating point.
-    pub fn at(&self, operating_point: &OperatingPoint, out: &mut [f64]) {
+    pub fn evaluate(&self, operating_point: &OperatingPoint, out: &mut [f64]) {
         out.fill(0.0);
         let mut wave = |phase: f64| {
             let (sine, cosine) = phase.sin_cos();
             out.copy_from_slice(&[cosine, sine]);
         };
-        match self.over {
-            Over::Order(order) => wave(f64::from(order) * operating_point.position),
-            Over::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
-            Over::Position => bent(&self.bends, operating_point.position, out),
-            Over::Time => bent(&self.bends, operating_point.time, out),
-            Over::Turn => turned(&self.bends, operating_point.position, out),
-            Over::Rate => {
-                let half = self.bends.len() / 2;
+        match self.argument {
+            ForceArgument::Order(order) => wave(f64::from(order) * operating_point.position),
+            ForceArgument::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
+            ForceArgument::Position => bent(&self.knots, operating_point.position, out),
+            ForceArgument::Time => bent(&self.knots, operating_point.time, out),
+            ForceArgument::Turn => turned(&self.knots, operating_point.position, out),
+            ForceArgument::Rate => {
+                let half = self.knots.len() / 2;
                 let (negative, positive) = out.split_at_mut(half);
-                bent(&self.bends[..half], operating_point.rate.min(0.0), negative);
-                bent(&self.bends[half..], operating_point.rate.max(0.0), positive);
-                let width = 2.0 * thresholds::TURNING * self.bends[2 * half - 1];
+                bent(&self.knots[..half], operating_point.rate.min(0.0), negative);
+                bent(&self.knots[half..], operating_point.rate.max(0.0), positive);
+                let width = 2.0 * thresholds::TURNING_RATE_FRACTION * self.knots[2 * half - 1];
                 let forwards = (0.5 + operating_point.rate / width).clamp(0.0, 1.0);
                 negative.iter_mut().for_each(|w| *w *= 1.0 - forwards);
                 positive.iter_mut().for_each(|w| *w *= forwards);
@@ -195,7 +203,7 @@ fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Family, Over, Range};
+    use super::{BasisFamily, ForceArgument, OperatingRange};
     use crate::ids::EquationId;
     use crate::residual_force::equations::OperatingPoint;
 
@@ -203,16 +211,16 @@ mod tests {
         EquationId::new(0)
     }
 
-    const RANGE: Range = Range {
-        position: (-1.0, 3.0),
-        rate: 2.0,
-        usual: (1.0, 1.0),
+    const RANGE: OperatingRange = OperatingRange {
+        position_bounds: (-1.0, 3.0),
+        largest_rate: 2.0,
+        rms: (1.0, 1.0),
     };
 
-    fn sum(family: &Family, of: &dyn Fn(f64) -> f64, operating_point: OperatingPoint) -> f64 {
+    fn sum(family: &BasisFamily, of: &dyn Fn(f64) -> f64, operating_point: OperatingPoint) -> f64 {
         let mut weights = vec![0.0; family.count()];
-        family.at(&operating_point, &mut weights);
-        let pairs = weights.iter().zip(&family.bends);
+        family.evaluate(&operating_point, &mut weights);
+        let pairs = weights.iter().zip(&family.knots);
         pairs.map(|(weight, bend)| weight * of(*bend)).sum()
     }
 
@@ -226,13 +234,13 @@ mod tests {
                 rate: 0.9 * at - 0.95,
                 time: 0.2 * (at + 1.0),
             };
-            let position = Family::over_position(equation(), &RANGE, false);
+            let position = BasisFamily::build_over_position(equation(), &RANGE, false);
             assert!((sum(&position, &line, operating_point) - line(at)).abs() < 1e-12);
-            let rate = Family::over_rate(equation(), &RANGE);
+            let rate = BasisFamily::build_over_rate(equation(), &RANGE);
             assert!(
                 (sum(&rate, &line, operating_point) - line(operating_point.rate)).abs() < 1e-12
             );
-            let time = Family::over_time(equation(), 0.8);
+            let time = BasisFamily::build_over_time(equation(), 0.8);
             assert!(
                 (sum(&time, &line, operating_point) - line(operating_point.time)).abs() < 1e-12
             );
@@ -241,14 +249,14 @@ mod tests {
 
     #[test]
     fn a_force_over_the_rate_may_jump_where_it_turns() {
-        let rate = Family::over_rate(equation(), &RANGE);
+        let rate = BasisFamily::build_over_rate(equation(), &RANGE);
         let mut weights = vec![0.0; rate.count()];
         for (at, forwards) in [(-0.5, 0.0), (0.5, 1.0), (0.0, 0.5)] {
             let operating_point = OperatingPoint {
                 rate: at,
                 ..OperatingPoint::default()
             };
-            rate.at(&operating_point, &mut weights);
+            rate.evaluate(&operating_point, &mut weights);
             let found: f64 = weights[rate.count() / 2..].iter().sum();
             assert_eq!(found, forwards);
         }
@@ -256,12 +264,12 @@ mod tests {
 
     #[test]
     fn a_turn_closes() {
-        let wide = Range {
-            position: (-10.0, 10.0),
+        let wide = OperatingRange {
+            position_bounds: (-10.0, 10.0),
             ..RANGE
         };
-        let turn = Family::over_position(equation(), &wide, true);
-        assert_eq!(turn.over, Over::Turn);
+        let turn = BasisFamily::build_over_position(equation(), &wide, true);
+        assert_eq!(turn.argument, ForceArgument::Turn);
         let mut weights = [vec![0.0; turn.count()], vec![0.0; turn.count()]];
         for (weights, at) in weights
             .iter_mut()
@@ -271,7 +279,7 @@ mod tests {
                 position: at,
                 ..OperatingPoint::default()
             };
-            turn.at(&operating_point, weights);
+            turn.evaluate(&operating_point, weights);
         }
         let pairs = weights[0].iter().zip(&weights[1]);
         for (a, b) in pairs {

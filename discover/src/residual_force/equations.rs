@@ -8,8 +8,8 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::sites::sites;
-use crate::fit::fitted::Fit;
+use crate::catalogue::sites::find_sites;
+use crate::fit::fit_result::Fit;
 use crate::fit::shooting::Shooting;
 use crate::ids::{ObservableId, ParameterId};
 use crate::model::estimation_model::EstimationModel;
@@ -21,7 +21,7 @@ pub struct Equation {
     /// Name in results.
     pub name: String,
     /// Expression that the force acts on, in the notation of the specification.
-    pub on: String,
+    pub target: String,
     /// Unit of that expression, `rad` or `m`.
     pub unit: &'static str,
     /// Whether the expression is the deflection of a mesh with play.
@@ -52,7 +52,7 @@ pub struct OperatingPoint {
 }
 
 /// Equations of a fitted model.
-pub struct Equations {
+pub struct EquationSet {
     /// The equations.
     pub list: Vec<Equation>,
     model: EstimationModel,
@@ -79,9 +79,9 @@ pub struct EquationEvaluator {
     rates: [Vec<f64>; 2],
 }
 
-impl Equations {
+impl EquationSet {
     /// Derives the equations of a fitted model; `None` if a force cannot be added to it.
-    pub fn of(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
+    pub fn derive_from_fit(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
         let list = equations(fit.model.specification());
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
         let mut edits = Vec::new();
@@ -96,14 +96,14 @@ impl Equations {
             }));
             edits.push(Edit::AddForce(NewForce {
                 name: names("force", number),
-                on: equation.on.clone(),
+                on: equation.target.clone(),
                 value: force,
                 doc: String::new(),
                 source: String::new(),
             }));
             let shown = [
-                ("position", equation.on.clone()),
-                ("rate", format!("dot({})", equation.on)),
+                ("position", equation.target.clone()),
+                ("rate", format!("dot({})", equation.target)),
             ];
             for (word, value) in shown {
                 edits.push(Edit::AddTerm(NewTerm {
@@ -115,9 +115,10 @@ impl Equations {
                 }));
             }
         }
-        let source = Source::new(problem.path.as_str(), fit.texts.whole.as_str());
+        let source = Source::new(problem.path.as_str(), fit.texts.full.as_str());
         let text = edit::apply(&source, &edits).ok()?;
-        let model = EstimationModel::equations(&text, &problem.path, problem.order, &[]).ok()?;
+        let model =
+            EstimationModel::derive_equations(&text, &problem.path, problem.order, &[]).ok()?;
         if model.states != fit.model.states {
             return None;
         }
@@ -129,7 +130,7 @@ impl Equations {
         let numbers = 0..list.len();
         let forces = numbers
             .clone()
-            .map(|n| model.parameter(&names("residual", n)));
+            .map(|n| model.find_parameter(&names("residual", n)));
         let forces = forces.collect::<Option<Vec<ParameterId>>>()?;
         let shown = numbers.map(|n| {
             Some(PositionAndRate {
@@ -139,7 +140,7 @@ impl Equations {
         });
         let shown = shown.collect::<Option<Vec<PositionAndRate>>>()?;
         let whole = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
-        let values = whole.values(&fit.train.estimate.theta);
+        let values = whole.parameter_values(&fit.train.estimate.theta);
         Some(Self {
             list,
             values,
@@ -150,15 +151,15 @@ impl Equations {
     }
 
     /// Creates an evaluator of the equations.
-    pub fn evaluator(&self) -> EquationEvaluator {
+    pub fn create_evaluator(&self) -> EquationEvaluator {
         let forced = self.forces.iter().map(|force| {
             let mut values = self.values.clone();
             values[force.index()] = 1.0;
-            self.model.evaluator(&values)
+            self.model.create_evaluator(&values)
         });
         let states = self.model.state_count();
         EquationEvaluator {
-            free: self.model.evaluator(&self.values),
+            free: self.model.create_evaluator(&self.values),
             forced: forced.collect(),
             shown: self.shown.clone(),
             observables: vec![0.0; self.model.program().observables.len()],
@@ -169,7 +170,7 @@ impl Equations {
 
 impl EquationEvaluator {
     /// Appends the operating point of each equation, with time 0.
-    pub fn operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
+    pub fn append_operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
         self.free.observables(point, &mut self.observables);
         out.clear();
         out.extend(self.shown.iter().map(|shown| OperatingPoint {
@@ -181,7 +182,7 @@ impl EquationEvaluator {
 
     /// Appends, for each equation, the changes of the accelerations and of the rates of first-order
     /// states due to a unit force.
-    pub fn accelerations(&mut self, point: Point<'_>, out: &mut Vec<f64>) {
+    pub fn append_accelerations(&mut self, point: Point<'_>, out: &mut Vec<f64>) {
         let [free, forced] = &mut self.rates;
         let first = self.free.program().degrees_of_freedom();
         self.free.rates(point, free);
@@ -194,7 +195,7 @@ impl EquationEvaluator {
     }
 
     /// Computes the rates of the model.
-    pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
+    pub fn compute_rates(&mut self, point: Point<'_>, out: &mut [f64]) {
         self.free.rates(point, out);
     }
 }
@@ -207,7 +208,7 @@ fn equations(model: &Model) -> Vec<Equation> {
         _ => None,
     };
     let mut found = Vec::new();
-    for site in sites(model) {
+    for site in find_sites(model) {
         let is_mesh = site.kind == SiteKind::Mesh;
         let is_coordinate = || {
             let on = site.arguments.get("on");
@@ -226,7 +227,7 @@ fn equations(model: &Model) -> Vec<Equation> {
         if let (Some(unit), Some(on)) = (unit, site.arguments.get("on")) {
             found.push(Equation {
                 name: site.name.clone(),
-                on: on.clone(),
+                target: on.clone(),
                 unit,
                 is_mesh,
             });
@@ -243,7 +244,7 @@ fn equations(model: &Model) -> Vec<Equation> {
         {
             found.push(Equation {
                 name: observable.name.clone(),
-                on: definition.name.clone(),
+                target: definition.name.clone(),
                 unit,
                 is_mesh: false,
             });

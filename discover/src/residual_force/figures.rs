@@ -27,7 +27,7 @@ struct Picture {
 }
 
 /// Draws the profiles of one equation; empty if there is nothing to draw.
-pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String {
+pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> String {
     let equation = &before.equations[before.equation];
     let mut forces = vec![("before", before)];
     forces.extend(after.map(|after| ("after", after)));
@@ -46,8 +46,8 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
             let profile = (picture.of)(before);
             let most = most(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
-            let is_drawn = known.count() >= thresholds::DRAWN_POINTS;
-            let is_told = !picture.by_window || profile.part > thresholds::STANDS_OUT;
+            let is_drawn = known.count() >= thresholds::MIN_DRAWN_POINTS;
+            let is_told = !picture.by_window || profile.part > thresholds::MIN_FORCE_FRACTION;
             is_drawn && is_told && (picture.axes != Axes::Time || is_resolved(before))
         })
         .collect();
@@ -142,18 +142,21 @@ fn most(profile: &Profile) -> f64 {
         .fold(0.0, f64::max);
     let finite = profile.sd.iter().filter(|sd| **sd > 0.0);
     match largest > 0.0 {
-        true => thresholds::DRAWN * largest,
+        true => thresholds::MAX_DRAWN_SD * largest,
         false => 3.0 * finite.copied().fold(f64::INFINITY, f64::min),
     }
 }
 
 /// Whether lines with bends over the time of a window follow what the force does fastest.
 fn is_resolved(force: &ResidualForce) -> bool {
-    let gap = match force.time.over[..] {
+    let gap = match force.time.arguments[..] {
         [first, second, ..] => second - first,
         _ => return false,
     };
-    let peak = force.frequency.peak.map(|peak| force.frequency.over[peak]);
+    let peak = force
+        .frequency
+        .peak
+        .map(|peak| force.frequency.arguments[peak]);
     gap * peak.unwrap_or(0.0) < 0.5
 }
 
@@ -163,7 +166,7 @@ fn is_known(sd: f64, most: f64) -> bool {
 
 /// A profile with its bars as one curve that goes up and down at each point, or as crosses.
 fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
-    let (Some(first), Some(last)) = (profile.over.first(), profile.over.last()) else {
+    let (Some(first), Some(last)) = (profile.arguments.first(), profile.arguments.last()) else {
         return Points::default();
     };
     let width = last - first;
@@ -173,14 +176,15 @@ fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
         [before, after] => (0.5 * (after - before) - APART * width).clamp(0.0, TICK * width),
         _ => TICK * width,
     };
-    for (number, at) in profile.over.iter().enumerate() {
+    for (number, at) in profile.arguments.iter().enumerate() {
         let (value, sd) = (profile.values[number], profile.sd[number]);
         let bar = [value, value - sd, value + sd, value].map(|value| (0.0, value));
         let drawn = match is_known(sd, most) {
             true if is_line => bar.to_vec(),
             true => {
-                let before = gap(&profile.over[number.saturating_sub(1)..=number]);
-                let after = gap(&profile.over[number..(number + 2).min(profile.over.len())]);
+                let before = gap(&profile.arguments[number.saturating_sub(1)..=number]);
+                let after =
+                    gap(&profile.arguments[number..(number + 2).min(profile.arguments.len())]);
                 let ends = [(after, value), (after, f64::NAN)];
                 [&[(-before, value)], &bar[..], &ends].concat()
             }
@@ -203,7 +207,7 @@ mod tests {
     #[test]
     fn crosses_that_are_close_do_not_overlap() {
         let profile = Profile {
-            over: vec![0.0, 1.0, 1.0, 1.001, 5.0],
+            arguments: vec![0.0, 1.0, 1.0, 1.001, 5.0],
             values: vec![1.0, 2.0, 3.0, 4.0, 5.0],
             sd: vec![0.1, 0.1, f64::NAN, 0.1, 0.1],
             ..Profile::default()

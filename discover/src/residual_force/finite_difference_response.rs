@@ -5,9 +5,9 @@ use crate::ids::WindowId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
-use crate::fit::shooting::{Sensors, Shooting};
+use crate::fit::shooting::{SensorValues, Shooting};
 use crate::model::longest_step::LongestStep;
-use crate::model::measured_outputs::Buffers;
+use crate::model::measured_outputs::OutputBuffers;
 use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
@@ -18,9 +18,9 @@ const POINTS: [usize; 4] = [0, 1, 1, 2];
 /// A window of a model that is simulated by Runge-Kutta steps.
 pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
-    sensors: Sensors,
+    sensors: SensorValues,
     evaluator: Evaluator,
-    buffers: Buffers,
+    buffers: OutputBuffers,
     window: WindowId,
     longest_step: LongestStep,
 }
@@ -57,12 +57,12 @@ impl<'s> SteppedWindow<'s> {
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
         Some(Self {
-            sensors: Sensors {
-                bias: vec![0.0; shooting.channels()],
-                ..shooting.sensors(theta)
+            sensors: SensorValues {
+                bias: vec![0.0; shooting.channel_count()],
+                ..shooting.sensor_values(theta)
             },
-            evaluator: model.evaluator(&shooting.values(theta)),
-            buffers: model.measured.buffers(),
+            evaluator: model.create_evaluator(&shooting.parameter_values(theta)),
+            buffers: model.measured.create_buffers(),
             longest_step: model.longest_step?,
             window,
             shooting,
@@ -72,7 +72,7 @@ impl<'s> SteppedWindow<'s> {
     /// Returns the response of the outputs to each drive, in standard deviations per unit of the
     /// drive, at fixed drives along the unforced motion. `level`: size of the residuals, in
     /// standard deviations.
-    pub fn columns(
+    pub fn compute_responses(
         &mut self,
         start: &[f64],
         driven: NeighbourDrives<'_>,
@@ -84,23 +84,24 @@ impl<'s> SteppedWindow<'s> {
         let forces = self.forces(&own, driven);
         let window = &self.shooting.windows.list[self.window];
         let samples = self.shooting.output_times(window).samples();
-        let mut matrix = DMatrix::zeros(samples * self.shooting.channels(), count);
-        let wanted = thresholds::FORCE_MOVES * level;
-        let mut part = thresholds::FIRST_FORCE;
+        let mut matrix = DMatrix::zeros(samples * self.shooting.channel_count(), count);
+        let wanted = thresholds::FORCE_OUTPUT_CHANGE * level;
+        let mut part = thresholds::FIRST_FORCE_ACCELERATION_CHANGE;
         for (column, force) in forces.iter().enumerate() {
             let Some(usual) = usual_size(force, &squares) else {
                 continue;
             };
-            for _ in 0..thresholds::SIZE_ATTEMPTS {
+            for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
                 let Some(seen) = self.change(start, (&own.measured, force), part * usual) else {
-                    part /= thresholds::FORCE_SHRINKS;
+                    part /= thresholds::FORCE_REDUCTION_FACTOR;
                     continue;
                 };
                 matrix.column_mut(column).copy_from_slice(&seen);
                 let per_unit = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
                 // What the first moves tells how large the others may be.
                 let better = wanted / (per_unit * usual);
-                let is_near = (1.0 / thresholds::FORCE_NEAR..thresholds::FORCE_NEAR)
+                let is_near = (1.0 / thresholds::FORCE_CHANGE_FACTOR
+                    ..thresholds::FORCE_CHANGE_FACTOR)
                     .contains(&(better / part));
                 if !better.is_finite() || is_near {
                     break;
@@ -175,8 +176,8 @@ impl<'s> SteppedWindow<'s> {
             .collect();
         let window = &self.shooting.windows.list[self.window];
         let times = self.shooting.output_times(window);
-        let seen = self.shooting.seen(&times, &self.sensors, &changes);
-        Some(self.shooting.differences(window, &seen, |seen, _| seen))
+        let seen = self.shooting.apply_sensors(&times, &self.sensors, &changes);
+        Some(self.shooting.map_differences(window, &seen, |seen, _| seen))
     }
 
     /// The motion without a force.
@@ -201,13 +202,13 @@ impl<'s> SteppedWindow<'s> {
         let times = self.shooting.output_times(window).times;
         let mut state = start.to_vec();
         let mut method = RungeKutta::new(start.len());
-        let mut measured = Vec::with_capacity(times.len() * self.shooting.channels());
+        let mut measured = Vec::with_capacity(times.len() * self.shooting.channel_count());
         let mut number = 0;
         for (place, t) in times.iter().enumerate() {
             let before = place.checked_sub(1).map_or(*t, |before| times[before]);
             let steps = match place {
                 0 => 0,
-                _ => self.longest_step.steps(t - before),
+                _ => self.longest_step.count_steps(t - before),
             };
             let h = (t - before) / steps as f64;
             for step in 0..steps {

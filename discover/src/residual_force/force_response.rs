@@ -6,23 +6,23 @@ use eomgen_codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::fit::linearised::Linearisation;
+use crate::fit::linearised_fit::Linearisation;
 use crate::fit::sensitivity::SensitivityEvaluator;
-use crate::fit::shooting::{Shooting, samples_in};
+use crate::fit::shooting::{Shooting, count_samples};
 use crate::model::simulation::NeighbourDrives;
-use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
+use crate::residual_force::equations::{EquationEvaluator, EquationSet, OperatingPoint};
 use crate::residual_force::finite_difference_response::SteppedWindow;
 use eomgen_sim::exponential::Drives;
 
 /// Function that computes one weight per column from the operating points and the inputs.
-pub type Weights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;
+pub type FillWeights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;
 
 /// Equation and weights of each force column.
 pub struct ForceColumns<'w> {
     /// Equation of each column.
     pub equations: Vec<EquationId>,
     /// Computes the weight of each column.
-    pub weights: &'w Weights<'w>,
+    pub fill_weights: &'w FillWeights<'w>,
 }
 
 /// Forces of these shapes as drives of neighbouring motions.
@@ -36,9 +36,9 @@ struct ForceDrives<'c> {
 }
 
 impl<'c> ForceDrives<'c> {
-    fn new(equations: &Equations, columns: &'c ForceColumns<'c>, begin: f64) -> Self {
+    fn new(equations: &EquationSet, columns: &'c ForceColumns<'c>, begin: f64) -> Self {
         Self {
-            evaluator: equations.evaluator(),
+            evaluator: equations.create_evaluator(),
             weights: vec![0.0; columns.equations.len()],
             columns,
             begin,
@@ -52,12 +52,13 @@ impl Drives for ForceDrives<'_> {
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let point = Point { t, state, inputs };
         self.evaluator
-            .operating_points(point, &mut self.operating_points);
-        self.evaluator.accelerations(point, &mut self.accelerations);
+            .append_operating_points(point, &mut self.operating_points);
+        self.evaluator
+            .append_accelerations(point, &mut self.accelerations);
         for operating_point in &mut self.operating_points {
             operating_point.time = t - self.begin;
         }
-        (self.columns.weights)(&self.operating_points, inputs, &mut self.weights);
+        (self.columns.fill_weights)(&self.operating_points, inputs, &mut self.weights);
         let forced = out.len() / self.columns.equations.len().max(1);
         let slots = out.chunks_exact_mut(forced.max(1));
         for (slots, (equation, weight)) in
@@ -73,23 +74,27 @@ impl Drives for ForceDrives<'_> {
 
 /// Returns a matrix for each window with one column per force, in standard deviations per unit of
 /// force; `None` for a failed simulation. Returns `None` if neither method is available.
-pub fn force_responses(
+pub fn compute_force_responses(
     of: Linearisation<'_>,
-    equations: &Equations,
+    equations: &EquationSet,
     columns: &ForceColumns<'_>,
 ) -> Option<Vec<Option<DMatrix<f64>>>> {
-    let Linearisation { at, problem, fit } = of;
-    let whole = fit.shooting(problem);
+    let Linearisation {
+        point: at,
+        problem,
+        fit,
+    } = of;
+    let whole = fit.training_shooting(problem);
     let shooting = Shooting {
-        part: at.part,
+        fraction: at.fraction,
         ..whole
     };
     let theta = &at.estimate.theta;
     let carries_tangents = fit
         .model
-        .simulation(&shooting.values(theta))
+        .create_simulation(&shooting.parameter_values(theta))
         .ok()?
-        .carries_tangents();
+        .has_tangents();
     if !carries_tangents && fit.model.longest_step.is_none() {
         return None;
     }
@@ -102,10 +107,11 @@ pub fn force_responses(
         .collect::<Vec<_>>()
         .par_chunks(size.max(1))
         .map(|part| {
-            let mut sensitivities = SensitivityEvaluator::frozen(&shooting, theta, 1.0);
+            let mut sensitivities =
+                SensitivityEvaluator::with_fixed_unknowns(&shooting, theta, 1.0);
             let mut forces = ForceDrives::new(equations, columns, 0.0);
             let mut one = |number: usize| {
-                at.base[number].as_ref()?;
+                at.projections[number].as_ref()?;
                 let window = at.windows[number];
                 let start = &at.estimate.initial_states[window];
                 forces.begin = problem.train.list[window].times[0];
@@ -116,9 +122,9 @@ pub fn force_responses(
                 match carries_tangents {
                     true => sensitivities
                         .as_mut()?
-                        .drive_response(window, start, driven),
+                        .compute_drive_response(window, start, driven),
                     false => SteppedWindow::new(&shooting, theta, window)?
-                        .columns(start, driven, at.level),
+                        .compute_responses(start, driven, at.level),
                 }
             };
             part.iter().map(|number| one(*number)).collect()
@@ -128,21 +134,28 @@ pub fn force_responses(
 }
 
 /// Returns the operating points of the equations along the motions of the windows at each sample.
-pub fn operating_points(
+pub fn compute_operating_points(
     of: Linearisation<'_>,
-    equations: &Equations,
+    equations: &EquationSet,
 ) -> Vec<Vec<Vec<OperatingPoint>>> {
-    let Linearisation { at, problem, fit } = of;
-    let shooting = fit.shooting(problem);
-    let Ok(mut simulation) = fit.model.simulation(&shooting.values(&at.estimate.theta)) else {
+    let Linearisation {
+        point: at,
+        problem,
+        fit,
+    } = of;
+    let shooting = fit.training_shooting(problem);
+    let Ok(mut simulation) = fit
+        .model
+        .create_simulation(&shooting.parameter_values(&at.estimate.theta))
+    else {
         return Vec::new();
     };
-    let mut evaluator = equations.evaluator();
+    let mut evaluator = equations.create_evaluator();
     let windows = at.windows.iter().map(|id| {
         let window = &problem.train.list[*id];
-        let times = &window.times[..samples_in(window, at.part)];
+        let times = &window.times[..count_samples(window, at.fraction)];
         let inputs = problem.train.inputs(window);
-        let states = simulation.states(&at.estimate.initial_states[*id], times, inputs);
+        let states = simulation.simulate_states(&at.estimate.initial_states[*id], times, inputs);
         let samples = times.iter().zip(states.unwrap_or_default());
         let samples = samples.map(|(t, state)| {
             let mut operating_points = Vec::new();
@@ -151,7 +164,7 @@ pub fn operating_points(
                 state: &state,
                 inputs: inputs.held_at(*t),
             };
-            evaluator.operating_points(point, &mut operating_points);
+            evaluator.append_operating_points(point, &mut operating_points);
             for operating_point in &mut operating_points {
                 operating_point.time = t - times[0];
             }

@@ -23,23 +23,23 @@ pub mod wording;
 use crate::ids::EquationId;
 use std::f64::consts::TAU;
 
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::{Linearisation, LinearisedFit};
-use crate::fit::residual_spectrum::peak_frequency;
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::{Linearisation, LinearisedFit};
+use crate::fit::residual_spectrum::find_peak_frequency;
 use crate::model::problem::EstimationProblem;
-use crate::residual_force::basis_functions::{Family, Over, Range};
-use crate::residual_force::equations::{Equations, OperatingPoint};
+use crate::residual_force::basis_functions::{BasisFamily, ForceArgument, OperatingRange};
+use crate::residual_force::equations::{EquationSet, OperatingPoint};
 use crate::residual_force::family_regression::FamilyRegression;
-use crate::residual_force::force_response::operating_points;
-use crate::residual_force::profiles::Blocks;
-use crate::residual_force::ranking::{Ranking, simple};
-use crate::residual_force::types::{Kind, ResidualForce};
+use crate::residual_force::force_response::compute_operating_points;
+use crate::residual_force::profiles::ProfileInputs;
+use crate::residual_force::ranking::{EquationRanking, find_simple_functions};
+use crate::residual_force::types::{ForceKind, ResidualForce};
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
 
 /// Estimates the residual force of a fit, with the profiles of a named equation or of the best one;
 /// `None` if the responses cannot be computed.
-pub fn residual_force(
+pub fn estimate_residual_force(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     wanted: Option<&str>,
@@ -48,18 +48,18 @@ pub fn residual_force(
     if problem.dataset.gives_motion() {
         return None;
     }
-    let equations = Equations::of(problem, fit)?;
-    let at = LinearisedFit::of(problem, fit, 1.0);
+    let equations = EquationSet::derive_from_fit(problem, fit)?;
+    let at = LinearisedFit::linearise_fit(problem, fit, 1.0);
     let of = Linearisation {
-        at: &at,
+        point: &at,
         problem,
         fit,
     };
-    let operating_points = operating_points(of, &equations);
-    let ranges: Vec<Range> = EquationId::first(equations.list.len())
+    let operating_points = compute_operating_points(of, &equations);
+    let ranges: Vec<OperatingRange> = EquationId::first(equations.list.len())
         .map(|equation| {
             let own = operating_points.iter().flatten().map(|all| all[equation]);
-            Range::of(&own.collect::<Vec<OperatingPoint>>())
+            OperatingRange::from_operating_points(&own.collect::<Vec<OperatingPoint>>())
         })
         .collect();
     let length = operating_points
@@ -71,13 +71,14 @@ pub fn residual_force(
     let general = |equation: EquationId| {
         let is_angle = equations.list[equation].unit == "rad";
         [
-            Family::over_rate(equation, &ranges[equation]),
-            Family::over_position(equation, &ranges[equation], is_angle),
-            Family::over_time(equation, length),
+            BasisFamily::build_over_rate(equation, &ranges[equation]),
+            BasisFamily::build_over_position(equation, &ranges[equation], is_angle),
+            BasisFamily::build_over_time(equation, length),
         ]
     };
-    let moves =
-        |equation: &EquationId| ranges[*equation].width() > 0.0 && ranges[*equation].rate > 0.0;
+    let moves = |equation: &EquationId| {
+        ranges[*equation].width() > 0.0 && ranges[*equation].largest_rate > 0.0
+    };
     let all: Vec<EquationId> = EquationId::first(equations.list.len())
         .filter(moves)
         .collect();
@@ -94,81 +95,88 @@ pub fn residual_force(
             .copied()
             .find(|e| equations.list[*e].name == name)
     };
-    let mut families: Vec<Family> = all.iter().flat_map(|e| general(*e)).collect();
+    let mut families: Vec<BasisFamily> = all.iter().flat_map(|e| general(*e)).collect();
     if let [only] = all[..] {
         families.extend(wave(only));
     }
-    let few_windows = at.with_few_windows();
+    let few_windows = at.thin_out();
     let few = Linearisation {
-        at: &few_windows,
+        point: &few_windows,
         ..of
     };
-    let regressed = FamilyRegression::at(few, &equations, families)?;
-    let ranking = Ranking::of(&regressed, &all, few)?;
+    let regressed = FamilyRegression::fit_families(few, &equations, families)?;
+    let ranking = EquationRanking::from_families(&regressed, &all, few)?;
     let equation = wanted.and_then(named).unwrap_or(ranking.best);
     let close = match all.len() {
         1 => None,
         _ => {
             let own = general(equation).into_iter().chain(wave(equation));
-            Some(FamilyRegression::at(of, &equations, own.collect())?)
+            Some(FamilyRegression::fit_families(
+                of,
+                &equations,
+                own.collect(),
+            )?)
         }
     };
     let (close, seen) = match &close {
         Some(close) => (close, of),
         None => (&regressed, few),
     };
-    let blocks = Blocks {
-        of: seen,
+    let blocks = ProfileInputs {
+        linearisation: seen,
         operating_points: &operating_points,
         equation,
     };
-    let mut found = blocks.profiles(close, &ranges[equation]);
-    found.ranking = ranking.ranking();
+    let mut found = blocks.compute_profiles(close, &ranges[equation]);
+    found.ranking = ranking.rank_equations();
     found.equations.clone_from(&equations.list);
-    found.best = ranking.best;
-    if ranking.stands_out {
-        found.part = ranking.part;
+    found.best_equation = ranking.best;
+    if ranking.is_significant {
+        found.part = ranking.explained_fraction;
         found.kind = Some(match ranking.is_state {
-            false => Kind::Time,
-            true => simple(&regressed, ranking.family, few),
+            false => ForceKind::Time,
+            true => find_simple_functions(&regressed, ranking.family, few),
         });
-    } else if found.frequency.part > thresholds::STANDS_OUT && equation == ranking.best {
+    } else if found.frequency.part > thresholds::MIN_FORCE_FRACTION && equation == ranking.best {
         // A line may stand between the bends over time.
         found.part = found.frequency.part;
-        found.kind = Some(Kind::Time);
+        found.kind = Some(ForceKind::Time);
     }
     Some(found)
 }
 
 /// Waves over an angle: orders that are gone through at least once.
-fn orders(equation: EquationId, range: &Range) -> Vec<Family> {
+fn orders(equation: EquationId, range: &OperatingRange) -> Vec<BasisFamily> {
     if range.width() <= TAU / 4.0 {
         return Vec::new();
     }
     let turns = |order: &u32| f64::from(*order) * range.width() > TAU;
     let orders = thresholds::FORCE_ORDERS.into_iter().filter(turns);
-    let wave = |order: u32| Family::wave(equation, Over::Order(order));
+    let wave = |order: u32| BasisFamily::build_wave(equation, ForceArgument::Order(order));
     orders.map(wave).collect()
 }
 
 /// Waves over time: frequencies from one period per window of this length, s, on, and that at which
 /// the residual is largest.
-fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<Family> {
+fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<BasisFamily> {
     let step = typical_step(&of.problem.dataset.train[0].times);
-    let mut frequencies: Vec<f64> = peak_frequency(of.problem, of.fit).into_iter().collect();
+    let mut frequencies: Vec<f64> = find_peak_frequency(of.problem, of.fit)
+        .into_iter()
+        .collect();
     let mut periods = 1.0;
-    for number in 1..=thresholds::MOST_FREQUENCIES {
-        if periods * thresholds::PERIOD_SAMPLES * step > length {
+    for number in 1..=thresholds::MAX_FORCE_FREQUENCIES {
+        if periods * thresholds::MIN_SAMPLES_PER_PERIOD * step > length {
             break;
         }
         frequencies.push(periods / length);
-        periods = if number < thresholds::FIRST_FREQUENCIES {
+        periods = if number < thresholds::HARMONIC_FREQUENCIES {
             periods + 1.0
         } else {
             periods * thresholds::FREQUENCY_RATIO
         };
     }
     frequencies.sort_by(f64::total_cmp);
-    let wave = |frequency: f64| Family::wave(equation, Over::Frequency(frequency));
+    let wave =
+        |frequency: f64| BasisFamily::build_wave(equation, ForceArgument::Frequency(frequency));
     frequencies.into_iter().map(wave).collect()
 }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
@@ -24,7 +24,10 @@ struct Along {
 
 /// Returns for each angle coordinate the orders, per turn, whose waves explain most of the training
 /// residuals, the best first. Only orders that the motion covers and its samples resolve are tried.
-pub(crate) fn orders(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Vec<u32>> {
+pub(crate) fn find_orders(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+) -> BTreeMap<String, Vec<u32>> {
     let coordinates = &fit.model.specification().coordinates;
     let angles = coordinates.iter().enumerate();
     let angles = angles.filter(|(_, coordinate)| coordinate.unit.text == "rad");
@@ -74,14 +77,14 @@ impl Along {
         let is_seen = |order: &u32| {
             let order = f64::from(*order);
             order * self.travel >= TAU
-                && order * self.rate * step * thresholds::PERIOD_SAMPLES < TAU
+                && order * self.rate * step * thresholds::MIN_SAMPLES_PER_PERIOD < TAU
         };
-        let orders = (1..=thresholds::HIGHEST_ORDER).filter(is_seen);
+        let orders = (1..=thresholds::MAX_SHAFT_ORDER).filter(is_seen);
         let mut explained: Vec<(f64, u32)> = orders
             .map(|order| (self.explained(problem, fit, order), order))
             .collect();
         explained.sort_by(|a, b| b.0.total_cmp(&a.0));
-        explained.truncate(thresholds::MOST_ORDERS);
+        explained.truncate(thresholds::MAX_SPECTRUM_ORDERS);
         explained.into_iter().map(|(_, order)| order).collect()
     }
 
@@ -91,7 +94,7 @@ impl Along {
         let of_channel = |channel: usize| {
             let (mut products, mut sums) = (Matrix3::zeros(), Vector3::zeros());
             for (window, angles) in WindowId::first(self.angles.len()).zip(&self.angles) {
-                let residuals = fit.train.residuals[window].iter().skip(channel);
+                let residuals = fit.train.window_residuals[window].iter().skip(channel);
                 let residuals = residuals.step_by(channels);
                 for (angle, residual) in angles.iter().zip(residuals) {
                     // What is not compared is 0, and no wave's.

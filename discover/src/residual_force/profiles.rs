@@ -4,69 +4,74 @@
 use crate::ids::{EquationId, FamilyId};
 use nalgebra::DVector;
 
-use crate::fit::linearised::Linearisation;
-use crate::residual_force::basis_functions::{Family, Over, Range};
+use crate::fit::linearised_fit::Linearisation;
+use crate::residual_force::basis_functions::{BasisFamily, ForceArgument, OperatingRange};
 use crate::residual_force::equations::OperatingPoint;
-use crate::residual_force::family_regression::{FamilyRegression, noise};
-use crate::residual_force::regression::{Each, Sizes, WindowSize};
+use crate::residual_force::family_regression::{FamilyRegression, remaining_mean_square};
+use crate::residual_force::regression::{Coefficients, WindowCoefficient, WindowCoefficients};
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
 /// Data from which profiles are computed.
-pub(crate) struct Blocks<'b> {
+pub(crate) struct ProfileInputs<'b> {
     /// Linearised fit.
-    pub of: Linearisation<'b>,
+    pub linearisation: Linearisation<'b>,
     /// Operating points of each window, sample and equation.
     pub operating_points: &'b [Vec<Vec<OperatingPoint>>],
     /// Equation of the profiles.
     pub equation: EquationId,
 }
 
-impl Blocks<'_> {
+impl ProfileInputs<'_> {
     /// Computes all profiles of the equation.
-    pub fn profiles(&self, regressed: &FamilyRegression, range: &Range) -> ResidualForce {
+    pub fn compute_profiles(
+        &self,
+        regressed: &FamilyRegression,
+        range: &OperatingRange,
+    ) -> ResidualForce {
         let [by_rate, by_position] = [0, 1].map(FamilyId::new);
-        let decrease = [by_rate, by_position].map(|family| regressed.shared(family).decrease);
+        let decrease =
+            [by_rate, by_position].map(|family| regressed.fit_shared_coefficients(family).decrease);
         let better = match decrease[1] > decrease[0] {
             true => by_position,
             false => by_rate,
         };
-        let inflation = regressed.inflation(self.of, better);
+        let inflation = regressed.variance_inflation(self.linearisation, better);
         let over = |family: FamilyId| {
-            let found = regressed.shared(family);
+            let found = regressed.fit_shared_coefficients(family);
             Profile {
-                over: regressed.families[family].bends.clone(),
+                arguments: regressed.families[family].knots.clone(),
                 sd: deviations(&found, inflation),
                 values: found.values.iter().copied().collect(),
-                part: regressed.part(family),
+                part: regressed.explained_fraction(family),
                 peak: None,
             }
         };
-        let level = noise(regressed, decrease[0].max(decrease[1]));
+        let level = remaining_mean_square(regressed, decrease[0].max(decrease[1]));
         let mut order = Profile::default();
         let ids = FamilyId::first(regressed.families.len());
         for (id, family) in ids.zip(&regressed.families) {
-            let Over::Order(number) = family.over else {
+            let ForceArgument::Order(number) = family.argument else {
                 continue;
             };
-            let found = regressed.shared(id);
+            let found = regressed.fit_shared_coefficients(id);
             let sd = deviations(&found, inflation);
-            order.over.push(f64::from(number));
+            order.arguments.push(f64::from(number));
             order.values.push(found.values.norm());
             order
                 .sd
                 .push((0.5 * (sd[0] * sd[0] + sd[1] * sd[1])).sqrt());
-            let part = regressed.part(id);
+            let part = regressed.explained_fraction(id);
             if part > order.part {
                 order.part = part;
-                order.peak = Some(order.over.len() - 1);
+                order.peak = Some(order.arguments.len() - 1);
             }
         }
         let frequency = self.over_frequency(regressed, level);
         ResidualForce {
             equations: Vec::new(),
             ranking: Vec::new(),
-            best: self.equation,
+            best_equation: self.equation,
             equation: self.equation,
             kind: None,
             part: 0.0,
@@ -82,24 +87,28 @@ impl Blocks<'_> {
     /// The force over the time of the first record.
     fn over_time(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
-        let Some(family) = regressed.find(|over| over == Over::Time) else {
+        let Some(family) = regressed.find_family(|over| over == ForceArgument::Time) else {
             return profile;
         };
-        let found = regressed.regression.each(regressed.range(family), level);
-        profile.part = found.part;
-        for (id, sizes) in self.of.at.windows.iter().zip(&found.windows) {
-            let window = &self.of.problem.train.list[*id];
+        let found = regressed
+            .regression
+            .fit_per_window(regressed.column_range(family), level);
+        profile.part = found.explained_fraction;
+        for (id, sizes) in self.linearisation.point.windows.iter().zip(&found.windows) {
+            let window = &self.linearisation.problem.train.list[*id];
             let (Some(sizes), 0) = (sizes, window.record) else {
                 continue;
             };
-            let bends = &regressed.families[family].bends;
+            let bends = &regressed.families[family].knots;
             profile
-                .over
+                .arguments
                 .extend(bends.iter().map(|bend| window.times[0] + bend));
             profile.values.extend(sizes.values.iter());
             profile.sd.extend(deviations(sizes, level));
             // Windows are apart from each other.
-            profile.over.push(window.times[0] + bends[bends.len() - 1]);
+            profile
+                .arguments
+                .push(window.times[0] + bends[bends.len() - 1]);
             profile.values.push(f64::NAN);
             profile.sd.push(f64::NAN);
         }
@@ -111,8 +120,8 @@ impl Blocks<'_> {
     /// one by one.
     fn over_frequency(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
-        let frequency = |family: &Family| match family.over {
-            Over::Frequency(frequency) => Some(frequency),
+        let frequency = |family: &BasisFamily| match family.argument {
+            ForceArgument::Frequency(frequency) => Some(frequency),
             _ => None,
         };
         let ids = FamilyId::first(regressed.families.len());
@@ -123,19 +132,22 @@ impl Blocks<'_> {
         let (Some(first), Some(last)) = (waves.first(), waves.last()) else {
             return profile;
         };
-        let whole = regressed.range(first.0).start..regressed.range(last.0).end;
-        let found = regressed.regression.each(whole.clone(), level);
+        let whole = regressed.column_range(first.0).start..regressed.column_range(last.0).end;
+        let found = regressed.regression.fit_per_window(whole.clone(), level);
         for (family, frequency) in waves {
-            let range = regressed.range(family);
+            let range = regressed.column_range(family);
             let own = range.start - whole.start..range.end - whole.start;
             let (size, sd) = usual(&found, own, level);
-            profile.over.push(frequency);
+            profile.arguments.push(frequency);
             profile.values.push(size);
             profile.sd.push(sd);
-            let part = regressed.regression.each(range, level).part;
+            let part = regressed
+                .regression
+                .fit_per_window(range, level)
+                .explained_fraction;
             if part > profile.part {
                 profile.part = part;
-                profile.peak = Some(profile.over.len() - 1);
+                profile.peak = Some(profile.arguments.len() - 1);
             }
         }
         profile
@@ -143,19 +155,24 @@ impl Blocks<'_> {
 
     /// What of the force goes with the rate in each window, at its root mean square there, over
     /// the largest rate.
-    fn by_amplitude(&self, regressed: &FamilyRegression, range: &Range, level: f64) -> Profile {
+    fn by_amplitude(
+        &self,
+        regressed: &FamilyRegression,
+        range: &OperatingRange,
+        level: f64,
+    ) -> Profile {
         let mut profile = Profile::default();
-        let Some(family) = regressed.find(|over| over == Over::Rate) else {
+        let Some(family) = regressed.find_family(|over| over == ForceArgument::Rate) else {
             return profile;
         };
-        let bends = DVector::from_column_slice(&regressed.families[family].bends);
+        let bends = DVector::from_column_slice(&regressed.families[family].knots);
         let sizes = regressed
             .regression
-            .in_windows(regressed.range(family), &bends);
-        let correlation = self.of.fit.train.correlation;
+            .fit_combination_per_window(regressed.column_range(family), &bends);
+        let correlation = self.linearisation.fit.train.correlation_samples;
         let mut points: Vec<(f64, f64, f64)> = Vec::new();
         for (operating_points, size) in self.operating_points.iter().zip(sizes) {
-            let Some(WindowSize { value, variance }) = size else {
+            let Some(WindowCoefficient { value, variance }) = size else {
                 continue;
             };
             let rates = operating_points.iter().map(|all| all[self.equation].rate);
@@ -164,7 +181,7 @@ impl Blocks<'_> {
                 rates.map(|r| r * r).sum::<f64>() / operating_points.len().max(1) as f64;
             let usual = square.sqrt();
             let sd = (level * correlation * variance).sqrt() * usual;
-            points.push((largest.min(2.0 * range.rate), value * usual, sd));
+            points.push((largest.min(2.0 * range.largest_rate), value * usual, sd));
         }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         // A window that hardly shows the force says nothing of it.
@@ -172,7 +189,7 @@ impl Blocks<'_> {
         sds.sort_by(f64::total_cmp);
         let most = 3.0 * sds.get(sds.len() / 2).copied().unwrap_or(0.0);
         for (largest, force, sd) in points.into_iter().filter(|point| point.2 <= most) {
-            profile.over.push(largest);
+            profile.arguments.push(largest);
             profile.values.push(force);
             profile.sd.push(sd);
         }
@@ -181,19 +198,23 @@ impl Blocks<'_> {
 }
 
 /// One standard deviation of each size.
-fn deviations(sizes: &Sizes, inflation: f64) -> Vec<f64> {
+fn deviations(sizes: &Coefficients, inflation: f64) -> Vec<f64> {
     let variances = sizes.covariance.diagonal();
     let pairs = variances.iter().zip(&sizes.values);
     pairs
-        .map(|(v, size)| (inflation * v).sqrt().hypot(thresholds::STRAIGHT * size))
+        .map(|(v, size)| {
+            (inflation * v)
+                .sqrt()
+                .hypot(thresholds::LINEARISATION_ERROR * size)
+        })
         .collect()
 }
 
 /// The usual size of some waves that differ from window to window, and one standard deviation.
-fn usual(found: &Each, own: std::ops::Range<usize>, level: f64) -> (f64, f64) {
+fn usual(found: &WindowCoefficients, own: std::ops::Range<usize>, level: f64) -> (f64, f64) {
     let there = || found.windows.iter().flatten();
     let count = there().count().max(1) as f64;
-    let sum = |of: &dyn Fn(&Sizes, usize) -> f64| -> f64 {
+    let sum = |of: &dyn Fn(&Coefficients, usize) -> f64| -> f64 {
         let each = there().map(|sizes| own.clone().map(|k| of(sizes, k)).sum::<f64>());
         each.sum()
     };

@@ -5,14 +5,14 @@ use crate::ids::BasisFunctionId;
 use crate::model::unknowns::NormalPrior;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::LinearisedFit;
 use crate::fit::variable_projection::{PriorTerm, StateProjection, add_prior};
 use crate::thresholds;
 
 /// Nuisances that initial states do as well are distinguished by one of these parts of their
 /// squares.
-const RIDGES: [f64; 3] = [thresholds::RIDGE, 1e-8, 1e-5];
+const RIDGES: [f64; 3] = [thresholds::MIN_COLUMN_REMAINDER, 1e-8, 1e-5];
 
 /// Products of force columns with each other and with the residual.
 pub struct Regression {
@@ -22,9 +22,9 @@ pub struct Regression {
     right: DVector<f64>,
     /// Sum of squares after elimination of initial states and nuisances, in squared standard
     /// deviations.
-    pub squares: f64,
+    pub remaining_squares: f64,
     /// Number of measured numbers.
-    pub numbers: f64,
+    pub number_count: f64,
     /// The nuisances' products: with themselves, factored, and with columns and residual.
     nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
     /// The sum of squares that initial states leave, nuisances held, in standard deviations.
@@ -35,7 +35,7 @@ pub struct Regression {
 
 /// Coefficients of basis functions.
 #[derive(Clone, Debug)]
-pub struct Sizes {
+pub struct Coefficients {
     /// Values.
     pub values: DVector<f64>,
     /// Covariance, for a residual of unit variance.
@@ -45,16 +45,16 @@ pub struct Sizes {
 }
 
 /// Coefficients that differ between windows.
-pub struct Each {
+pub struct WindowCoefficients {
     /// Coefficients of each window; `None` without a motion.
-    pub windows: Vec<Option<Sizes>>,
+    pub windows: Vec<Option<Coefficients>>,
     /// Explained fraction of the squares, less the fraction expected by chance.
-    pub part: f64,
+    pub explained_fraction: f64,
 }
 
 /// A coefficient in one window.
 #[derive(Clone, Copy, Debug)]
-pub struct WindowSize {
+pub struct WindowCoefficient {
     /// Value.
     pub value: f64,
     /// Variance, for a residual of unit variance.
@@ -72,7 +72,7 @@ impl Regression {
         let mut products = DMatrix::zeros(n + count + 1, n + count + 1);
         let mut windows = Vec::with_capacity(columns.len());
         let mut numbers = 0.0;
-        for (base, block) in at.base.iter().zip(columns) {
+        for (base, block) in at.projections.iter().zip(columns) {
             let (Some(base), Some(block)) = (base, block) else {
                 windows.push(DMatrix::zeros(0, 0));
                 continue;
@@ -82,7 +82,7 @@ impl Regression {
             matrix.columns_mut(0, n).copy_from(&base.by_unknown);
             matrix.columns_mut(n, count).copy_from(block);
             matrix.column_mut(n + count).copy_from(&base.residual);
-            let own = base.products(&matrix);
+            let own = base.compute_products(&matrix);
             windows.push(own.view((n, n), (count + 1, count + 1)).into_owned());
             products += own;
             numbers += rows as f64;
@@ -115,8 +115,8 @@ impl Regression {
         Some(Self {
             gram: reduced.view((0, 0), (count, count)).into_owned(),
             right: -reduced.view((0, count), (count, 1)).column(0),
-            squares: reduced[(count, count)],
-            numbers,
+            remaining_squares: reduced[(count, count)],
+            number_count: numbers,
             nuisances,
             held,
             windows,
@@ -125,7 +125,11 @@ impl Regression {
 
     /// Fits linear combinations of columns, equal in all windows. `of`: a row per column and a
     /// column per combination.
-    pub fn sums(&self, places: std::ops::Range<usize>, of: &DMatrix<f64>) -> Sizes {
+    pub fn fit_combinations(
+        &self,
+        places: std::ops::Range<usize>,
+        of: &DMatrix<f64>,
+    ) -> Coefficients {
         let count = places.len();
         let gram = self.gram.view((places.start, places.start), (count, count));
         let right = self.right.rows(places.start, count);
@@ -137,7 +141,7 @@ impl Regression {
     }
 
     /// Fits basis functions with equal coefficients in all windows.
-    pub fn shared(&self, functions: &[BasisFunctionId]) -> Sizes {
+    pub fn fit_shared(&self, functions: &[BasisFunctionId]) -> Coefficients {
         let count = functions.len();
         let gram = DMatrix::from_fn(count, count, |r, c| {
             self.gram[(functions[r].index(), functions[c].index())]
@@ -148,7 +152,7 @@ impl Regression {
 
     /// Fits coefficients that differ between windows, with fixed nuisances and a common variance,
     /// so that unobservable coefficients remain small. `noise`: mean square of the noise.
-    pub fn each(&self, places: std::ops::Range<usize>, noise: f64) -> Each {
+    pub fn fit_per_window(&self, places: std::ops::Range<usize>, noise: f64) -> WindowCoefficients {
         let (first, count) = (places.start, places.len());
         let systems = self.windows.iter().map(|window| {
             let last = window.ncols().checked_sub(1)?;
@@ -160,7 +164,7 @@ impl Regression {
         let numbers = (there().count() * count).max(1) as f64;
         let trace: f64 = there().map(|(gram, _)| gram.trace()).sum();
         let mut ridge = 1e-3 * trace / numbers;
-        for _ in 0..thresholds::VARIANCE_ROUNDS {
+        for _ in 0..thresholds::VARIANCE_ITERATIONS {
             let all = there().map(|(gram, right)| {
                 let found = sizes(gram, right, ridge);
                 found.values.norm_squared() + noise * found.covariance.trace()
@@ -172,7 +176,7 @@ impl Regression {
             ridge = noise / square;
         }
         let (mut decrease, mut freedom) = (0.0, 0.0);
-        let windows: Vec<Option<Sizes>> = (systems.iter())
+        let windows: Vec<Option<Coefficients>> = (systems.iter())
             .map(|system| {
                 let (gram, right) = system.as_ref()?;
                 let found = sizes(gram, right, ridge);
@@ -182,24 +186,24 @@ impl Regression {
                 Some(found)
             })
             .collect();
-        Each {
+        WindowCoefficients {
             windows,
-            part: (decrease - noise * freedom) / self.held,
+            explained_fraction: (decrease - noise * freedom) / self.held,
         }
     }
 
     /// Fits one linear combination of columns in each window, with fixed nuisances.
-    pub fn in_windows(
+    pub fn fit_combination_per_window(
         &self,
         places: std::ops::Range<usize>,
         of: &DVector<f64>,
-    ) -> Vec<Option<WindowSize>> {
+    ) -> Vec<Option<WindowCoefficient>> {
         let (first, count) = (places.start, places.len());
         let one = |window: &DMatrix<f64>| {
             let last = window.ncols().checked_sub(1)?;
             let square = of.dot(&(window.view((first, first), (count, count)) * of));
             let right = -of.dot(&window.view((first, last), (count, 1)).column(0));
-            (square > 0.0).then(|| WindowSize {
+            (square > 0.0).then(|| WindowCoefficient {
                 value: right / square,
                 variance: 1.0 / square,
             })
@@ -210,7 +214,7 @@ impl Regression {
     /// Returns the residual of each window after subtraction of all columns, in standard
     /// deviations. `shared`: whether coefficients are equal in all windows and nuisances are fitted
     /// again.
-    pub fn remaining(
+    pub fn compute_remaining(
         &self,
         at: &LinearisedFit,
         columns: &[Option<DMatrix<f64>>],
@@ -222,7 +226,7 @@ impl Regression {
         let nuisances = nuisances.map(|(factor, cross)| {
             -factor.solve(&(cross.columns(0, count) * values(0) + cross.column(count)))
         });
-        let windows = at.base.iter().zip(columns).enumerate();
+        let windows = at.projections.iter().zip(columns).enumerate();
         let one = |(window, (base, block)): (usize, (&Option<StateProjection>, &Option<_>))| {
             let (Some(base), Some(block)) = (base, block) else {
                 return Vec::new();
@@ -231,18 +235,18 @@ impl Regression {
             if let Some(nuisances) = &nuisances {
                 residual += &base.by_unknown * nuisances;
             }
-            base.projected(&residual).iter().copied().collect()
+            base.project(&residual).iter().copied().collect()
         };
         windows.map(one).collect()
     }
 }
 
 /// Least squares from products; what does nothing stays 0 and is not known.
-fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
+fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Coefficients {
     let count = right.len();
     let largest = gram.diagonal().iter().copied().fold(0.0, f64::max);
     let does: Vec<bool> = (0..count)
-        .map(|k| gram[(k, k)] > thresholds::RIDGE * largest)
+        .map(|k| gram[(k, k)] > thresholds::MIN_COLUMN_REMAINDER * largest)
         .collect();
     let scale: Vec<f64> = (0..count)
         .map(|k| {
@@ -254,7 +258,7 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
         })
         .collect();
     let whole = DMatrix::from_fn(count, count, |r, c| match (r == c, does[r] && does[c]) {
-        (true, true) => 1.0 + thresholds::RIDGE,
+        (true, true) => 1.0 + thresholds::MIN_COLUMN_REMAINDER,
         (true, false) => 1.0,
         (false, true) => gram[(r, c)] / (scale[r] * scale[c]),
         (false, false) => 0.0,
@@ -264,7 +268,7 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
         |k, _| if does[k] { right[k] / scale[k] } else { 0.0 },
     );
     let Some(factor) = whole.cholesky() else {
-        return Sizes {
+        return Coefficients {
             values: DVector::zeros(count),
             covariance: DMatrix::zeros(count, count),
             decrease: 0.0,
@@ -280,7 +284,7 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
             covariance[(r, c)] *= known / (scale[r] * scale[c]);
         }
     }
-    Sizes {
+    Coefficients {
         values,
         covariance,
         decrease,

@@ -7,7 +7,7 @@ use crate::residual_force::equations::Equation;
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
     /// Arguments in SI units, ascending.
-    pub over: Vec<f64>,
+    pub arguments: Vec<f64>,
     /// Force, N or N m.
     pub values: Vec<f64>,
     /// Standard deviation.
@@ -24,27 +24,27 @@ pub struct RankedEquation {
     /// The equation.
     pub equation: EquationId,
     /// Fraction explained by a force over rate or over position.
-    pub by_state: f64,
+    pub fraction_by_state: f64,
     /// Fraction explained by a force over time that differs between windows.
-    pub by_time: f64,
+    pub fraction_by_time: f64,
 }
 
 /// Argument of a force.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum ForceKind {
     /// The rate, with simple functions of it.
-    Rate(Vec<SimplePart>),
+    Rate(Vec<SimpleTerm>),
     /// The position, with simple functions of it.
-    Position(Vec<SimplePart>),
+    Position(Vec<SimpleTerm>),
     /// Neither.
     Time,
 }
 
 /// A simple function with its coefficient, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SimplePart {
+pub struct SimpleTerm {
     /// The function.
-    pub function: Simple,
+    pub function: SimpleFunction,
     /// Coefficient.
     pub value: f64,
     /// Standard deviation.
@@ -53,7 +53,7 @@ pub struct SimplePart {
 
 /// Simple function of a rate or a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Simple {
+pub enum SimpleFunction {
     /// Constant.
     Constant,
     /// Sign.
@@ -61,9 +61,9 @@ pub enum Simple {
     /// Linear.
     Linear,
     /// Absolute value.
-    Size,
+    Absolute,
     /// Square with the sign of the argument.
-    Square,
+    SignedSquare,
 }
 
 /// The residual force of a fit.
@@ -73,11 +73,11 @@ pub struct ResidualForce {
     /// Equations in which a force explains a part of the residual, the best first.
     pub ranking: Vec<RankedEquation>,
     /// Best equation.
-    pub best: EquationId,
+    pub best_equation: EquationId,
     /// Equation of the profiles.
     pub equation: EquationId,
     /// Argument of the force in the best equation; `None` if no force is significant.
-    pub kind: Option<Kind>,
+    pub kind: Option<ForceKind>,
     /// Explained fraction of the squares.
     pub part: f64,
     /// Profile over the rate.
@@ -96,7 +96,7 @@ pub struct ResidualForce {
 
 impl ResidualForce {
     /// Returns the name of the equation of the profiles.
-    pub fn profiled_equation(&self) -> &str {
+    pub fn profiled_equation_name(&self) -> &str {
         &self.equations[self.equation].name
     }
 }

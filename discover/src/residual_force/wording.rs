@@ -2,15 +2,15 @@
 //! its numbers.
 
 use crate::residual_force::equations::Equation;
-use crate::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
+use crate::residual_force::types::{ForceKind, Profile, ResidualForce, SimpleFunction, SimpleTerm};
 use crate::thresholds;
 
 /// Describes the residual force of the original model in one or two sentences.
-pub fn described(force: &ResidualForce) -> String {
+pub fn describe_residual_force(force: &ResidualForce) -> String {
     let Some(kind) = &force.kind else {
         return "No force in a single equation is significant.".to_owned();
     };
-    let equation = &force.equations[force.best];
+    let equation = &force.equations[force.best_equation];
     let mut text = format!(
         "The residual is best explained by a force on {}: {}; it explains {:.0} % of the squares.",
         equation.name,
@@ -18,11 +18,14 @@ pub fn described(force: &ResidualForce) -> String {
         100.0 * force.part
     );
     let own = |ranking: &crate::residual_force::types::RankedEquation| match kind {
-        Kind::Time => ranking.by_time,
-        Kind::Rate(_) | Kind::Position(_) => ranking.by_state,
+        ForceKind::Time => ranking.fraction_by_time,
+        ForceKind::Rate(_) | ForceKind::Position(_) => ranking.fraction_by_state,
     };
-    let others = force.ranking.iter().filter(|r| r.equation != force.best);
-    let as_well = others.filter(|r| own(r) > thresholds::AS_WELL * force.part);
+    let others = force
+        .ranking
+        .iter()
+        .filter(|r| r.equation != force.best_equation);
+    let as_well = others.filter(|r| own(r) > thresholds::MIN_FRACTION_OF_BEST * force.part);
     let names: Vec<&str> = as_well
         .map(|r| force.equations[r.equation].name.as_str())
         .collect();
@@ -36,10 +39,10 @@ pub fn described(force: &ResidualForce) -> String {
 }
 
 /// Describes the residual force of the extended model.
-pub fn described_after(force: &ResidualForce) -> String {
+pub fn describe_remaining_force(force: &ResidualForce) -> String {
     match &force.kind {
         None => "With the found effects in the model, no force is significant.".to_owned(),
-        Some(_) => described(force).replacen(
+        Some(_) => describe_residual_force(force).replacen(
             "The residual is best explained",
             "The remaining residual is best explained",
             1,
@@ -47,22 +50,22 @@ pub fn described_after(force: &ResidualForce) -> String {
     }
 }
 
-fn shape(force: &ResidualForce, kind: &Kind) -> String {
-    let equation = &force.equations[force.best];
+fn shape(force: &ResidualForce, kind: &ForceKind) -> String {
+    let equation = &force.equations[force.best_equation];
     match kind {
-        Kind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),
-        Kind::Position(parts) if parts.is_empty() => over(force, &force.position, false),
-        Kind::Rate(parts) => simple(parts, equation, true),
-        Kind::Position(parts) => simple(parts, equation, false),
-        Kind::Time => {
+        ForceKind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),
+        ForceKind::Position(parts) if parts.is_empty() => over(force, &force.position, false),
+        ForceKind::Rate(parts) => simple(parts, equation, true),
+        ForceKind::Position(parts) => simple(parts, equation, false),
+        ForceKind::Time => {
             let frequencies = &force.frequency;
-            let is_looked_at = force.best == force.equation;
+            let is_looked_at = force.best_equation == force.equation;
             let (rate, place) = words(equation);
             let text = format!("it is a function of neither the {rate} nor the {place}");
             match frequencies.peak {
                 Some(peak) if is_looked_at && frequencies.part > 0.5 * force.part => format!(
                     "{text}, most of it near {:.3} Hz with an amplitude of {}",
-                    frequencies.over[peak],
+                    frequencies.arguments[peak],
                     in_unit(frequencies.values[peak], equation.force_unit())
                 ),
                 _ => text,
@@ -79,7 +82,7 @@ fn words(equation: &Equation) -> (&'static str, &'static str) {
     }
 }
 
-fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
+fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
     let (rate, position) = words(equation);
     let of = if is_rate { rate } else { position };
     let force = equation.force_unit();
@@ -100,17 +103,21 @@ fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
     };
     let along = |value: f64| if value < 0.0 { "against" } else { "with" };
     let texts = parts.iter().map(|part| {
-        let SimplePart {
+        let SimpleTerm {
             function,
             value,
             sd,
         } = part;
         let number = |unit: &str| format!("{} +- {}", plain(value.abs()), in_unit(*sd, unit));
         match function {
-            Simple::Constant => format!("a constant {} +- {}", plain(*value), in_unit(*sd, force)),
-            Simple::Sign => format!("{} {} the sign of the {of}", number(force), along(*value)),
-            Simple::Linear => format!("{} {} the {of}", number(&unit), along(*value)),
-            Simple::Size => format!(
+            SimpleFunction::Constant => {
+                format!("a constant {} +- {}", plain(*value), in_unit(*sd, force))
+            }
+            SimpleFunction::Sign => {
+                format!("{} {} the sign of the {of}", number(force), along(*value))
+            }
+            SimpleFunction::Linear => format!("{} {} the {of}", number(&unit), along(*value)),
+            SimpleFunction::Absolute => format!(
                 "{} times the magnitude of the {of}, {}",
                 number(&unit),
                 if *value < 0.0 {
@@ -119,7 +126,7 @@ fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
                     "in the positive direction"
                 }
             ),
-            Simple::Square => format!(
+            SimpleFunction::SignedSquare => format!(
                 "{} {} the signed square of the {of}",
                 number(&squared),
                 along(*value)
@@ -131,7 +138,7 @@ fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
 
 /// The lowest and the highest of a profile whose numbers are known.
 fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
-    let equation = &force.equations[force.best];
+    let equation = &force.equations[force.best_equation];
     let (rate, position) = words(equation);
     let (of, unit) = match is_rate {
         true => (rate, equation.rate_unit()),
@@ -143,12 +150,12 @@ fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let order = |a: &&usize, b: &&usize| profile.values[**a].total_cmp(&profile.values[**b]);
     let (low, high) = (known.iter().min_by(order), known.iter().max_by(order));
     match (low, high) {
-        (Some(low), Some(high)) if low != high && force.best == force.equation => format!(
+        (Some(low), Some(high)) if low != high && force.best_equation == force.equation => format!(
             "it changes with the {of}, from {} at {} to {} at {}",
             in_unit(profile.values[*low], equation.force_unit()),
-            in_unit(profile.over[*low], unit),
+            in_unit(profile.arguments[*low], unit),
             in_unit(profile.values[*high], equation.force_unit()),
-            in_unit(profile.over[*high], unit)
+            in_unit(profile.arguments[*high], unit)
         ),
         _ => format!("it changes with the {of}"),
     }

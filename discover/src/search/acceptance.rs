@@ -1,7 +1,7 @@
 //! Acceptance test: the required improvement of a fit by a further effect. All limits are in
 //! [`crate::thresholds`].
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::{EffectId, UnknownId};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
@@ -10,16 +10,16 @@ use crate::thresholds;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestStatistics {
     /// Relative reduction of the gap of the test records.
-    pub held_out: f64,
+    pub held_out_reduction: f64,
     /// Reduction of the squares of the test records, in standard errors over blocks of time.
-    pub held_out_errors: f64,
+    pub reduction_in_standard_errors: f64,
     /// Half the reduction of the whitened squares of the training records.
-    pub information: f64,
+    pub information_gain: f64,
     /// Size of the effect in standard deviations; the smallest of several effects.
-    pub t: f64,
+    pub t_value: f64,
     /// Influence of the effect on the channel that shows it best, in standard deviations of the
     /// noise.
-    pub size: f64,
+    pub size_over_noise: f64,
     /// P-value of the test records; `None` if it was not computed.
     pub p_value: Option<f64>,
 }
@@ -36,7 +36,7 @@ pub struct EffectUnknown {
     /// Whether it shapes the effect without scaling it.
     pub is_shape: bool,
     /// Standard deviation of its removed prior, SI.
-    pub prior: Option<f64>,
+    pub dropped_prior_sd: Option<f64>,
 }
 
 /// Tests a fit with additional effects, given by their unknowns.
@@ -44,23 +44,23 @@ pub struct EffectUnknown {
 /// # Errors
 ///
 /// The reason why they are rejected.
-pub fn acceptance_test(
+pub fn test_acceptance(
     before: &Fit,
     after: &Fit,
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
-    let statistics = explains(before, after, own)?;
+    let statistics = test_explanation(before, after, own)?;
     // Beyond its prior for certain, not by what the record leaves open.
-    if let Some(rejection) = within_prior(after, own, thresholds::STANDARD_ERRORS) {
+    if let Some(rejection) = within_prior(after, own, thresholds::MIN_REDUCTION_STANDARD_ERRORS) {
         return Err(rejection);
     }
-    if statistics.t < thresholds::SIGNIFICANCE {
-        return Err(Rejection::Significance(statistics.t));
+    if statistics.t_value < thresholds::MIN_SIGNIFICANCE {
+        return Err(Rejection::Significance(statistics.t_value));
     }
     // The null model does what is within a prior itself: what is beyond may be small beside it.
-    let has_prior = own.iter().all(|own| own.prior.is_some());
-    if !has_prior && statistics.size < thresholds::SIZE {
-        return Err(Rejection::Size(statistics.size));
+    let has_prior = own.iter().all(|own| own.dropped_prior_sd.is_some());
+    if !has_prior && statistics.size_over_noise < thresholds::MIN_EFFECT_OVER_NOISE {
+        return Err(Rejection::Influence(statistics.size_over_noise));
     }
     Ok(statistics)
 }
@@ -71,47 +71,50 @@ pub fn acceptance_test(
 /// # Errors
 ///
 /// The reason why they do not.
-pub fn explains(
+pub fn test_explanation(
     before: &Fit,
     after: &Fit,
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
-    let statistics = test_statistics(before, after, own);
+    let statistics = compute_test_statistics(before, after, own);
     if let Some(rejection) = at_bound(after, own).or_else(|| within_prior(after, own, 0.0)) {
         return Err(rejection);
     }
-    if statistics.held_out < thresholds::HELD_OUT {
-        return Err(Rejection::HeldOut(statistics.held_out));
+    if statistics.held_out_reduction < thresholds::MIN_HELD_OUT_REDUCTION {
+        return Err(Rejection::HeldOut(statistics.held_out_reduction));
     }
-    if statistics.held_out_errors < thresholds::STANDARD_ERRORS {
-        return Err(Rejection::StandardErrors(statistics.held_out_errors));
+    if statistics.reduction_in_standard_errors < thresholds::MIN_REDUCTION_STANDARD_ERRORS {
+        return Err(Rejection::StandardErrors(
+            statistics.reduction_in_standard_errors,
+        ));
     }
-    if statistics.information < thresholds::INFORMATION {
+    if statistics.information_gain < thresholds::MIN_INFORMATION_GAIN {
         return Err(Rejection::Information {
-            found: statistics.information,
-            asked: thresholds::INFORMATION,
+            gain: statistics.information_gain,
+            required: thresholds::MIN_INFORMATION_GAIN,
         });
     }
     Ok(statistics)
 }
 
 /// Computes the test statistics of additional effects, given by their unknowns.
-pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> TestStatistics {
+pub fn compute_test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> TestStatistics {
     let (old, new) = (&before.test, &after.test);
-    let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
+    let falls: Vec<f64> = (old.block_squares.iter().zip(&new.block_squares))
         .map(|(a, b)| a.sqrt() - b.sqrt())
         .collect();
     let count = falls.len() as f64;
     let mean = falls.iter().sum::<f64>() / count;
     let variance = falls.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    let fall = before.train.blocks.iter().sum::<f64>() - after.train.blocks.iter().sum::<f64>();
-    let whitening = after.train.inflation();
+    let fall = before.train.block_squares.iter().sum::<f64>()
+        - after.train.block_squares.iter().sum::<f64>();
+    let whitening = after.train.variance_inflation();
     TestStatistics {
-        held_out: 1.0 - new.rms / old.rms,
-        held_out_errors: mean / (variance / count).sqrt(),
-        information: fall / (2.0 * whitening),
-        t: least_significance(after, own),
-        size: size(before, after),
+        held_out_reduction: 1.0 - new.rms / old.rms,
+        reduction_in_standard_errors: mean / (variance / count).sqrt(),
+        information_gain: fall / (2.0 * whitening),
+        t_value: least_significance(after, own),
+        size_over_noise: size(before, after),
         p_value: None,
     }
 }
@@ -131,17 +134,17 @@ fn size(before: &Fit, after: &Fit) -> f64 {
 fn least_significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
     let effects = own.iter().map(|own| own.effect.index() + 1).max();
     EffectId::first(effects.unwrap_or(0))
-        .map(|effect| significance(fit, own, effect))
+        .map(|effect| compute_t_value(fit, own, effect))
         .fold(f64::INFINITY, f64::min)
 }
 
 /// Returns the size of one tested effect in standard deviations.
-pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
+pub fn compute_t_value(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
     let scaling = own
         .iter()
         .filter(|own| own.effect == effect && !own.is_shape);
     let ratios = scaling
-        .map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.wider_sd[own.unknown]);
+        .map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.effect_sd[own.unknown]);
     ratios.map(|t| t * t).sum::<f64>().sqrt()
 }
 
@@ -149,9 +152,9 @@ pub fn significance(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f64 {
 fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own
         .iter()
-        .find(|own| !own.is_shape && fit.is_held(own.unknown))?;
+        .find(|own| !own.is_shape && fit.is_at_bound(own.unknown))?;
     let name = fit.unknowns[held.unknown].label.clone();
-    Some(match held.prior {
+    Some(match held.dropped_prior_sd {
         Some(_) => Rejection::AtLimit(name),
         None => Rejection::WrongSign(name),
     })
@@ -161,13 +164,13 @@ fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
 /// nearer than estimated.
 fn within_prior(fit: &Fit, own: &[EffectUnknown], errors: f64) -> Option<Rejection> {
     own.iter().find_map(|own| {
-        let prior = own.prior?;
+        let prior = own.dropped_prior_sd?;
         let off = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
-        let sd = fit.wider_sd[own.unknown] / prior;
-        let is_off = off - errors * sd > thresholds::SHIFTED;
+        let sd = fit.effect_sd[own.unknown] / prior;
+        let is_off = off - errors * sd > thresholds::MAX_PRIOR_DEVIATION;
         (!is_off).then(|| Rejection::WithinPrior {
             name: fit.unknowns[own.unknown].label.clone(),
-            off,
+            deviation: off,
             sd,
         })
     })

@@ -4,29 +4,29 @@
 
 use std::collections::BTreeMap;
 
-use crate::catalogue::candidate::{Candidate, candidates};
+use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::Site;
-use crate::catalogue::sites::sites;
+use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
-use crate::fit::preliminary::{PreliminaryFit, WarmStart};
+use crate::fit::preliminary_fit::{PreliminaryFit, WarmStart};
 use crate::ids::{CandidateId, FittedId, ResponseId};
-use crate::search::fitted::{FittedHypothesis, full_fits};
-use crate::search::hypothesis::{Hypothesis, warm_started};
-use crate::search::motion_of_fit::motion_of;
-use crate::search::pool::Pool;
-use crate::search::screening::{Prediction, screening};
+use crate::search::hypothesis::{Hypothesis, fit_from_warm_start};
+use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
+use crate::search::motion_of_fit::compute_usual_motion;
+use crate::search::pool::CandidatePool;
+use crate::search::screening::{LinearPrediction, screen_candidates};
 use crate::thresholds;
 
 /// Fits the alternatives to a hypothesis from the end of its fit and keeps the results with lower
 /// residuals.
 pub fn test_alternatives(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     fitted_hypotheses: &mut Vec<FittedHypothesis>,
     answer: FittedId,
 ) {
     let preliminaries = alternatives(pool, fitted_hypotheses, answer).unwrap_or_default();
-    for new in full_fits(pool, preliminaries) {
+    for new in run_full_fits(pool, preliminaries) {
         let known = fitted_hypotheses
             .iter_mut()
             .find(|fitted| fitted.responses == new.responses);
@@ -41,7 +41,7 @@ pub fn test_alternatives(
 /// The best of those that may stand in the place of a fitted hypothesis, started where that ended;
 /// none if it is not one effect with terms of its own.
 fn alternatives(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     answer: FittedId,
 ) -> Option<Vec<(Hypothesis, PreliminaryFit)>> {
@@ -66,26 +66,26 @@ fn alternatives(
     // promises: a promise along the motion of a wrong place may be far off.
     let at_floor = fitted.fit.is_at_floor(pool.context.floor);
     let most = match at_floor {
-        true => thresholds::RIVAL,
+        true => thresholds::MAX_RIVAL_COST_RATIO,
         false => f64::INFINITY,
     };
     let mut predictions = predictions(pool, fitted, &in_model, most)?;
     predictions.sort_by(|a, b| a.prediction.cost.total_cmp(&b.prediction.cost));
-    predictions.truncate(thresholds::FITS_AT_ONCE);
+    predictions.truncate(thresholds::FITS_IN_PARALLEL);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
     let preliminaries = predictions.into_iter().filter_map(|of| {
-        let Prediction { cost, sizes } = of.prediction;
+        let LinearPrediction { cost, sizes } = of.prediction;
         let hypothesis = Hypothesis {
             responses: vec![rivals[of.candidate]],
-            deleted: None,
-            sizes,
+            replaced_parameter: None,
+            predicted_sizes: sizes,
         };
         let warm_start = WarmStart {
             fit: &fitted.fit,
             cost,
-            most: thresholds::FAR * fitted.fit.train.rms,
+            max_rms: thresholds::MAX_WARM_START_RATIO * fitted.fit.train.rms,
         };
-        let preliminary = warm_started(pool, &hypothesis, warm_start, shape_ratio).ok()?;
+        let preliminary = fit_from_warm_start(pool, &hypothesis, warm_start, shape_ratio).ok()?;
         Some((hypothesis, preliminary))
     });
     Some(preliminaries.collect())
@@ -94,7 +94,7 @@ fn alternatives(
 /// Those of the rivals that there are in a fitted hypothesis' model, as candidates for that: names
 /// that the fitted hypothesis took are not free there, and shapes go with the fitted hypothesis'.
 fn in_model(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
     rivals: &[ResponseId],
 ) -> (Vec<ResponseId>, Vec<Candidate>) {
@@ -102,18 +102,18 @@ fn in_model(
         return Default::default();
     }
     let model = fitted.fit.model.specification();
-    let sites = sites(model);
+    let sites = find_sites(model);
     let motion = UsualMotion {
         orders: orders(pool, rivals, &sites),
-        ..motion_of(pool.context.problem, &fitted.fit, &sites)
+        ..compute_usual_motion(pool.context.problem, &fitted.fit, &sites)
     };
-    let known = candidates(model, pool.context.effects, &sites, &motion);
+    let known = list_candidates(model, pool.context.effects, &sites, &motion);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
     let again = |rival: &ResponseId| {
         let label = pool.candidate(*rival).label();
         let found = known.iter().find(|candidate| candidate.label() == label)?;
         let mut found = found.clone();
-        let shapes = found.parameters.iter_mut().map(|p| &mut p.shape);
+        let shapes = found.parameters.iter_mut().map(|p| &mut p.shape_size);
         shapes.flatten().for_each(|shape| *shape *= shape_ratio);
         Some((*rival, found))
     };
@@ -121,10 +121,14 @@ fn in_model(
 }
 
 /// The rivals' orders, at each angle.
-fn orders(pool: &Pool<'_>, rivals: &[ResponseId], sites: &[Site]) -> BTreeMap<String, Vec<u32>> {
+fn orders(
+    pool: &CandidatePool<'_>,
+    rivals: &[ResponseId],
+    sites: &[Site],
+) -> BTreeMap<String, Vec<u32>> {
     let orders = rivals
         .iter()
-        .filter_map(|rival| Some(pool.candidate(*rival).order.as_ref()?.1));
+        .filter_map(|rival| Some(pool.candidate(*rival).angle_order.as_ref()?.1));
     let orders: Vec<u32> = orders.collect();
     let angles = sites.iter().filter(|site| site.kind == SiteKind::Angle);
     let on = angles.filter_map(|site| site.arguments.get("on"));
@@ -134,30 +138,30 @@ fn orders(pool: &Pool<'_>, rivals: &[ResponseId], sites: &[Site]) -> BTreeMap<St
 /// What a candidate promises.
 struct Predicted {
     candidate: CandidateId,
-    prediction: Prediction,
+    prediction: LinearPrediction,
 }
 
 /// Which candidates promise to leave less than so many times what a fitted hypothesis leaves,
 /// without its own terms, what they leave and their sizes.
 fn predictions(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
     in_model: &[Candidate],
     most: f64,
 ) -> Option<Vec<Predicted>> {
-    let mut screening = screening(pool.context.problem, &fitted.fit, in_model, 1.0);
-    let cost = screening.predicted(&[]).cost;
+    let mut screening = screen_candidates(pool.context.problem, &fitted.fit, in_model, 1.0);
+    let cost = screening.predict(&[]).cost;
     let theta = &fitted.fit.train.estimate.theta;
-    for own in &fitted.own {
+    for own in &fitted.effect_unknowns {
         screening = match own.is_shape {
-            true => screening.held(own.unknown),
-            false => screening.without(own.unknown, theta[own.unknown])?,
+            true => screening.with_nuisance_fixed(own.unknown),
+            false => screening.with_nuisance_fixed_at(own.unknown, theta[own.unknown])?,
         };
     }
     let ids = ResponseId::first(screening.responses.len());
     let predictions = ids.map(|id| Predicted {
         candidate: screening.responses[id].candidate,
-        prediction: screening.predicted(&[id]),
+        prediction: screening.predict(&[id]),
     });
     Some(
         predictions
@@ -168,8 +172,8 @@ fn predictions(
 
 /// How a fitted hypothesis' shape ended, in what it began with: a speed that friction falls with is
 /// so many times the usual one wherever the friction sits.
-fn shape_ratio(pool: &Pool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
-    let shape = fitted.own.iter().find(|own| own.is_shape)?;
+fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
+    let shape = fitted.effect_unknowns.iter().find(|own| own.is_shape)?;
     let began = pool.screening.responses[fitted.responses[0]]
         .candidate_unknowns
         .iter()
@@ -180,22 +184,24 @@ fn shape_ratio(pool: &Pool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
 /// The same effect elsewhere, and what the record hardly tells from it, unless it leaves as
 /// little already.
 fn rivals(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     answer: FittedId,
     response: ResponseId,
 ) -> Vec<ResponseId> {
     let selected = pool.candidate(response);
-    let enough = (1.0 + thresholds::DISTINGUISHED) * fitted_hypotheses[answer].fit.rms();
+    let enough = (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * fitted_hypotheses[answer].fit.rms();
     let is_rival = |id: &ResponseId| {
         let of = pool.candidate(*id);
         let done = fitted_hypotheses
             .iter()
             .any(|fitted| fitted.responses == [*id] && fitted.fit.rms() < enough);
-        let turns = |c: &Candidate| c.order.as_ref().map(|(_, order)| *order);
+        let turns = |c: &Candidate| c.angle_order.as_ref().map(|(_, order)| *order);
         let same = of.effect == selected.effect && turns(of) == turns(selected);
         let is_own = pool.screening.responses[*id].dropped_prior.is_none();
-        let similar = || pool.screening.similarity(*id, response) > thresholds::INDISTINGUISHABLE;
+        let similar = || {
+            pool.screening.compute_similarity(*id, response) > thresholds::MIN_SIMILARITY_OF_RIVALS
+        };
         *id != response && is_own && !done && (same || similar())
     };
     ResponseId::first(pool.screening.responses.len())

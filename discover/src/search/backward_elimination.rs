@@ -2,26 +2,26 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::full;
-use crate::fit::preliminary::{self, WarmStart};
+use crate::fit::fit_result::Fit;
+use crate::fit::full_fit;
+use crate::fit::preliminary_fit::{self, WarmStart};
 use crate::ids::{EffectId, UnknownId};
 use crate::model::problem::EstimationProblem;
-use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult};
 use crate::thresholds;
 
 /// Removes effects that are not needed, the least important first. `progress` receives a line for
 /// each.
 pub fn eliminate_backwards(
     problem: &EstimationProblem<'_>,
-    found: &mut Found,
+    found: &mut SearchResult,
     progress: &dyn Fn(&str),
 ) {
     while found.accepted.len() > 1 {
-        let best = found.best();
+        let best = found.best_fit();
         let fits = EffectId::first(found.accepted.len()).filter_map(|effect_id| {
-            let fit = without(problem, found, effect_id).ok()?;
-            problem.stop.check().ok()?;
+            let fit = fit_without_effect(problem, found, effect_id).ok()?;
+            problem.stop.check_not_stopped().ok()?;
             is_as_good(best, &fit).then_some((effect_id, fit))
         });
         let least = fits.min_by(|a, b| a.1.train.rms.total_cmp(&b.1.train.rms));
@@ -34,25 +34,26 @@ pub fn eliminate_backwards(
             "unnecessary after a later effect: the test residual is {:.2} standard deviations of the noise \
              without it and {:.2} with it",
             fit.test.rms,
-            found.best().test.rms
+            found.best_fit().test.rms
         );
         let candidate = renumber(&mut found.accepted, effect_id);
         found
             .rejected
             .retain(|known| known.candidate.label() != label);
-        found.rejected.push(Rejected {
+        found.rejected.push(RejectedCandidate {
             candidate,
             reason,
-            not_testable: false,
+            is_untestable: false,
             p_value: None,
         });
-        found.last = Some(fit);
+        found.extended_fit = Some(fit);
     }
 }
 
 /// Whether a fit with less leaves no more than one with more, but for what is asked of an effect.
 fn is_as_good(with: &Fit, without: &Fit) -> bool {
-    let worse = |with: f64, without: f64| with < (1.0 - thresholds::HELD_OUT) * without;
+    let worse =
+        |with: f64, without: f64| with < (1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * without;
     !worse(with.train.rms, without.train.rms) && !worse(with.test.rms, without.test.rms)
 }
 
@@ -61,27 +62,27 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
 /// # Errors
 ///
 /// As [`full::fit`].
-pub(crate) fn without(
+pub(crate) fn fit_without_effect(
     problem: &EstimationProblem<'_>,
-    found: &Found,
+    found: &SearchResult,
     effect_id: EffectId,
 ) -> Result<Fit, DiscoverError> {
-    let fit = found.best();
+    let fit = found.best_fit();
     let gone = &found.accepted[effect_id];
-    let mut texts = found.null.texts.clone();
+    let mut texts = found.null_fit.texts.clone();
     for (other, effect) in EffectId::first(found.accepted.len()).zip(&found.accepted) {
         if other == effect_id || effect.candidate.dropped_prior.is_some() {
             continue;
         }
-        let values = fit.stated(&effect.unknowns);
-        texts = effect.candidate.added(problem, &texts, &values)?;
+        let values = fit.values_in_specification(&effect.unknowns);
+        texts = effect.candidate.add_to_texts(problem, &texts, &values)?;
     }
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
     if gone.candidate.dropped_prior.is_some() {
         for id in &gone.unknowns {
-            unknowns[*id].clone_from(&found.null.unknowns[*id]);
-            theta[*id] = found.null.unknowns[*id].start;
+            unknowns[*id].clone_from(&found.null_fit.unknowns[*id]);
+            theta[*id] = found.null_fit.unknowns[*id].start;
         }
     } else {
         let is_kept = |id: &UnknownId| !gone.unknowns.contains(id);
@@ -92,14 +93,15 @@ pub(crate) fn without(
     let warm_start = WarmStart {
         fit,
         cost: fit.train.estimate.cost,
-        most: thresholds::FAR * fit.train.rms,
+        max_rms: thresholds::MAX_WARM_START_RATIO * fit.train.rms,
     };
-    let preliminary = preliminary::expected(problem, texts, unknowns, &[theta], warm_start)?;
-    full::complete(problem, preliminary)
+    let preliminary =
+        preliminary_fit::start_from_fit(problem, texts, unknowns, &[theta], warm_start)?;
+    full_fit::complete_fit(problem, preliminary)
 }
 
 /// Takes an effect off the list; the unknowns of those behind it move up.
-fn renumber(accepted: &mut Vec<Accepted>, effect_id: EffectId) -> Candidate {
+fn renumber(accepted: &mut Vec<AcceptedEffect>, effect_id: EffectId) -> Candidate {
     let gone = accepted.remove(effect_id.index());
     if gone.candidate.dropped_prior.is_some() {
         return gone.candidate;

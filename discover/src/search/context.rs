@@ -1,13 +1,13 @@
 //! Context of a round of the search.
 
 use crate::catalogue::effect::Effect;
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
 /// Context of a round of the search.
 #[derive(Clone, Copy)]
-pub struct Context<'r> {
+pub struct RoundContext<'r> {
     /// Problem of the dataset.
     pub problem: &'r EstimationProblem<'r>,
     /// Fit to be improved.
@@ -20,20 +20,21 @@ pub struct Context<'r> {
     pub progress: &'r (dyn Fn(&str) + Sync),
 }
 
-impl Context<'_> {
+impl RoundContext<'_> {
     /// Returns true if the residual is close to the noise.
-    pub fn is_near(&self) -> bool {
-        self.fit.train.rms < thresholds::MUCH_IS_LEFT
+    pub fn is_near_floor(&self) -> bool {
+        self.fit.train.rms < thresholds::FAR_FROM_NOISE
     }
 
     /// Returns true if candidates are first screened over whole windows.
-    pub fn is_whole(&self) -> bool {
-        self.is_near() || !self.problem.estimates_initial_states()
+    pub fn starts_with_whole_windows(&self) -> bool {
+        self.is_near_floor() || !self.problem.estimates_initial_states()
     }
 
     /// Returns true if a fit explains most of the gap to the noise floor.
-    pub fn explains_most(&self, fit: &Fit) -> bool {
-        let little = (thresholds::CLOSE * self.floor).max(thresholds::MOST_OF * self.fit.rms());
-        fit.leaves_less(little)
+    pub fn explains_most_of_gap(&self, fit: &Fit) -> bool {
+        let little = (thresholds::MAX_FLOOR_RATIO_TO_STOP * self.floor)
+            .max(thresholds::MAX_LEFT_OF_RESIDUALS * self.fit.rms());
+        fit.is_below(little)
     }
 }

@@ -3,9 +3,9 @@
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
 use eomgen_model_spec::source::Source;
 
-use crate::catalogue::meshes::plays;
-use crate::fit::fitted::Fit;
-use crate::fit::full;
+use crate::catalogue::meshes::find_play_parameters;
+use crate::fit::fit_result::Fit;
+use crate::fit::full_fit;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::thresholds;
@@ -24,17 +24,17 @@ pub enum ExcitationWindow {
 
 impl ExcitationWindow {
     /// Returns the used fraction of each window.
-    pub fn part(self) -> f64 {
+    pub fn window_fraction(self) -> f64 {
         match self {
-            Self::Beginnings => thresholds::FIRST_PART,
+            Self::Beginnings => thresholds::PRELIMINARY_FRACTION,
             Self::Whole | Self::BacklashRemoved => 1.0,
         }
     }
 }
 
 /// Fits the model without play; `None` if it has no play.
-pub fn without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
-    let edits: Vec<Edit> = plays(fit.model.specification())
+pub fn fit_without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
+    let edits: Vec<Edit> = find_play_parameters(fit.model.specification())
         .into_iter()
         .map(|name| {
             Edit::SetParameter(SetParameter {
@@ -49,9 +49,9 @@ pub fn without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
     }
     let closed = |text: &str| edit::apply(&Source::new(problem.path.as_str(), text), &edits).ok();
     let texts = SpecificationTexts {
-        whole: closed(&fit.texts.whole)?,
+        full: closed(&fit.texts.full)?,
         linear: closed(&fit.texts.linear)?,
     };
     let theta = &fit.train.estimate.theta;
-    full::fit(problem, texts, fit.unknowns.clone(), theta).ok()
+    full_fit::fit_specification(problem, texts, fit.unknowns.clone(), theta).ok()
 }

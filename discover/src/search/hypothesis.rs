@@ -2,14 +2,14 @@
 //! and the start of a fit.
 
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::preliminary::{self, PreliminaryFit, WarmStart};
+use crate::fit::fit_result::Fit;
+use crate::fit::preliminary_fit::{self, PreliminaryFit, WarmStart};
 use crate::ids::{EffectId, ResponseId, UnknownId};
 use crate::interval::Interval;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{NormalPrior, Unknown};
 use crate::search::acceptance::EffectUnknown;
-use crate::search::pool::Pool;
+use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
 /// Candidates that are fitted together, and a parameter whose term they replace.
@@ -18,9 +18,9 @@ pub struct Hypothesis {
     /// Responses of the candidates.
     pub responses: Vec<ResponseId>,
     /// Parameter whose term is replaced.
-    pub deleted: Option<UnknownId>,
+    pub replaced_parameter: Option<UnknownId>,
     /// Predicted sizes of the candidates, in order.
-    pub sizes: Vec<f64>,
+    pub predicted_sizes: Vec<f64>,
 }
 
 /// The unknowns of a fit with further ones, and where they begin, SI.
@@ -30,12 +30,12 @@ struct Extended {
 }
 
 /// Returns the names of the candidates and of the replaced term.
-pub fn label(pool: &Pool<'_>, hypothesis: &Hypothesis) -> String {
+pub fn describe_hypothesis(pool: &CandidatePool<'_>, hypothesis: &Hypothesis) -> String {
     let names = pool.label(&hypothesis.responses);
     let unknowns = &pool.context.fit.unknowns;
     match hypothesis
-        .deleted
-        .and_then(|id| unknowns[id].what.parameter())
+        .replaced_parameter
+        .and_then(|id| unknowns[id].kind.parameter_name())
     {
         Some(deleted) => format!("{names} without {deleted}"),
         None => names,
@@ -43,7 +43,10 @@ pub fn label(pool: &Pool<'_>, hypothesis: &Hypothesis) -> String {
 }
 
 /// Returns the unknowns of the effects in a fit with the hypothesis.
-pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnknown> {
+pub fn list_effect_unknowns(
+    pool: &CandidatePool<'_>,
+    hypothesis: &Hypothesis,
+) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();
     let mut own = Vec::new();
     let effects = EffectId::first(hypothesis.responses.len());
@@ -57,7 +60,7 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
                 effect,
                 base: mean,
                 is_shape: false,
-                prior: Some(sd),
+                dropped_prior_sd: Some(sd),
             });
         }
         for candidate_unknown in &response.candidate_unknowns {
@@ -66,7 +69,7 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
                 effect,
                 base: candidate_unknown.base,
                 is_shape: candidate_unknown.is_shape,
-                prior: None,
+                dropped_prior_sd: None,
             });
             next += 1;
         }
@@ -75,41 +78,45 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
 }
 
 /// Runs a preliminary fit with the candidates.
-pub fn preliminary(
-    pool: &Pool<'_>,
+pub fn fit_preliminary(
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
 ) -> Result<PreliminaryFit, DiscoverError> {
     let (problem, fit) = (pool.context.problem, pool.context.fit);
-    problem.stop.check()?;
-    let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.parts[0]);
+    problem.stop.check_not_stopped()?;
+    let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.size_fractions[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     // What swings in coordinates of its own is far from the fit however little it does.
     let adds_states = hypothesis.responses.iter().any(|response| {
         let parameters = &pool.candidate(*response).parameters;
-        parameters.iter().any(|parameter| parameter.inverse)
+        parameters.iter().any(|parameter| parameter.is_inverse)
     });
-    let others = pool.parts[1..]
+    let others = pool.size_fractions[1..]
         .iter()
         .map(|part| unknowns_with(pool, hypothesis, *part).theta);
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
-    if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
-        let cost = pool.screening.predicted(&hypothesis.responses).cost;
-        let most = thresholds::FAR * fit.train.rms;
-        let warm_start = WarmStart { fit, cost, most };
-        return preliminary::expected(problem, texts, unknowns, &begins, warm_start);
+    if pool.uses_whole_windows && hypothesis.replaced_parameter.is_none() && !adds_states {
+        let cost = pool.screening.predict(&hypothesis.responses).cost;
+        let most = thresholds::MAX_WARM_START_RATIO * fit.train.rms;
+        let warm_start = WarmStart {
+            fit,
+            cost,
+            max_rms: most,
+        };
+        return preliminary_fit::start_from_fit(problem, texts, unknowns, &begins, warm_start);
     }
-    let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
-    if pool.is_whole {
+    let mut preliminary = preliminary_fit::fit_beginnings(problem, texts, unknowns, &begins)?;
+    if pool.uses_whole_windows {
         // Beside others that are promised and not fitted yet.
-        preliminary.cost = pool.screening.predicted(&hypothesis.responses).cost;
+        preliminary.cost = pool.screening.predict(&hypothesis.responses).cost;
     }
     Ok(preliminary)
 }
 
 /// Runs a preliminary fit with the candidates and with shapes at this multiple of their typical
 /// sizes.
-pub fn with_shape(
-    pool: &Pool<'_>,
+pub fn fit_with_shape_factor(
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     times: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
@@ -117,20 +124,20 @@ pub fn with_shape(
         unknowns,
         mut theta,
     } = unknowns_with(pool, hypothesis, 1.0);
-    for own in own_unknowns(pool, hypothesis)
+    for own in list_effect_unknowns(pool, hypothesis)
         .iter()
         .filter(|own| own.is_shape)
     {
-        theta[own.unknown] = unknowns[own.unknown].admissible(times * theta[own.unknown]);
+        theta[own.unknown] = unknowns[own.unknown].clamp(times * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
+    preliminary_fit::fit_beginnings(pool.context.problem, texts, unknowns, &[theta])
 }
 
 /// Starts a hypothesis of one candidate from the motions of a fit with another. `shape_ratio`:
 /// multiple of the typical size of a shape.
-pub fn warm_started(
-    pool: &Pool<'_>,
+pub fn fit_from_warm_start(
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     warm_start: WarmStart<'_>,
     shape_ratio: f64,
@@ -141,20 +148,20 @@ pub fn warm_started(
     } = unknowns_with(pool, hypothesis, 1.0);
     let count = pool.context.fit.unknowns.len();
     theta[..count].copy_from_slice(&warm_start.fit.train.estimate.theta[..count]);
-    for own in own_unknowns(pool, hypothesis)
+    for own in list_effect_unknowns(pool, hypothesis)
         .iter()
         .filter(|own| own.is_shape)
     {
-        theta[own.unknown] = unknowns[own.unknown].admissible(shape_ratio * theta[own.unknown]);
+        theta[own.unknown] = unknowns[own.unknown].clamp(shape_ratio * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
+    preliminary_fit::start_from_fit(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
 /// Starts a hypothesis of one candidate from the end of the fit of a pair. `own`: its unknowns in
 /// that fit, SI.
-pub fn half_alone(
-    pool: &Pool<'_>,
+pub fn fit_half_from_pair(
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     pair: &Fit,
     own: &[f64],
@@ -166,14 +173,14 @@ pub fn half_alone(
     let warm_start = WarmStart {
         fit: pair,
         cost: pair.train.estimate.cost,
-        most: thresholds::FAR * pair.train.rms,
+        max_rms: thresholds::MAX_WARM_START_RATIO * pair.train.rms,
     };
-    preliminary::expected(pool.context.problem, texts, unknowns, &[theta], warm_start)
+    preliminary_fit::start_from_fit(pool.context.problem, texts, unknowns, &[theta], warm_start)
 }
 
 /// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
 fn texts(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     unknowns: &[Unknown],
     theta: &[f64],
@@ -189,31 +196,31 @@ fn texts(
         let own = next..next + response.candidate_unknowns.len();
         next = own.end;
         let values: Vec<f64> = own
-            .map(|index| unknowns[index].what.stated(theta[index]))
+            .map(|index| unknowns[index].kind.value_in_specification(theta[index]))
             .collect();
         let candidate = &pool.candidates[response.candidate];
-        texts = candidate.added(pool.context.problem, &texts, &values)?;
+        texts = candidate.add_to_texts(pool.context.problem, &texts, &values)?;
     }
     Ok(texts)
 }
 
 /// The unknowns with a hypothesis' candidates and their values, so much of the promised sizes from
 /// absent.
-fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> Extended {
+fn unknowns_with(pool: &CandidatePool<'_>, hypothesis: &Hypothesis, part: f64) -> Extended {
     let fit = pool.context.fit;
     let mut unknowns = fit.unknowns.clone();
-    let mut theta = fit.restarted();
-    if let Some(deleted) = hypothesis.deleted {
+    let mut theta = fit.restart_values();
+    if let Some(deleted) = hypothesis.replaced_parameter {
         unknowns[deleted].bounds = Interval::ZERO;
         theta[deleted] = 0.0;
     }
-    let mut sizes = hypothesis.sizes.iter().map(|size| part * size);
+    let mut sizes = hypothesis.predicted_sizes.iter().map(|size| part * size);
     for response in &hypothesis.responses {
         let response = &pool.screening.responses[*response];
         if let Some(id) = response.dropped_prior {
             let size = sizes.next().unwrap_or(0.0);
             unknowns[id] = unknowns[id].without_prior();
-            theta[id] = unknowns[id].admissible(fit.train.estimate.theta[id] + size);
+            theta[id] = unknowns[id].clamp(fit.train.estimate.theta[id] + size);
             continue;
         }
         for candidate_unknown in &response.candidate_unknowns {
@@ -229,7 +236,7 @@ fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> Extende
             theta.push(
                 candidate_unknown
                     .unknown
-                    .admissible(candidate_unknown.base + size),
+                    .clamp(candidate_unknown.base + size),
             );
             let mut unknown = candidate_unknown.unknown.clone();
             unknown.scale = size.abs().max(1e-3 * unknown.scale);

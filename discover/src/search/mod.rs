@@ -10,50 +10,50 @@
 
 pub mod acceptance;
 mod alternatives;
-mod answer;
+mod answer_selection;
 pub mod backward_elimination;
 pub mod context;
 mod dropped_priors;
 mod excitation_window;
-pub mod fitted;
-pub mod found;
-mod halves_alone;
 pub mod hypothesis;
+pub mod hypothesis_fits;
 mod motion_of_fit;
+mod pair_halves;
 mod pairs;
 pub mod parameter_offsets;
 pub mod perturbed_response;
 pub mod pool;
-mod rejected;
+mod rejected_candidates;
 pub mod rejection;
 pub mod response;
 pub mod responses;
 mod round;
 pub mod screening;
-pub mod selected;
+pub mod search_result;
+pub mod selection;
 mod shape_restarts;
-mod singles;
+mod single_candidates;
 pub mod split_sample;
-pub mod tested;
-pub mod unconfirmed;
-mod unfinished;
+pub mod tested_pool;
+pub mod unconfirmed_hypothesis;
+mod unfinished_round;
 pub mod variational_response;
 
 use crate::catalogue::effect::Effect;
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::EffectId;
 use crate::model::problem::EstimationProblem;
-use crate::search::acceptance::test_statistics;
-use crate::search::answer::answer;
+use crate::search::acceptance::compute_test_statistics;
+use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
-use crate::search::context::Context;
-use crate::search::found::{Accepted, Found, TestGap};
-use crate::search::rejected::note_rejected;
-use crate::search::round::Round;
-use crate::search::selected::Selected;
-use crate::search::unconfirmed::unconfirmed;
-use crate::search::unfinished::unfinished;
+use crate::search::context::RoundContext;
+use crate::search::rejected_candidates::note_rejected;
+use crate::search::round::SearchRound;
+use crate::search::search_result::{AcceptedEffect, SearchResult, TestGap};
+use crate::search::selection::SelectedHypothesis;
+use crate::search::unconfirmed_hypothesis::find_unconfirmed;
+use crate::search::unfinished_round::describe_unfinished;
 use crate::thresholds;
 
 /// Searches for the missing effects of a model. `floor`: noise floor, in standard deviations.
@@ -68,47 +68,47 @@ pub fn search(
     effects: &[Effect],
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
-) -> Result<Found, DiscoverError> {
-    let mut found = Found {
-        null,
-        last: None,
+) -> Result<SearchResult, DiscoverError> {
+    let mut found = SearchResult {
+        null_fit: null,
+        extended_fit: None,
         accepted: Vec::new(),
         rejected: Vec::new(),
         unconfirmed: None,
         unfinished: None,
     };
-    while found.accepted.len() < thresholds::MOST_EFFECTS {
-        let fit = found.last.as_ref().unwrap_or(&found.null);
+    while found.accepted.len() < thresholds::MAX_EFFECTS {
+        let fit = found.extended_fit.as_ref().unwrap_or(&found.null_fit);
         if fit.is_at_floor(floor) {
             break;
         }
-        let (number, most) = (found.accepted.len() + 1, thresholds::MOST_EFFECTS);
+        let (number, most) = (found.accepted.len() + 1, thresholds::MAX_EFFECTS);
         progress(&format!(
             "effect {number} of at most {most}: the residual is {:.1} standard deviations, the noise floor \
              {floor:.1}",
             fit.rms()
         ));
-        let round = Round {
-            context: Context {
+        let round = SearchRound {
+            context: RoundContext {
                 problem,
                 fit,
                 floor,
                 effects,
                 progress,
             },
-            is_first: found.accepted.is_empty(),
+            is_first_round: found.accepted.is_empty(),
         };
-        let mut tested = round.round();
-        let so_far = unfinished(&tested);
-        if problem.stop.is_late() {
+        let mut tested = round.test_candidates();
+        let so_far = describe_unfinished(&tested);
+        if problem.stop.is_time_over() {
             found.unfinished = Some(so_far);
             break;
         }
-        problem.stop.check()?;
+        problem.stop.check_not_stopped()?;
         note_rejected(&mut found.rejected, &tested);
-        let unconfirmed = unconfirmed(&mut tested, fit);
-        let selected = answer(&round, tested);
-        if problem.stop.is_late() {
+        let unconfirmed = find_unconfirmed(&mut tested, fit);
+        let selected = select_answer(&round, tested);
+        if problem.stop.is_time_over() {
             found.unfinished = Some(so_far);
             break;
         }
@@ -119,30 +119,33 @@ pub fn search(
         accept(&mut found, selected);
         eliminate_backwards(problem, &mut found, progress);
     }
-    problem.stop.lift();
-    problem.stop.check()?;
+    problem.stop.remove_time_limit();
+    problem.stop.check_not_stopped()?;
     Ok(found)
 }
 
 /// Takes what is named over, with the candidates that are indistinguishable from it.
-fn accept(found: &mut Found, selected: Selected) {
-    let (before, best) = (found.best(), selected.fitted);
+fn accept(found: &mut SearchResult, selected: SelectedHypothesis) {
+    let (before, best) = (found.best_fit(), selected.hypothesis);
     let gap = TestGap {
         before: before.test.rms,
         after: best.fit.test.rms,
     };
     let statistics = best
         .verdict
-        .unwrap_or_else(|_| test_statistics(before, &best.fit, &best.own));
+        .unwrap_or_else(|_| compute_test_statistics(before, &best.fit, &best.effect_unknowns));
     let effects = EffectId::first(selected.candidates.len());
     let accepted = effects.zip(selected.candidates).map(|(effect, candidate)| {
-        let own = best.own.iter().filter(|own| own.effect == effect);
-        Accepted {
+        let own = best
+            .effect_unknowns
+            .iter()
+            .filter(|own| own.effect == effect);
+        AcceptedEffect {
             candidate,
             unknowns: own.map(|own| own.unknown).collect(),
-            equivalent: selected.equivalent[effect].clone(),
+            equivalents: selected.equivalents[effect].clone(),
             statistics: statistics.clone(),
-            test_gap: match selected.half {
+            test_gap: match selected.accepted_half {
                 Some(half) if half.effect == effect => TestGap {
                     after: half.test_rms,
                     ..gap
@@ -155,10 +158,13 @@ fn accept(found: &mut Found, selected: Selected) {
             },
         }
     });
-    let mut accepted: Vec<Accepted> = accepted.collect();
-    if selected.half.is_some_and(|half| half.effect.index() != 0) {
+    let mut accepted: Vec<AcceptedEffect> = accepted.collect();
+    if selected
+        .accepted_half
+        .is_some_and(|half| half.effect.index() != 0)
+    {
         accepted.reverse();
     }
     found.accepted.extend(accepted);
-    found.last = Some(best.fit);
+    found.extended_fit = Some(best.fit);
 }

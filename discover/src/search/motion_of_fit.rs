@@ -7,13 +7,17 @@ use eomgen_compiled_model::TypicalSizes;
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::Site;
 use crate::catalogue::usual_motion::UsualMotion;
-use crate::fit::fitted::Fit;
-use crate::fit::travels::travels;
+use crate::fit::expression_ranges::compute_ranges;
+use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
-use crate::model::usual_rates::usual_rates;
+use crate::model::usual_rates::compute_usual_rates;
 
 /// Returns the usual rates and the ranges at the sites of a model, without orders.
-pub fn motion_of(problem: &EstimationProblem<'_>, fit: &Fit, sites: &[Site]) -> UsualMotion {
+pub fn compute_usual_motion(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    sites: &[Site],
+) -> UsualMotion {
     let moving = sites
         .iter()
         .filter(|site| matches!(site.kind, SiteKind::Angle | SiteKind::Spring));
@@ -22,11 +26,11 @@ pub fn motion_of(problem: &EstimationProblem<'_>, fit: &Fit, sites: &[Site]) -> 
         .collect();
     let travels = match expressions.is_empty() {
         true => Default::default(),
-        false => travels(problem, fit, &expressions),
+        false => compute_ranges(problem, fit, &expressions),
     };
     UsualMotion {
-        rates: usual_rates(problem.dataset, fit.model.specification()),
-        travels,
+        rates: compute_usual_rates(problem.dataset, fit.model.specification()),
+        ranges: travels,
         orders: Default::default(),
         sizes: TypicalSizes::new(fit.model.specification(), fit.model.orders()),
     }

@@ -2,45 +2,47 @@
 //! replacements of one effect of a pair.
 
 use crate::ids::{FittedId, ResponseId, UnknownId};
-use crate::model::unknowns::What;
+use crate::model::unknowns::UnknownKind;
 use crate::search::acceptance::EffectUnknown;
-use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
-use crate::search::halves_alone::halves_alone;
 use crate::search::hypothesis::Hypothesis;
-use crate::search::pool::Pool;
+use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits, run_preliminary_fits};
+use crate::search::pair_halves::fit_halves;
+use crate::search::pool::CandidatePool;
 use crate::search::rejection::Rejection;
-use crate::search::screening::{Prediction, Screening};
+use crate::search::screening::{LinearPrediction, Screening};
 use crate::thresholds;
 
 /// Fits pairs of candidates, and pairs that replace a term of the model. `singles`: fitted single
 /// candidates.
-pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
+pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     // A sensor that runs to the end of what is admitted stands in for something else.
     let is_at_limit = |fitted: &&FittedHypothesis| {
-        let of = |own: &EffectUnknown| own.prior.is_some() && fitted.fit.is_held(own.unknown);
-        fitted.own.iter().any(of)
+        let of = |own: &EffectUnknown| {
+            own.dropped_prior_sd.is_some() && fitted.fit.is_at_bound(own.unknown)
+        };
+        fitted.effect_unknowns.iter().any(of)
     };
     let at_limit = singles.iter().filter(is_at_limit);
     let at_limit: Vec<ResponseId> = at_limit
         .flat_map(|fitted| fitted.responses.clone())
         .collect();
     let is_there = |response: &ResponseId| !at_limit.contains(response);
-    let ranking: Vec<ResponseId> = pool.ranking().into_iter().filter(is_there).collect();
+    let ranking: Vec<ResponseId> = pool.rank_responses().into_iter().filter(is_there).collect();
     let mut added = 0;
-    let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranking, &at_limit));
+    let mut preliminaries = run_preliminary_fits(pool, best_pairs(pool, &ranking, &at_limit));
     preliminaries.retain(|(hypothesis, _)| {
-        added += usize::from(hypothesis.deleted.is_none());
-        hypothesis.deleted.is_some() || added <= thresholds::FITS_AT_ONCE
+        added += usize::from(hypothesis.replaced_parameter.is_none());
+        hypothesis.replaced_parameter.is_some() || added <= thresholds::FITS_IN_PARALLEL
     });
-    let mut fitted_hypotheses = full_fits(pool, preliminaries);
-    let alone = halves_alone(pool, &fitted_hypotheses);
+    let mut fitted_hypotheses = run_full_fits(pool, preliminaries);
+    let alone = fit_halves(pool, &fitted_hypotheses);
     fitted_hypotheses.extend(alone);
     for fitted in &mut fitted_hypotheses {
         let mut own = fitted.responses.iter();
-        let repeats = own.any(|response| pool.candidate(*response).order.is_some());
-        if repeats && fitted.verdict.is_ok() && !pool.context.explains_most(&fitted.fit) {
-            fitted.verdict = Err(Rejection::LeavesMuch);
-            fitted.explains = false;
+        let repeats = own.any(|response| pool.candidate(*response).angle_order.is_some());
+        if repeats && fitted.verdict.is_ok() && !pool.context.explains_most_of_gap(&fitted.fit) {
+            fitted.verdict = Err(Rejection::LargeRemainder);
+            fitted.explains_records = false;
         }
     }
     fitted_hypotheses
@@ -50,16 +52,20 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
 /// of the model that may go the pair that takes its place best. Of what repeats with an angle the
 /// best alone are paired, and with something else: of that there is so much that some of it is
 /// lucky.
-fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) -> Vec<Hypothesis> {
+fn best_pairs(
+    pool: &CandidatePool<'_>,
+    ranking: &[ResponseId],
+    at_limit: &[ResponseId],
+) -> Vec<Hypothesis> {
     let screening = pool.screening;
     let best = ranking
         .first()
-        .map_or(0.0, |r| screening.responses[*r].decrease);
-    let single = screening.predicted(&[]).cost - best;
+        .map_or(0.0, |r| screening.responses[*r].cost_decrease);
+    let single = screening.predict(&[]).cost - best;
     // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
-    let repeats = |r: &ResponseId| pool.candidate(*r).order.is_some();
+    let repeats = |r: &ResponseId| pool.candidate(*r).angle_order.is_some();
     let repeating: Vec<ResponseId> = (ranking.iter().copied().filter(repeats))
-        .take(thresholds::MOST_FITS)
+        .take(thresholds::MAX_FULL_FITS_PER_ROUND)
         .collect();
     let few: Vec<ResponseId> = ResponseId::first(screening.responses.len())
         .filter(|r| {
@@ -67,29 +73,31 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
             let is_one = !repeats(r) || repeating.contains(r);
             is_one
                 && !at_limit.contains(r)
-                && response.unexplained_fraction > thresholds::UNEXPLAINED_FRACTION
+                && response.unexplained_fraction > thresholds::MIN_UNEXPLAINED_FRACTION
         })
         .collect();
-    let never =
-        |a: ResponseId, b: ResponseId| pool.share_a_name(a, b) || (repeats(&a) && repeats(&b));
+    let never = |a: ResponseId, b: ResponseId| {
+        pool.has_common_parameter_name(a, b) || (repeats(&a) && repeats(&b))
+    };
     let best_of = |deleted: Option<UnknownId>, screening: &Screening| {
         let mut found: Vec<(f64, Hypothesis)> = Vec::new();
         for (number, a) in few.iter().enumerate() {
             let others = few[number + 1..].iter();
             for b in others.filter(|b| !never(*a, **b)) {
                 let responses = vec![*a, *b];
-                let Prediction { cost, sizes } = screening.predicted(&responses);
+                let LinearPrediction { cost, sizes } = screening.predict(&responses);
                 // What replaces a term is far from where it was linearised: it is not held
                 // to a promise.
-                let promising = deleted.is_some() || cost < thresholds::PAIR_PROMISE * single;
+                let promising =
+                    deleted.is_some() || cost < thresholds::MAX_PAIR_COST_RATIO * single;
                 if promising
                     && sizes.iter().all(|v| *v != 0.0)
-                    && !screening.cancels(&responses, &sizes)
+                    && !screening.is_cancelling(&responses, &sizes)
                 {
                     let hypothesis = Hypothesis {
                         responses,
-                        deleted,
-                        sizes,
+                        replaced_parameter: deleted,
+                        predicted_sizes: sizes,
                     };
                     found.push((cost, hypothesis));
                 }
@@ -98,7 +106,7 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let count = match deleted {
             Some(_) => 1,
-            None => thresholds::MOST_PRELIMINARY_FITS,
+            None => thresholds::MAX_PRELIMINARY_FITS,
         };
         found
             .into_iter()
@@ -111,10 +119,10 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
         let value = pool.context.fit.train.estimate.theta[id];
         let near = unknown
             .prior
-            .is_some_and(|prior| prior.mean.abs() < thresholds::PRIOR_REACH * prior.sd);
-        if matches!(unknown.what, What::Parameter(_))
+            .is_some_and(|prior| prior.mean.abs() < thresholds::MAX_PRIOR_SD_TO_ZERO * prior.sd);
+        if matches!(unknown.kind, UnknownKind::Parameter(_))
             && near
-            && let Some(screening) = screening.without(id, value)
+            && let Some(screening) = screening.with_nuisance_fixed_at(id, value)
         {
             hypotheses.extend(best_of(Some(id), &screening));
         }
@@ -125,8 +133,8 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
 /// Fits pairs that share one effect with a pair and whose other effect is similar to its other. If
 /// the pair has a larger gap than a correct model, the same effect at other sites is fitted too.
 /// The most similar are fitted first, at most [`thresholds::FITS_AT_ONCE`] and only new ones.
-pub fn other_halves(
-    pool: &Pool<'_>,
+pub fn fit_other_halves(
+    pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
     pair: FittedId,
 ) -> Vec<FittedHypothesis> {
@@ -138,12 +146,12 @@ pub fn other_halves(
     for (kept, other) in [(a, b), (b, a)] {
         for response in ResponseId::first(pool.screening.responses.len()) {
             let is_new = ![kept, other].contains(&response)
-                && !pool.share_a_name(kept, response)
-                && pool.candidate(response).order.is_none();
+                && !pool.has_common_parameter_name(kept, response)
+                && pool.candidate(response).angle_order.is_none();
             let is_distinct = pool.screening.responses[response].unexplained_fraction
-                > thresholds::UNEXPLAINED_FRACTION;
+                > thresholds::MIN_UNEXPLAINED_FRACTION;
             let similarity = match is_new && is_distinct {
-                true => pool.screening.similarity(other, response),
+                true => pool.screening.compute_similarity(other, response),
                 false => 0.0,
             };
             let pair = vec![kept, response];
@@ -151,7 +159,7 @@ pub fn other_halves(
                 fitted.responses.len() == 2 && pair.iter().all(|r| fitted.responses.contains(r))
             };
             let is_same = pool.candidate(response).effect == pool.candidate(other).effect;
-            let may_be = similarity > thresholds::INDISTINGUISHABLE
+            let may_be = similarity > thresholds::MIN_SIMILARITY_OF_RIVALS
                 || (!at_floor && is_same && similarity > 0.0);
             if may_be && !fitted_hypotheses.iter().any(is_known) {
                 found.push((similarity, pair));
@@ -159,15 +167,15 @@ pub fn other_halves(
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.truncate(thresholds::FITS_AT_ONCE);
+    found.truncate(thresholds::FITS_IN_PARALLEL);
     let hypothesis = |(_, responses): (f64, Vec<ResponseId>)| Hypothesis {
-        sizes: pool.screening.predicted(&responses).sizes,
+        predicted_sizes: pool.screening.predict(&responses).sizes,
         responses,
-        deleted: None,
+        replaced_parameter: None,
     };
     let hypotheses = found.into_iter().map(hypothesis).collect();
-    let mut fitted_hypotheses = full_fits(pool, preliminary_fits(pool, hypotheses));
-    let alone = halves_alone(pool, &fitted_hypotheses);
+    let mut fitted_hypotheses = run_full_fits(pool, run_preliminary_fits(pool, hypotheses));
+    let alone = fit_halves(pool, &fitted_hypotheses);
     fitted_hypotheses.extend(alone);
     fitted_hypotheses
 }

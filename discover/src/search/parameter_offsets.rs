@@ -4,51 +4,54 @@
 
 use eomgen_compiled_model::TypicalSizes;
 
-use crate::catalogue::candidate::{self, Candidate, candidates};
-use crate::catalogue::input_faults::input_faults;
-use crate::catalogue::sites::sites;
+use crate::catalogue::candidate::{self, Candidate, list_candidates};
+use crate::catalogue::input_faults::list_input_faults;
+use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::ids::{CandidateId, ResponseId};
-use crate::model::unknowns::{Unknown, What};
-use crate::search::context::Context;
-use crate::search::dropped_priors::dropped_prior;
-use crate::search::motion_of_fit::motion_of;
-use crate::search::pool::Pool;
-use crate::search::screening::{ScreenedResponse, screening};
-use crate::search::singles::similar;
-use crate::search::tested::TestedPool;
+use crate::model::unknowns::{Unknown, UnknownKind};
+use crate::search::context::RoundContext;
+use crate::search::dropped_priors::list_prior_candidates;
+use crate::search::motion_of_fit::compute_usual_motion;
+use crate::search::pool::CandidatePool;
+use crate::search::screening::{ScreenedResponse, screen_candidates};
+use crate::search::single_candidates::fit_similar;
+use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// Parameters and waves with a response similar to that of the named effect.
 pub struct SimilarOffsets {
     /// Screened candidates, the named effect among them, and the fits of the similar candidates.
-    pub tested: TestedPool,
+    pub tested_pool: TestedPool,
     /// Response of the named effect.
-    pub selected: ResponseId,
+    pub selected_response: ResponseId,
 }
 
 /// Returns the candidates for shifted parameters that are not unknowns, for errors of inputs, and
 /// for effects equivalent to a shifted stiffness.
-pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
+pub fn list_offsets(context: RoundContext<'_>) -> Vec<Candidate> {
     let (fit, path) = (context.fit, &context.problem.path);
     let is_known = |name: &str| {
-        let of = |unknown: &Unknown| match &unknown.what {
-            What::Parameter(known) | What::Inverse(known) => known == name,
-            What::Gain(_) | What::Bias(_) | What::Delay(_) | What::InputDelay => false,
+        let of = |unknown: &Unknown| match &unknown.kind {
+            UnknownKind::Parameter(known) | UnknownKind::InverseParameter(known) => known == name,
+            UnknownKind::Gain(_)
+            | UnknownKind::Bias(_)
+            | UnknownKind::Delay(_)
+            | UnknownKind::InputDelay => false,
         };
         fit.unknowns.iter().any(of)
     };
     let parameters = fit.model.specification().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
-    let parameters = free.filter_map(candidate::offset_of);
+    let parameters = free.filter_map(candidate::shift_parameter);
     let model = fit.model.specification();
     let scaling = (context.effects.iter()).filter(|effect| effect.scales_stiffness());
     parameters
-        .chain(input_faults(model, path))
-        .chain(candidates(
+        .chain(list_input_faults(model, path))
+        .chain(list_candidates(
             model,
             scaling,
-            &sites(model),
+            &find_sites(model),
             &UsualMotion {
                 sizes: TypicalSizes::new(model, fit.model.orders()),
                 ..UsualMotion::default()
@@ -62,11 +65,17 @@ pub fn offsets(context: Context<'_>) -> Vec<Candidate> {
 /// similar sensors and declared parameters are fitted too: a sensor gain and a model parameter may
 /// be equivalent. `None` if no candidate is similar. The fit of the context is the one before the
 /// effect was named.
-pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
-    let offsets = offsets(context);
-    let (offsets, called) = match offsets.iter().any(|offset| offset.is_same_as(selected)) {
+pub fn fit_similar_offsets(
+    context: RoundContext<'_>,
+    selected: &Candidate,
+) -> Option<SimilarOffsets> {
+    let offsets = list_offsets(context);
+    let (offsets, called) = match offsets
+        .iter()
+        .any(|offset| offset.is_same_effect_as(selected))
+    {
         true => (
-            dropped_prior(context.problem, context.fit),
+            list_prior_candidates(context.problem, context.fit),
             "sensors and declared parameters",
         ),
         false => (
@@ -82,42 +91,42 @@ pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<Sim
         offsets.len(),
         selected.label()
     ));
-    let is_whole = context.is_whole();
+    let is_whole = context.starts_with_whole_windows();
     let part = if is_whole {
         1.0
     } else {
-        thresholds::FIRST_PART
+        thresholds::PRELIMINARY_FRACTION
     };
     let candidates: Vec<Candidate> = std::iter::once(selected.clone()).chain(offsets).collect();
-    let screening = screening(context.problem, context.fit, &candidates, part);
+    let screening = screen_candidates(context.problem, context.fit, &candidates, part);
     let is_selected = |r: &ScreenedResponse| r.candidate == CandidateId::new(0);
     let own = screening.responses.iter().position(is_selected)?;
     let own = ResponseId::new(own);
-    let pool = Pool::new(context, &candidates, &screening, is_whole);
-    let mut fitted_hypotheses = similar(&pool, own);
-    fitted_hypotheses.retain(|fitted| fitted.explains);
+    let pool = CandidatePool::new(context, &candidates, &screening, is_whole);
+    let mut fitted_hypotheses = fit_similar(&pool, own);
+    fitted_hypotheses.retain(|fitted| fitted.explains_records);
     let tested = TestedPool {
         candidates,
         screening,
         fitted_hypotheses,
     };
     Some(SimilarOffsets {
-        tested,
-        selected: own,
+        tested_pool: tested,
+        selected_response: own,
     })
 }
 
 /// What repeats with the angle on which something was named that does not: an unbalanced weight and a torque
 /// that repeats once per turn are one term. A round looks at them only where all else promises little.
-fn waves(context: Context<'_>, selected: &Candidate) -> Vec<Candidate> {
-    if selected.order.is_some() {
+fn waves(context: RoundContext<'_>, selected: &Candidate) -> Vec<Candidate> {
+    if selected.angle_order.is_some() {
         return Vec::new();
     }
     let (problem, fit) = (context.problem, context.fit);
     let model = fit.model.specification();
-    let sites = sites(model);
-    let motion = motion_of(problem, fit, &sites);
-    let mut waves = candidates(model, context.effects, &sites, &motion);
-    waves.retain(|wave| wave.order.is_some() && wave.on == selected.on);
+    let sites = find_sites(model);
+    let motion = compute_usual_motion(problem, fit, &sites);
+    let mut waves = list_candidates(model, context.effects, &sites, &motion);
+    waves.retain(|wave| wave.angle_order.is_some() && wave.site == selected.site);
     waves
 }

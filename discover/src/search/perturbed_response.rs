@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use crate::catalogue::candidate::{Candidate, CandidateParameter};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::fit::gauss_newton::Estimate;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::linearised_fit::LinearisedFit;
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
@@ -21,15 +21,15 @@ use crate::thresholds;
 
 /// Computes the responses of all candidates. Candidates of one effect and site that differ only in
 /// the order share one size search.
-pub fn perturbed_responses(
+pub fn simulate_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
 ) -> Vec<Result<CandidateResponse, DiscoverError>> {
     let similar = |a: &Candidate, b: &Candidate| {
-        let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
-        a.effect == b.effect && a.on == b.on && a.load == b.load && angle(a) == angle(b)
+        let angle = |c: &Candidate| c.angle_order.as_ref().map(|(angle, _)| angle.clone());
+        a.effect == b.effect && a.site == b.site && a.load == b.load && angle(a) == angle(b)
     };
     let groups: Vec<&[Candidate]> = candidates.chunk_by(similar).collect();
     let found: Vec<Vec<Result<CandidateResponse, DiscoverError>>> = groups
@@ -65,22 +65,22 @@ fn response(
 ) -> Result<CandidateResponse, DiscoverError> {
     let LinearisedFit {
         windows,
-        base,
+        projections: base,
         level,
         estimate,
-        part,
+        fraction: part,
     } = at;
     let start: Vec<f64> = candidate
         .parameters
         .iter()
-        .map(CandidateParameter::absent)
+        .map(CandidateParameter::neutral_value)
         .collect();
-    let texts = candidate.added(problem, &fit.texts, &start)?;
-    let model = problem.model(&texts.whole, Some(&texts.linear))?;
+    let texts = candidate.add_to_texts(problem, &fit.texts, &start)?;
+    let model = problem.compile_model(&texts.full, Some(&texts.linear))?;
     let mut candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
         .iter()
-        .map(CandidateUnknown::of)
+        .map(CandidateUnknown::from_parameter)
         .collect();
     for (candidate_unknown, size) in candidate_unknowns.iter_mut().zip(sizes) {
         candidate_unknown.unknown.scale = *size;
@@ -91,10 +91,10 @@ fn response(
         .cloned()
         .chain(candidate_unknowns.iter().map(|t| t.unknown.clone()))
         .collect();
-    let ranges = fit.mapped(&model, &fit.ranges);
+    let ranges = fit.map_state(&model, &fit.ranges);
     let whole = Shooting::new(problem, &model, &problem.train, &extended, &ranges);
     let shooting = Shooting {
-        part: *part,
+        fraction: *part,
         ..whole
     };
     let nuisances = fit.unknowns.len();
@@ -134,7 +134,7 @@ fn response(
         };
         let pairs = windows.iter().copied().zip(base.iter());
         let changes = changes(&shooting, fit, estimate, &theta(size), pairs)
-            .ok_or(DiscoverError::CandidateUnfollowed)?;
+            .ok_or(DiscoverError::CandidateSimulationFailed)?;
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
         }
@@ -146,7 +146,7 @@ fn response(
     });
     Ok(CandidateResponse {
         candidate_unknowns,
-        blocks: blocks.collect(),
+        window_columns: blocks.collect(),
     })
 }
 
@@ -158,15 +158,15 @@ fn changes<'b>(
     theta: &[f64],
     windows: impl Iterator<Item = (WindowId, &'b Option<StateProjection>)>,
 ) -> Option<Vec<DVector<f64>>> {
-    let mut sensitivities = SensitivityEvaluator::frozen(shooting, theta, 1.0)?;
+    let mut sensitivities = SensitivityEvaluator::with_fixed_unknowns(shooting, theta, 1.0)?;
     let mut changes = Vec::new();
     for (window, base) in windows {
         let Some(base) = base else {
             changes.push(DVector::zeros(0));
             continue;
         };
-        let start = fit.mapped(shooting.model, &estimate.initial_states[window]);
-        let residual = sensitivities.residual(window, &start)?;
+        let start = fit.map_state(shooting.model, &estimate.initial_states[window]);
+        let residual = sensitivities.compute_residual(window, &start)?;
         changes.push(DVector::from_vec(residual.values) - &base.residual);
     }
     Some(changes)
@@ -179,26 +179,29 @@ fn trial_size(
     level: f64,
     moved: impl Fn(f64) -> Option<f64>,
 ) -> Option<f64> {
-    let wanted = thresholds::RESPONSE_MOVES * level;
-    let near = thresholds::RESPONSE_NEAR.times(wanted);
+    let wanted = thresholds::RESPONSE_OUTPUT_CHANGE * level;
+    let near = thresholds::RESPONSE_CHANGE_FACTORS.scale(wanted);
     let mut size = start;
     let mut corrections = 0;
-    for _ in 0..thresholds::SIZE_ATTEMPTS {
+    for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
         let factor = match moved(size) {
             Some(change) if near.contains(change) => {
                 let factor = wanted / change;
-                let is_same = thresholds::SAME_SIZE.contains(factor);
-                if is_known || is_same || corrections == thresholds::SIZE_CORRECTIONS {
+                let is_same = thresholds::SAME_SIZE_FACTORS.contains(factor);
+                if is_known || is_same || corrections == thresholds::MAX_SIZE_CORRECTIONS {
                     return Some(size);
                 }
                 corrections += 1;
                 factor
             }
             Some(change) if change.is_finite() && change > 0.0 => wanted / change,
-            Some(_) => thresholds::SIZE_FACTOR,
+            Some(_) => thresholds::MAX_SIZE_FACTOR,
             None => 1e-3,
         };
-        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
+        size *= factor.clamp(
+            1.0 / thresholds::MAX_SIZE_FACTOR,
+            thresholds::MAX_SIZE_FACTOR,
+        );
     }
     None
 }

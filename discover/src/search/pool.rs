@@ -2,31 +2,31 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::ids::ResponseId;
-use crate::search::context::Context;
+use crate::search::context::RoundContext;
 use crate::search::screening::Screening;
 use crate::thresholds;
 
 /// Pool of screened candidates.
 #[derive(Clone, Copy)]
-pub struct Pool<'r> {
+pub struct CandidatePool<'r> {
     /// Context of the round.
-    pub context: Context<'r>,
+    pub context: RoundContext<'r>,
     /// The candidates.
     pub candidates: &'r [Candidate],
     /// Screening results.
     pub screening: &'r Screening,
     /// Whether the screening used whole windows.
-    pub is_whole: bool,
+    pub uses_whole_windows: bool,
     /// Maximum number of preliminary fits.
-    pub most: usize,
+    pub max_preliminary_fits: usize,
     /// Fractions of the predicted sizes from which fits begin; the best is used.
-    pub parts: &'r [f64],
+    pub size_fractions: &'r [f64],
 }
 
-impl<'r> Pool<'r> {
+impl<'r> CandidatePool<'r> {
     /// Creates a pool with the default start values.
     pub fn new(
-        context: Context<'r>,
+        context: RoundContext<'r>,
         candidates: &'r [Candidate],
         screening: &'r Screening,
         is_whole: bool,
@@ -35,33 +35,34 @@ impl<'r> Pool<'r> {
             context,
             candidates,
             screening,
-            is_whole,
-            most: thresholds::MOST_PRELIMINARY_FITS,
-            parts: &thresholds::INITIAL_PARTS,
+            uses_whole_windows: is_whole,
+            max_preliminary_fits: thresholds::MAX_PRELIMINARY_FITS,
+            size_fractions: &thresholds::INITIAL_SIZE_FRACTIONS,
         }
     }
 
     /// Returns the candidates with a sufficient prediction, the best first.
-    pub fn ranking(&self) -> Vec<ResponseId> {
+    pub fn rank_responses(&self) -> Vec<ResponseId> {
         let screening = self.screening;
-        let alone = screening.predicted(&[]).cost;
-        let promise =
-            match alone > thresholds::MUCH_IS_LEFT * thresholds::MUCH_IS_LEFT * screening.numbers {
-                true => thresholds::PROMISE_FAR,
-                false => thresholds::PROMISE,
-            };
+        let alone = screening.predict(&[]).cost;
+        let promise = match alone
+            > thresholds::FAR_FROM_NOISE * thresholds::FAR_FROM_NOISE * screening.number_count
+        {
+            true => thresholds::MIN_PROMISED_REDUCTION_FAR,
+            false => thresholds::MIN_PROMISED_REDUCTION,
+        };
         let enough = |r: &ResponseId| {
             let response = &screening.responses[*r];
             // What a nuisance gains without its prior, the others did not do within theirs.
             let is_own = response.dropped_prior.is_some()
-                || response.unexplained_fraction > thresholds::UNEXPLAINED_FRACTION
-                || response.decrease > thresholds::ENOUGH * alone;
-            is_own && response.decrease > promise * alone
+                || response.unexplained_fraction > thresholds::MIN_UNEXPLAINED_FRACTION
+                || response.cost_decrease > thresholds::MIN_EXPLAINED_FRACTION * alone;
+            is_own && response.cost_decrease > promise * alone
         };
         let mut ranking: Vec<ResponseId> = ResponseId::first(screening.responses.len())
             .filter(enough)
             .collect();
-        let decrease = |r: &ResponseId| screening.responses[*r].decrease;
+        let decrease = |r: &ResponseId| screening.responses[*r].cost_decrease;
         ranking.sort_by(|a, b| decrease(b).total_cmp(&decrease(a)));
         ranking
     }
@@ -79,7 +80,7 @@ impl<'r> Pool<'r> {
 
     /// Returns true if two candidates give a parameter the same name: one effect at two sites. The
     /// next round may add the other.
-    pub fn share_a_name(&self, a: ResponseId, b: ResponseId) -> bool {
+    pub fn has_common_parameter_name(&self, a: ResponseId, b: ResponseId) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);
         a.parameters.iter().any(|parameter| has(&parameter.name))

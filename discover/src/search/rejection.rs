@@ -16,7 +16,7 @@ pub enum Rejection {
         /// Name of the unknown.
         name: String,
         /// Distance from the prior mean, in standard deviations of the prior.
-        off: f64,
+        deviation: f64,
         /// Standard deviation of that distance.
         sd: f64,
     },
@@ -27,18 +27,18 @@ pub enum Rejection {
     /// The information gain in the training records is too small.
     Information {
         /// Information gain.
-        found: f64,
+        gain: f64,
         /// Required gain.
-        asked: f64,
+        required: f64,
     },
     /// The size in standard deviations is too small.
     Significance(f64),
     /// The influence relative to the noise is too small.
-    Size(f64),
+    Influence(f64),
     /// A large residual remains next to another effect.
-    LeavesMuch,
+    LargeRemainder,
     /// The closed fractions of the gap are too small.
-    Closes {
+    Closure {
         /// Fraction closed on the training records.
         train: f64,
         /// Fraction closed on the test records.
@@ -54,46 +54,53 @@ impl fmt::Display for Rejection {
                 f,
                 "{name} has the wrong sign: at its bound the effect vanishes"
             ),
-            Self::WithinPrior { name, off, sd } => write!(
+            Self::WithinPrior {
+                name,
+                deviation: off,
+                sd,
+            } => write!(
                 f,
                 "{name} is {off:.1} ± {sd:.1} standard deviations of its prior from the mean, {} are required",
-                thresholds::SHIFTED
+                thresholds::MAX_PRIOR_DEVIATION
             ),
             Self::HeldOut(part) => write!(
                 f,
                 "the test records do not improve: the gap decreases by {:.1} %, {:.0} % are required",
                 100.0 * part,
-                100.0 * thresholds::HELD_OUT
+                100.0 * thresholds::MIN_HELD_OUT_REDUCTION
             ),
             Self::StandardErrors(errors) => write!(
                 f,
                 "the improvement of the test records may be chance: {errors:.1} standard errors, {} are required",
-                thresholds::STANDARD_ERRORS
+                thresholds::MIN_REDUCTION_STANDARD_ERRORS
             ),
-            Self::Information { found, asked } => write!(
+            Self::Information {
+                gain: found,
+                required: asked,
+            } => write!(
                 f,
                 "the information gain in the training records is too small: {found:.1}, {asked} are required"
             ),
             Self::Significance(t) => write!(
                 f,
                 "its size is {t:.1} standard deviations, {} are required",
-                thresholds::SIGNIFICANCE
+                thresholds::MIN_SIGNIFICANCE
             ),
-            Self::Size(size) => write!(
+            Self::Influence(size) => write!(
                 f,
                 "its influence is {size:.2} standard deviations of the noise, {} are required",
-                thresholds::SIZE
+                thresholds::MIN_EFFECT_OVER_NOISE
             ),
-            Self::LeavesMuch => f.write_str(
+            Self::LargeRemainder => f.write_str(
                 "together with another effect a large residual remains, which may \
              be chance",
             ),
-            Self::Closes { train, test } => write!(
+            Self::Closure { train, test } => write!(
                 f,
                 "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are required",
                 100.0 * train,
                 100.0 * test,
-                100.0 * thresholds::UNNAMED_CLOSES
+                100.0 * thresholds::MIN_EXPRESSION_CLOSURE
             ),
         }
     }

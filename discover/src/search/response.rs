@@ -11,5 +11,5 @@ pub struct CandidateResponse {
     pub candidate_unknowns: Vec<CandidateUnknown>,
     /// For each window one column per scaling parameter, in standard deviations of the noise per SI
     /// unit.
-    pub blocks: Vec<DMatrix<f64>>,
+    pub window_columns: Vec<DMatrix<f64>>,
 }

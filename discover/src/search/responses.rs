@@ -3,22 +3,22 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::LinearisedFit;
 use crate::ids::CandidateId;
 use crate::model::problem::EstimationProblem;
-use crate::search::perturbed_response::perturbed_responses;
+use crate::search::perturbed_response::simulate_responses;
 use crate::search::response::CandidateResponse;
-use crate::search::variational_response::variational_responses;
+use crate::search::variational_response::integrate_responses;
 
 /// Computes the responses of all candidates.
-pub fn responses(
+pub fn compute_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
 ) -> Vec<Result<CandidateResponse, DiscoverError>> {
-    let mut found = variational_responses(at, problem, fit, candidates);
+    let mut found = integrate_responses(at, problem, fit, candidates);
     let not_driven: Vec<CandidateId> = CandidateId::first(candidates.len())
         .filter(|id| found[*id].is_none())
         .collect();
@@ -26,7 +26,7 @@ pub fn responses(
         .iter()
         .map(|id| candidates[*id].clone())
         .collect();
-    let perturbed_responses = perturbed_responses(at, problem, fit, &others);
+    let perturbed_responses = simulate_responses(at, problem, fit, &others);
     for (id, response) in not_driven.into_iter().zip(perturbed_responses) {
         found[id] = Some(response);
     }

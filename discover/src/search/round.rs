@@ -2,37 +2,37 @@
 //! a small residual, pairs if the residual is large, and shifted parameters without a declared
 //! uncertainty.
 
-use crate::catalogue::candidate::{Candidate, candidates};
+use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::effect::Effect;
-use crate::catalogue::sites::sites;
+use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::CandidateId;
-use crate::residual_force::ripple_orders::ripple_orders;
-use crate::search::context::Context;
-use crate::search::dropped_priors::dropped_prior;
-use crate::search::excitation_window::{ExcitationWindow, without_play};
-use crate::search::fitted::FittedHypothesis;
-use crate::search::motion_of_fit::motion_of;
-use crate::search::pairs::pairs;
-use crate::search::parameter_offsets::offsets;
-use crate::search::pool::Pool;
-use crate::search::screening::{Screening, screening};
-use crate::search::singles::singles;
-use crate::search::tested::TestedPool;
+use crate::residual_force::ripple_orders::find_ripple_orders;
+use crate::search::context::RoundContext;
+use crate::search::dropped_priors::list_prior_candidates;
+use crate::search::excitation_window::{ExcitationWindow, fit_without_play};
+use crate::search::hypothesis_fits::FittedHypothesis;
+use crate::search::motion_of_fit::compute_usual_motion;
+use crate::search::pairs::fit_pairs;
+use crate::search::parameter_offsets::list_offsets;
+use crate::search::pool::CandidatePool;
+use crate::search::screening::{Screening, screen_candidates};
+use crate::search::single_candidates::fit_singles;
+use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// Context of a round.
-pub struct Round<'l> {
+pub struct SearchRound<'l> {
     /// Context of the round.
-    pub context: Context<'l>,
+    pub context: RoundContext<'l>,
     /// Whether no effect was accepted yet.
-    pub is_first: bool,
+    pub is_first_round: bool,
 }
 
-impl Round<'_> {
+impl SearchRound<'_> {
     /// Tests candidates and returns all tested pools.
-    pub fn round(&self) -> Vec<TestedPool> {
+    pub fn test_candidates(&self) -> Vec<TestedPool> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
         let mut has_offsets = false;
@@ -44,7 +44,7 @@ impl Round<'_> {
                     continue;
                 }
                 // Teeth are fitted slowly: a parameter that explains all saves that.
-                if self.is_first && !self.context.is_near() {
+                if self.is_first_round && !self.context.is_near_floor() {
                     tested.push(self.offsets());
                     has_offsets = true;
                     if is_any(&tested, &|fitted| self.is_enough(fitted)) {
@@ -52,14 +52,14 @@ impl Round<'_> {
                     }
                 }
             }
-            let Some(found) = self.tested_in(*window) else {
+            let Some(found) = self.test_in_window(*window) else {
                 continue;
             };
             let number = seen.len();
             tested.insert(number, found);
             seen.push(*window);
             // Near the floor another excitation window is quick, and what is nearly as good may be the answer.
-            let is_done = match self.context.is_near() {
+            let is_done = match self.context.is_near_floor() {
                 true => is_any(&tested, &|fitted| self.is_enough(fitted)),
                 false => is_any(&tested, &|fitted| self.is_close(fitted)),
             };
@@ -69,8 +69,9 @@ impl Round<'_> {
         }
         // One unknown before two: a number that is off is a rival of the first effect while much is
         // left, and of whatever takes more unknowns, a pair or an effect with a shape.
-        let is_simple = |best: &FittedHypothesis| best.own.len() == 1 && self.is_near_floor(best);
-        if self.is_first && !has_offsets && !best_accepted(&tested).is_some_and(is_simple) {
+        let is_simple =
+            |best: &FittedHypothesis| best.effect_unknowns.len() == 1 && self.is_near_floor(best);
+        if self.is_first_round && !has_offsets && !best_accepted(&tested).is_some_and(is_simple) {
             tested.push(self.offsets());
             has_offsets = true;
         }
@@ -84,7 +85,7 @@ impl Round<'_> {
             self.add_pairs(&seen, &mut tested);
         }
         let is_accepted = |fitted: &FittedHypothesis| fitted.verdict.is_ok();
-        if !has_offsets && !self.context.is_near() && !is_any(&tested, &is_accepted) {
+        if !has_offsets && !self.context.is_near_floor() && !is_any(&tested, &is_accepted) {
             tested.push(self.offsets());
             has_offsets = true;
         }
@@ -97,8 +98,8 @@ impl Round<'_> {
     fn windows(&self) -> &'static [ExcitationWindow] {
         match (
             self.context.problem.estimates_initial_states(),
-            self.context.is_near(),
-            self.is_first,
+            self.context.is_near_floor(),
+            self.is_first_round,
         ) {
             // What is small beside what was found already is seen over whole windows or not at
             // all.
@@ -118,13 +119,13 @@ impl Round<'_> {
 
     /// Whether a fitted hypothesis is accepted and leaves little.
     fn is_close(&self, fitted: &FittedHypothesis) -> bool {
-        fitted.verdict.is_ok() && self.context.explains_most(&fitted.fit)
+        fitted.verdict.is_ok() && self.context.explains_most_of_gap(&fitted.fit)
     }
 
     /// Whether a fitted hypothesis is accepted and leaves little more than a right model would.
     fn is_near_floor(&self, fitted: &FittedHypothesis) -> bool {
-        let little = thresholds::CLOSE * self.context.floor;
-        fitted.verdict.is_ok() && fitted.fit.leaves_less(little)
+        let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * self.context.floor;
+        fitted.verdict.is_ok() && fitted.fit.is_below(little)
     }
 
     /// Whether a fitted hypothesis is accepted and leaves no more than a right model would.
@@ -135,11 +136,11 @@ impl Round<'_> {
     /// Screens candidates in an excitation window and fits them one by one. Periodic candidates are
     /// screened only if the others have a poor prediction or result. `None` if the model has no
     /// play to remove or a stop was requested.
-    pub(crate) fn tested_in(&self, window: ExcitationWindow) -> Option<TestedPool> {
-        self.context.problem.stop.check().ok()?;
+    pub(crate) fn test_in_window(&self, window: ExcitationWindow) -> Option<TestedPool> {
+        self.context.problem.stop.check_not_stopped().ok()?;
         let closed = match window {
             ExcitationWindow::BacklashRemoved => {
-                Some(without_play(self.context.problem, self.context.fit)?)
+                Some(fit_without_play(self.context.problem, self.context.fit)?)
             }
             ExcitationWindow::Whole | ExcitationWindow::Beginnings => None,
         };
@@ -149,10 +150,15 @@ impl Round<'_> {
         let fit = closed.as_ref().unwrap_or(self.context.fit);
         let (mut candidates, repeating) = self.candidates(fit, window);
         (self.context.progress)(&format!("screening {} candidates", candidates.len()));
-        let screened = screening(self.context.problem, fit, &candidates, window.part());
+        let screened = screen_candidates(
+            self.context.problem,
+            fit,
+            &candidates,
+            window.window_fraction(),
+        );
         let (mut from, mut fitted_hypotheses) = (CandidateId::new(0), Vec::new());
         if repeating.is_empty() || self.promises_enough(&screened) {
-            fitted_hypotheses = singles(&self.pool_in(window, &candidates, &screened), from);
+            fitted_hypotheses = fit_singles(&self.pool_in(window, &candidates, &screened), from);
             if repeating.is_empty() || fitted_hypotheses.iter().any(|fitted| self.is_close(fitted))
             {
                 return Some(TestedPool {
@@ -169,8 +175,16 @@ impl Round<'_> {
         ));
         // Behind the others, so that what was fitted keeps its place.
         candidates.extend(repeating);
-        let screened = screening(self.context.problem, fit, &candidates, window.part());
-        fitted_hypotheses.extend(singles(&self.pool_in(window, &candidates, &screened), from));
+        let screened = screen_candidates(
+            self.context.problem,
+            fit,
+            &candidates,
+            window.window_fraction(),
+        );
+        fitted_hypotheses.extend(fit_singles(
+            &self.pool_in(window, &candidates, &screened),
+            from,
+        ));
         Some(TestedPool {
             candidates,
             screening: screened,
@@ -184,8 +198,8 @@ impl Round<'_> {
         window: ExcitationWindow,
         candidates: &'r [Candidate],
         screening: &'r Screening,
-    ) -> Pool<'r> {
-        let pool = Pool::new(
+    ) -> CandidatePool<'r> {
+        let pool = CandidatePool::new(
             self.context,
             candidates,
             screening,
@@ -193,9 +207,9 @@ impl Round<'_> {
         );
         match window {
             // Without play a straight line is right.
-            ExcitationWindow::BacklashRemoved => Pool {
-                most: 2 * thresholds::FITS_AT_ONCE,
-                parts: &thresholds::INITIAL_PARTS[..2],
+            ExcitationWindow::BacklashRemoved => CandidatePool {
+                max_preliminary_fits: 2 * thresholds::FITS_IN_PARALLEL,
+                size_fractions: &thresholds::INITIAL_SIZE_FRACTIONS[..2],
                 ..pool
             },
             ExcitationWindow::Whole | ExcitationWindow::Beginnings => pool,
@@ -206,7 +220,7 @@ impl Round<'_> {
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
             let pool = self.pool_in(*window, &tested.candidates, &tested.screening);
-            let pairs = pairs(&pool, &tested.fitted_hypotheses);
+            let pairs = fit_pairs(&pool, &tested.fitted_hypotheses);
             let fitted_hypotheses = &mut tested.fitted_hypotheses;
             fitted_hypotheses.extend(pairs);
             if fitted_hypotheses
@@ -220,19 +234,19 @@ impl Round<'_> {
 
     /// Parameters that nobody called uncertain.
     fn offsets(&self) -> TestedPool {
-        let offsets = offsets(self.context);
+        let offsets = list_offsets(self.context);
         (self.context.progress)(&format!(
             "screening {} parameters of the model and of inputs",
             offsets.len()
         ));
         let window = self.windows()[0];
-        let screening = screening(
+        let screening = screen_candidates(
             self.context.problem,
             self.context.fit,
             &offsets,
-            window.part(),
+            window.window_fraction(),
         );
-        let fitted_hypotheses = singles(
+        let fitted_hypotheses = fit_singles(
             &self.pool_in(window, &offsets, &screening),
             CandidateId::new(0),
         );
@@ -252,21 +266,23 @@ impl Round<'_> {
             window != ExcitationWindow::BacklashRemoved,
         );
         let model = fit.model.specification();
-        let sites = sites(model);
+        let sites = find_sites(model);
         let motion = UsualMotion {
-            orders: ripple_orders(problem, fit),
-            ..motion_of(problem, fit, &sites)
+            orders: find_ripple_orders(problem, fit),
+            ..compute_usual_motion(problem, fit, &sites)
         };
         // Where the motion is given nothing is simulated beside it.
         let is_given = problem.dataset.gives_motion();
         let may_be =
             |effect: &&Effect| !(effect.scales_stiffness() || is_given && effect.adds_states());
         let effects = self.context.effects.iter().filter(may_be);
-        let mut all = candidates(model, effects, &sites, &motion);
-        all.extend(dropped_prior(problem, fit));
-        all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
+        let mut all = list_candidates(model, effects, &sites, &motion);
+        all.extend(list_prior_candidates(problem, fit));
+        all.retain(|c| {
+            (c.angle_order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh)
+        });
         all.into_iter()
-            .partition(|c| c.order.is_none() || !has_play)
+            .partition(|c| c.angle_order.is_none() || !has_play)
     }
 
     /// Whether one of the screened promises most of the gap.
@@ -274,10 +290,10 @@ impl Round<'_> {
         let best = screening
             .responses
             .iter()
-            .map(|r| r.decrease)
+            .map(|r| r.cost_decrease)
             .fold(0.0, f64::max);
-        let floor = self.context.floor * self.context.floor * screening.numbers;
-        best > thresholds::ENOUGH * (screening.predicted(&[]).cost - floor)
+        let floor = self.context.floor * self.context.floor * screening.number_count;
+        best > thresholds::MIN_EXPLAINED_FRACTION * (screening.predict(&[]).cost - floor)
     }
 }
 
@@ -290,9 +306,9 @@ fn keep_clear(tested: &mut [TestedPool]) {
     let others = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
     let others: Vec<&FittedHypothesis> = others.filter(|fitted| fitted.verdict.is_ok()).collect();
     offsets.fitted_hypotheses.retain(|fitted| {
-        let is_clear = |other: &&FittedHypothesis| match other.own.len() {
-            1 => fitted.fit.leaves_clearly_less(&other.fit),
-            _ => !other.fit.leaves_clearly_less(&fitted.fit),
+        let is_clear = |other: &&FittedHypothesis| match other.effect_unknowns.len() {
+            1 => fitted.fit.is_clearly_below(&other.fit),
+            _ => !other.fit.is_clearly_below(&fitted.fit),
         };
         fitted.verdict.is_err() || others.iter().all(is_clear)
     });
@@ -301,9 +317,9 @@ fn keep_clear(tested: &mut [TestedPool]) {
         accepted.filter(|fitted| fitted.verdict.is_ok()).collect();
     for tested in tested {
         tested.fitted_hypotheses.retain(|fitted| {
-            fitted.own.len() == 1
+            fitted.effect_unknowns.len() == 1
                 || fitted.verdict.is_err()
-                || (accepted.iter()).all(|offset| fitted.fit.leaves_clearly_less(&offset.fit))
+                || (accepted.iter()).all(|offset| fitted.fit.is_clearly_below(&offset.fit))
         });
     }
 }

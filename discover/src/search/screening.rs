@@ -12,13 +12,13 @@ use nalgebra::{DMatrix, DVector};
 use crate::catalogue::candidate::Candidate;
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::error::DiscoverError;
-use crate::fit::bounded_least_squares::least_squares;
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::{Base, LinearisedFit};
+use crate::fit::bounded_least_squares::solve_least_squares;
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::{LinearisedFit, ProjectedWindows};
 use crate::fit::variable_projection::{PriorTerm, add_prior};
 use crate::model::problem::EstimationProblem;
 use crate::search::response::CandidateResponse;
-use crate::search::responses::responses;
+use crate::search::responses::compute_responses;
 use crate::thresholds;
 
 /// A screened candidate.
@@ -35,14 +35,14 @@ pub struct ScreenedResponse {
     /// Fraction of the response that initial states and nuisances cannot reproduce.
     pub unexplained_fraction: f64,
     /// Decrease of the sum of squares by this candidate, in squared standard deviations.
-    pub decrease: f64,
+    pub cost_decrease: f64,
     /// Sizes at that decrease.
-    pub values: Vec<f64>,
+    pub sizes: Vec<f64>,
 }
 
 /// Linear prediction for a set of responses.
 #[derive(Clone, Debug)]
-pub struct Prediction {
+pub struct LinearPrediction {
     /// Remaining sum of squares, in squared standard deviations, with the priors.
     pub cost: f64,
     /// Difference of each parameter from its value without the effect, in order, SI.
@@ -57,7 +57,7 @@ struct PriorsDropped<'s> {
 
 /// A candidate without a visible response.
 #[derive(Clone, Debug)]
-pub struct NotExcited {
+pub struct UnexcitedCandidate {
     /// Index of the candidate.
     pub candidate: CandidateId,
     /// Reason.
@@ -78,24 +78,24 @@ pub struct Screening {
     /// Candidates with a response, in their order.
     pub responses: Vec<ScreenedResponse>,
     /// Candidates without a visible response.
-    pub not_excited: Vec<NotExcited>,
+    pub unexcited: Vec<UnexcitedCandidate>,
     /// Number of measured numbers.
-    pub numbers: f64,
+    pub number_count: f64,
 }
 
 /// Screens candidates at a fit over a fraction of each window.
-pub fn screening(
+pub fn screen_candidates(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
     part: f64,
 ) -> Screening {
-    let at = LinearisedFit::of(problem, fit, part);
-    let (base, estimate) = (&at.base, &at.estimate);
+    let at = LinearisedFit::linearise_fit(problem, fit, part);
+    let (base, estimate) = (&at.projections, &at.estimate);
     let own: Vec<Candidate> = (candidates.iter().filter(|c| c.dropped_prior.is_none()))
         .cloned()
         .collect();
-    let mut found = responses(&at, problem, fit, &own).into_iter();
+    let mut found = compute_responses(&at, problem, fit, &own).into_iter();
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
     let mut not_excited = Vec::new();
@@ -108,11 +108,11 @@ pub fn screening(
             columns: columns..columns,
             dropped_prior: None,
             unexplained_fraction: 0.0,
-            decrease: 0.0,
-            values: Vec::new(),
+            cost_decrease: 0.0,
+            sizes: Vec::new(),
         };
         if let Some(what) = &of.dropped_prior {
-            let same = fit.unknowns().find(|(_, unknown)| unknown.what == *what);
+            let same = fit.unknowns().find(|(_, unknown)| unknown.kind == *what);
             response.dropped_prior = same.map(|(id, _)| id);
             responses.push(response);
             continue;
@@ -120,7 +120,7 @@ pub fn screening(
         match found.next() {
             Some(Ok(CandidateResponse {
                 candidate_unknowns,
-                blocks: block,
+                window_columns: block,
             })) => {
                 let scaling = candidate_unknowns
                     .iter()
@@ -132,7 +132,7 @@ pub fn screening(
                 responses.push(response);
                 blocks.push(block);
             }
-            Some(Err(reason)) => not_excited.push(NotExcited { candidate, reason }),
+            Some(Err(reason)) => not_excited.push(UnexcitedCandidate { candidate, reason }),
             None => {}
         }
     }
@@ -140,8 +140,8 @@ pub fn screening(
     let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     for (id, unknown) in fit.unknowns() {
         let value = estimate.theta[id];
-        bounds.push(unknown.bounds.relative_to(value));
-        limits.push(unknown.limits.relative_to(value));
+        bounds.push(unknown.bounds.shift_origin_to(value));
+        limits.push(unknown.bounds_without_prior.shift_origin_to(value));
         let prior = unknown.prior.map(|NormalPrior { mean, sd }| PriorTerm {
             weight: fit.prior_weight / (sd * sd),
             deviation: value - mean,
@@ -157,7 +157,7 @@ pub fn screening(
             .filter(|candidate_unknown| !candidate_unknown.is_shape);
         bounds.extend(scaling.map(|candidate_unknown| {
             let bounds = candidate_unknown.unknown.bounds;
-            bounds.relative_to(candidate_unknown.base)
+            bounds.shift_origin_to(candidate_unknown.base)
         }));
     }
     let mut screening = Screening {
@@ -167,15 +167,20 @@ pub fn screening(
         bounds,
         limits,
         responses,
-        not_excited,
-        numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
+        unexcited: not_excited,
+        number_count: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
     };
     screening.predict_singles();
     screening
 }
 
 /// Products of all columns with the initial states eliminated.
-fn products(fit: &Fit, base: &Base, blocks: &[Vec<DMatrix<f64>>], columns: usize) -> DMatrix<f64> {
+fn products(
+    fit: &Fit,
+    base: &ProjectedWindows,
+    blocks: &[Vec<DMatrix<f64>>],
+    columns: usize,
+) -> DMatrix<f64> {
     let nuisances = fit.unknowns.len();
     let mut products = DMatrix::zeros(columns + 1, columns + 1);
     for (window, base) in base.iter().enumerate() {
@@ -192,7 +197,7 @@ fn products(fit: &Fit, base: &Base, blocks: &[Vec<DMatrix<f64>>], columns: usize
             column += block.ncols();
         }
         matrix.column_mut(columns).copy_from(&base.residual);
-        products += base.products(&matrix);
+        products += base.compute_products(&matrix);
     }
     products
 }
@@ -200,16 +205,16 @@ fn products(fit: &Fit, base: &Base, blocks: &[Vec<DMatrix<f64>>], columns: usize
 impl Screening {
     /// How well each candidate does alone.
     fn predict_singles(&mut self) {
-        let alone = self.predicted(&[]).cost;
+        let alone = self.predict(&[]).cost;
         for id in ResponseId::first(self.responses.len()) {
-            let Prediction {
+            let LinearPrediction {
                 cost,
                 sizes: values,
-            } = self.predicted(&[id]);
+            } = self.predict(&[id]);
             let unexplained_fraction = self.unexplained_fraction(id);
             let response = &mut self.responses[id];
-            response.decrease = alone - cost;
-            response.values = values;
+            response.cost_decrease = alone - cost;
+            response.sizes = values;
             response.unexplained_fraction = unexplained_fraction;
         }
     }
@@ -235,7 +240,7 @@ impl Screening {
     }
 
     /// Returns the linear prediction for a set of responses.
-    pub fn predicted(&self, responses: &[ResponseId]) -> Prediction {
+    pub fn predict(&self, responses: &[ResponseId]) -> LinearPrediction {
         let mut columns: Vec<usize> = (0..self.nuisances).collect();
         for response in responses {
             columns.extend(self.responses[*response].columns.clone());
@@ -251,10 +256,10 @@ impl Screening {
                     true => self.limits[*column],
                     false => self.bounds[*column],
                 };
-                interval.with_zero()
+                interval.extend_to_zero()
             })
             .collect();
-        let x = least_squares(&a, &b, &bounds);
+        let x = solve_least_squares(&a, &b, &bounds);
         let cost = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
         let mut added = x.iter().skip(self.nuisances);
         let sizes = responses.iter().flat_map(|response| {
@@ -269,12 +274,12 @@ impl Screening {
             }
         });
         let sizes = sizes.collect();
-        Prediction { cost, sizes }
+        LinearPrediction { cost, sizes }
     }
 
     /// Returns the screening with a parameter of the model set to a value and its term deleted;
     /// `None` if the value is not admissible.
-    pub fn without(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
+    pub fn with_nuisance_fixed_at(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
         let Interval { low, high } = self.bounds[nuisance];
         if value == 0.0 || !(low..=high).contains(&-value) {
             return None;
@@ -296,13 +301,13 @@ impl Screening {
             nuisances: self.nuisances,
             priors: self.priors.clone(),
             responses: self.responses.clone(),
-            not_excited: Vec::new(),
-            numbers: self.numbers,
+            unexcited: Vec::new(),
+            number_count: self.number_count,
         })
     }
 
     /// Returns the screening with a fixed nuisance.
-    pub fn held(mut self, nuisance: UnknownId) -> Self {
+    pub fn with_nuisance_fixed(mut self, nuisance: UnknownId) -> Self {
         self.bounds[nuisance] = Interval::ZERO;
         self
     }
@@ -322,7 +327,7 @@ impl Screening {
 
     /// Returns true if the responses cancel at these sizes after elimination of the nuisances: each
     /// is much larger than their sum.
-    pub fn cancels(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
+    pub fn is_cancelling(&self, responses: &[ResponseId], sizes: &[f64]) -> bool {
         let dropped = self.without_priors(responses);
         let count = dropped.products.ncols();
         let mut sizes = sizes.iter();
@@ -342,7 +347,7 @@ impl Screening {
         let sum = directions
             .iter()
             .fold(DVector::zeros(count), |sum, direction| sum + direction);
-        least > thresholds::CANCELS.powi(2) * square(&sum)
+        least > thresholds::MIN_CANCELLATION_RATIO.powi(2) * square(&sum)
     }
 
     /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
@@ -358,12 +363,12 @@ impl Screening {
     fn direction(&self, products: &DMatrix<f64>, id: ResponseId) -> DVector<f64> {
         let response = &self.responses[id];
         let mut direction = DVector::zeros(products.ncols());
-        let all_zero = response.values.iter().all(|v| *v == 0.0);
+        let all_zero = response.sizes.iter().all(|v| *v == 0.0);
         for (number, column) in self.columns(id).enumerate() {
-            direction[column] = if all_zero || response.values.is_empty() {
+            direction[column] = if all_zero || response.sizes.is_empty() {
                 1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
             } else {
-                response.values[number]
+                response.sizes[number]
             };
         }
         direction
@@ -386,7 +391,11 @@ impl Screening {
         let whole = product(products, a, b);
         let cross = |v: &DVector<f64>| (products * v).select_rows(&rows);
         let block = DMatrix::from_fn(n, n, |r, c| {
-            let ridge = if r == c { 1.0 + thresholds::RIDGE } else { 1.0 };
+            let ridge = if r == c {
+                1.0 + thresholds::MIN_COLUMN_REMAINDER
+            } else {
+                1.0
+            };
             ridge * products[(rows[r], rows[c])]
         });
         match block.cholesky() {
@@ -398,7 +407,7 @@ impl Screening {
     /// Returns the similarity of two responses, 0 to 1, after elimination of the nuisances: how
     /// well one reproduces the other. A candidate with several parameters can reproduce one with
     /// few, even if its own best size differs.
-    pub fn similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
+    pub fn compute_similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
         let dropped = self.without_priors(&[a, b]);
         let by_b = self.done_by(&dropped, a, b);
         by_b.max(self.done_by(&dropped, b, a))
@@ -419,7 +428,11 @@ impl Screening {
             .collect();
         let count = columns.len();
         let gram = DMatrix::from_fn(count, count, |r, c| {
-            let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
+            let ridge = if r == c {
+                thresholds::MIN_COLUMN_REMAINDER
+            } else {
+                0.0
+            };
             self.without_nuisances(dropped, &columns[r], &columns[c]) + ridge
         });
         let right = DVector::from_fn(count, |r, _| {
@@ -454,7 +467,11 @@ fn least_squares_of(products: &DMatrix<f64>, columns: &[usize]) -> LeastSquares 
         .map(|p| products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
         .collect();
     let gram = DMatrix::from_fn(count, count, |r, c| {
-        let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
+        let ridge = if r == c {
+            thresholds::MIN_COLUMN_REMAINDER
+        } else {
+            0.0
+        };
         products[(columns[r], columns[c])] / (scale[r] * scale[c]) + ridge
     });
     let right = DVector::from_fn(count, |r, _| -products[(columns[r], last)] / scale[r]);
@@ -489,8 +506,8 @@ mod tests {
                     columns: columns.clone(),
                     dropped_prior: None,
                     unexplained_fraction: 1.0,
-                    decrease: 0.0,
-                    values: values.to_vec(),
+                    cost_decrease: 0.0,
+                    sizes: values.to_vec(),
                 }
             };
         Screening {
@@ -500,8 +517,8 @@ mod tests {
             bounds: Vec::new(),
             limits: Vec::new(),
             responses: of.iter().enumerate().map(response).collect(),
-            not_excited: Vec::new(),
-            numbers: columns.nrows() as f64,
+            unexcited: Vec::new(),
+            number_count: columns.nrows() as f64,
         }
     }
 
@@ -524,11 +541,11 @@ mod tests {
         let of: [(std::ops::Range<usize>, &[f64]); 3] =
             [(0..2, &[1.0, 0.0]), (2..3, &[0.2]), (3..4, &[1.0])];
         let screening = screening(&columns, &of);
-        assert!((screening.similarity(response(0), response(1)) - 1.0).abs() < 1e-6);
-        assert!((screening.similarity(response(1), response(0)) - 1.0).abs() < 1e-6);
+        assert!((screening.compute_similarity(response(0), response(1)) - 1.0).abs() < 1e-6);
+        assert!((screening.compute_similarity(response(1), response(0)) - 1.0).abs() < 1e-6);
         assert!(
-            screening.similarity(response(0), response(2)) < 1e-6
-                && screening.similarity(response(1), response(2)) < 1e-6
+            screening.compute_similarity(response(0), response(2)) < 1e-6
+                && screening.compute_similarity(response(1), response(2)) < 1e-6
         );
     }
 
@@ -540,7 +557,7 @@ mod tests {
             [(0..1, &[1.0]), (1..2, &[1.0]), (2..3, &[1.0])];
         let screening = screening(&columns, &of);
         let cancels = |a: usize, b: usize, sizes: [f64; 2]| {
-            screening.cancels(&[response(a), response(b)], &sizes)
+            screening.is_cancelling(&[response(a), response(b)], &sizes)
         };
         assert!(cancels(0, 1, [10.0, -10.0]));
         assert!(!cancels(0, 1, [10.0, 10.0]), "they add up");
@@ -553,6 +570,9 @@ mod tests {
         let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
         // The cosine of the angle in a triangle of sides 3, 4 and 5.
-        assert!((screening(&columns, &of).similarity(response(0), response(1)) - 0.6).abs() < 1e-6);
+        assert!(
+            (screening(&columns, &of).compute_similarity(response(0), response(1)) - 0.6).abs()
+                < 1e-6
+        );
     }
 }

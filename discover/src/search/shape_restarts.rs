@@ -1,14 +1,14 @@
 //! Restarts of shape parameters, such as the Stribeck speed, from other sizes, because a fit from
 //! the typical size may end in a local minimum.
 
-use crate::search::fitted::{FittedHypothesis, full_fits};
-use crate::search::hypothesis::{Hypothesis, with_shape};
-use crate::search::pool::Pool;
+use crate::search::hypothesis::{Hypothesis, fit_with_shape_factor};
+use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
+use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
 /// Fits promising hypotheses with a shape parameter again from other shapes if they do not reach
 /// the noise floor. Accepted results and lower residuals are kept.
-pub fn reshape(pool: &Pool<'_>, fitted_hypotheses: &mut [FittedHypothesis]) {
+pub fn restart_shapes(pool: &CandidatePool<'_>, fitted_hypotheses: &mut [FittedHypothesis]) {
     let is_there = |fitted: &FittedHypothesis| {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(pool.context.floor)
     };
@@ -16,24 +16,26 @@ pub fn reshape(pool: &Pool<'_>, fitted_hypotheses: &mut [FittedHypothesis]) {
         return;
     }
     let wanted = fitted_hypotheses.iter_mut().filter(|fitted| {
-        let has_shape = fitted.own.iter().any(|own| own.is_shape);
-        has_shape && fitted.fit.leaves_clearly_less(pool.context.fit)
+        let has_shape = fitted.effect_unknowns.iter().any(|own| own.is_shape);
+        has_shape && fitted.fit.is_clearly_below(pool.context.fit)
     });
     for fitted in wanted {
         let sizes = fitted.responses.iter();
-        let sizes = sizes.flat_map(|r| pool.screening.responses[*r].values.clone());
+        let sizes = sizes.flat_map(|r| pool.screening.responses[*r].sizes.clone());
         let hypothesis = Hypothesis {
             responses: fitted.responses.clone(),
-            deleted: None,
-            sizes: sizes.collect(),
+            replaced_parameter: None,
+            predicted_sizes: sizes.collect(),
         };
-        let preliminaries = thresholds::OTHER_SHAPES.iter().filter_map(|times| {
-            Some((
-                hypothesis.clone(),
-                with_shape(pool, &hypothesis, *times).ok()?,
-            ))
-        });
-        let found = full_fits(pool, preliminaries.collect());
+        let preliminaries = thresholds::SHAPE_RESTART_FACTORS
+            .iter()
+            .filter_map(|times| {
+                Some((
+                    hypothesis.clone(),
+                    fit_with_shape_factor(pool, &hypothesis, *times).ok()?,
+                ))
+            });
+        let found = run_full_fits(pool, preliminaries.collect());
         for other in found {
             if is_better(&other, fitted) {
                 *fitted = other;

@@ -7,9 +7,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::derivatives_at;
-use crate::fit::initial_states::known_as;
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::compute_derivatives;
+use crate::fit::initial_states::prior_from_states;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
 use crate::ids::WindowId;
@@ -17,7 +17,7 @@ use crate::model::problem::EstimationProblem;
 use crate::search::acceptance::EffectUnknown;
 
 /// Held-out residuals of a fit and their derivatives by its unknowns.
-pub struct SplitSample<'f> {
+pub struct SplitSampleTest<'f> {
     fit: &'f Fit,
     /// What each unknown does to the residuals, of length 1: one row for each number of all windows.
     nuisances: DMatrix<f64>,
@@ -25,18 +25,18 @@ pub struct SplitSample<'f> {
     freedom: f64,
 }
 
-impl<'f> SplitSample<'f> {
+impl<'f> SplitSampleTest<'f> {
     /// Prepares the test for a fit without the tested effects; `None` if a simulation fails.
-    pub fn of(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Option<Self> {
+    pub fn from_fit(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Option<Self> {
         let shooting = Shooting {
             windows: &problem.test,
-            ..fit.shooting(problem)
+            ..fit.training_shooting(problem)
         };
         let estimate = &fit.test.estimate;
-        let linear = derivatives_at(&shooting, estimate);
-        let prior = known_as(problem, &estimate.initial_states, &fit.ranges);
+        let linear = compute_derivatives(&shooting, estimate);
+        let prior = prior_from_states(problem, &estimate.initial_states, &fit.ranges);
         let count = fit.unknowns.len();
-        let rows: usize = fit.test.residuals.iter().map(Vec::len).sum();
+        let rows: usize = fit.test.window_residuals.iter().map(Vec::len).sum();
         let mut nuisances = DMatrix::zeros(rows.max(count), count);
         let mut first = 0;
         for (window, linear) in WindowId::first(linear.len()).zip(&linear) {
@@ -44,7 +44,7 @@ impl<'f> SplitSample<'f> {
             let start = &estimate.initial_states[window];
             let projection = StateProjection::new(linear, &prior, window, start);
             for column in 0..count {
-                let free = projection.projected(&linear.by_unknown.column(column).into_owned());
+                let free = projection.project(&linear.by_unknown.column(column).into_owned());
                 let mut slot = nuisances.view_mut((first, column), (free.len(), 1));
                 slot.copy_from(&free);
             }
@@ -57,7 +57,7 @@ impl<'f> SplitSample<'f> {
                 column /= norm;
             }
         }
-        let all = fit.test.residuals.iter().flatten();
+        let all = fit.test.window_residuals.iter().flatten();
         let compared = all.filter(|residual| **residual != 0.0).count();
         let states = prior.sd.len() * linear.len();
         Some(Self {
@@ -71,11 +71,11 @@ impl<'f> SplitSample<'f> {
     /// on the response of an effect. Unknowns that lost their priors for the effect are not
     /// projected out, because without it they are within their bounds. `None` if the response
     /// vanishes or a simulation fails.
-    pub fn p_value(&self, with: &Fit, own: &[EffectUnknown]) -> Option<f64> {
+    pub fn compute_p_value(&self, with: &Fit, own: &[EffectUnknown]) -> Option<f64> {
         let column = |fit: &Fit| {
             DVector::from_iterator(
-                fit.test.residuals.iter().map(Vec::len).sum(),
-                fit.test.residuals.iter().flatten().copied(),
+                fit.test.window_residuals.iter().map(Vec::len).sum(),
+                fit.test.window_residuals.iter().flatten().copied(),
             )
         };
         let (residual, after) = (column(self.fit), column(with));
@@ -91,7 +91,7 @@ impl<'f> SplitSample<'f> {
         let size = own.norm();
         let along = residual.dot(&own) / size;
         let rest = (residual.norm_squared() - along * along).max(0.0);
-        let correlation = with.test.correlation;
+        let correlation = with.test.correlation_samples;
         // What is correlated over several samples is known from so many fewer.
         let t = along / (rest / self.freedom * correlation).sqrt();
         let freedom = self.freedom / correlation;

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use crate::catalogue::candidate::{Candidate, CandidateParameter};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::error::DiscoverError;
-use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::acceleration_differences::{AccelerationDifferences, PerturbedEvaluator};
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::LinearisedFit;
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::model::estimation_model::EstimationModel;
@@ -49,7 +49,7 @@ struct MovedValues {
 
 /// Returns the response of each candidate or the reason why it is not visible; `None` if the
 /// candidate's own model must be simulated.
-pub fn variational_responses(
+pub fn integrate_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -106,23 +106,23 @@ fn sized(
         if size == 0.0 || !size.is_finite() {
             return Err(DiscoverError::NotExcited);
         }
-        candidate_unknown.unknown.scale = thresholds::RESPONSE_MOVES * level / size;
+        candidate_unknown.unknown.scale = thresholds::RESPONSE_OUTPUT_CHANGE * level / size;
     }
     Ok(CandidateResponse {
         candidate_unknowns: candidate_unknowns.to_vec(),
-        blocks,
+        window_columns: blocks,
     })
 }
 
 /// Points of the fitted motion; none if neighbouring motions do not come with it.
 fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Points> {
-    let shooting = fit.shooting(problem);
+    let shooting = fit.training_shooting(problem);
     let LinearisedFit {
         estimate, windows, ..
     } = at;
-    let values = shooting.values(&estimate.theta);
-    let mut simulation = fit.model.simulation(&values).ok()?;
-    if !simulation.carries_tangents() {
+    let values = shooting.parameter_values(&estimate.theta);
+    let mut simulation = fit.model.create_simulation(&values).ok()?;
+    if !simulation.has_tangents() {
         return None;
     }
     let first = fit.model.degrees_of_freedom();
@@ -136,13 +136,18 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
     for id in [0, windows.len() / 2, windows.len() - 1].map(|k| windows[k]) {
         let window = &problem.train.list[id];
         let inputs = problem.train.inputs(window);
-        let Ok(states) = simulation.states(&estimate.initial_states[id], &window.times, inputs)
+        let Ok(states) =
+            simulation.simulate_states(&estimate.initial_states[id], &window.times, inputs)
         else {
             continue;
         };
-        let samples = window.times.iter().zip(states).step_by(thresholds::SAMPLED);
+        let samples = window
+            .times
+            .iter()
+            .zip(states)
+            .step_by(thresholds::SIZE_SAMPLE_STRIDE);
         for (t, state) in samples {
-            let rates = simulation.rates(*t, &state, inputs.held_at(*t));
+            let rates = simulation.compute_rates(*t, &state, inputs.held_at(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[first..]) {
                 *sum += rate * rate;
             }
@@ -163,33 +168,34 @@ fn ready(
     id: CandidateId,
     points: &Points,
 ) -> Option<Result<Ready, DiscoverError>> {
-    if let Err(stopped) = problem.stop.check() {
+    if let Err(stopped) = problem.stop.check_not_stopped() {
         return Some(Err(stopped));
     }
     let candidate = &candidates[id];
     let start: Vec<f64> = candidate
         .parameters
         .iter()
-        .map(CandidateParameter::absent)
+        .map(CandidateParameter::neutral_value)
         .collect();
-    let text = match candidate.written(&fit.texts.whole, &problem.path, &start, "") {
+    let text = match candidate.write_effect(&fit.texts.full, &problem.path, &start, "") {
         Ok(text) => text,
         Err(error) => return Some(Err(error.into())),
     };
     let channels = &problem.dataset.channels;
-    let model = match EstimationModel::equations(&text, &problem.path, problem.order, channels) {
-        Ok(model) => model,
-        Err(error) => return Some(Err(error.into())),
-    };
-    if model.states != fit.model.states || candidate.parameters.iter().any(|p| p.inverse) {
+    let model =
+        match EstimationModel::derive_equations(&text, &problem.path, problem.order, channels) {
+            Ok(model) => model,
+            Err(error) => return Some(Err(error.into())),
+        };
+    if model.states != fit.model.states || candidate.parameters.iter().any(|p| p.is_inverse) {
         return None;
     }
     let shooting = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
-    let values = shooting.values(&fit.train.estimate.theta);
+    let values = shooting.parameter_values(&fit.train.estimate.theta);
     let candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
         .iter()
-        .map(CandidateUnknown::of)
+        .map(CandidateUnknown::from_parameter)
         .collect();
     let mut moved = Vec::new();
     for (parameter, candidate_unknown) in candidate.parameters.iter().zip(&candidate_unknowns) {
@@ -198,7 +204,7 @@ fn ready(
         }
         let at = |size: f64| {
             let mut values = values.clone();
-            model.set(&mut values, &parameter.name, candidate_unknown.base + size);
+            model.set_value(&mut values, &parameter.name, candidate_unknown.base + size);
             values
         };
         let start = candidate_unknown.unknown.scale;
@@ -210,8 +216,10 @@ fn ready(
             size,
         });
     }
-    let own = fit.shooting(problem).values(&fit.train.estimate.theta);
-    if model.linear_outputs(&values) != fit.model.linear_outputs(&own) {
+    let own = fit
+        .training_shooting(problem)
+        .parameter_values(&fit.train.estimate.theta);
+    if model.derive_linear_outputs(&values) != fit.model.derive_linear_outputs(&own) {
         return None;
     }
     Some(Ok(Ready {
@@ -231,23 +239,26 @@ fn small(
 ) -> Option<f64> {
     let mut size = start;
     let mut found = None;
-    for _ in 0..thresholds::SIZE_ATTEMPTS {
-        let mut evaluator = model.evaluator(&at(size));
+    for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
+        let mut evaluator = model.create_evaluator(&at(size));
         let change = change(&mut evaluator, points);
         let factor = if change == 0.0 {
-            thresholds::SIZE_FACTOR
+            thresholds::MAX_SIZE_FACTOR
         } else if !change.is_finite() {
             1e-3
         } else {
-            thresholds::SMALL_CHANGE / change
+            thresholds::LINEARISATION_ACCELERATION_CHANGE / change
         };
-        if thresholds::SMALL_NEAR.contains(factor) {
+        if thresholds::LINEARISATION_CHANGE_FACTORS.contains(factor) {
             found = Some(size);
         }
-        if thresholds::SAME_SIZE.contains(factor) {
+        if thresholds::SAME_SIZE_FACTORS.contains(factor) {
             break;
         }
-        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
+        size *= factor.clamp(
+            1.0 / thresholds::MAX_SIZE_FACTOR,
+            thresholds::MAX_SIZE_FACTOR,
+        );
     }
     found
 }
@@ -285,15 +296,15 @@ fn drive_responses(
     fit: &Fit,
     ready: &[Ready],
 ) -> Vec<DMatrix<f64>> {
-    let whole = fit.shooting(problem);
+    let whole = fit.training_shooting(problem);
     let shooting = Shooting {
-        part: at.part,
+        fraction: at.fraction,
         ..whole
     };
     let LinearisedFit {
         estimate,
         windows,
-        base,
+        projections: base,
         ..
     } = at;
     let size = windows
@@ -306,7 +317,7 @@ fn drive_responses(
         .map(|part| {
             let none = || DMatrix::zeros(0, 0);
             let Some(mut sensitivities) =
-                SensitivityEvaluator::frozen(&shooting, &estimate.theta, 1.0)
+                SensitivityEvaluator::with_fixed_unknowns(&shooting, &estimate.theta, 1.0)
             else {
                 return part.iter().map(|_| none()).collect();
             };
@@ -315,10 +326,12 @@ fn drive_responses(
                 .flat_map(|of| {
                     of.moved
                         .iter()
-                        .map(|moved| (of.model.evaluator(&moved.values), moved.size))
+                        .map(|moved| (of.model.create_evaluator(&moved.values), moved.size))
                 })
                 .collect();
-            let mut own = fit.model.evaluator(&shooting.values(&estimate.theta));
+            let mut own = fit
+                .model
+                .create_evaluator(&shooting.parameter_values(&estimate.theta));
             part.iter()
                 .map(|number| {
                     if base[*number].is_none() {
@@ -327,13 +340,17 @@ fn drive_responses(
                     let window = windows[*number];
                     let moved = evaluators
                         .iter_mut()
-                        .map(|(evaluator, size)| MovedEvaluator {
+                        .map(|(evaluator, size)| PerturbedEvaluator {
                             evaluator,
-                            size: *size,
+                            change: *size,
                         });
                     let mut differences = AccelerationDifferences::new(&mut own, moved.collect());
                     let start = &estimate.initial_states[window];
-                    let columns = sensitivities.drive_response(window, start, differences.drives());
+                    let columns = sensitivities.compute_drive_response(
+                        window,
+                        start,
+                        differences.as_drives(),
+                    );
                     columns.unwrap_or_else(none)
                 })
                 .collect()

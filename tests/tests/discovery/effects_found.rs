@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use eomgen_discover::catalogue::candidate::{Candidate, candidates};
-use eomgen_discover::catalogue::effects;
-use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::candidate::{Candidate, list_candidates};
+use eomgen_discover::catalogue::load_effects;
+use eomgen_discover::catalogue::sites::find_sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
 use eomgen_model_spec::edit::{self, Edit, SetParameter};
 use eomgen_model_spec::source::Source;
@@ -346,16 +346,17 @@ impl Machine {
     fn candidate(&self, hidden: &Hidden, entry: usize, order: Option<u32>) -> Candidate {
         let checked = eomgen_model_spec::check(Source::new(self.name, self.specification));
         let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
-        let catalogue = effects(None).expect("the catalogue");
+        let catalogue = load_effects(None).expect("the catalogue");
         let mut named = catalogue
             .iter()
             .filter(|effect| effect.name == hidden.effect);
         let effect = named.nth(entry).expect("an effect");
         let one = std::slice::from_ref(effect);
         let mut found =
-            candidates(&model, one, &sites(&model), &UsualMotion::default()).into_iter();
-        let is =
-            |c: &Candidate| c.on == hidden.on && c.order.as_ref().map(|(_, order)| *order) == order;
+            list_candidates(&model, one, &find_sites(&model), &UsualMotion::default()).into_iter();
+        let is = |c: &Candidate| {
+            c.site == hidden.on && c.angle_order.as_ref().map(|(_, order)| *order) == order
+        };
         found.find(is).expect("the effect has a place")
     }
 
@@ -364,11 +365,11 @@ impl Machine {
         match hidden.by {
             Change::Entry(entry, order, values) => {
                 let candidate = self.candidate(hidden, entry, order);
-                let written = candidate.written(self.specification, self.name, values, "hidden");
+                let written = candidate.write_effect(self.specification, self.name, values, "hidden");
                 // Records determine shape parameters less well than the size, so these are not
                 // compared.
                 let sizes = candidate.parameters.iter().zip(values);
-                let sizes = sizes.filter(|(parameter, _)| parameter.shape.is_none());
+                let sizes = sizes.filter(|(parameter, _)| parameter.shape_size.is_none());
                 let sizes = sizes.map(|(parameter, value)| (parameter.name.clone(), *value));
                 (written.expect("a specification"), sizes.collect())
             }
@@ -531,8 +532,10 @@ fn approximate_effect_is_reported_as_substitute() {
     let (truth, _) = OSCILLATOR.truth(&stops);
     let found = OSCILLATOR.answer(&stops, &truth);
     let effects = found["effects"].as_array().expect("effects");
-    let is_right = effects.iter().all(|effect| effect["effect"] == "end_stop");
-    let is_said = effects
+    let is_right = load_effects
+        .iter()
+        .all(|effect| effect["effect"] == "end_stop");
+    let is_said = load_effects
         .iter()
         .all(|effect| effect["status"] == "provisional");
     assert!(!effects.is_empty() && (is_right || is_said), "{effects:#?}");
@@ -574,7 +577,7 @@ fn sensor_faults_and_parameter_shifts_are_found() {
 fn all_catalogue_entries_are_tested_in_this_file() {
     let own = include_str!("effects_found.rs");
     let mut seen = BTreeMap::new();
-    for effect in effects(None).expect("the catalogue") {
+    for effect in load_effects(None).expect("the catalogue") {
         let entry: &mut usize = seen.entry(effect.name.clone()).or_default();
         let (name, number) = (&effect.name, *entry);
         assert!(own.contains(&format!("hidden(\"{name}\"")), "{name}");

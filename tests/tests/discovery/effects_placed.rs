@@ -4,10 +4,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use eomgen_codegen::variant::Variant;
-use eomgen_discover::catalogue::candidate::{Candidate, candidates};
+use eomgen_discover::catalogue::candidate::{Candidate, list_candidates};
 use eomgen_discover::catalogue::effect::{Effect, SiteKind};
-use eomgen_discover::catalogue::effects;
-use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::load_effects;
+use eomgen_discover::catalogue::sites::find_sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -16,11 +16,11 @@ use eomgen_tests::models::shipped;
 /// Returns the candidates of an effect in a model: the first order per place and angle.
 fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
-    let mut found = candidates(model, one, &sites(model), &UsualMotion::default());
+    let mut found = list_candidates(model, one, &find_sites(model), &UsualMotion::default());
     let key = |c: &Candidate| {
         (
-            c.on.clone(),
-            c.order.as_ref().map(|(angle, _)| angle.clone()),
+            c.site.clone(),
+            c.angle_order.as_ref().map(|(angle, _)| angle.clone()),
             c.load.clone(),
         )
     };
@@ -30,7 +30,7 @@ fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
 
 #[test]
 fn catalogue_effects_keep_shipped_specifications_valid() {
-    let effects = effects(None).expect("the catalogue");
+    let effects = load_effects(None).expect("the catalogue");
     let mut homes: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for path in shipped() {
         let name = path
@@ -44,7 +44,7 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
             for candidate in candidates_of(&model, effect) {
                 let label = format!("{} in {name}", candidate.label());
                 let values = vec![1.5; candidate.parameters.len()];
-                let written = candidate.written(&text, &name, &values, "a test");
+                let written = candidate.write_effect(&text, &name, &values, "a test");
                 let written = written.unwrap_or_else(|error| panic!("{label}: {error}"));
                 let checked =
                     eomgen_model_spec::check(Source::new(name.as_str(), written.as_str()));
@@ -56,19 +56,19 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
             }
         }
     }
-    for (place, effect) in effects.iter().enumerate() {
+    for (place, effect) in load_effects.iter().enumerate() {
         let homes = homes.get(&place).map_or(0, BTreeSet::len);
         assert!(
             homes > 0,
             "`{}` ({}) has no site in any shipped specification",
             effect.name,
-            effect.says
+            effect.description
         );
     }
     // Every moving coordinate must be a site of axis effects.
     let axis = effects
         .iter()
-        .position(|effect| effect.site == SiteKind::Axis);
+        .position(|effect| effect.site_kind == SiteKind::Axis);
     let of_axis = axis
         .and_then(|axis| homes.get(&axis))
         .map_or(0, BTreeSet::len);
@@ -145,7 +145,7 @@ fn check_model(text: &str) -> Model {
 #[test]
 fn springs_are_recognised_in_all_notations() {
     let model = check_model(SPRINGS);
-    let springs = sites(&model)
+    let springs = find_sites(&model)
         .into_iter()
         .filter(|site| site.kind == SiteKind::Spring);
     let springs: Vec<[String; 3]> = springs
@@ -164,14 +164,14 @@ fn user_defined_effect_is_placed_on_springs() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("effects.toml");
     std::fs::write(&path, ON_SPRINGS).expect("a file");
-    let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
+    let effects = load_effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let own = effects.last().expect("an effect");
-    assert!(own.is_own);
+    assert!(own.is_user_defined);
     let model = check_model(TWO_CARRIAGES);
     let found = candidates_of(&model, own);
     let places: Vec<&str> = found
         .iter()
-        .map(|candidate| candidate.on.as_str())
+        .map(|candidate| candidate.site.as_str())
         .collect();
     assert_eq!(places, ["spring"], "a cubic force is no linear spring");
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
@@ -222,7 +222,7 @@ other = { on = "theta", value = "-d_t*dot(slip)" }
 #[test]
 fn parallel_dampers_are_recognised_in_all_notations() {
     let model = check_model(DAMPERS);
-    let belt = sites(&model).into_iter().find(|site| site.name == "belt");
+    let belt = find_sites(&model).into_iter().find(|site| site.name == "belt");
     let dampers = belt.expect("a spring").dampers.into_iter();
     let dampers: Vec<[String; 2]> = dampers.map(|damper| [damper.term, damper.part]).collect();
     let expected = [
@@ -236,11 +236,11 @@ fn parallel_dampers_are_recognised_in_all_notations() {
 #[test]
 fn backlash_can_include_parallel_dampers() {
     let model = check_model(DAMPERS);
-    let effects = effects(None).expect("the catalogue");
+    let effects = load_effects(None).expect("the catalogue");
     let play = effects.iter().filter(|effect| effect.name == "backlash");
     let written: Vec<String> = play
         .flat_map(|effect| candidates_of(&model, effect))
-        .map(|candidate| candidate.written(DAMPERS, "dampers", &[1e-3], "a test"))
+        .map(|candidate| candidate.write_effect(DAMPERS, "dampers", &[1e-3], "a test"))
         .map(|written| written.unwrap_or_else(|error| panic!("{error}")))
         .collect();
     let [opened, apart] = &written[..] else {
@@ -295,7 +295,7 @@ fn documented_effect() -> String {
     let examples = text.split("```toml\n").skip(1);
     let mut blocks = examples.filter_map(|rest| rest.split_once("```").map(|(block, _)| block));
     let effects = blocks.find(|block| block.contains("site = \"input\""));
-    effects.expect("an example").to_owned()
+    load_effects.expect("an example").to_owned()
 }
 
 #[test]
@@ -303,7 +303,7 @@ fn effect_on_an_input_applies_to_all_its_uses() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("effects.toml");
     std::fs::write(&path, documented_effect()).expect("a file");
-    let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
+    let effects = load_effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let model = check_model(MOTOR);
     for (name, lines) in [
         (
@@ -324,9 +324,9 @@ fn effect_on_an_input_applies_to_all_its_uses() {
     ] {
         let mut named = effects.iter().filter(|effect| effect.name == name);
         let found = candidates_of(&model, named.next().expect("an effect"));
-        let places: Vec<&str> = found.iter().map(|c| c.on.as_str()).collect();
+        let places: Vec<&str> = found.iter().map(|c| c.site.as_str()).collect();
         assert_eq!(places, ["u", "v"]);
-        let written = found[0].written(MOTOR, "motor.toml", &[0.5], "");
+        let written = found[0].write_effect(MOTOR, "motor.toml", &[0.5], "");
         let written = written.unwrap_or_else(|error| panic!("{name}: {error}"));
         for line in lines {
             assert!(written.lines().any(|own| own == *line), "{line}: {written}");

@@ -5,11 +5,13 @@ use eomgen_records::read_dataset;
 use std::fs;
 use std::path::Path;
 
-use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::fit::null_model::fit_null_model;
 use eomgen_discover::model::problem::EstimationProblem;
-use eomgen_discover::residual_force::residual_force;
-use eomgen_discover::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
-use eomgen_discover::residual_force::wording::described;
+use eomgen_discover::residual_force::estimate_residual_force;
+use eomgen_discover::residual_force::types::{
+    ForceKind, Profile, ResidualForce, SimpleFunction, SimpleTerm,
+};
+use eomgen_discover::residual_force::wording::describe_residual_force;
 use eomgen_model_spec::source::Source;
 
 const SPECIFICATION: &str = r#"
@@ -136,15 +138,15 @@ fn residual_force_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = model.expect("a valid specification").model;
     let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a valid dataset");
     let problem = EstimationProblem::new(&dataset, None, "two_carriages.toml", specification);
-    let fit = null_fit(&problem, specification).expect("a fit");
-    residual_force(&problem, &fit, None).expect("neighbouring motions")
+    let fit = fit_null_model(&problem, specification).expect("a fit");
+    estimate_residual_force(&problem, &fit, None).expect("neighbouring motions")
 }
 
 /// Asserts that a profile matches a function within four standard deviations plus a tenth of the
 /// largest force, due to smoothing. Returns the number of points known to a fifth.
 fn assert_matches(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize {
     let mut known = 0;
-    for (number, at) in profile.over.iter().enumerate() {
+    for (number, at) in profile.arguments.iter().enumerate() {
         let (value, sd) = (profile.values[number], profile.sd[number]);
         if sd > 0.0 && sd < 0.2 * largest {
             let off = (value - of(number, *at)).abs();
@@ -159,24 +161,24 @@ fn assert_matches(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f6
 fn dry_friction_appears_as_residual_force_on_its_carriage() {
     let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
     let force = force_from_records(&friction);
-    println!("{}", described(&force));
-    assert_eq!(force.equations[force.best].name, "q");
-    let Some(Kind::Rate(parts)) = &force.kind else {
+    println!("{}", describe_residual_force(&force));
+    assert_eq!(force.equations[force.best_equation].name, "q");
+    let Some(ForceKind::Rate(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
     };
-    let SimplePart {
+    let SimpleTerm {
         value: size, sd, ..
     } = parts
         .iter()
-        .find(|part| part.function == Simple::Sign)
+        .find(|part| part.function == SimpleFunction::Sign)
         .expect("a sign");
     assert!((size + 2.0).abs() < 4.0 * sd && *sd < 0.2, "{size} +- {sd}");
     assert!(
-        described(&force).contains("a force on q: "),
+        describe_residual_force(&force).contains("a force on q: "),
         "{}",
-        described(&force)
+        describe_residual_force(&force)
     );
-    let bends = force.rate.over.len() / 2;
+    let bends = force.rate.arguments.len() / 2;
     let side = |number: usize, _: f64| if number < bends { 2.0 } else { -2.0 };
     assert!(assert_matches(&force.rate, side, 2.0) >= bends);
 }
@@ -199,7 +201,7 @@ fn nonlinear_model_gives_the_same_residual_force() {
         force_from_records(&friction),
         residual_force_with(&friction, &stiffening),
     );
-    assert_eq!(other.equations[other.best].name, "q");
+    assert_eq!(other.equations[other.best_equation].name, "q");
     let pairs = linear.rate.values.iter().zip(&other.rate.values);
     for ((a, b), sd) in pairs.zip(&linear.rate.sd) {
         // Both are first-order methods; they differ in the ends of steps at switches.
@@ -213,16 +215,16 @@ fn nonlinear_model_gives_the_same_residual_force() {
 #[test]
 fn spring_appears_as_residual_force_on_its_carriage() {
     let force = force_from_records(&|_, place| -40.0 * place);
-    println!("{}", described(&force));
-    assert_eq!(force.equations[force.best].name, "q");
-    let Some(Kind::Position(parts)) = &force.kind else {
+    println!("{}", describe_residual_force(&force));
+    assert_eq!(force.equations[force.best_equation].name, "q");
+    let Some(ForceKind::Position(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
     };
-    let SimplePart {
+    let SimpleTerm {
         value: size, sd, ..
     } = parts
         .iter()
-        .find(|part| part.function == Simple::Linear)
+        .find(|part| part.function == SimpleFunction::Linear)
         .expect("a line");
     assert!(
         (size + 40.0).abs() < 4.0 * sd && *sd < 4.0,
@@ -230,7 +232,7 @@ fn spring_appears_as_residual_force_on_its_carriage() {
     );
     let largest = force
         .position
-        .over
+        .arguments
         .iter()
         .map(|at| 40.0 * at.abs())
         .fold(0.0, f64::max);
@@ -240,9 +242,9 @@ fn spring_appears_as_residual_force_on_its_carriage() {
 #[test]
 fn complete_model_has_no_significant_residual_force() {
     let force = force_from_records(&|_, _| 0.0);
-    assert_eq!(force.kind, None, "{}", described(&force));
+    assert_eq!(force.kind, None, "{}", describe_residual_force(&force));
     assert_eq!(
-        described(&force),
+        describe_residual_force(&force),
         "No force in a single equation is significant."
     );
 }

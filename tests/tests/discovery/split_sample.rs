@@ -3,18 +3,18 @@
 
 use std::path::Path;
 
-use eomgen_discover::catalogue::candidate::candidates;
-use eomgen_discover::catalogue::effects;
-use eomgen_discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::candidate::list_candidates;
+use eomgen_discover::catalogue::load_effects;
+use eomgen_discover::catalogue::sites::find_sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
-use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::fit::null_model::fit_null_model;
 use eomgen_discover::ids::ResponseId;
 use eomgen_discover::model::problem::EstimationProblem;
-use eomgen_discover::search::context::Context;
-use eomgen_discover::search::fitted::{full_fits, preliminary_fits};
+use eomgen_discover::search::context::RoundContext;
 use eomgen_discover::search::hypothesis::Hypothesis;
-use eomgen_discover::search::pool::Pool;
-use eomgen_discover::search::screening::screening;
+use eomgen_discover::search::hypothesis_fits::{run_full_fits, run_preliminary_fits};
+use eomgen_discover::search::pool::CandidatePool;
+use eomgen_discover::search::screening::screen_candidates;
 use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
 
@@ -131,34 +131,35 @@ fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
     let dataset = read_dataset(Path::new(&folder.path().join("dataset.toml")), &model);
     let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
     let problem = EstimationProblem::new(&dataset, None, "rotor.toml", SPECIFICATION);
-    let fit = null_fit(&problem, SPECIFICATION).expect("a fit");
-    let mut all = candidates(
+    let fit = fit_null_model(&problem, SPECIFICATION).expect("a fit");
+    let mut all = list_candidates(
         &model,
-        &effects(None).expect("the catalogue"),
-        &sites(&model),
+        &load_effects(None).expect("the catalogue"),
+        &find_sites(&model),
         &UsualMotion::default(),
     );
     all.retain(|candidate| NAMES.contains(&candidate.effect.as_str()));
     all.sort_by_key(|candidate| NAMES.iter().position(|name| *name == candidate.effect));
-    let screening = screening(&problem, &fit, &all, 1.0);
-    let context = Context {
+    let screening = screen_candidates(&problem, &fit, &all, 1.0);
+    let context = RoundContext {
         problem: &problem,
         fit: &fit,
         floor: 1.0,
         effects: &[],
         progress: &|_| {},
     };
-    let pool = Pool::new(context, &all, &screening, true);
+    let pool = CandidatePool::new(context, &all, &screen_candidates, true);
     let of = |candidate: usize| {
-        let responses = ResponseId::first(screening.responses.len());
-        let response = { responses }
-            .find(|response| screening.responses[*response].candidate.index() == candidate)?;
+        let responses = ResponseId::first(screen_candidates.responses.len());
+        let response = { responses }.find(|response| {
+            screen_candidates.responses[*response].candidate.index() == candidate
+        })?;
         let hypothesis = Hypothesis {
-            sizes: screening.responses[response].values.clone(),
+            predicted_sizes: screen_candidates.responses[response].sizes.clone(),
             responses: vec![response],
-            deleted: None,
+            replaced_parameter: None,
         };
-        let fitted = full_fits(&pool, preliminary_fits(&pool, vec![hypothesis]));
+        let fitted = run_full_fits(&pool, run_preliminary_fits(&pool, vec![hypothesis]));
         fitted.first()?.p_value
     };
     (0..NAMES.len()).map(of).collect()

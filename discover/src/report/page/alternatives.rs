@@ -3,18 +3,18 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::experiment::next::{ExperimentFile, NextExperiment};
-use crate::report::experiment::sentences;
-use crate::report::quantity::readable;
-use crate::report::result::{EffectAt, RejectedEffect};
-use crate::report::summary::words;
+use crate::experiment::next_experiment::{ExperimentFile, NextExperiment};
+use crate::report::experiment::describe_experiment;
+use crate::report::quantity::format_readable;
+use crate::report::result::{EffectSite, RejectedEffect};
+use crate::report::summary::describe_effect;
 
 /// More rows than this are folded.
 const SHOWN: usize = 8;
 
 /// Effects with something in common.
 struct Group<'a> {
-    effects: Vec<&'a EffectAt>,
+    effects: Vec<&'a EffectSite>,
     reason: &'a str,
     experiment: &'a str,
     /// What was computed to be played, for those for which it was.
@@ -58,14 +58,14 @@ impl<'a> Group<'a> {
                 .iter_mut()
                 .find(|(effect, _)| *effect == at.effect)
             {
-                Some((_, places)) => places.push(&at.on),
-                None => by_effect.push((&at.effect, vec![&at.on])),
+                Some((_, places)) => places.push(&at.site),
+                None => by_effect.push((&at.effect, vec![&at.site])),
             }
         }
         let each = by_effect.iter().map(|(effect, places)| {
-            words(&EffectAt {
+            describe_effect(&EffectSite {
                 effect: (*effect).to_owned(),
-                on: places.join(", "),
+                site: places.join(", "),
             })
         });
         each.collect::<Vec<String>>().join("; ")
@@ -74,18 +74,19 @@ impl<'a> Group<'a> {
     /// What to play, as sentences behind what would show it in words.
     fn next(&self, files: &[ExperimentFile]) -> String {
         let all = self.next.iter();
-        let all = all.map(|next| format!(". {}", readable(&sentences(next, files))));
+        let all =
+            all.map(|next| format!(". {}", format_readable(&describe_experiment(next, files))));
         all.collect()
     }
 
     /// Its reason: the first line, as a message of the compiler has more.
     fn why(&self) -> String {
-        readable(self.reason.lines().next().unwrap_or_default())
+        format_readable(self.reason.lines().next().unwrap_or_default())
     }
 }
 
 /// Lists the rejected effects, first those with a reason of their own.
-pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
+pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     if list.is_empty() {
         return html! {};
     }
@@ -102,7 +103,7 @@ pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
 }
 
 /// Lists the effects that the records cannot show, grouped by experiment.
-pub(super) fn not_testable(list: &[RejectedEffect], files: &[ExperimentFile]) -> Markup {
+pub(super) fn list_untestable(list: &[RejectedEffect], files: &[ExperimentFile]) -> Markup {
     if list.is_empty() {
         return html! {};
     }

@@ -6,8 +6,8 @@
 //! and hashes).
 
 mod alternatives;
-mod found;
-mod gap;
+mod found_effects;
+mod gap_table;
 mod nuisances;
 mod origin;
 mod verdict;
@@ -19,8 +19,8 @@ use eomgen_page::{ScriptedDocument, document, scripted_document, section};
 use maud::{Markup, html};
 
 use crate::report::playback::Playback;
-use crate::report::quantity::readable;
-use crate::report::result::{Compared, Comparison, Discovery};
+use crate::report::quantity::format_readable;
+use crate::report::result::{CommonResult, Comparison, Discovery};
 
 impl Comparison {
     /// Returns the page as a self-contained HTML document.
@@ -29,7 +29,7 @@ impl Comparison {
         whole(
             compared,
             &html! {
-                (verdict::of_comparison(self))
+                (verdict::write_comparison_verdict(self))
                 (opening(compared))
                 (closing(compared))
             },
@@ -44,23 +44,23 @@ impl Discovery {
         whole(
             compared,
             &html! {
-                (verdict::of_discovery(self))
-                (found::effects(&self.effects, &self.experiments))
+                (verdict::write_discovery_verdict(self))
+                (found_effects::list_effects(&self.effects, &self.experiments))
                 (compared.pictures.experiments)
                 (playback(compared))
                 (opening(compared))
-                (found::steps(self))
-                (alternatives::rejected(&self.rejected))
-                (alternatives::not_testable(&self.not_testable, &self.experiments))
+                (found_effects::list_steps(self))
+                (alternatives::list_rejected(&self.rejected))
+                (alternatives::list_untestable(&self.untestable, &self.experiments))
                 (closing(compared))
-                (found::change(&self.original, &self.extended))
+                (found_effects::show_change(&self.original, &self.extended))
             },
         )
     }
 }
 
 /// A document around a body.
-fn whole(compared: &Compared, body: &Markup) -> String {
+fn whole(compared: &CommonResult, body: &Markup) -> String {
     let title = match compared.title.as_str() {
         "" => "Model and measurement",
         title => title,
@@ -72,60 +72,60 @@ fn whole(compared: &Compared, body: &Markup) -> String {
             p.note { "Comparison of model and measurement, " (origin.date) }
         }
         main { (body) }
-        footer { (origin::files(origin)) }
+        footer { (origin::list_files(origin)) }
     };
     match &compared.pictures.playback {
         Playback::Computed { data, .. } => scripted_document(&ScriptedDocument {
             title,
-            style: &Playback::style(),
+            style: &Playback::load_style(),
             body: &body,
             data,
-            script: &Playback::script(),
+            script: &Playback::load_script(),
         }),
-        Playback::Still(_) | Playback::None => document(title, &body),
+        Playback::Unavailable(_) | Playback::NotNeeded => document(title, &body),
     }
 }
 
 /// What was found, to be moved.
-fn playback(compared: &Compared) -> Markup {
+fn playback(compared: &CommonResult) -> Markup {
     match &compared.pictures.playback {
         Playback::Computed { body, .. } => section("Interactive simulation", body),
-        Playback::Still(why) => html! {
+        Playback::Unavailable(why) => html! {
             p.note { "There is no interactive simulation: " (why) "." }
         },
-        Playback::None => html! {},
+        Playback::NotNeeded => html! {},
     }
 }
 
 /// What is seen of the gap.
-fn opening(compared: &Compared) -> Markup {
+fn opening(compared: &CommonResult) -> Markup {
     html! {
         (section("Measured and simulated", &html! {
             (compared.pictures.overlay)
             (compared.pictures.residuals)
         }))
-        (section("Residuals", &gap::table_of(compared)))
+        (section("Residuals", &gap_table::write_gap_table(compared)))
     }
 }
 
 /// Where the gap is, and what was fitted beside.
-fn closing(compared: &Compared) -> Markup {
+fn closing(compared: &CommonResult) -> Markup {
     let force = compared.pictures.force.as_ref();
     let has_location = !compared.location.is_empty();
     html! {
         @if has_location || force.is_some() {
             (section("Location of the difference", &html! {
-                @if has_location { p { (readable(&compared.location)) } }
+                @if has_location { p { (format_readable(&compared.location)) } }
                 @if let Some((equation, force)) = force {
                     h3 { "Missing force on " code { (equation) } }
                     (force)
                 }
             }))
         }
-        (nuisances::fitted(compared))
+        (nuisances::list_nuisances(compared))
         @if !compared.notes.is_empty() {
             (section("Notes", &html! {
-                ul { @for note in &compared.notes { li { (readable(note)) } } }
+                ul { @for note in &compared.notes { li { (format_readable(note)) } } }
             }))
         }
     }

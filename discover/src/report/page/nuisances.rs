@@ -3,10 +3,10 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::quantity::{estimate, to_tenths};
-use crate::report::result::{Compared, Nuisance};
+use crate::report::quantity::{format_estimate, format_tenths};
+use crate::report::result::{CommonResult, Nuisance};
 
-pub(super) fn fitted(compared: &Compared) -> Markup {
+pub(super) fn list_nuisances(compared: &CommonResult) -> Markup {
     let all = &compared.nuisances;
     if all.is_empty() {
         return html! {};
@@ -35,19 +35,19 @@ pub(super) fn fitted(compared: &Compared) -> Markup {
 
 fn row(of: &Nuisance) -> Markup {
     let (mean, sd) = of.declared;
-    let unit = &of.fitted.unit;
+    let unit = &of.estimate.unit;
     let class = of.is_at_bound().then_some("failed");
-    let off = of.deviations();
+    let off = of.deviations_from_prior();
     html! {
         tr {
             th scope="row" {
                 @if let Some(fault) = of.fault { (fault) " of " }
-                code { (of.of) }
+                code { (of.name) }
             }
-            td.number { (estimate(mean, sd, unit)) }
-            td.number { (estimate(of.fitted.value, of.fitted.sd, unit)) }
+            td.number { (format_estimate(mean, sd, unit)) }
+            td.number { (format_estimate(of.estimate.value, of.estimate.sd, unit)) }
             td class=[class] {
-                @if off.is_finite() { (to_tenths(off)) } @else { "–" }
+                @if off.is_finite() { (format_tenths(off)) } @else { "–" }
             }
         }
     }

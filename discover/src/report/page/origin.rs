@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::report::origin::Origin;
 
 /// Lists version, date, seed and files with their hashes.
-pub(super) fn files(origin: &Origin) -> Markup {
+pub(super) fn list_files(origin: &Origin) -> Markup {
     html! {
         p {
             "Written by eomgen " (origin.version) " on " (origin.date) " (UTC), seed " (origin.seed) "."

@@ -1,13 +1,13 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::experiment::next::NextExperiment;
+use crate::experiment::next_experiment::NextExperiment;
 use crate::report::origin::{HashedFile, Origin};
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
 use crate::report::result::{
-    ChannelGap, EffectAt, Estimated, FoundEffect, Nuisance, OnRecords, Pictures, RejectedEffect,
-    Sensor, Status, Step, Validation, Verdict,
+    ChannelGap, EffectSite, EffectStatus, EstimateWithUnit, FoundEffect, Nuisance, RejectedEffect,
+    ResultFigures, SearchStep, SensorEstimate, TrainTest, Validation, Verdict,
 };
 use crate::search::acceptance::TestStatistics;
 
@@ -17,28 +17,28 @@ fn next_experiment(text: &str) -> NextExperiment {
     NextExperiment {
         file: None,
         input: Some(name()),
-        form: Some(name()),
+        waveform: Some(name()),
         separation: Some(0.5),
         pairs: Vec::new(),
-        left_out: Vec::new(),
-        shows: None,
+        failed_members: Vec::new(),
+        detectable: None,
         reason: None,
-        bounds: name(),
+        bounds_source: name(),
     }
 }
 
 /// A discovery with `text` wherever a dataset, a specification or a file name could put it.
 fn discovery(text: &str) -> Discovery {
     let name = || text.to_owned();
-    let at = || EffectAt {
+    let at = || EffectSite {
         effect: name(),
-        on: name(),
+        site: name(),
     };
-    let both = OnRecords {
+    let both = TrainTest {
         train: 2e-6,
         test: 3e-6,
     };
-    let estimated = Estimated {
+    let estimated = EstimateWithUnit {
         value: 1.5,
         sd: 0.1,
         unit: name(),
@@ -60,17 +60,17 @@ fn discovery(text: &str) -> Discovery {
         verdict: Verdict::EffectsFound,
         effects: vec![FoundEffect {
             at: at(),
-            says: name(),
-            status: Status::Class,
-            equivalent: vec![at()],
+            description: name(),
+            status: EffectStatus::Class,
+            equivalents: vec![at()],
             parameters: BTreeMap::from([(name(), estimated.clone())]),
             term: name(),
             statistics: TestStatistics {
-                held_out: 0.5,
-                held_out_errors: 9.0,
-                information: 40.0,
-                t: 8.0,
-                size: 3.0,
+                held_out_reduction: 0.5,
+                reduction_in_standard_errors: 9.0,
+                information_gain: 40.0,
+                t_value: 8.0,
+                size_over_noise: 3.0,
                 p_value: Some(1e-3),
             },
             adjusted_p_value: Some(0.02),
@@ -80,23 +80,23 @@ fn discovery(text: &str) -> Discovery {
             next_experiment: Some(next_experiment(text)),
         }],
         rejected: vec![rejected.clone()],
-        not_testable: vec![rejected],
+        untestable: vec![rejected],
         experiments: Vec::new(),
-        closure: OnRecords {
+        closure: TrainTest {
             train: Some(0.9),
             test: None,
         },
-        steps: vec![Step {
+        steps: vec![SearchStep {
             added: vec![name()],
             test_rms: 1.2,
         }],
-        compared: Compared {
+        compared: CommonResult {
             title: name(),
             gap: BTreeMap::from([(name(), gap)]),
             refitted: BTreeMap::from([(name(), estimated.clone())]),
             sensors: BTreeMap::from([(
                 name(),
-                Sensor {
+                SensorEstimate {
                     bias: 0.0,
                     gain: 1.0,
                     delay: 0.0,
@@ -105,10 +105,10 @@ fn discovery(text: &str) -> Discovery {
             location: name(),
             notes: vec![name()],
             nuisances: vec![Nuisance {
-                of: name(),
+                name: name(),
                 fault: Some("gain"),
                 declared: (1.0, 0.01),
-                fitted: estimated.clone(),
+                estimate: estimated.clone(),
             }],
             origin: Origin {
                 version: "0",
@@ -120,8 +120,8 @@ fn discovery(text: &str) -> Discovery {
                     sha256: None,
                 }],
             },
-            pictures: Pictures {
-                playback: Playback::None,
+            pictures: ResultFigures {
+                playback: Playback::NotNeeded,
                 overlay: html! {},
                 residuals: html! {},
                 experiments: html! {},
@@ -136,7 +136,7 @@ fn discovery(text: &str) -> Discovery {
             test: 1.1,
         },
         validation: Some(Validation {
-            passed: false,
+            has_passed: false,
             checks: vec![name()],
             failed: vec![name()],
         }),
@@ -193,9 +193,9 @@ fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
 #[test]
 fn what_leaves_much_is_said_to_be_uncertain_first() {
     let mut found = discovery("x");
-    found.effects[0].status = Status::Named;
+    found.effects[0].status = EffectStatus::Named;
     found.closure.test = Some(0.6);
-    found.compared.nuisances[0].fitted.value = 1.0;
+    found.compared.nuisances[0].estimate.value = 1.0;
     let summary = |found: &Discovery| found.to_json()["summary"].as_str().unwrap_or("").to_owned();
     assert!(
         summary(&found).starts_with("Found: x on x"),
@@ -217,15 +217,15 @@ fn what_leaves_much_is_said_to_be_uncertain_first() {
 #[test]
 fn a_nuisance_at_its_bound_makes_an_answer_uncertain() {
     let mut found = discovery("x");
-    found.compared.nuisances[0].fitted.value = 1.03;
-    found.compared.nuisances[0].fitted.unit = "1".to_owned();
+    found.compared.nuisances[0].estimate.value = 1.03;
+    found.compared.nuisances[0].estimate.unit = "1".to_owned();
     let json = found.to_json();
     let summary = json["summary"].as_str().unwrap_or("");
     assert!(
         summary.contains("with the gain of x at the bound of the fit"),
         "{summary}"
     );
-    let notes = crate::report::discovery::bound_notes(&found.compared.nuisances);
+    let notes = crate::report::discovery::describe_bounds(&found.compared.nuisances);
     assert_eq!(notes.len(), 1, "{notes:?}");
     assert!(
         notes[0].starts_with("the gain of x is 1.030, 3.0 standard deviations"),
@@ -239,10 +239,10 @@ fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
     found.verdict = Verdict::NoSignificantGap;
     found.effects.clear();
     let summary = |found: &Discovery| found.to_json()["summary"].as_str().unwrap_or("").to_owned();
-    found.compared.nuisances[0].fitted.value = 1.0;
+    found.compared.nuisances[0].estimate.value = 1.0;
     let text = summary(&found);
     assert!(text.contains("no missing effect"), "{text}");
-    found.compared.nuisances[0].fitted.value = 1.03;
+    found.compared.nuisances[0].estimate.value = 1.03;
     let text = summary(&found);
     let first = "The model explains the records only with the gain of x at the bound of the fit";
     assert!(text.starts_with(first), "{text}");

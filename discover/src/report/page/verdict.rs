@@ -5,19 +5,19 @@ use maud::{Markup, html};
 use crate::report::result::{Comparison, Discovery};
 use crate::report::summary::Summary;
 
-pub(super) fn of_comparison(comparison: &Comparison) -> Markup {
-    shown(&Summary::of_comparison(comparison))
+pub(super) fn write_comparison_verdict(comparison: &Comparison) -> Markup {
+    shown(&Summary::from_comparison(comparison))
 }
 
-pub(super) fn of_discovery(discovery: &Discovery) -> Markup {
-    shown(&Summary::of_discovery(discovery))
+pub(super) fn write_discovery_verdict(discovery: &Discovery) -> Markup {
+    shown(&Summary::from_discovery(discovery))
 }
 
 fn shown(summary: &Summary) -> Markup {
     html! {
         p.verdict {
-            strong { (summary.first) }
-            " " (summary.rest)
+            strong { (summary.headline) }
+            " " (summary.details)
         }
     }
 }

@@ -3,12 +3,12 @@
 use eomgen_page::play::{Slider, printed};
 use maud::{Markup, html};
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::What;
-use crate::search::found::Accepted;
+use crate::model::unknowns::UnknownKind;
+use crate::search::search_result::AcceptedEffect;
 
 /// How many digits of a value are shown: the script takes the specification's own number until
 /// somebody moves it.
@@ -18,11 +18,11 @@ const DIGITS: i32 = 6;
 const AROUND: f64 = 2.0;
 
 /// Writes the sliders and the reset button.
-pub(super) fn controls(
+pub(super) fn write_controls(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
-    accepted: &[Accepted],
+    accepted: &[AcceptedEffect],
 ) -> Markup {
     let unknowns = accepted.iter().flat_map(|effect| &effect.unknowns);
     html! {
@@ -53,17 +53,17 @@ fn control(
             high: neutral + reach,
         }
     };
-    match &best.unknowns[id].what {
-        What::Parameter(name) => parameter(model, name, false),
-        What::Inverse(name) => parameter(model, name, true),
-        What::Gain(at) => of_sensor(at.index(), "gain", 1.0, "1").control("gain"),
-        What::Bias(at) => {
+    match &best.unknowns[id].kind {
+        UnknownKind::Parameter(name) => parameter(model, name, false),
+        UnknownKind::InverseParameter(name) => parameter(model, name, true),
+        UnknownKind::Gain(at) => of_sensor(at.index(), "gain", 1.0, "1").control("gain"),
+        UnknownKind::Bias(at) => {
             let unit = &problem.dataset.channels[at.index()].unit;
             of_sensor(at.index(), "bias", 0.0, unit).control("bias")
         }
         // It is that of every sensor, and no control moves them together.
-        What::InputDelay => html! {},
-        What::Delay(at) => of_sensor(at.index(), "delay", 0.0, "s").control("delay"),
+        UnknownKind::InputDelay => html! {},
+        UnknownKind::Delay(at) => of_sensor(at.index(), "delay", 0.0, "s").control("delay"),
     }
 }
 
@@ -72,7 +72,7 @@ fn control(
 fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
     let declared = model.specification().parameters.iter();
     let mut declared = declared.filter(|parameter| parameter.name == name);
-    let (Some(declared), Some(place)) = (declared.next(), model.parameter(name)) else {
+    let (Some(declared), Some(place)) = (declared.next(), model.find_parameter(name)) else {
         return html! {};
     };
     let place = place.index();

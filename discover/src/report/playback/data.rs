@@ -3,18 +3,18 @@
 use eomgen_page::play::{encoded, printed};
 use serde_json::{Value, json};
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::ChannelId;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::measured_outputs::Output;
 use crate::model::problem::EstimationProblem;
-use crate::report::playback::stretch::{Piece, Stretch};
+use crate::report::playback::record_excerpt::{ExcerptWindow, RecordExcerpt};
 
-pub(super) fn json(
+pub(super) fn write_json(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
-    stretch: &Stretch,
+    stretch: &RecordExcerpt,
     module: &[u8],
 ) -> String {
     let program = model.program();
@@ -24,16 +24,16 @@ pub(super) fn json(
         .iter()
         .flat_map(|t| inputs.held_at(*t))
         .copied();
-    let piece = |piece: &Piece| {
-        let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
+    let piece = |piece: &ExcerptWindow| {
+        let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
         json!({
-            "first": piece.first,
+            "first": piece.first_sample,
             "samples": piece.samples,
-            "judged": [piece.judged.start, piece.judged.end],
+            "judged": [piece.compared_samples.start, piece.compared_samples.end],
             "initial": start,
         })
     };
-    let guards = model.evaluator(&model.values).guard_count();
+    let guards = model.create_evaluator(&model.values).guard_count();
     let document = json!({
         "module": encoded(module),
         "parameters": model.values,
@@ -56,10 +56,10 @@ fn channels(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
-    stretch: &Stretch,
+    stretch: &RecordExcerpt,
 ) -> Vec<Value> {
-    let shooting = best.shooting(problem);
-    let sensors = shooting.sensors(&best.train.estimate.theta);
+    let shooting = best.training_shooting(problem);
+    let sensors = shooting.sensor_values(&best.train.estimate.theta);
     let all = &problem.dataset.channels;
     let channels = ChannelId::first(all.len())
         .zip(all)
@@ -80,7 +80,7 @@ fn channels(
                 "gain": sensors.gain[id],
                 "bias": sensors.bias[id],
                 "delay": sensors.delay[id],
-                "left": stretch.left[id],
+                "left": stretch.rms_before_after[id],
             })
         };
     channels.map(of).collect()

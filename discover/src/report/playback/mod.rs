@@ -6,19 +6,19 @@
 
 mod controls;
 mod data;
-mod followed;
-mod stretch;
+mod record_excerpt;
+mod reproduction_check;
 
 use eomgen_codegen::wasm;
 use eomgen_page::play;
 use maud::{Markup, html};
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::report::playback::controls::controls;
-use crate::report::playback::stretch::Stretch;
-use crate::search::found::Accepted;
+use crate::report::playback::controls::write_controls;
+use crate::report::playback::record_excerpt::RecordExcerpt;
+use crate::search::search_result::AcceptedEffect;
 
 /// What such a part needs besides the style of all that compute.
 const STYLE: &str = include_str!("playback.css");
@@ -36,43 +36,44 @@ pub(crate) enum Playback {
     /// HTML of the part, and the data of its script.
     Computed { body: Markup, data: String },
     /// A page cannot simulate the model, for this reason.
-    Still(String),
+    Unavailable(String),
     /// There is no value to change.
-    None,
+    NotNeeded,
 }
 
 impl Playback {
     /// Builds the part for a specification with the found effects, given as text.
-    pub(crate) fn of(
+    pub(crate) fn build(
         problem: &EstimationProblem<'_>,
         (null, best): (&Fit, &Fit),
-        accepted: &[Accepted],
+        accepted: &[AcceptedEffect],
         text: &str,
     ) -> Self {
         let channels = &problem.dataset.channels;
-        let model = EstimationModel::equations(text, &problem.path, problem.order, channels);
+        let model = EstimationModel::derive_equations(text, &problem.path, problem.order, channels);
         let (Ok(model), false) = (model, accepted.is_empty()) else {
-            return Self::None;
+            return Self::NotNeeded;
         };
         if model.measured.has_rates() {
-            return Self::Still("accelerations are measured".to_owned());
+            return Self::Unavailable("accelerations are measured".to_owned());
         }
         if problem.dataset.gives_motion() {
-            return Self::Still("the motion is given by the records".to_owned());
+            return Self::Unavailable("the motion is given by the records".to_owned());
         }
         let Ok(module) = wasm::emit(model.program()) else {
-            return Self::Still("its equations cannot be emitted as WebAssembly".to_owned());
+            return Self::Unavailable("its equations cannot be emitted as WebAssembly".to_owned());
         };
-        let Some(stretch) = Stretch::of(problem, null, best) else {
-            return Self::Still(
+        let Some(stretch) = RecordExcerpt::from_fits(problem, null, best) else {
+            return Self::Unavailable(
                 "the simulation fails at the beginning of the test record".to_owned(),
             );
         };
-        if let Err(why) = followed::as_fitted(problem, best, &model, &stretch) {
-            return Self::Still(why);
+        if let Err(why) = reproduction_check::check_reproduces_fit(problem, best, &model, &stretch)
+        {
+            return Self::Unavailable(why);
         }
-        let controls = controls(problem, best, &model, accepted);
-        let data = data::json(problem, best, &model, &stretch, &module);
+        let controls = write_controls(problem, best, &model, accepted);
+        let data = data::write_json(problem, best, &model, &stretch, &module);
         Self::Computed {
             body: body(problem, &stretch, &controls),
             data,
@@ -80,24 +81,24 @@ impl Playback {
     }
 
     /// Returns the style sheet of a page with this part.
-    pub(crate) fn style() -> String {
+    pub(crate) fn load_style() -> String {
         [play::STYLE, STYLE].concat()
     }
 
     /// Returns the script of a page with this part.
-    pub(crate) fn script() -> String {
+    pub(crate) fn load_script() -> String {
         play::script(&SCRIPT)
     }
 }
 
-fn body(problem: &EstimationProblem<'_>, stretch: &Stretch, controls: &Markup) -> Markup {
+fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Markup) -> Markup {
     let seconds = stretch.times.last().zip(stretch.times.first());
     let seconds = seconds.map_or(0.0, |(last, first)| last - first);
     let names = problem.dataset.channels.iter().map(|channel| &channel.name);
     html! {
         p {
             "Move a slider: the extended model is simulated again for "
-            @if stretch.is_whole { "the test record" }
+            @if stretch.is_complete { "the test record" }
             @else { "the beginning of the test record, " (format!("{seconds:.3}")) " s," }
             " with the recorded inputs and the fitted initial state of each window. "
             "This page computes it with the equations of the extended specification."

@@ -13,9 +13,9 @@ mod records;
 use std::fmt::Write as _;
 
 use eomgen_compiled_model::{CompiledModel, Orders};
-use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::fit::null_model::fit_null_model;
 use eomgen_discover::model::problem::EstimationProblem;
-use eomgen_discover::model::unknowns::What;
+use eomgen_discover::model::unknowns::UnknownKind;
 use eomgen_records::read_dataset;
 use rayon::prelude::*;
 
@@ -86,11 +86,11 @@ fn deviations_of_run(
     let dataset = read_dataset(&folder.path().join("dataset.toml"), model.model())
         .map_err(|error| error.to_string())?;
     let problem = EstimationProblem::new(&dataset, None, machine.name, machine.text);
-    let fit = null_fit(&problem, machine.text).map_err(|error| error.to_string())?;
+    let fit = fit_null_model(&problem, machine.text).map_err(|error| error.to_string())?;
     let of = |((name, _), truth): (&(&str, f64), f64)| {
         let mut unknowns = fit.unknowns();
-        let id = unknowns.find_map(|(id, unknown)| match &unknown.what {
-            What::Parameter(known) if known == name => Some(id),
+        let id = unknowns.find_map(|(id, unknown)| match &unknown.kind {
+            UnknownKind::Parameter(known) if known == name => Some(id),
             _ => None,
         });
         let id = id.ok_or_else(|| format!("`{name}` is not fitted"))?;

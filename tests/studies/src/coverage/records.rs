@@ -12,7 +12,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::machines::Machine;
-use eomgen_discover::thresholds::SHIFTED;
+use eomgen_discover::thresholds::MAX_PRIOR_DEVIATION;
 
 /// Default priors of a sensor: standard deviations of its gain, of its bias relative to the noise,
 /// and of its delay in samples.
@@ -163,7 +163,7 @@ fn normal(draw: &mut ChaCha8Rng) -> f64 {
 fn truncated_normal(draw: &mut ChaCha8Rng) -> f64 {
     loop {
         let value = normal(draw);
-        if value.abs() < SHIFTED {
+        if value.abs() < MAX_PRIOR_DEVIATION {
             return value;
         }
     }

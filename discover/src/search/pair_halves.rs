@@ -2,17 +2,17 @@
 //! there, the other is fitted on its own from the end of the fit of the pair, because its earlier
 //! fit may have ended in another minimum.
 
-use crate::fit::preliminary::PreliminaryFit;
+use crate::fit::preliminary_fit::PreliminaryFit;
 use crate::ids::{EffectId, ResponseId};
-use crate::search::acceptance::{EffectUnknown, significance};
-use crate::search::fitted::{FittedHypothesis, full_fits};
-use crate::search::hypothesis::{Hypothesis, half_alone};
-use crate::search::pool::Pool;
+use crate::search::acceptance::{EffectUnknown, compute_t_value};
+use crate::search::hypothesis::{Hypothesis, fit_half_from_pair};
+use crate::search::hypothesis_fits::{FittedHypothesis, run_full_fits};
+use crate::search::pool::CandidatePool;
 use crate::thresholds;
 
 /// Fits the remaining effect of pairs with a negligible one, each effect once. Pairs with large
 /// residuals, or that need both effects, are skipped.
-pub fn halves_alone(pool: &Pool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
+pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     let mut known: Vec<ResponseId> = Vec::new();
     let mut preliminaries = Vec::new();
     for pair in pairs {
@@ -28,25 +28,27 @@ pub fn halves_alone(pool: &Pool<'_>, pairs: &[FittedHypothesis]) -> Vec<FittedHy
             preliminaries.push(found);
         }
     }
-    full_fits(pool, preliminaries)
+    run_full_fits(pool, preliminaries)
 }
 
 /// The half of a pair that is needed, where the other is not.
-fn needed(pool: &Pool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
-    let little = thresholds::CLOSE * pool.context.floor;
+fn needed(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
+    let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor;
     let has_terms = |response: &ResponseId| {
         let response = &pool.screening.responses[*response];
         response.dropped_prior.is_none()
     };
     let is_pair = pair.responses.len() == 2 && pair.responses.iter().all(has_terms);
-    if !is_pair || pair.verdict.is_ok() || !pair.fit.leaves_less(little) {
+    if !is_pair || pair.verdict.is_ok() || !pair.fit.is_below(little) {
         return None;
     }
     let is_needed = |effect: &EffectId| {
         let of = |own: &&EffectUnknown| own.effect == *effect && !own.is_shape;
-        let mut own = pair.own.iter().filter(of);
-        let is_free = own.all(|own| !pair.fit.is_held(own.unknown));
-        is_free && significance(&pair.fit, &pair.own, *effect) >= thresholds::SIGNIFICANCE
+        let mut own = pair.effect_unknowns.iter().filter(of);
+        let is_free = own.all(|own| !pair.fit.is_at_bound(own.unknown));
+        is_free
+            && compute_t_value(&pair.fit, &pair.effect_unknowns, *effect)
+                >= thresholds::MIN_SIGNIFICANCE
     };
     let needed: Vec<EffectId> = EffectId::first(2).filter(is_needed).collect();
     match needed[..] {
@@ -57,20 +59,20 @@ fn needed(pool: &Pool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
 
 /// A half of a pair, begun where the pair ended.
 fn begun(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     pair: &FittedHypothesis,
     half: EffectId,
 ) -> Option<(Hypothesis, PreliminaryFit)> {
     let theta = &pair.fit.train.estimate.theta;
-    let own = pair.own.iter().filter(|own| own.effect == half);
+    let own = pair.effect_unknowns.iter().filter(|own| own.effect == half);
     let own: Vec<&EffectUnknown> = own.collect();
     let scaling = own.iter().filter(|own| !own.is_shape);
     let hypothesis = Hypothesis {
         responses: vec![pair.responses[half.index()]],
-        deleted: None,
-        sizes: scaling.map(|own| theta[own.unknown] - own.base).collect(),
+        replaced_parameter: None,
+        predicted_sizes: scaling.map(|own| theta[own.unknown] - own.base).collect(),
     };
     let values: Vec<f64> = own.iter().map(|own| theta[own.unknown]).collect();
-    let preliminary = half_alone(pool, &hypothesis, &pair.fit, &values).ok()?;
+    let preliminary = fit_half_from_pair(pool, &hypothesis, &pair.fit, &values).ok()?;
     Some((hypothesis, preliminary))
 }

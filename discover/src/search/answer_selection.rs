@@ -1,13 +1,16 @@
 //! Result of a round: the named hypothesis.
 
 use crate::search::alternatives::test_alternatives;
-use crate::search::pool::Pool;
-use crate::search::round::Round;
-use crate::search::selected::{Selected, best_of, selected};
-use crate::search::tested::TestedPool;
+use crate::search::pool::CandidatePool;
+use crate::search::round::SearchRound;
+use crate::search::selection::{SelectedHypothesis, select_best_fit, select_hypothesis};
+use crate::search::tested_pool::TestedPool;
 
 /// Returns the named hypothesis of all tested ones; `None` if none is accepted.
-pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
+pub fn select_answer(
+    round: &SearchRound<'_>,
+    mut tested: Vec<TestedPool>,
+) -> Option<SelectedHypothesis> {
     let least = |tested: &TestedPool| {
         let accepted = tested
             .fitted_hypotheses
@@ -24,13 +27,13 @@ pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected
         screening,
         mut fitted_hypotheses,
     } = tested.swap_remove(best?);
-    fitted_hypotheses.retain(|fitted| fitted.explains);
-    if let Some(answer) = best_of(&fitted_hypotheses) {
-        let pool = Pool::new(round.context, &candidates, &screening, true);
+    fitted_hypotheses.retain(|fitted| fitted.explains_records);
+    if let Some(answer) = select_best_fit(&fitted_hypotheses) {
+        let pool = CandidatePool::new(round.context, &candidates, &screening, true);
         test_alternatives(&pool, &mut fitted_hypotheses, answer);
     }
-    fitted_hypotheses.retain(|fitted| fitted.explains);
-    selected(
+    fitted_hypotheses.retain(|fitted| fitted.explains_records);
+    select_hypothesis(
         round.context,
         TestedPool {
             candidates,

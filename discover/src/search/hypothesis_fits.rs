@@ -5,50 +5,50 @@ use std::fmt;
 use crate::ids::ResponseId;
 use rayon::prelude::*;
 
-use crate::fit::fitted::Fit;
-use crate::fit::full;
-use crate::fit::preliminary::PreliminaryFit;
-use crate::search::acceptance::{EffectUnknown, TestStatistics, acceptance_test, explains};
-use crate::search::hypothesis::{self, Hypothesis, own_unknowns};
-use crate::search::pool::Pool;
+use crate::fit::fit_result::Fit;
+use crate::fit::full_fit;
+use crate::fit::preliminary_fit::PreliminaryFit;
+use crate::search::acceptance::{EffectUnknown, TestStatistics, test_acceptance, test_explanation};
+use crate::search::hypothesis::{self, Hypothesis, list_effect_unknowns};
+use crate::search::pool::CandidatePool;
 use crate::search::rejection::Rejection;
-use crate::search::split_sample::SplitSample;
+use crate::search::split_sample::SplitSampleTest;
 
 /// A hypothesis with its full fit.
 pub struct FittedHypothesis {
     /// Responses of its candidates.
     pub responses: Vec<ResponseId>,
     /// Unknowns of its candidates.
-    pub own: Vec<EffectUnknown>,
+    pub effect_unknowns: Vec<EffectUnknown>,
     /// Fit with the candidates.
     pub fit: Fit,
     /// Result of the acceptance test.
     pub verdict: Result<TestStatistics, Rejection>,
     /// Whether the candidates explain the records, even if their sizes are uncertain. They are then
     /// equivalent to an accepted effect.
-    pub explains: bool,
+    pub explains_records: bool,
     /// P-value of the test records.
     pub p_value: Option<f64>,
 }
 
 /// Fits hypotheses to the beginnings of windows in parallel; the best first.
-pub fn preliminary_fits(
-    pool: &Pool<'_>,
+pub fn run_preliminary_fits(
+    pool: &CandidatePool<'_>,
     hypotheses: Vec<Hypothesis>,
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
-    let alone = pool.screening.predicted(&[]).cost;
-    let of = match pool.is_whole {
+    let alone = pool.screening.predict(&[]).cost;
+    let of = match pool.uses_whole_windows {
         true => "squared residual",
         false => "initial-segment residual",
     };
     // Said as each ends: some take long.
     let fitted = |hypothesis: Hypothesis| {
-        let preliminary = hypothesis::preliminary(pool, &hypothesis);
+        let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
         let left = match &preliminary {
             Ok(fit) => format!("{:.1} % of the {of} remains", 100.0 * fit.cost / alone),
             Err(error) => error.to_string(),
         };
-        let label = hypothesis::label(pool, &hypothesis);
+        let label = hypothesis::describe_hypothesis(pool, &hypothesis);
         (pool.context.progress)(&format!("  {label}: {left}"));
         Some((hypothesis, preliminary.ok()?))
     };
@@ -59,22 +59,22 @@ pub fn preliminary_fits(
 }
 
 /// Continues preliminary fits as full fits in parallel.
-pub fn full_fits(
-    pool: &Pool<'_>,
+pub fn run_full_fits(
+    pool: &CandidatePool<'_>,
     preliminaries: Vec<(Hypothesis, PreliminaryFit)>,
 ) -> Vec<FittedHypothesis> {
     let held_out = match preliminaries.is_empty() {
         true => None,
-        false => SplitSample::of(pool.context.problem, pool.context.fit),
+        false => SplitSampleTest::from_fit(pool.context.problem, pool.context.fit),
     };
     let fitted = |(hypothesis, preliminary): (Hypothesis, PreliminaryFit)| {
-        let new = full::complete(pool.context.problem, preliminary);
+        let new = full_fit::complete_fit(pool.context.problem, preliminary);
         let tested = new.map(|new| tested(pool, &hypothesis, new, held_out.as_ref()));
         let outcome = match &tested {
             Ok(fitted) => fitted.to_string(),
             Err(error) => error.to_string(),
         };
-        let label = hypothesis::label(pool, &hypothesis);
+        let label = hypothesis::describe_hypothesis(pool, &hypothesis);
         (pool.context.progress)(&format!("  {label}: {outcome}"));
         tested.ok()
     };
@@ -83,23 +83,23 @@ pub fn full_fits(
 
 /// A hypothesis judged by its fit in full.
 fn tested(
-    pool: &Pool<'_>,
+    pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     fit: Fit,
-    held_out: Option<&SplitSample>,
+    held_out: Option<&SplitSampleTest>,
 ) -> FittedHypothesis {
-    let own = own_unknowns(pool, hypothesis);
-    let p_value = held_out.and_then(|of| of.p_value(&fit, &own));
-    pool.context.problem.judged.count();
-    let verdict = acceptance_test(pool.context.fit, &fit, &own);
+    let own = list_effect_unknowns(pool, hypothesis);
+    let p_value = held_out.and_then(|of| of.compute_p_value(&fit, &own));
+    pool.context.problem.tested_hypotheses.increment();
+    let verdict = test_acceptance(pool.context.fit, &fit, &own);
     let verdict = verdict.map(|statistics| TestStatistics {
         p_value,
         ..statistics
     });
     FittedHypothesis {
         responses: hypothesis.responses.clone(),
-        explains: explains(pool.context.fit, &fit, &own).is_ok(),
-        own,
+        explains_records: test_explanation(pool.context.fit, &fit, &own).is_ok(),
+        effect_unknowns: own,
         fit,
         verdict,
         p_value,

@@ -6,7 +6,7 @@ use eomgen_model_spec::span::Span;
 
 /// Returns the inputs that may be replaced. Prescribed motions are excluded because their rates
 /// would have to be replaced too.
-pub fn replaceable(model: &Model) -> impl Iterator<Item = &Input> {
+pub fn list_replaceable(model: &Model) -> impl Iterator<Item = &Input> {
     let inputs = model.inputs.iter();
     inputs.filter(|input| input.rate.is_none() && input.rate_of.is_none())
 }
@@ -69,7 +69,7 @@ fn term(term: &Term) -> (&str, Span, &Expr) {
 }
 
 /// Returns the entries of each section that contain an input.
-pub fn standing(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
+pub fn find_occurrences(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
     let holds = |expr: &Expr| {
         let mut found = false;
         expr.visit(&mut |part| {
@@ -101,14 +101,16 @@ pub fn standing(model: &Model, input: &str) -> Vec<(Section, Vec<String>)> {
 }
 
 /// Returns the edits that replace an input by an expression everywhere.
-pub fn in_the_place_of(model: &Model, input: &str, acting: &str) -> Vec<Edit> {
-    let edits = standing(model, input).into_iter().map(|(section, terms)| {
-        Edit::Substitute(Substitution {
-            section,
-            terms,
-            find: input.to_owned(),
-            replace: acting.to_owned(),
-        })
-    });
+pub fn replace_input(model: &Model, input: &str, acting: &str) -> Vec<Edit> {
+    let edits = find_occurrences(model, input)
+        .into_iter()
+        .map(|(section, terms)| {
+            Edit::Substitute(Substitution {
+                section,
+                terms,
+                find: input.to_owned(),
+                replace: acting.to_owned(),
+            })
+        });
     edits.collect()
 }

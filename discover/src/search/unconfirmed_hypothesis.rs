@@ -1,25 +1,25 @@
 //! Hypotheses that the training records support and the held-out records do not.
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
-use crate::search::fitted::FittedHypothesis;
+use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::rejection::Rejection;
-use crate::search::tested::TestedPool;
+use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// A hypothesis that explains the training records but not the held-out records.
-pub struct Unconfirmed {
+pub struct UnconfirmedHypothesis {
     /// Description of the hypothesis.
     pub label: String,
     /// Its unknowns in the fit.
-    pub own: Vec<UnknownId>,
+    pub effect_unknowns: Vec<UnknownId>,
     /// Fit with the hypothesis.
     pub fit: Fit,
 }
 
 /// Returns, for a round without an accepted effect, the hypothesis with the lowest training
 /// residual, if only the held-out records reject it. `before`: fit without it.
-pub fn unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Unconfirmed> {
+pub fn find_unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<UnconfirmedHypothesis> {
     let accepted = |pool: &TestedPool| {
         let mut fitted = pool.fitted_hypotheses.iter();
         fitted.any(|fitted| fitted.verdict.is_ok())
@@ -39,9 +39,13 @@ pub fn unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Unconfirme
         let candidate = pool.screening.responses[*response].candidate;
         pool.candidates[candidate].label()
     });
-    Some(Unconfirmed {
+    Some(UnconfirmedHypothesis {
         label: labels.collect::<Vec<String>>().join(" and "),
-        own: fitted.own.iter().map(|own| own.unknown).collect(),
+        effect_unknowns: fitted
+            .effect_unknowns
+            .iter()
+            .map(|own| own.unknown)
+            .collect(),
         fit: fitted.fit,
     })
 }
@@ -53,5 +57,5 @@ fn is_unconfirmed(fitted: &FittedHypothesis, before: &Fit) -> bool {
         fitted.verdict,
         Err(Rejection::HeldOut(_) | Rejection::StandardErrors(_))
     );
-    by_held_out && fitted.fit.train.rms * thresholds::CONTRADICTS < before.train.rms
+    by_held_out && fitted.fit.train.rms * thresholds::MIN_CONTRADICTION_RATIO < before.train.rms
 }

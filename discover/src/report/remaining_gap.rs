@@ -2,21 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use crate::report::quantity::plain;
+use crate::report::quantity::format_number;
 use crate::report::result::ChannelGap;
 use crate::thresholds;
 
 /// Model whose gap is reported.
 #[derive(Clone, Copy)]
-pub(crate) enum Stage {
+pub(crate) enum ModelStage {
     /// The original model.
-    Before,
+    Original,
     /// The model with the found effects.
-    After,
+    Extended,
 }
 
 /// Gap of the channel with the largest gap on the held-out records, in noise floors.
-pub(crate) struct Left {
+pub(crate) struct RemainingGap {
     /// Multiple of the noise floor.
     pub(crate) floors: f64,
     /// The same of the channel of which most is left on the training records.
@@ -25,11 +25,11 @@ pub(crate) struct Left {
     is_only: bool,
 }
 
-impl Left {
+impl RemainingGap {
     /// Finds the largest remaining gap of the channels.
-    pub(crate) fn of(gap: &BTreeMap<String, ChannelGap>, stage: Stage) -> Self {
+    pub(crate) fn from_channels(gap: &BTreeMap<String, ChannelGap>, stage: ModelStage) -> Self {
         let of = |gap: &ChannelGap| match (stage, gap.after) {
-            (Stage::After, Some(after)) => after,
+            (ModelStage::Extended, Some(after)) => after,
             _ => gap.before,
         };
         let floors = gap
@@ -48,29 +48,29 @@ impl Left {
 
     /// Returns true if the gap, on either set of records, is so large that another effect may be
     /// missing.
-    pub(crate) fn is_much(&self) -> bool {
+    pub(crate) fn is_large(&self) -> bool {
         let most = self.floors.max(self.training);
-        most > thresholds::MAY_STAND_IN || !self.floors.is_finite()
+        most > thresholds::MAX_FLOORS_FOR_CERTAINTY || !self.floors.is_finite()
     }
 
     /// Returns a note if the missing effect acts in the held-out records only. A search in the
     /// training records cannot find it.
-    pub(crate) fn note(&self) -> Option<String> {
-        let is_hidden = self.training < thresholds::CLOSE
-            && self.floors > thresholds::MAY_STAND_IN
+    pub(crate) fn note_missing_in_training(&self) -> Option<String> {
+        let is_hidden = self.training < thresholds::MAX_FLOOR_RATIO_TO_STOP
+            && self.floors > thresholds::MAX_FLOORS_FOR_CERTAINTY
             && self.floors.is_finite();
         is_hidden.then(|| {
             format!(
                 "the training residual is {} noise floors, the held-out residual {}: the missing effect hardly \
                  acts in the training records; add a record that shows it to `train`",
                 counted(self.training),
-                self.words()
+                self.describe()
             )
         })
     }
 
     /// Returns text such as `1.2 noise floors in tip`.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         let number = match self.floors {
             floors if floors.is_nan() => return "an unknown number of noise floors".to_owned(),
             floors if floors.is_infinite() => {
@@ -78,10 +78,11 @@ impl Left {
             }
             floors => counted(floors),
         };
-        let of_training = match self.floors <= thresholds::MAY_STAND_IN && self.is_much() {
-            true => format!(", {} on the training records", counted(self.training)),
-            false => String::new(),
-        };
+        let of_training =
+            match self.floors <= thresholds::MAX_FLOORS_FOR_CERTAINTY && self.is_large() {
+                true => format!(", {} on the training records", counted(self.training)),
+                false => String::new(),
+            };
         match self.is_only {
             true => format!("{number} noise floors{of_training}"),
             false => format!("{number} noise floors in {}{of_training}", self.channel),
@@ -89,8 +90,8 @@ impl Left {
     }
 
     /// Returns an explanation that follows the text of `describe`.
-    pub(crate) fn meaning(&self) -> &'static str {
-        match self.floors < thresholds::ONE_FLOOR {
+    pub(crate) fn explain_level(&self) -> &'static str {
+        match self.floors < thresholds::MAX_FLOORS_OF_CORRECT_MODEL {
             true => ", the level of a correct model",
             false => " (1 = a correct model)",
         }
@@ -100,6 +101,6 @@ impl Left {
 fn counted(floors: f64) -> String {
     match floors < 10.0 {
         true => format!("{floors:.1}"),
-        false => plain(floors, 2),
+        false => format_number(floors, 2),
     }
 }

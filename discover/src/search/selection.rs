@@ -5,28 +5,28 @@ use crate::ids::{EffectId, FittedId, ResponseId};
 use std::cmp::Ordering;
 
 use crate::catalogue::candidate::Candidate;
-use crate::fit::fitted::Fit;
-use crate::model::unknowns::What;
-use crate::search::acceptance::{EffectUnknown, test_statistics};
-use crate::search::context::Context;
-use crate::search::fitted::FittedHypothesis;
-use crate::search::pairs::other_halves;
+use crate::fit::fit_result::Fit;
+use crate::model::unknowns::UnknownKind;
+use crate::search::acceptance::{EffectUnknown, compute_test_statistics};
+use crate::search::context::RoundContext;
+use crate::search::hypothesis_fits::FittedHypothesis;
+use crate::search::pairs::fit_other_halves;
 use crate::search::parameter_offsets;
-use crate::search::pool::Pool;
+use crate::search::pool::CandidatePool;
 use crate::search::screening::Screening;
-use crate::search::tested::TestedPool;
+use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// The named hypothesis.
-pub struct Selected {
+pub struct SelectedHypothesis {
     /// Its candidates, in the order of its responses.
     pub candidates: Vec<Candidate>,
     /// The fitted hypothesis.
-    pub fitted: FittedHypothesis,
+    pub hypothesis: FittedHypothesis,
     /// Candidates that are indistinguishable from each of them.
-    pub equivalent: Vec<Vec<Candidate>>,
+    pub equivalents: Vec<Vec<Candidate>>,
     /// Effect of a pair that was accepted on its own.
-    pub half: Option<AcceptedHalf>,
+    pub accepted_half: Option<AcceptedHalf>,
 }
 
 /// Effect of a pair that was accepted on its own, as an intermediate step.
@@ -48,21 +48,24 @@ struct IndistinguishableHalf {
 /// Selects the named hypothesis among the fitted ones of a round; `None` if none is accepted. A
 /// shifted parameter without a declared uncertainty is less plausible and is named only if its
 /// residual is clearly lower than that of similar candidates.
-pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
+pub fn select_hypothesis(
+    context: RoundContext<'_>,
+    tested: TestedPool,
+) -> Option<SelectedHypothesis> {
     let selected = best(context, with_other_halves(context, tested))?;
     let [candidate] = &selected.candidates[..] else {
         return Some(selected);
     };
-    let fit = &selected.fitted.fit;
-    let Some(similar) = parameter_offsets::similar_offsets(context, candidate) else {
+    let fit = &selected.hypothesis.fit;
+    let Some(similar) = parameter_offsets::fit_similar_offsets(context, candidate) else {
         return Some(selected);
     };
-    let own = similar.selected;
+    let own = similar.selected_response;
     let TestedPool {
         candidates,
         screening,
         fitted_hypotheses,
-    } = similar.tested;
+    } = similar.tested_pool;
     let (better, others): (Vec<FittedHypothesis>, Vec<FittedHypothesis>) = fitted_hypotheses
         .into_iter()
         .partition(|fitted| fitted.verdict.is_ok() && is_clearly_better(&fitted.fit, fit));
@@ -81,28 +84,33 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
         is_indistinguishable(fit, &fitted.fit, similarity)
     });
     let undeclared: Vec<Candidate> = indistinguishable.map(|fitted| of(fitted).clone()).collect();
-    let equivalent = [&selected.equivalent[0][..], &undeclared].concat();
-    Some(Selected {
-        equivalent: vec![equivalent],
+    let equivalent = [&selected.equivalents[0][..], &undeclared].concat();
+    Some(SelectedHypothesis {
+        equivalents: vec![equivalent],
         ..selected
     })
 }
 
 /// The fitted hypotheses of a round with, if a pair is best, further pairs with what looks like one
 /// of its halves; and of a better one found so, again, while it leaves more than a right model.
-fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
+fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
         screening,
         mut fitted_hypotheses,
     } = tested;
-    let pool = Pool::new(context, &candidates, &screening, context.is_whole());
+    let pool = CandidatePool::new(
+        context,
+        &candidates,
+        &screening,
+        context.starts_with_whole_windows(),
+    );
     let mut known = None;
-    while let Some(best) = best_of(&fitted_hypotheses)
+    while let Some(best) = select_best_fit(&fitted_hypotheses)
         && known != Some(best)
     {
-        let mut further = other_halves(&pool, &fitted_hypotheses, best);
-        further.retain(|fitted| fitted.explains);
+        let mut further = fit_other_halves(&pool, &fitted_hypotheses, best);
+        further.retain(|fitted| fitted.explains_records);
         fitted_hypotheses.extend(further);
         if fitted_hypotheses[best].fit.is_at_floor(context.floor) {
             break;
@@ -119,18 +127,18 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
 /// The accepted hypothesis that is best, with what is indistinguishable from it among the others.
 /// Hypotheses that the records cannot distinguish are ordered: first those that contradict no declared prior of
 /// a sensor, then by the number of unknowns, then by the deviation of a declared parameter.
-fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
+fn best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothesis> {
     let TestedPool {
         candidates,
         screening,
         mut fitted_hypotheses,
     } = tested;
-    let least = best_of(&fitted_hypotheses)?;
+    let least = select_best_fit(&fitted_hypotheses)?;
     let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
     // A number that is off adds nothing to the model.
     let scales = |fitted: &FittedHypothesis| {
         let mut of = fitted.responses.iter();
-        of.any(|response| candidate(*response).scaled.is_some())
+        of.any(|response| candidate(*response).scaled_stiffness.is_some())
     };
     let is_simpler = |id: &FittedId| {
         let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
@@ -139,7 +147,7 @@ fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
             _ => false,
         };
         let is_likelier = contradicts_sensor(context, least) && !contradicts_sensor(context, other);
-        (other.own.len() < least.own.len()
+        (other.effect_unknowns.len() < least.effect_unknowns.len()
             || is_less_off
             || is_likelier
             || (scales(least) && !scales(other)))
@@ -150,7 +158,7 @@ fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let order = |id: &FittedId| {
         (
             contradicts_sensor(context, &fitted_hypotheses[*id]),
-            fitted_hypotheses[*id].own.len(),
+            fitted_hypotheses[*id].effect_unknowns.len(),
             off(&fitted_hypotheses[*id]).unwrap_or(0.0),
         )
     };
@@ -167,28 +175,33 @@ fn best(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
             continue;
         };
         let (other, own) = (candidate(half.response), &own[half.effect]);
-        if (&other.effect, &other.on) != (&own.effect, &own.on) {
+        if (&other.effect, &other.site) != (&own.effect, &own.site) {
             equivalent[half.effect].push(other.clone());
         }
     }
-    Some(Selected {
-        equivalent,
-        half: half_way(&fitted, &fitted_hypotheses),
+    Some(SelectedHypothesis {
+        equivalents: equivalent,
+        accepted_half: half_way(&fitted, &fitted_hypotheses),
         candidates: own,
-        fitted,
+        hypothesis: fitted,
     })
 }
 
 /// Returns true if a hypothesis moves a sensor beyond a prior that the dataset states for it.
-fn contradicts_sensor(context: Context<'_>, fitted: &FittedHypothesis) -> bool {
+fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> bool {
     let channels = &context.problem.dataset.channels;
-    let own = fitted.own.iter().filter(|own| own.prior.is_some());
-    own.map(|own| &fitted.fit.unknowns[own.unknown].what)
+    let own = fitted
+        .effect_unknowns
+        .iter()
+        .filter(|own| own.dropped_prior_sd.is_some());
+    own.map(|own| &fitted.fit.unknowns[own.unknown].kind)
         .any(|what| match what {
-            What::Gain(channel) => channels[channel.index()].priors.gain.is_some(),
-            What::Bias(channel) => channels[channel.index()].priors.bias.is_some(),
-            What::Delay(channel) => channels[channel.index()].priors.delay.is_some(),
-            What::Parameter(_) | What::Inverse(_) | What::InputDelay => false,
+            UnknownKind::Gain(channel) => channels[channel.index()].priors.gain.is_some(),
+            UnknownKind::Bias(channel) => channels[channel.index()].priors.bias.is_some(),
+            UnknownKind::Delay(channel) => channels[channel.index()].priors.delay.is_some(),
+            UnknownKind::Parameter(_)
+            | UnknownKind::InverseParameter(_)
+            | UnknownKind::InputDelay => false,
         })
 }
 
@@ -196,14 +209,15 @@ fn contradicts_sensor(context: Context<'_>, fitted: &FittedHypothesis) -> bool {
 /// not.
 fn off(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
-    let of = |own: &EffectUnknown| Some((theta[own.unknown] - own.base).abs() / own.prior?);
-    let all: Option<Vec<f64>> = fitted.own.iter().map(of).collect();
+    let of =
+        |own: &EffectUnknown| Some((theta[own.unknown] - own.base).abs() / own.dropped_prior_sd?);
+    let all: Option<Vec<f64>> = fitted.effect_unknowns.iter().map(of).collect();
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
 /// Returns the accepted hypothesis with the lowest residual. A pair is selected only if its
 /// residual is clearly lower than that of the best single effect.
-pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
+pub fn select_best_fit(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
     let rms = |id: &FittedId| fitted_hypotheses[*id].fit.rms();
     let least = |count: fn(usize) -> bool| {
         let is_such =
@@ -216,7 +230,7 @@ pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
         (Some(single), Some(pair)) => {
             let is_clear = fitted_hypotheses[pair]
                 .fit
-                .leaves_clearly_less(&fitted_hypotheses[single].fit);
+                .is_clearly_below(&fitted_hypotheses[single].fit);
             Some(if is_clear { pair } else { single })
         }
         (one, two) => one.or(two),
@@ -226,10 +240,10 @@ pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
 /// Whether a fit leaves clearly less than another: on both sets of records, or of the test records
 /// for certain and of the training records no more, where the other's further unknowns help it.
 fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
-    let statistics = test_statistics(other, one, &[]);
-    let is_certain = statistics.held_out > thresholds::HELD_OUT
-        && statistics.held_out_errors > thresholds::STANDARD_ERRORS;
-    one.leaves_clearly_less(other) || (is_certain && one.train.rms < other.train.rms)
+    let statistics = compute_test_statistics(other, one, &[]);
+    let is_certain = statistics.held_out_reduction > thresholds::MIN_HELD_OUT_REDUCTION
+        && statistics.reduction_in_standard_errors > thresholds::MIN_REDUCTION_STANDARD_ERRORS;
+    one.is_clearly_below(other) || (is_certain && one.train.rms < other.train.rms)
 }
 
 /// What of a hypothesis the records do not distinguish from another's, if that is as large and
@@ -269,9 +283,9 @@ fn similarity(
     b: ResponseId,
 ) -> f64 {
     let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
-    let similarity = screening.similarity(a, b);
+    let similarity = screening.compute_similarity(a, b);
     let is_same =
-        similarity > thresholds::INDISTINGUISHABLE && candidate(a).is_other_name_of(candidate(b));
+        similarity > thresholds::MIN_SIMILARITY_OF_RIVALS && candidate(a).is_alias_of(candidate(b));
     match is_same {
         true => 1.0,
         false => similarity,
@@ -282,15 +296,20 @@ fn similarity(
 /// similar, and the other leaves no more of the test records; nor, but for two names of one thing, of
 /// the training records. One that leaves less, though not so clearly that it is named instead, is no worse a name.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
-    let statistics = test_statistics(one, other, &[]);
-    let (part, errors) = (-statistics.held_out, -statistics.held_out_errors);
+    let statistics = compute_test_statistics(one, other, &[]);
+    let (part, errors) = (
+        -statistics.held_out_reduction,
+        -statistics.reduction_in_standard_errors,
+    );
     // Fits that leave the same to the last digit have no error to be judged by.
-    let as_good =
-        errors.is_nan() || errors < thresholds::STANDARD_ERRORS || part < thresholds::DISTINGUISHED;
-    let is_told = other.train.rms > (1.0 + thresholds::DISTINGUISHED) * one.train.rms
-        && statistics.information < -thresholds::INFORMATION;
-    let is_same = similarity > thresholds::SAME && part < thresholds::HELD_OUT;
-    similarity > thresholds::INDISTINGUISHABLE && (is_same || (as_good && !is_told))
+    let as_good = errors.is_nan()
+        || errors < thresholds::MIN_REDUCTION_STANDARD_ERRORS
+        || part < thresholds::MAX_CLASS_DIFFERENCE;
+    let is_told = other.train.rms > (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * one.train.rms
+        && statistics.information_gain < -thresholds::MIN_INFORMATION_GAIN;
+    let is_same = similarity > thresholds::MIN_SIMILARITY_OF_SAME_EFFECT
+        && part < thresholds::MIN_HELD_OUT_REDUCTION;
+    similarity > thresholds::MIN_SIMILARITY_OF_RIVALS && (is_same || (as_good && !is_told))
 }
 
 /// The half of a pair that was accepted alone, and the test gap that it left: a step of the way.

@@ -6,14 +6,14 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::gauss_newton::{
-    Estimate, derivatives_at, evaluated, step_with, with_states_corrected,
+    Estimate, compute_derivatives, correct_initial_states, evaluate_cost, step_with_correction,
 };
-use crate::fit::information::record_factor;
-use crate::fit::initial_states::carry;
+use crate::fit::information::compute_window_factor;
+use crate::fit::initial_states::update_carried_prior;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
-use crate::fit::variable_projection::triangular_factor;
+use crate::fit::variable_projection::compute_triangular_factor;
 use crate::ids::{UnknownId, WindowId};
 use crate::thresholds;
 
@@ -28,27 +28,31 @@ fn is_ill_conditioned(
     initial_states: &[Vec<f64>],
     linear: &[Option<WindowDerivatives>],
 ) -> bool {
-    let factor = record_factor(shooting.unknowns.len(), prior, initial_states, linear);
+    let factor = compute_window_factor(shooting.unknowns.len(), prior, initial_states, linear);
     let shown = factor.column_iter().filter(|column| column.norm() > 0.0);
     let columns: Vec<DVector<f64>> = shown.map(|column| column.normalize()).collect();
     !columns.is_empty()
-        && DMatrix::from_columns(&columns).singular_values().min() < thresholds::TANGENT_ERROR
+        && DMatrix::from_columns(&columns).singular_values().min() < thresholds::MAX_TANGENT_ERROR
 }
 
 /// Returns rows that transform the deviation of a state from its mean along the motions of the
 /// windows to unit covariance. The ends of a stiff spring move together, and so must their initial
 /// states.
-pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<DMatrix<f64>> {
+pub(crate) fn compute_whitening(
+    shooting: &Shooting<'_>,
+    estimate: &Estimate,
+) -> Option<DMatrix<f64>> {
     let ranges = shooting.ranges?;
     let mut simulation = shooting
         .model
-        .simulation(&shooting.values(&estimate.theta))
+        .create_simulation(&shooting.parameter_values(&estimate.theta))
         .ok()?;
     let mut states = Vec::new();
     for window in WindowId::first(shooting.windows.list.len()) {
         let samples = &shooting.windows.list[window];
         let inputs = shooting.windows.inputs(samples);
-        let motion = simulation.states(&estimate.initial_states[window], &samples.times, inputs);
+        let motion =
+            simulation.simulate_states(&estimate.initial_states[window], &samples.times, inputs);
         states.extend(motion.ok()?);
     }
     let count = states.len() as f64;
@@ -60,7 +64,7 @@ pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<
         (scaled[(row, state)] - mean[state]) / count.sqrt()
     });
     let least = DMatrix::from_diagonal_element(ranges.len(), ranges.len(), LEAST_RANGE);
-    let factor = triangular_factor(&deviations, &least);
+    let factor = compute_triangular_factor(&deviations, &least);
     let inverse = factor.transpose().try_inverse()?;
     Some(DMatrix::from_fn(
         ranges.len(),
@@ -70,15 +74,15 @@ pub(crate) fn whitening(shooting: &Shooting<'_>, estimate: &Estimate) -> Option<
 }
 
 /// Takes the final steps of a fit; returns the estimate and the derivatives there.
-pub(crate) fn settled(
+pub(crate) fn run_final_steps(
     shooting: &Shooting<'_>,
     prior: &mut InitialStatePrior,
     from: Estimate,
 ) -> (Estimate, Vec<Option<WindowDerivatives>>) {
-    let (estimate, linear) = steps(shooting, prior, from, derivatives_at);
-    let values = shooting.values(&estimate.theta);
-    let simulation = shooting.model.simulation(&values);
-    if simulation.is_ok_and(|simulation| simulation.differentiates_exactly())
+    let (estimate, linear) = steps(shooting, prior, from, compute_derivatives);
+    let values = shooting.parameter_values(&estimate.theta);
+    let simulation = shooting.model.create_simulation(&values);
+    if simulation.is_ok_and(|simulation| simulation.has_exact_derivatives())
         || !is_ill_conditioned(shooting, prior, &estimate.initial_states, &linear)
     {
         return (estimate, linear);
@@ -98,20 +102,20 @@ fn steps(
     derivatives: impl Fn(&Shooting<'_>, &Estimate) -> Vec<Option<WindowDerivatives>>,
 ) -> (Estimate, Vec<Option<WindowDerivatives>>) {
     let with_carried = |prior: &mut InitialStatePrior, estimate: Estimate| {
-        carry(shooting, prior, &estimate.theta, &estimate.initial_states);
-        evaluated(shooting, prior, estimate.theta, estimate.initial_states)
+        update_carried_prior(shooting, prior, &estimate.theta, &estimate.initial_states);
+        evaluate_cost(shooting, prior, estimate.theta, estimate.initial_states)
     };
     let mut present = with_carried(prior, from);
     let mut linear = derivatives(shooting, &present);
-    for _ in 0..thresholds::LAST_STEPS {
-        let corrected = |next| with_states_corrected(shooting, prior, next, &linear);
-        let Some(next) = step_with(shooting, prior, &present, &linear, corrected) else {
+    for _ in 0..thresholds::MAX_FINAL_STEPS {
+        let corrected = |next| correct_initial_states(shooting, prior, next, &linear);
+        let Some(next) = step_with_correction(shooting, prior, &present, &linear, corrected) else {
             break;
         };
         let decrease = present.cost - next.cost;
         present = with_carried(prior, next);
         linear = derivatives(shooting, &present);
-        if decrease < thresholds::LEAST_INFORMATION * shooting.prior_weight {
+        if decrease < thresholds::MIN_FINAL_DECREASE * shooting.prior_weight {
             break;
         }
     }
@@ -141,14 +145,15 @@ fn central_differences(
             let steepest = columns.map(|column| column.amax()).fold(0.0, f64::max);
             let size = small_change(unknown.scale, steepest);
             // Beyond a bound that a prior sets there is motion too.
-            let reach = unknown.bounds.hull(unknown.limits);
+            let reach = unknown.bounds.join(unknown.bounds_without_prior);
             let ends = [size, -size].map(|change| {
                 let mut moved = theta.clone();
                 moved[id] = reach.clamp(theta[id] + change);
                 moved
             });
             let span = ends[0][id] - ends[1][id];
-            let [after, before] = ends.map(|theta| shooting.residuals(&theta, initial_states));
+            let [after, before] =
+                ends.map(|theta| shooting.compute_residuals(&theta, initial_states));
             columns_of(after, before, &vec![span; initial_states.len()])
         })
         .collect();
@@ -163,17 +168,20 @@ fn central_differences(
                 let mut moved = initial_states.clone();
                 let starts = moved.iter_mut().zip(&sizes);
                 starts.for_each(|(start, size)| start[state] += sign * size);
-                shooting.residuals(theta, &moved)
+                shooting.compute_residuals(theta, &moved)
             });
             let spans: Vec<f64> = sizes.iter().map(|size| 2.0 * size).collect();
             columns_of(after, before, &spans)
         })
         .collect();
-    let residuals = shooting.residuals(theta, initial_states);
+    let residuals = shooting.compute_residuals(theta, initial_states);
     let windows = residuals.into_iter().enumerate();
     windows
         .map(|(window, residual)| {
-            let Residual { values, last } = residual?;
+            let Residual {
+                values,
+                end_state: last,
+            } = residual?;
             let matrix = |columns: &[Columns]| {
                 let columns = columns.iter().map(|column| column[window].clone());
                 let columns: Vec<DVector<f64>> = columns.collect::<Option<_>>()?;
@@ -186,7 +194,7 @@ fn central_differences(
                 by_state: matrix(&by_state)?,
                 by_unknown: matrix(&by_unknown)?,
                 residual: DVector::from_vec(values),
-                last,
+                end_state: last,
             })
         })
         .collect()
@@ -198,7 +206,8 @@ type Columns = Vec<Option<DVector<f64>>>;
 /// Returns the change over which a difference is taken, of something with this scale of which the
 /// outputs, in standard deviations of their noise, have this largest derivative.
 fn small_change(scale: f64, steepest: f64) -> f64 {
-    (thresholds::CENTRAL_QUOTIENT * scale).min(thresholds::QUOTIENT / steepest)
+    (thresholds::CENTRAL_QUOTIENT_IN_SCALES * scale)
+        .min(thresholds::QUOTIENT_OUTPUT_CHANGE / steepest)
 }
 
 /// Returns difference quotients of each window's residuals.

@@ -1,7 +1,7 @@
 //! Tested candidates of a pool.
 
 use crate::catalogue::candidate::Candidate;
-use crate::search::fitted::FittedHypothesis;
+use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::screening::Screening;
 
 /// Candidates, their screening, and the fully fitted hypotheses.

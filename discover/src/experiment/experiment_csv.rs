@@ -4,10 +4,10 @@
 use eomgen_records::experiment::Played;
 
 use crate::experiment::bounds::Bounds;
-use crate::experiment::proposal::{Proposal, rest};
+use crate::experiment::proposal::{Proposal, rest_value};
 
 /// Returns the text of `experiment.csv`.
-pub(super) fn text(
+pub(super) fn write_experiment_csv(
     (bounds, times): (&Bounds, &[f64]),
     proposal: &Proposal,
     names: &[String],
@@ -18,15 +18,19 @@ pub(super) fn text(
         .collect();
     let heading: Vec<&str> = driven.iter().map(|place| names[*place].as_str()).collect();
     let mut text = format!("t,{}\n", heading.join(","));
-    for (t, value) in times.iter().zip(&proposal.values).step_by(bounds.hold) {
+    for (t, value) in times
+        .iter()
+        .zip(&proposal.values)
+        .step_by(bounds.samples_per_value)
+    {
         text += &format!("{}", rounded(played.time.from_si(*t)));
         for place in &driven {
-            let own = match *place == proposal.place {
+            let own = match *place == proposal.input_index {
                 true => *value,
                 false => {
                     let mut others = bounds.inputs.iter();
-                    let other = others.find(|other| other.place == *place);
-                    other.map_or(0.0, |other| rest(other.range))
+                    let other = others.find(|other| other.index == *place);
+                    other.map_or(0.0, |other| rest_value(other.range))
                 }
             };
             let unit = played.inputs[*place].as_ref();

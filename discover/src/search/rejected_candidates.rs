@@ -2,10 +2,10 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::ids::ResponseId;
-use crate::search::fitted::FittedHypothesis;
-use crate::search::found::Rejected;
-use crate::search::screening::NotExcited;
-use crate::search::tested::TestedPool;
+use crate::search::hypothesis_fits::FittedHypothesis;
+use crate::search::screening::UnexcitedCandidate;
+use crate::search::search_result::RejectedCandidate;
+use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// A reason, and whether it comes from a fit: that says more than what screening promised.
@@ -18,7 +18,7 @@ struct Reason {
 
 /// Notes the rejected candidates of a round, which replace their entries from earlier rounds.
 /// Within a round, a result of a fit is kept.
-pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
+pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]) {
     let mut fitted: Vec<String> = Vec::new();
     for tested in round {
         for (candidate, reason) in reasons(tested) {
@@ -27,10 +27,10 @@ pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
                 continue;
             }
             rejected.retain(|known| known.candidate.label() != label);
-            rejected.push(Rejected {
+            rejected.push(RejectedCandidate {
                 candidate: candidate.clone(),
                 reason: reason.text,
-                not_testable: reason.not_testable,
+                is_untestable: reason.not_testable,
                 p_value: reason.p_value,
             });
             if reason.is_of_fit {
@@ -43,9 +43,9 @@ pub fn note_rejected(rejected: &mut Vec<Rejected>, round: &[TestedPool]) {
 /// Why each candidate of a pool was not taken; what is taken in the end is in it, too.
 fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
     let screening = &tested.screening;
-    let not_excited = screening.not_excited.iter();
+    let not_excited = screening.unexcited.iter();
     let mut found: Vec<(&Candidate, Reason)> = not_excited
-        .map(|NotExcited { candidate, reason }| {
+        .map(|UnexcitedCandidate { candidate, reason }| {
             let reason = Reason {
                 text: reason.to_string(),
                 not_testable: true,
@@ -87,19 +87,19 @@ fn of_fit(fitted: &FittedHypothesis) -> Reason {
 fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
     let screening = &tested.screening;
     let response = &screening.responses[id];
-    let not_testable = response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION;
+    let not_testable = response.unexplained_fraction <= thresholds::MIN_UNEXPLAINED_FRACTION;
     let text = if not_testable {
         format!(
             "{:.1} % of its response can also be produced by initial states, refitted parameters and sensors",
             100.0 * (1.0 - response.unexplained_fraction)
         )
     } else {
-        let alone = screening.predicted(&[]).cost;
+        let alone = screening.predict(&[]).cost;
         let most = screening.responses.iter();
-        let most = most.map(|other| other.decrease).fold(0.0, f64::max);
+        let most = most.map(|other| other.cost_decrease).fold(0.0, f64::max);
         format!(
             "its predicted reduction of the squared residual is {:.1} %, the best is {:.1} %",
-            100.0 * response.decrease / alone,
+            100.0 * response.cost_decrease / alone,
             100.0 * most / alone
         )
     };

@@ -3,14 +3,14 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::experiment::next::ExperimentFile;
-use crate::report::experiment::sentences;
-use crate::report::quantity::{estimate, percent, plain, readable};
-use crate::report::result::{Discovery, FoundEffect, Status, Step};
-use crate::report::summary::words;
+use crate::experiment::next_experiment::ExperimentFile;
+use crate::report::experiment::describe_experiment;
+use crate::report::quantity::{format_estimate, format_number, format_percent, format_readable};
+use crate::report::result::{Discovery, EffectStatus, FoundEffect, SearchStep};
+use crate::report::summary::describe_effect;
 
 /// Lists the effects; empty if none were found, because the verdict reports this.
-pub(super) fn effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
+pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
     if effects.is_empty() {
         return html! {};
     }
@@ -26,20 +26,20 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
         rest.is_some_and(|rest| rest.starts_with(" = "))
     });
     html! {
-        h3 { (words(&effect.at)) }
+        h3 { (describe_effect(&effect.at)) }
         p {
-            @if !effect.says.is_empty() { (capitalised(&effect.says)) ". " }
+            @if !effect.description.is_empty() { (capitalised(&effect.description)) ". " }
             @match effect.status {
-                Status::Named => { "No other tested effect has the same response." },
-                Status::Provisional => {
+                EffectStatus::Named => { "No other tested effect has the same response." },
+                EffectStatus::Provisional => {
                     "It may be a substitute for another effect: a large residual remains, or a nuisance is at "
                     "the bound of the fit."
                 },
-                Status::Class => {
+                EffectStatus::Class => {
                     "The records do not separate it from "
-                    (effect.equivalent.iter().map(words).collect::<Vec<String>>().join(", or from ")) "."
+                    (effect.equivalents.iter().map(describe_effect).collect::<Vec<String>>().join(", or from ")) "."
                 },
-                Status::Empirical => { "It does not identify the cause." },
+                EffectStatus::Empirical => { "It does not identify the cause." },
             }
             @if let Some(order) = &effect.order {
                 " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
@@ -51,13 +51,13 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 " Experiment to separate them: " (experiment) "."
             }
             @if let Some(next) = &effect.next_experiment {
-                " " (readable(&sentences(next, files)))
+                " " (format_readable(&describe_experiment(next, files)))
             }
         }
         dl.values {
             @for (name, of) in &effect.parameters {
                 dt { code { (name) } }
-                dd { (estimate(of.value, of.sd, &of.unit)) }
+                dd { (format_estimate(of.value, of.sd, &of.unit)) }
             }
             @if !effect.term.is_empty() && !is_value {
                 dt { "in the specification" }
@@ -65,8 +65,8 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             }
             dt { "evidence" }
             dd {
-                "reduction of the held-out residual: " (percent(effect.statistics.held_out))
-                ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
+                "reduction of the held-out residual: " (format_percent(effect.statistics.held_out_reduction))
+                ", " (format_number(effect.statistics.reduction_in_standard_errors, 2)) " standard errors"
                 @if let Some(p) = effect.adjusted_p_value {
                     "; probability that noise alone gives as much for any fitted effect: " (probability(p))
                 }
@@ -79,7 +79,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
 fn probability(p: f64) -> String {
     match p < 1e-6 {
         true => "less than one in a million".to_owned(),
-        false => plain(p, 2),
+        false => format_number(p, 2),
     }
 }
 
@@ -91,7 +91,7 @@ fn capitalised(text: &str) -> String {
 }
 
 /// Lists the test gap after each step and the validation of the extended specification.
-pub(super) fn steps(discovery: &Discovery) -> Markup {
+pub(super) fn list_steps(discovery: &Discovery) -> Markup {
     let has_steps = discovery.steps.len() > 1;
     if !has_steps && discovery.validation.is_none() {
         return html! {};
@@ -109,7 +109,7 @@ pub(super) fn steps(discovery: &Discovery) -> Markup {
     )
 }
 
-fn step_table(steps: &[Step]) -> Markup {
+fn step_table(steps: &[SearchStep]) -> Markup {
     let rows = html! {
         @for step in steps {
             tr {
@@ -117,7 +117,7 @@ fn step_table(steps: &[Step]) -> Markup {
                     @if step.added.is_empty() { "original model" }
                     @else { "with " (step.added.join(", ").replace('_', " ")) }
                 }
-                td.number { (plain(step.test_rms, 3)) }
+                td.number { (format_number(step.test_rms, 3)) }
             }
         }
     };
@@ -133,10 +133,10 @@ fn validation_line(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};
     };
-    let left = |rms: f64| plain(rms, 3);
+    let left = |rms: f64| format_number(rms, 3);
     let written = "The equations of the extended specification were derived again; they ";
     html! {
-        @if validation.passed {
+        @if validation.has_passed {
             p {
                 (written) "pass all " (validation.checks.len()) " checks of " code { "eomgen validate" }
                 ". Its simulated residual is " (left(discovery.resimulation.train))
@@ -150,7 +150,7 @@ fn validation_line(discovery: &Discovery) -> Markup {
 }
 
 /// Shows added and changed lines of the specification with the lines that they replace.
-pub(super) fn change(before: &str, after: &str) -> Markup {
+pub(super) fn show_change(before: &str, after: &str) -> Markup {
     if before == after {
         return html! {};
     }

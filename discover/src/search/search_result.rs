@@ -1,20 +1,20 @@
 //! Result of the search: accepted and rejected effects.
 
 use crate::catalogue::candidate::Candidate;
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
-use crate::search::unconfirmed::Unconfirmed;
+use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
 
 /// An accepted effect.
 #[derive(Clone, Debug)]
-pub struct Accepted {
+pub struct AcceptedEffect {
     /// The effect at its site.
     pub candidate: Candidate,
     /// Its unknowns in the last fit.
     pub unknowns: Vec<UnknownId>,
     /// Candidates that are indistinguishable from it.
-    pub equivalent: Vec<Candidate>,
+    pub equivalents: Vec<Candidate>,
     /// Test statistics when it was added.
     pub statistics: TestStatistics,
     /// Gap of the test records before and after.
@@ -32,36 +32,36 @@ pub struct TestGap {
 
 /// A rejected candidate.
 #[derive(Clone, Debug)]
-pub struct Rejected {
+pub struct RejectedCandidate {
     /// The effect at its site.
     pub candidate: Candidate,
     /// Reason of the rejection.
     pub reason: String,
     /// Whether the records cannot show the effect.
-    pub not_testable: bool,
+    pub is_untestable: bool,
     /// P-value of the test records; `None` if the candidate was not fitted.
     pub p_value: Option<f64>,
 }
 
 /// Result of the search.
-pub struct Found {
+pub struct SearchResult {
     /// Fit of the model with its declared unknowns only.
-    pub null: Fit,
+    pub null_fit: Fit,
     /// Fit of the model with all accepted effects; `None` without accepted effects.
-    pub last: Option<Fit>,
+    pub extended_fit: Option<Fit>,
     /// Accepted effects in order of acceptance.
-    pub accepted: Vec<Accepted>,
+    pub accepted: Vec<AcceptedEffect>,
     /// Rejected candidates.
-    pub rejected: Vec<Rejected>,
+    pub rejected: Vec<RejectedCandidate>,
     /// Hypothesis that explains the training records but not the held-out records.
-    pub unconfirmed: Option<Unconfirmed>,
+    pub unconfirmed: Option<UnconfirmedHypothesis>,
     /// State of a round that reached the time limit, as a sentence.
     pub unfinished: Option<String>,
 }
 
-impl Found {
+impl SearchResult {
     /// Returns the fit with all accepted effects.
-    pub fn best(&self) -> &Fit {
-        self.last.as_ref().unwrap_or(&self.null)
+    pub fn best_fit(&self) -> &Fit {
+        self.extended_fit.as_ref().unwrap_or(&self.null_fit)
     }
 }

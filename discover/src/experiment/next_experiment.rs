@@ -12,43 +12,43 @@ pub struct Experiments {
     /// Files of the inputs.
     pub files: Vec<ExperimentFile>,
     /// Experiment that separates the class of each accepted effect; `None` if the effect is unique.
-    pub of_effects: Vec<Option<NextExperiment>>,
+    pub for_effects: Vec<Option<NextExperiment>>,
     /// Experiment that shows each rejected effect; `None` if none was searched.
-    pub of_rejected: Vec<Option<NextExperiment>>,
+    pub for_rejected: Vec<Option<NextExperiment>>,
 }
 
 impl Experiments {
     /// Creates a result without experiments for these numbers of accepted and rejected effects.
-    pub fn none(accepted: usize, rejected: usize) -> Self {
+    pub fn empty(accepted: usize, rejected: usize) -> Self {
         Self {
             files: Vec::new(),
-            of_effects: vec![None; accepted],
-            of_rejected: vec![None; rejected],
+            for_effects: vec![None; accepted],
+            for_rejected: vec![None; rejected],
         }
     }
 }
 
 /// Member of a class.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MemberAt {
+pub struct ClassMember {
     /// Name of the effect.
     pub effect: String,
     /// Name of its site.
-    pub on: String,
+    pub site: String,
 }
 
-impl MemberAt {
+impl ClassMember {
     /// Converts a candidate.
-    pub fn of(candidate: &Candidate) -> Self {
+    pub fn from_candidate(candidate: &Candidate) -> Self {
         Self {
             effect: candidate.effect.clone(),
-            on: candidate.on.clone(),
+            site: candidate.site.clone(),
         }
     }
 
     /// Returns effect and site as words.
-    pub fn words(&self) -> String {
-        format!("{} on {}", self.effect.replace('_', " "), self.on)
+    pub fn label(&self) -> String {
+        format!("{} on {}", self.effect.replace('_', " "), self.site)
     }
 }
 
@@ -72,12 +72,12 @@ pub struct ExperimentFile {
     pub members: [String; 2],
     /// Predicted sensor outputs of the first member, and of the second fitted to them, one column
     /// per channel, SI.
-    pub predicted: [Vec<Vec<f64>>; 2],
+    pub predictions: [Vec<Vec<f64>>; 2],
 }
 
 impl ExperimentFile {
     /// Returns the name of the file with this index.
-    pub(super) fn numbered(place: usize) -> String {
+    pub(super) fn numbered_name(place: usize) -> String {
         match place {
             0 => "experiment.csv".to_owned(),
             place => format!("experiment_{}.csv", place + 1),
@@ -87,11 +87,11 @@ impl ExperimentFile {
 
 /// Separation of two members by an experiment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct MemberPair {
     /// Member whose prediction is taken as the truth.
-    pub truth: MemberAt,
+    pub truth: ClassMember,
     /// Member that is fitted to it.
-    pub rival: MemberAt,
+    pub rival: ClassMember,
     /// RMS residual of the rival, in standard deviations of the noise.
     pub separation: f64,
     /// Channel with the largest residual.
@@ -100,11 +100,11 @@ pub struct Pair {
 
 /// Smallest detectable size of an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct DetectableSize {
     /// Parameter that scales the effect.
-    pub what: String,
+    pub parameter: String,
     /// Smallest detectable value, in `unit`.
-    pub from: f64,
+    pub smallest: f64,
     /// Unit.
     pub unit: String,
 }
@@ -117,35 +117,35 @@ pub struct NextExperiment {
     /// Name of the input; `None` if no input can be played.
     pub input: Option<String>,
     /// Description of the waveform.
-    pub form: Option<String>,
+    pub waveform: Option<String>,
     /// Smallest separation of the separated pairs, in standard deviations of the noise; of all
     /// pairs if none is separated.
     pub separation: Option<f64>,
     /// All pairs, in both directions.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<MemberPair>,
     /// Members that could not be fitted.
-    pub left_out: Vec<MemberAt>,
+    pub failed_members: Vec<ClassMember>,
     /// Smallest detectable size of an undetectable effect.
-    pub shows: Option<Shown>,
+    pub detectable: Option<DetectableSize>,
     /// Reason why no input can be played.
     pub reason: Option<String>,
     /// Origin of the bounds.
-    pub bounds: String,
+    pub bounds_source: String,
 }
 
 impl NextExperiment {
     /// Creates a result without an experiment for this reason.
-    pub(super) fn none(reason: &str, bounds: &Bounds) -> Self {
+    pub(super) fn without_experiment(reason: &str, bounds: &Bounds) -> Self {
         Self {
             file: None,
             input: None,
-            form: None,
+            waveform: None,
             separation: None,
             pairs: Vec::new(),
-            left_out: Vec::new(),
-            shows: None,
+            failed_members: Vec::new(),
+            detectable: None,
             reason: Some(reason.to_owned()),
-            bounds: bounds.words.clone(),
+            bounds_source: bounds.sources.clone(),
         }
     }
 }
@@ -156,12 +156,12 @@ impl fmt::Display for NoExperiment {
             Self::NoInput => {
                 f.write_str("no input can be played: the records drive no input that may vary")
             }
-            Self::Leaves(count, name) => write!(
+            Self::LeavesLimits(count, name) => write!(
                 f,
                 "none of the {count} tested inputs can be played: most of them violate the limits of {name}; \
                  expected wider [experiment] limits, or a smaller range"
             ),
-            Self::Unfollowed(count) => write!(
+            Self::SimulationFailed(count) => write!(
                 f,
                 "none of the {count} tested inputs can be played: the simulation fails"
             ),

@@ -3,16 +3,16 @@
 use eomgen_page::table;
 use maud::{Markup, html};
 
-use crate::report::quantity::{plain, quantity};
-use crate::report::result::{ChannelGap, Compared, OnRecords};
+use crate::report::quantity::{format_number, format_quantity};
+use crate::report::result::{ChannelGap, CommonResult, TrainTest};
 
-pub(super) fn table_of(compared: &Compared) -> Markup {
+pub(super) fn write_gap_table(compared: &CommonResult) -> Markup {
     let has_after = compared.gap.values().any(|gap| gap.after.is_some());
     let rows = html! {
         @for (name, gap) in &compared.gap {
             tr {
                 th scope="row" { code { (name) } }
-                td.number { (quantity(gap.floor, 3, &gap.unit)) }
+                td.number { (format_quantity(gap.floor, 3, &gap.unit)) }
                 (both(gap, has_after, |on| on.test))
                 (both(gap, has_after, |on| on.train))
             }
@@ -40,12 +40,12 @@ pub(super) fn table_of(compared: &Compared) -> Markup {
 }
 
 /// Before and, if there is one, after.
-fn both(gap: &ChannelGap, has_after: bool, of: fn(OnRecords<f64>) -> f64) -> Markup {
+fn both(gap: &ChannelGap, has_after: bool, of: fn(TrainTest<f64>) -> f64) -> Markup {
     let cell = |value: f64| {
         html! {
             td.number {
-                (quantity(value, 3, &gap.unit))
-                @if value.is_finite() { " " small { "(" (plain(value / gap.floor, 2)) ")" } }
+                (format_quantity(value, 3, &gap.unit))
+                @if value.is_finite() { " " small { "(" (format_number(value / gap.floor, 2)) ")" } }
             }
         }
     };

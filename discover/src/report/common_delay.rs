@@ -1,17 +1,17 @@
 //! Check for a common delay of all channels, which is more often a delay of the input than of each
 //! sensor.
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::ids::UnknownId;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::{NormalPrior, Unknown, What};
+use crate::model::unknowns::{NormalPrior, Unknown, UnknownKind};
 use crate::thresholds;
 
 /// Returns a note if all channels have the same delay at or beyond the bound of the fit.
-pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
+pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<String> {
     if fit
         .unknowns()
-        .any(|(_, unknown)| unknown.what == What::InputDelay)
+        .any(|(_, unknown)| unknown.kind == UnknownKind::InputDelay)
     {
         return None;
     }
@@ -21,12 +21,13 @@ pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) 
     };
     let delays = fit
         .unknowns()
-        .filter(|(_, unknown)| matches!(unknown.what, What::Delay(_)));
+        .filter(|(_, unknown)| matches!(unknown.kind, UnknownKind::Delay(_)));
     let delays: Vec<f64> = delays.filter_map(|of| lateness(fit, of)).collect();
     let (least, most) = (delays.iter()).fold((f64::INFINITY, 0.0_f64), |(least, most), delay| {
         (least.min(*delay), most.max(*delay))
     });
-    let is_alike = delays.len() == problem.noise.len() && least > thresholds::LATE_ALIKE * most;
+    let is_alike =
+        delays.len() == problem.noise.len() && least > thresholds::MIN_DELAY_RATIO * most;
     is_alike.then(|| {
         format!(
             "all channels have a delay of about {:.3} ms: a delayed input, for example behind a current loop or \
@@ -39,7 +40,7 @@ pub(crate) fn note_of_late_channels(problem: &EstimationProblem<'_>, fit: &Fit) 
 /// How late a channel is, s, if that is as much as its prior admits, or what was found.
 fn lateness(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
     let value = fit.train.estimate.theta[id];
-    let reach = thresholds::AT_BOUND * thresholds::SHIFTED;
+    let reach = thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION;
     let is_off = |prior: NormalPrior| value - prior.mean >= reach * prior.sd;
     (value > 0.0 && unknown.prior.is_none_or(is_off)).then_some(value)
 }

@@ -6,7 +6,7 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::edit::{self, Edit, NewTerm, Section};
 use eomgen_model_spec::source::Source;
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::fit::shooting::Shooting;
 use crate::ids::{ObservableId, WindowId};
 use crate::interval::Interval;
@@ -16,7 +16,7 @@ use crate::thresholds;
 
 /// Returns the smallest and largest value of each expression along the training windows of a fit,
 /// SI, without windows whose simulation failed.
-pub fn travels(
+pub fn compute_ranges(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     expressions: &BTreeSet<String>,
@@ -26,21 +26,21 @@ pub fn travels(
     };
     let theta = &fit.train.estimate.theta;
     let whole = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
-    let mut evaluator = model.evaluator(&whole.values(theta));
-    let values = fit.shooting(problem).values(theta);
-    let Ok(mut simulation) = fit.model.simulation(&values) else {
+    let mut evaluator = model.create_evaluator(&whole.parameter_values(theta));
+    let values = fit.training_shooting(problem).parameter_values(theta);
+    let Ok(mut simulation) = fit.model.create_simulation(&values) else {
         return BTreeMap::new();
     };
     let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut found = vec![nothing; shown.len()];
     let mut observables = vec![0.0; model.program().observables.len()];
     let all = problem.train.list.len();
-    let count = all.min(thresholds::MOST_WINDOWS);
+    let count = all.min(thresholds::MAX_SCREENING_WINDOWS);
     for window in (0..count).map(|k| WindowId::new(k * all / count)) {
         let initial = &fit.train.estimate.initial_states[window];
         let window = &problem.train.list[window];
         let inputs = problem.train.inputs(window);
-        let states = simulation.states(initial, &window.times, inputs);
+        let states = simulation.simulate_states(initial, &window.times, inputs);
         for (t, state) in window.times.iter().zip(states.unwrap_or_default()) {
             let point = Point {
                 t: *t,
@@ -77,9 +77,9 @@ fn with_observables(
         })
     });
     let edits: Vec<Edit> = edits.collect();
-    let source = Source::new(problem.path.as_str(), fit.texts.whole.as_str());
+    let source = Source::new(problem.path.as_str(), fit.texts.full.as_str());
     let text = edit::apply(&source, &edits).ok()?;
-    let model = EstimationModel::equations(&text, &problem.path, problem.order, &[]).ok()?;
+    let model = EstimationModel::derive_equations(&text, &problem.path, problem.order, &[]).ok()?;
     if model.states != fit.model.states {
         return None;
     }

@@ -24,10 +24,10 @@ pub struct Fit {
     pub sd: Vec<f64>,
     /// Standard deviation of each unknown for the test of effects, larger by [`thresholds::WIDER`],
     /// because the model may be wrong.
-    pub wider_sd: Vec<f64>,
+    pub effect_sd: Vec<f64>,
     /// Error of each unknown due to a misfit of one standard deviation of the noise in each sample
     /// that resembles the response of the unknown.
-    pub by_alike_misfit: Vec<f64>,
+    pub misfit_sensitivity: Vec<f64>,
     /// Range of each state.
     pub ranges: Vec<f64>,
     /// Prior of the initial states of the training windows.
@@ -42,7 +42,7 @@ pub struct Fit {
 
 impl Fit {
     /// Returns true if an unknown is at one of its bounds.
-    pub fn is_held(&self, id: UnknownId) -> bool {
+    pub fn is_at_bound(&self, id: UnknownId) -> bool {
         let (value, bounds) = (self.train.estimate.theta[id], self.unknowns[id].bounds);
         value <= bounds.low || value >= bounds.high
     }
@@ -55,15 +55,15 @@ impl Fit {
     /// Returns the reported standard deviation of an unknown. It includes the possible error due to
     /// the part of the misfit above `floor`, the noise floor in standard deviations of the noise.
     /// The misfit is not noise and may resemble the response of the unknown.
-    pub fn sd_beside_misfit(&self, id: UnknownId, floor: f64) -> f64 {
+    pub fn sd_with_misfit(&self, id: UnknownId, floor: f64) -> f64 {
         let left = (self.train.rms.powi(2) - floor.powi(2)).max(0.0).sqrt();
-        let misfit = thresholds::MISFIT_ALIKE * left * self.by_alike_misfit[id];
-        self.wider_sd[id].hypot(misfit)
+        let misfit = thresholds::MISFIT_SIMILARITY * left * self.misfit_sensitivity[id];
+        self.effect_sd[id].hypot(misfit)
     }
 
     /// Returns start values of the unknowns for a fit with a further effect. Parameters and sensors
     /// that imitated the effect are reset.
-    pub fn restarted(&self) -> Vec<f64> {
+    pub fn restart_values(&self) -> Vec<f64> {
         let known = self.unknowns.iter().zip(&self.train.estimate.theta);
         known
             .map(|(unknown, value)| unknown.prior.map_or(*value, |prior| prior.mean))
@@ -76,14 +76,14 @@ impl Fit {
     }
 
     /// Returns the values of unknowns in the form of the specification, SI.
-    pub fn stated(&self, unknowns: &[UnknownId]) -> Vec<f64> {
+    pub fn values_in_specification(&self, unknowns: &[UnknownId]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;
-        let of = |id: &UnknownId| self.unknowns[*id].what.stated(theta[*id]);
+        let of = |id: &UnknownId| self.unknowns[*id].kind.value_in_specification(theta[*id]);
         unknowns.iter().map(of).collect()
     }
 
     /// Returns the training windows with the model of the fit.
-    pub fn shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
+    pub fn training_shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
         Shooting::new(
             problem,
             &self.model,
@@ -95,28 +95,28 @@ impl Fit {
 
     /// Converts a state of this model to one of another model. States that exist only in the other
     /// model are 0.
-    pub fn mapped(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
+    pub fn map_state(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();
         }
-        model.mapped(&self.model, state)
+        model.map_state(&self.model, state)
     }
 
     /// Returns true if the residual is within the limit of a correct model.
     pub fn is_at_floor(&self, floor: f64) -> bool {
-        self.leaves_less(thresholds::AT_FLOOR * floor)
+        self.is_below(thresholds::MAX_FLOOR_RATIO_AT_FLOOR * floor)
     }
 
     /// Returns true if the residual RMS is below `rms` standard deviations on training and test
     /// records.
-    pub fn leaves_less(&self, rms: f64) -> bool {
+    pub fn is_below(&self, rms: f64) -> bool {
         self.train.rms.max(self.test.rms) < rms
     }
 
     /// Returns true if the residual is below that of another fit by the margin required of an
     /// effect, on training and test records.
-    pub fn leaves_clearly_less(&self, other: &Self) -> bool {
-        let better = 1.0 - thresholds::HELD_OUT;
+    pub fn is_clearly_below(&self, other: &Self) -> bool {
+        let better = 1.0 - thresholds::MIN_HELD_OUT_REDUCTION;
         self.train.rms < better * other.train.rms && self.test.rms < better * other.test.rms
     }
 }

@@ -5,15 +5,17 @@
 use crate::ids::{BasisFunctionId, EquationId};
 use nalgebra::{DMatrix, DVector};
 
-use crate::empirical::expressions::{Scales, Term, terms};
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::{Linearisation, LinearisedFit};
-use crate::fit::residuals::correlation;
+use crate::empirical::expressions::{Scales, Term, list_terms};
+use crate::fit::fit_result::Fit;
+use crate::fit::linearised_fit::{Linearisation, LinearisedFit};
+use crate::fit::residuals::compute_correlation_samples;
 use crate::model::problem::EstimationProblem;
-use crate::residual_force::basis_functions::Range;
-use crate::residual_force::equations::{Equation, Equations, OperatingPoint};
-use crate::residual_force::force_response::{ForceColumns, force_responses, operating_points};
-use crate::residual_force::regression::{Regression, Sizes};
+use crate::residual_force::basis_functions::OperatingRange;
+use crate::residual_force::equations::{Equation, EquationSet, OperatingPoint};
+use crate::residual_force::force_response::{
+    ForceColumns, compute_force_responses, compute_operating_points,
+};
+use crate::residual_force::regression::{Coefficients, Regression};
 use crate::thresholds;
 
 /// Sum of terms in an equation.
@@ -27,71 +29,77 @@ pub struct Expression {
     /// Coefficients of the terms, N or N m.
     pub sizes: Vec<f64>,
     /// Expected explained fraction of the squares.
-    pub part: f64,
+    pub explained_fraction: f64,
 }
 
 /// A set of terms with what it is expected to do.
 struct Set {
     terms: Vec<BasisFunctionId>,
-    sizes: Sizes,
+    sizes: Coefficients,
 }
 
 /// Returns the best expression in a set of equations; `None` if no set of terms is significant or
 /// tangent vectors are not available.
-pub fn chosen(
+pub fn select_expression(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     among: &[EquationId],
 ) -> Option<Expression> {
-    let equations = Equations::of(problem, fit)?;
-    let at = LinearisedFit::of(problem, fit, 1.0);
+    let equations = EquationSet::derive_from_fit(problem, fit)?;
+    let at = LinearisedFit::linearise_fit(problem, fit, 1.0);
     let linearisation = Linearisation {
-        at: &at,
+        point: &at,
         problem,
         fit,
     };
-    let operating_points = operating_points(linearisation, &equations);
+    let operating_points = compute_operating_points(linearisation, &equations);
     let inputs = largest_inputs(problem);
     let of = |equation: &EquationId| {
         let own = operating_points.iter().flatten().map(|all| all[*equation]);
-        let range = Range::of(&own.collect::<Vec<OperatingPoint>>());
+        let range = OperatingRange::from_operating_points(&own.collect::<Vec<OperatingPoint>>());
         let scales = Scales {
-            rate: rounded(range.rate),
-            position: rounded(range.position.0.abs().max(range.position.1.abs())),
+            rate: rounded(range.largest_rate),
+            position: rounded(
+                range
+                    .position_bounds
+                    .0
+                    .abs()
+                    .max(range.position_bounds.1.abs()),
+            ),
             inputs: inputs.clone(),
         };
         in_equation(linearisation, &equations, *equation, range.width(), scales)
     };
     let found = among.iter().filter_map(of);
-    found.max_by(|a, b| a.part.total_cmp(&b.part))
+    found.max_by(|a, b| a.explained_fraction.total_cmp(&b.explained_fraction))
 }
 
 fn in_equation(
     of: Linearisation<'_>,
-    equations: &Equations,
+    equations: &EquationSet,
     equation: EquationId,
     width: f64,
     scales: Scales,
 ) -> Option<Expression> {
     let own = &equations.list[equation];
-    let terms = terms(&scales, own.unit == "rad", width);
+    let terms = list_terms(&scales, own.unit == "rad", width);
     let weights = |operating_points: &[OperatingPoint], inputs: &[f64], out: &mut [f64]| {
         for (slot, term) in out.iter_mut().zip(&terms) {
-            *slot = term.at(&operating_points[equation], inputs, &scales);
+            *slot = term.evaluate(&operating_points[equation], inputs, &scales);
         }
     };
     let columns = ForceColumns {
         equations: vec![equation; terms.len()],
-        weights: &weights,
+        fill_weights: &weights,
     };
-    let blocks = force_responses(of, equations, &columns)?;
-    let regression = Regression::new(of.at, of.fit, &blocks)?;
+    let blocks = compute_force_responses(of, equations, &columns)?;
+    let regression = Regression::new(of.point, of.fit, &blocks)?;
     let best = best(&regression, of, &blocks)?;
     Some(Expression {
         equation: own.clone(),
         terms: best.terms.iter().map(|term| terms[*term].clone()).collect(),
         sizes: best.sizes.values.iter().copied().collect(),
-        part: best.sizes.decrease / regression.squares,
+        explained_fraction: best.sizes.decrease / regression.remaining_squares,
         scales,
     })
 }
@@ -104,9 +112,9 @@ fn best(
 ) -> Option<Set> {
     let count = blocks.iter().flatten().map(DMatrix::ncols).next()?;
     let mut known: Option<Set> = None;
-    for size in 1..=thresholds::UNNAMED_TERMS {
+    for size in 1..=thresholds::MAX_EXPRESSION_TERMS {
         let sets = subsets(count, size).into_iter();
-        let sizes = sets.map(|terms| (regression.shared(&terms), terms));
+        let sizes = sets.map(|terms| (regression.fit_shared(&terms), terms));
         let Some((sizes, terms)) = sizes.max_by(|a, b| a.0.decrease.total_cmp(&b.0.decrease))
         else {
             break;
@@ -115,14 +123,15 @@ fn best(
         for (term, value) in terms.iter().zip(sizes.values.iter()) {
             values[term.index()] = *value;
         }
-        let residuals = regression.remaining(of.at, blocks, &|_| values.clone(), true);
-        let over = correlation(&residuals, of.problem.noise.len());
+        let residuals = regression.compute_remaining(of.point, blocks, &|_| values.clone(), true);
+        let over = compute_correlation_samples(&residuals, of.problem.noise.len());
         let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.decrease);
-        let squares = regression.squares - sizes.decrease;
-        let level = (squares / regression.numbers).max(1.0);
+        let squares = regression.remaining_squares - sizes.decrease;
+        let level = (squares / regression.number_count).max(1.0);
         let taken = sizes.decrease - gain_before;
-        let is_enough = taken > 2.0 * thresholds::INFORMATION * level * over
-            && taken > thresholds::TERM_TAKES * (regression.squares - gain_before);
+        let is_enough = taken > 2.0 * thresholds::MIN_INFORMATION_GAIN * level * over
+            && taken
+                > thresholds::MIN_TERM_REDUCTION * (regression.remaining_squares - gain_before);
         if is_enough {
             known = Some(Set { terms, sizes });
         }

@@ -1,11 +1,11 @@
 //! State of a round that reached the time limit.
 
-use crate::search::fitted::FittedHypothesis;
-use crate::search::tested::TestedPool;
+use crate::search::hypothesis_fits::FittedHypothesis;
+use crate::search::tested_pool::TestedPool;
 
 /// Returns a sentence on the accepted hypothesis with the lowest residual so far, or otherwise the
 /// fitted one.
-pub fn unfinished(tested: &[TestedPool]) -> String {
+pub fn describe_unfinished(tested: &[TestedPool]) -> String {
     let all = tested.iter().flat_map(|pool| {
         let fitted = pool.fitted_hypotheses.iter();
         fitted.map(move |fitted| (pool, fitted))
@@ -44,6 +44,6 @@ fn promising(tested: &[TestedPool]) -> Option<String> {
         let responses = pool.screening.responses.iter();
         responses.map(move |response| (pool, response))
     });
-    let best = all.max_by(|(_, a), (_, b)| a.decrease.total_cmp(&b.decrease));
+    let best = all.max_by(|(_, a), (_, b)| a.cost_decrease.total_cmp(&b.cost_decrease));
     best.map(|(pool, response)| pool.candidates[response.candidate].label())
 }

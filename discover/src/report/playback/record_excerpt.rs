@@ -2,7 +2,7 @@
 
 use eomgen_records::windows::judged;
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
 
 /// The most samples.
@@ -15,7 +15,7 @@ const NUMBERS: usize = 24_000;
 const FEWEST: usize = 32;
 
 /// Consecutive windows of the first test record.
-pub(super) struct Stretch {
+pub(super) struct RecordExcerpt {
     /// Times of all samples, s.
     pub times: Vec<f64>,
     /// Measurements: a row per sample, a number per channel; NaN for missing ones.
@@ -23,29 +23,29 @@ pub(super) struct Stretch {
     /// Simulation of the original model in the same layout; NaN for samples that are not compared.
     pub before: Vec<f64>,
     /// Windows in the order of time.
-    pub windows: Vec<Piece>,
+    pub windows: Vec<ExcerptWindow>,
     /// RMS residual of each channel for these samples, before and after the search, SI.
-    pub left: Vec<[f64; 2]>,
+    pub rms_before_after: Vec<[f64; 2]>,
     /// Whether the excerpt is the complete record.
-    pub is_whole: bool,
+    pub is_complete: bool,
 }
 
 /// A window of the excerpt.
-pub(super) struct Piece {
+pub(super) struct ExcerptWindow {
     /// Index among the test windows.
     pub window: usize,
     /// Index of the first sample in the excerpt.
-    pub first: usize,
+    pub first_sample: usize,
     /// Number of samples in the excerpt.
     pub samples: usize,
     /// Samples that are compared.
-    pub judged: std::ops::Range<usize>,
+    pub compared_samples: std::ops::Range<usize>,
 }
 
-impl Stretch {
+impl RecordExcerpt {
     /// Takes the beginning of the first test record; `None` if the simulation of the fit fails
     /// there.
-    pub fn of(problem: &EstimationProblem<'_>, null: &Fit, best: &Fit) -> Option<Self> {
+    pub fn from_fits(problem: &EstimationProblem<'_>, null: &Fit, best: &Fit) -> Option<Self> {
         let channels = problem.noise.len();
         let inputs = problem.dataset.test.first()?.input_columns.len();
         let most = SAMPLES.min(NUMBERS / (1 + inputs + 2 * channels));
@@ -54,8 +54,8 @@ impl Stretch {
             measured: Vec::new(),
             before: Vec::new(),
             windows: Vec::new(),
-            left: Vec::new(),
-            is_whole: true,
+            rms_before_after: Vec::new(),
+            is_complete: true,
         };
         let mut sums = vec![[0.0; 2]; channels];
         let mut counts = vec![0.0; channels];
@@ -64,17 +64,17 @@ impl Stretch {
             let whole = window.times.len();
             let samples = whole.min(most - stretch.times.len());
             if samples < whole && (samples < FEWEST || place > 0) {
-                stretch.is_whole = false;
+                stretch.is_complete = false;
                 break;
             }
-            stretch.is_whole &= samples == whole;
-            let fitted = best.test.residuals.get(place)?;
+            stretch.is_complete &= samples == whole;
+            let fitted = best.test.window_residuals.get(place)?;
             if fitted.is_empty() {
                 return None;
             }
             let judged = judged(whole);
             let judged = judged.start..judged.end.min(samples);
-            let null = null.test.residuals.get(place)?;
+            let null = null.test.window_residuals.get(place)?;
             for sample in 0..samples {
                 for channel in 0..channels {
                     let number = sample * channels + channel;
@@ -95,16 +95,16 @@ impl Stretch {
             stretch
                 .measured
                 .extend_from_slice(&window.measured[..samples * channels]);
-            stretch.windows.push(Piece {
+            stretch.windows.push(ExcerptWindow {
                 window: place,
-                first,
+                first_sample: first,
                 samples,
-                judged,
+                compared_samples: judged,
             });
         }
         let root = |sum: f64, count: f64| (sum / f64::max(count, 1.0)).sqrt();
         let left = sums.iter().zip(&counts);
-        stretch.left = left
+        stretch.rms_before_after = left
             .map(|([before, fitted], count)| [root(*before, *count), root(*fitted, *count)])
             .collect();
         (!stretch.windows.is_empty()).then_some(stretch)

@@ -2,16 +2,18 @@
 //! residuals on training and test records.
 
 use crate::error::DiscoverError;
-use crate::fit::continuation::{continuation, continuation_by_secants, secants};
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, derivatives_at, evaluated};
-use crate::fit::initial_states::{self, carry, following};
-use crate::fit::preliminary::{self, PreliminaryFit};
+use crate::fit::continuation::{continue_by_secants, replace_by_secants, run_continuation};
+use crate::fit::final_steps::{compute_whitening, run_final_steps};
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::{
+    Estimate, compute_derivatives, evaluate_cost, run_damped_gauss_newton,
+};
+use crate::fit::initial_states::{self, estimate_for_unknowns, update_carried_prior};
+use crate::fit::preliminary_fit::{self, PreliminaryFit};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
-use crate::fit::uncertainty::uncertainties;
-use crate::fit::whole_motions::{settled, whitening};
+use crate::fit::uncertainty::compute_uncertainties;
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
@@ -45,15 +47,15 @@ struct Converged {
 /// # Errors
 ///
 /// An invalid text, or a motion that cannot be simulated.
-pub fn fit(
+pub fn fit_specification(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     theta: &[f64],
 ) -> Result<Fit, DiscoverError> {
-    complete(
+    complete_fit(
         problem,
-        preliminary::preliminary(problem, texts, unknowns, &[theta.to_vec()])?,
+        preliminary_fit::fit_beginnings(problem, texts, unknowns, &[theta.to_vec()])?,
     )
 }
 
@@ -62,11 +64,11 @@ pub fn fit(
 /// # Errors
 ///
 /// As [`fit`].
-pub fn complete(
+pub fn complete_fit(
     problem: &EstimationProblem<'_>,
     preliminary: PreliminaryFit,
 ) -> Result<Fit, DiscoverError> {
-    problem.stop.check()?;
+    problem.stop.check_not_stopped()?;
     let mut all = Shooting::new(
         problem,
         &preliminary.model,
@@ -80,18 +82,18 @@ pub fn complete(
         mut prior,
         residuals: mut train,
         is_far,
-    } = converged(problem, &mut all, near, preliminary.most);
+    } = converged(problem, &mut all, near, preliminary.max_rms);
     let prior_weight = all.prior_weight;
     // A start that is known from the window before depends on these unknowns: it would keep the estimate in
     // place and make it too certain.
-    let mut loose = prior.without_carried();
+    let mut loose = prior.without_preceding();
     let derivatives = match is_far {
-        true => derivatives_at(&all, &train.estimate),
+        true => compute_derivatives(&all, &train.estimate),
         false => {
-            loose.whitening = whitening(&all, &train.estimate);
-            let (estimate, derivatives) = settled(&all, &mut loose, train.estimate);
-            carry(&all, &mut prior, &estimate.theta, &estimate.initial_states);
-            train = Residuals::of(&all, estimate);
+            loose.whitening = compute_whitening(&all, &train.estimate);
+            let (estimate, derivatives) = run_final_steps(&all, &mut loose, train.estimate);
+            update_carried_prior(&all, &mut prior, &estimate.theta, &estimate.initial_states);
+            train = Residuals::compute(&all, estimate);
             derivatives
         }
     };
@@ -99,45 +101,46 @@ pub fn complete(
     // Tangents through impacts grow without bound, secants of motions that ended in other folds are
     // too steep: either would make unknowns too certain.
     let secants = is_followed.then(|| {
-        let horizons = thresholds::HORIZONS.len();
-        let follow = following(problem, &all, &preliminary.ranges, horizons);
-        secants(&all, estimate, derivatives.clone(), &follow)
+        let horizons = thresholds::INITIAL_STATE_HORIZONS.len();
+        let follow = estimate_for_unknowns(problem, &all, &preliminary.ranges, horizons);
+        replace_by_secants(&all, estimate, derivatives.clone(), &follow)
     });
     let linear: Vec<_> = [Some(derivatives), secants].into_iter().flatten().collect();
-    let known = uncertainties(&all, &loose, estimate, &linear);
+    let known = compute_uncertainties(&all, &loose, estimate, &linear);
     let held_out = Shooting {
         windows: &problem.test,
         prior_weight: 1.0,
         ..all
     };
     let theta = train.estimate.theta.clone();
-    let initial_states = initial_states::best(problem, &held_out, &theta, &preliminary.ranges)?;
-    let test = evaluated(
+    let initial_states =
+        initial_states::estimate_best(problem, &held_out, &theta, &preliminary.ranges)?;
+    let test = evaluate_cost(
         &held_out,
         &InitialStatePrior::default(),
         theta,
         initial_states,
     );
-    let test = Residuals::of(&held_out, test);
+    let test = Residuals::compute(&held_out, test);
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
-    let inflation = train.inflation();
+    let inflation = train.variance_inflation();
     let numbers = problem.train.numbers();
     let sd = |wider: f64| {
-        let sds = known.iter().map(|known| known.sd(wider));
+        let sds = known.iter().map(|known| known.combine(wider));
         sds.map(|sd| sd * inflation.sqrt()).collect()
     };
-    let by_noise = known.iter().map(|known| known.by_noise);
+    let by_noise = known.iter().map(|known| known.from_noise);
     Ok(Fit {
-        by_alike_misfit: by_noise.map(|sd| sd * numbers.sqrt()).collect(),
+        misfit_sensitivity: by_noise.map(|sd| sd * numbers.sqrt()).collect(),
         sd: sd(1.0),
-        wider_sd: sd(thresholds::WIDER),
+        effect_sd: sd(thresholds::UNCERTAINTY_FACTOR),
         texts: preliminary.texts,
         unknowns: preliminary.unknowns,
         ranges: preliminary.ranges,
         prior,
         prior_weight,
-        train: train.whole(),
-        test: test.whole(),
+        train: train.or_infinite(),
+        test: test.or_infinite(),
         model: preliminary.model,
     })
 }
@@ -148,37 +151,44 @@ fn near(
     all: &Shooting<'_>,
     preliminary: &PreliminaryFit,
 ) -> StartingPoint {
-    if let (None, true) = (&preliminary.whole, problem.estimates_initial_states()) {
+    if let (None, true) = (
+        &preliminary.whole_window_prior,
+        problem.estimates_initial_states(),
+    ) {
         let theta = continued_unknowns(problem, all, preliminary);
-        let follow = following(
+        let follow = estimate_for_unknowns(
             problem,
             all,
             &preliminary.ranges,
-            thresholds::HORIZONS.len(),
+            thresholds::INITIAL_STATE_HORIZONS.len(),
         );
-        let mut near = continuation(all, &[theta], &follow, thresholds::CONTINUATION_STEPS);
+        let mut near = run_continuation(all, &[theta], &follow, thresholds::MAX_CONTINUATION_STEPS);
         // What is not linear costs ten times as much.
         if preliminary.model.is_linear() {
-            continuation_by_secants(all, &mut near, &follow);
+            continue_by_secants(all, &mut near, &follow);
         }
         return StartingPoint {
             is_far: near.estimate.cost
-                > thresholds::HOPELESS * thresholds::HOPELESS * problem.train.numbers(),
+                > thresholds::MAX_RMS_TO_CONTINUE
+                    * thresholds::MAX_RMS_TO_CONTINUE
+                    * problem.train.numbers(),
             prior: near.prior,
             estimate: near.estimate,
             is_followed: true,
         };
     }
-    let prior = preliminary.whole.clone().unwrap_or_default();
+    let prior = preliminary.whole_window_prior.clone().unwrap_or_default();
     let (theta, initial_states) = (
         preliminary.theta.clone(),
         preliminary.initial_states.clone(),
     );
-    let estimate = evaluated(all, &prior, theta, initial_states);
+    let estimate = evaluate_cost(all, &prior, theta, initial_states);
     StartingPoint {
-        is_far: preliminary.whole.is_none()
+        is_far: preliminary.whole_window_prior.is_none()
             && estimate.cost
-                > thresholds::HOPELESS * thresholds::HOPELESS * problem.train.numbers(),
+                > thresholds::MAX_RMS_TO_CONTINUE
+                    * thresholds::MAX_RMS_TO_CONTINUE
+                    * problem.train.numbers(),
         prior,
         estimate,
         is_followed: false,
@@ -196,35 +206,41 @@ fn converged(
     let (mut prior, estimate) = (near.prior, near.estimate);
     let free = match near.is_far {
         true => estimate,
-        false => damped_gauss_newton(
+        false => run_damped_gauss_newton(
             all,
             &prior,
             &estimate.theta,
             &estimate.initial_states,
-            thresholds::FULL_STEPS,
+            thresholds::MAX_FULL_STEPS,
         ),
     };
-    let mut residuals = Residuals::of(all, free);
+    let mut residuals = Residuals::compute(all, free);
     let is_far = near.is_far || residuals.rms > most;
     // What remains where records are trusted as if noise were all that they hold says how
     // far they may be trusted against the priors.
-    all.prior_weight = residuals.inflation();
-    for _ in 0..thresholds::REFRESHES {
+    all.prior_weight = residuals.variance_inflation();
+    for _ in 0..thresholds::MAX_REFRESHES {
         let Estimate {
             theta,
             initial_states,
             ..
         } = &residuals.estimate;
-        let found = damped_gauss_newton(all, &prior, theta, initial_states, thresholds::FULL_STEPS);
+        let found = run_damped_gauss_newton(
+            all,
+            &prior,
+            theta,
+            initial_states,
+            thresholds::MAX_FULL_STEPS,
+        );
         if is_far {
-            residuals = Residuals::of(all, found);
+            residuals = Residuals::compute(all, found);
             break;
         }
         let before = found.cost;
         let (new_prior, found) = refreshed(problem, all, prior, found);
         prior = new_prior;
-        let is_converged = found.cost > (1.0 - thresholds::REFRESH_DECREASE) * before;
-        residuals = Residuals::of(all, found);
+        let is_converged = found.cost > (1.0 - thresholds::MIN_REFRESH_DECREASE) * before;
+        residuals = Residuals::compute(all, found);
         if is_converged {
             break;
         }
@@ -244,27 +260,30 @@ fn continued_unknowns(
     preliminary: &PreliminaryFit,
 ) -> Vec<f64> {
     let first = Shooting {
-        part: thresholds::FIRST_PART,
+        fraction: thresholds::PRELIMINARY_FRACTION,
         ..*all
     };
     let theta = preliminary.theta.clone();
-    let near = thresholds::AT_FLOOR * thresholds::AT_FLOOR * first.part * problem.train.numbers();
+    let near = thresholds::MAX_FLOOR_RATIO_AT_FLOOR
+        * thresholds::MAX_FLOOR_RATIO_AT_FLOOR
+        * first.fraction
+        * problem.train.numbers();
     if preliminary.is_converged && preliminary.cost < near {
         return theta;
     }
-    let follow = following(
+    let follow = estimate_for_unknowns(
         problem,
         &first,
         &preliminary.ranges,
-        thresholds::FIRST_HORIZONS,
+        thresholds::PRELIMINARY_HORIZONS,
     );
     let steps = if preliminary.is_converged {
         0
     } else {
-        thresholds::FURTHER_STEPS
+        thresholds::MAX_FURTHER_STEPS
     };
-    let mut continued = continuation(&first, &[theta], &follow, steps);
-    continuation_by_secants(&first, &mut continued, &follow);
+    let mut continued = run_continuation(&first, &[theta], &follow, steps);
+    continue_by_secants(&first, &mut continued, &follow);
     continued.estimate.theta
 }
 
@@ -282,29 +301,30 @@ fn refreshed(
     let Ok(InitialStates {
         prior: restarted,
         states: initial_states,
-    }) = initial_states::at_unknowns(
+    }) = initial_states::estimate_at_unknowns(
         problem,
         shooting,
         &found.theta,
         ranges,
-        &thresholds::OTHER_HORIZONS,
+        &thresholds::OTHER_INITIAL_STATE_HORIZONS,
         None,
     )
     else {
         return (prior, found);
     };
-    let new = evaluated(shooting, &restarted, found.theta.clone(), initial_states);
+    let new = evaluate_cost(shooting, &restarted, found.theta.clone(), initial_states);
     let mut initial_states = found.initial_states.clone();
     let windows = WindowId::first(initial_states.len());
     for (window, start) in windows.zip(&mut initial_states) {
-        let before = found.squares[window] + prior.cost(window, start);
-        let after = new.squares[window] + restarted.cost(window, &new.initial_states[window]);
+        let before = found.squares[window] + prior.compute_cost(window, start);
+        let after =
+            new.squares[window] + restarted.compute_cost(window, &new.initial_states[window]);
         if after < before {
             start.clone_from(&new.initial_states[window]);
             prior.mean[window].clone_from(&restarted.mean[window]);
         }
     }
-    carry(shooting, &mut prior, &found.theta, &initial_states);
-    let found = evaluated(shooting, &prior, found.theta, initial_states);
+    update_carried_prior(shooting, &mut prior, &found.theta, &initial_states);
+    let found = evaluate_cost(shooting, &prior, found.theta, initial_states);
     (prior, found)
 }

@@ -7,11 +7,11 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::Driven;
 use eomgen_sim::ode::{Settings, simulate};
 
-use crate::fit::fitted::Fit;
+use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::report::playback::stretch::{Piece, Stretch};
-use crate::report::quantity::quantity;
+use crate::report::playback::record_excerpt::{ExcerptWindow, RecordExcerpt};
+use crate::report::quantity::format_quantity;
 use crate::thresholds;
 
 /// The relative tolerance of `motion.js`.
@@ -31,11 +31,11 @@ const DIFFERENT: f64 = 0.05;
 /// # Errors
 ///
 /// The reason why a page cannot simulate it, in words.
-pub(super) fn as_fitted(
+pub(super) fn check_reproduces_fit(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
-    stretch: &Stretch,
+    stretch: &RecordExcerpt,
 ) -> Result<(), String> {
     let channels = problem.noise.len();
     let mut sums = vec![0.0; channels];
@@ -48,24 +48,25 @@ pub(super) fn as_fitted(
         if steps > MOST_STEPS {
             return Err("the motion needs too many explicit steps".to_owned());
         }
-        let measured = stretch.measured[piece.first * channels..].iter();
+        let measured = stretch.measured[piece.first_sample * channels..].iter();
         for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
             if !measured.is_finite() {
                 continue;
             }
             counts[number % channels] += 1.0;
-            if piece.judged.contains(&(number / channels)) {
+            if piece.compared_samples.contains(&(number / channels)) {
                 sums[number % channels] += (seen - measured).powi(2);
             }
         }
     }
-    let left = sums.iter().zip(&counts).zip(&stretch.left);
+    let left = sums.iter().zip(&counts).zip(&stretch.rms_before_after);
     for (channel, ((sum, count), [_, fitted])) in problem.dataset.channels.iter().zip(left) {
         let left = f64::sqrt(sum / f64::max(*count, 1.0));
         // What is not a number is no small difference.
         let agree = (left - fitted).abs() <= DIFFERENT * fitted;
         if !agree {
-            let [left, fitted] = [left, *fitted].map(|left| quantity(left, 3, &channel.unit));
+            let [left, fitted] =
+                [left, *fitted].map(|left| format_quantity(left, 3, &channel.unit));
             return Err(format!(
                 "the motion is so sensitive that another method has a residual of {left} in {} instead of \
                  {fitted}",
@@ -81,25 +82,25 @@ fn seen(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
-    stretch: &Stretch,
-    piece: &Piece,
+    stretch: &RecordExcerpt,
+    piece: &ExcerptWindow,
 ) -> Option<(Vec<f64>, u64)> {
-    let samples = &stretch.times[piece.first..piece.first + piece.samples];
+    let samples = &stretch.times[piece.first_sample..piece.first_sample + piece.samples];
     let output_times = problem.output_rate.times(samples);
     let times = &output_times.times;
-    let evaluator = RefCell::new(model.evaluator(&model.values));
+    let evaluator = RefCell::new(model.create_evaluator(&model.values));
     let inputs = &problem.dataset.test[0].inputs;
     let settings = Settings {
         max_steps: MOST_STEPS,
-        max_switch_rate: thresholds::FASTEST_SWITCHING,
+        max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
         ..Settings::with_tolerance(TOLERANCE)
     };
-    let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
+    let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
     let span = (*times.first()?, *times.last()?);
     let driven = Driven::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
     let mut quantities = Vec::new();
-    let mut buffers = model.measured.buffers();
+    let mut buffers = model.measured.create_buffers();
     let mut evaluator = evaluator.borrow_mut();
     for (t, state) in times.iter().zip(&trajectory.states) {
         let point = Point {
@@ -111,8 +112,11 @@ fn seen(
             .measured
             .append(&mut evaluator, point, &mut buffers, &mut quantities);
     }
-    let shooting = best.shooting(problem);
-    let sensors = shooting.sensors(&best.train.estimate.theta);
+    let shooting = best.training_shooting(problem);
+    let sensors = shooting.sensor_values(&best.train.estimate.theta);
     let work = trajectory.work.steps + trajectory.work.rejected;
-    Some((shooting.seen(&output_times, &sensors, &quantities), work))
+    Some((
+        shooting.apply_sensors(&output_times, &sensors, &quantities),
+        work,
+    ))
 }

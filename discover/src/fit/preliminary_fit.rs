@@ -1,10 +1,10 @@
 //! Preliminary fits: to the beginnings of windows, or by a linear prediction.
 
 use crate::error::DiscoverError;
-use crate::fit::continuation::continuation;
-use crate::fit::fitted::Fit;
-use crate::fit::gauss_newton::{damped_gauss_newton, square};
-use crate::fit::initial_states::{self, following, spread};
+use crate::fit::continuation::run_continuation;
+use crate::fit::fit_result::Fit;
+use crate::fit::gauss_newton::{run_damped_gauss_newton, sum_of_squares};
+use crate::fit::initial_states::{self, estimate_for_unknowns, prior_sd};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::shooting::Shooting;
 use crate::model::estimation_model::EstimationModel;
@@ -18,10 +18,10 @@ pub struct PreliminaryFit {
     /// Cost, in squared standard deviations, with the priors.
     pub cost: f64,
     /// Prior of the initial states of whole windows, if the fit uses these already.
-    pub(crate) whole: Option<InitialStatePrior>,
+    pub(crate) whole_window_prior: Option<InitialStatePrior>,
     /// Residual RMS of whole windows, in standard deviations, above which the initial states are
     /// not estimated again.
-    pub(crate) most: f64,
+    pub(crate) max_rms: f64,
     /// Whether further steps over the beginnings of windows would decrease the cost only slightly.
     pub(crate) is_converged: bool,
     pub(crate) texts: SpecificationTexts,
@@ -41,7 +41,7 @@ pub struct WarmStart<'f> {
     pub cost: f64,
     /// Residual RMS of the training records, in standard deviations, above which the other fit does
     /// not estimate the initial states again.
-    pub most: f64,
+    pub max_rms: f64,
 }
 
 /// Fits the unknowns to the beginnings of the windows, which separates good from bad candidates at
@@ -51,51 +51,61 @@ pub struct WarmStart<'f> {
 /// # Errors
 ///
 /// As [`crate::fit::full::fit`].
-pub fn preliminary(
+pub fn fit_beginnings(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     guesses: &[Vec<f64>],
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let model = problem.model(&texts.whole, Some(&texts.linear))?;
-    let ranges = problem.ranges(&model, &model.values);
+    let model = problem.compile_model(&texts.full, Some(&texts.linear))?;
+    let ranges = problem.compute_state_ranges(&model, &model.values);
     let shooting = Shooting::new(problem, &model, &problem.train, &unknowns, &ranges);
     let (found, is_converged) = if problem.estimates_initial_states() {
         let shooting = Shooting {
-            part: thresholds::FIRST_PART,
+            fraction: thresholds::PRELIMINARY_FRACTION,
             ..shooting
         };
-        let follow = following(problem, &shooting, &ranges, thresholds::FIRST_HORIZONS);
-        let found = continuation(&shooting, guesses, &follow, thresholds::CONTINUATION_STEPS);
+        let follow = estimate_for_unknowns(
+            problem,
+            &shooting,
+            &ranges,
+            thresholds::PRELIMINARY_HORIZONS,
+        );
+        let found = run_continuation(
+            &shooting,
+            guesses,
+            &follow,
+            thresholds::MAX_CONTINUATION_STEPS,
+        );
         (found.estimate, found.is_converged)
     } else {
         let theta = guesses.first().map_or(&[][..], Vec::as_slice);
         let InitialStates {
             prior,
             states: initial_states,
-        } = initial_states::at_unknowns(
+        } = initial_states::estimate_at_unknowns(
             problem,
             &shooting,
             theta,
             &ranges,
-            &thresholds::HORIZONS,
+            &thresholds::INITIAL_STATE_HORIZONS,
             None,
         )?;
-        let found = damped_gauss_newton(
+        let found = run_damped_gauss_newton(
             &shooting,
             &prior,
             theta,
             &initial_states,
-            thresholds::PRELIMINARY_STEPS,
+            thresholds::MAX_PRELIMINARY_STEPS,
         );
         (found, true)
     };
     // How far states go may depend on what was found: a joint yields so much the more.
-    let ranges = problem.ranges(&model, &shooting.values(&found.theta));
+    let ranges = problem.compute_state_ranges(&model, &shooting.parameter_values(&found.theta));
     Ok(PreliminaryFit {
         cost: found.cost,
-        whole: None,
-        most: f64::INFINITY,
+        whole_window_prior: None,
+        max_rms: f64::INFINITY,
         is_converged,
         initial_states: found.initial_states,
         theta: found.theta,
@@ -113,38 +123,42 @@ pub fn preliminary(
 /// # Errors
 ///
 /// As [`crate::fit::full::fit`].
-pub fn expected(
+pub fn start_from_fit(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     guesses: &[Vec<f64>],
     warm_start: WarmStart<'_>,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let WarmStart { fit, cost, most } = warm_start;
-    let model = problem.model(&texts.whole, Some(&texts.linear))?;
+    let WarmStart {
+        fit,
+        cost,
+        max_rms: most,
+    } = warm_start;
+    let model = problem.compile_model(&texts.full, Some(&texts.linear))?;
     let bare = Shooting::new(problem, &model, &problem.train, &unknowns, &[]);
     let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
         states
             .iter()
-            .map(|state| fit.mapped(&model, state))
+            .map(|state| fit.map_state(&model, state))
             .collect()
     };
     let initial_states = mapped(&fit.train.estimate.initial_states);
     let theta = first_near(&bare, guesses, &initial_states, fit);
-    let ranges = problem.ranges(&model, &bare.values(&theta));
+    let ranges = problem.compute_state_ranges(&model, &bare.parameter_values(&theta));
     let prior = InitialStatePrior {
         mean: mapped(&fit.prior.mean),
         sd: match fit.prior.sd.is_empty() {
             true => Vec::new(),
-            false => spread(&ranges),
+            false => prior_sd(&ranges),
         },
         sources: fit.prior.sources.clone(),
         whitening: None,
     };
     Ok(PreliminaryFit {
         cost,
-        whole: Some(prior),
-        most,
+        whole_window_prior: Some(prior),
+        max_rms: most,
         is_converged: true,
         initial_states,
         theta,
@@ -166,11 +180,12 @@ fn first_near(
     if let [only] = guesses {
         return only.clone();
     }
-    let near = thresholds::HOPELESS.powi(2) * fit.train.estimate.squares.iter().sum::<f64>();
+    let near =
+        thresholds::MAX_RMS_TO_CONTINUE.powi(2) * fit.train.estimate.squares.iter().sum::<f64>();
     let mut least = (f64::INFINITY, guesses.first());
     for theta in guesses {
-        let residuals = shooting.residuals(theta, initial_states);
-        let squares = residuals.iter().map(square);
+        let residuals = shooting.compute_residuals(theta, initial_states);
+        let squares = residuals.iter().map(sum_of_squares);
         let left: f64 = squares.sum();
         if left < near {
             return theta.clone();
