@@ -3,7 +3,7 @@
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::model::Model;
 use eomgen_sweep::job::Plan;
-use eomgen_sweep::over_time::forms;
+use eomgen_sweep::over_time::measure_names;
 use eomgen_sweep::parameters::columns;
 use eomgen_sweep::{
     Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Points, Samples, Section, Span,
@@ -23,7 +23,7 @@ pub fn input_error(error: SweepError) -> Error {
 }
 
 fn unknown_measure(name: &str) -> Error {
-    let known = MEASURES.map(str::to_owned).into_iter().chain(forms());
+    let known = MEASURES.map(str::to_owned).into_iter().chain(measure_names());
     let known: Vec<String> = known.collect();
     Error::input(format!(
         "--measure {name}: unknown measure; expected one of {}",

@@ -7,7 +7,8 @@ use crate::error::{Error, Result, print_json, print_text};
 use crate::sweep_files::finish;
 
 pub fn run(options: &Merge) -> Result {
-    let folder = Folder::existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
+    let folder =
+        Folder::open_existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;
     if options.output.json {
         return print_json(&finished.json());

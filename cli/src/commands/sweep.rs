@@ -41,10 +41,10 @@ pub fn run(options: &Sweep) -> Result {
     let done = eomgen_sweep::run(&folder, &measures, shard, threads, &mut progress)
         .map_err(input_error)?;
     drop(bar);
-    let counts = json!({ "schema": SCHEMA, "computed": done.computed, "resumed": done.found });
+    let counts = json!({ "schema": SCHEMA, "computed": done.computed_points, "resumed": done.complete_points });
     let summary = format!(
         "{} points computed, {} resumed\n",
-        done.computed, done.found
+        done.computed_points, done.complete_points
     );
     if !shard.is_whole() {
         let document = json!({ "shard": shard.to_string() });

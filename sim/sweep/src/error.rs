@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-const GAPS_SHOWN: usize = 5;
+const MAX_SHOWN_GAPS: usize = 5;
 
 /// Error of a sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub enum SweepError {
 }
 
 impl SweepError {
-    pub(super) fn file(action: &'static str, path: &Path, error: &dyn fmt::Display) -> Self {
+    pub(super) fn file_error(action: &'static str, path: &Path, error: &dyn fmt::Display) -> Self {
         Self::File {
             action,
             path: path.to_owned(),
@@ -107,10 +107,10 @@ fn write_gaps(
     let count: usize = missing.iter().map(ExactSizeIterator::len).sum();
     let shown: Vec<String> = missing
         .iter()
-        .take(GAPS_SHOWN)
+        .take(MAX_SHOWN_GAPS)
         .map(|gap| format!("{} to {}", gap.start, gap.end - 1))
         .collect();
-    let more = if missing.len() > GAPS_SHOWN {
+    let more = if missing.len() > MAX_SHOWN_GAPS {
         ", ..."
     } else {
         ""

@@ -14,7 +14,7 @@ impl From<Error> for Failure {
     }
 }
 
-pub fn of_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
+pub fn finished_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
     let motion = motion.map_err(|error| match error {
         // The motion stopped at its start.
         Error::Stopped { .. } => Failure::NotFinite,

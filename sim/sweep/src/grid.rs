@@ -6,7 +6,7 @@ use super::error::SweepError;
 use eomgen_elementary::Function;
 
 /// Maximum number of points of a grid.
-pub const MOST_POINTS: usize = 10_000_000;
+pub const MAX_POINTS: usize = 10_000_000;
 
 /// Spacing of the values of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,8 +95,8 @@ impl Axis {
         if self.count == 0 {
             return Err("the count must be at least 1".to_owned());
         }
-        if self.count > MOST_POINTS {
-            return Err(format!("the limit is {MOST_POINTS} points"));
+        if self.count > MAX_POINTS {
+            return Err(format!("the limit is {MAX_POINTS} points"));
         }
         if self.count > 1 && self.from == self.to {
             return Err("the ends of the range are equal, so the count must be 1".to_owned());
@@ -173,11 +173,11 @@ impl Grid {
         let points = axes
             .iter()
             .try_fold(1_usize, |points, axis| points.checked_mul(axis.count))
-            .filter(|points| *points <= MOST_POINTS);
+            .filter(|points| *points <= MAX_POINTS);
         match points {
             Some(points) => Ok(Self { axes, points }),
             None => refused(format!(
-                "the grid has more than {MOST_POINTS} points; give smaller counts"
+                "the grid has more than {MAX_POINTS} points; give smaller counts"
             )),
         }
     }

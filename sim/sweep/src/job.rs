@@ -15,7 +15,7 @@ use super::samples::Samples;
 const SCHEMA: u32 = 1;
 
 /// Maximum number of chunks: not too many files for a folder, but small losses at an interruption.
-const MOST_CHUNKS: usize = 1000;
+const MAX_CHUNKS: usize = 1000;
 
 /// Everything that the numbers of a sweep depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -188,24 +188,24 @@ impl Job {
     }
 
     /// Returns the number of measured numbers per point, statuses included.
-    pub fn measured(&self) -> usize {
+    pub fn measured_count(&self) -> usize {
         let measures = self.plan.measures.iter();
         measures.map(|measure| measure.columns.len() + 1).sum()
     }
 
     /// Returns the number of chunks.
-    pub fn chunks(&self) -> usize {
+    pub fn chunk_count(&self) -> usize {
         self.points.count().div_ceil(self.chunk_points())
     }
 
     /// Returns the points of a chunk.
-    pub fn chunk(&self, chunk: usize) -> Range<usize> {
+    pub fn chunk_range(&self, chunk: usize) -> Range<usize> {
         let (size, points) = (self.chunk_points(), self.points.count());
         (chunk * size).min(points)..((chunk + 1) * size).min(points)
     }
 
     fn chunk_points(&self) -> usize {
-        self.points.count().div_ceil(MOST_CHUNKS)
+        self.points.count().div_ceil(MAX_CHUNKS)
     }
 }
 
@@ -243,10 +243,10 @@ pub(super) mod tests {
     fn chunks_cover_the_grid_once() {
         for count in [2, 999, 1000, 1001, 12_345] {
             let job = job(count);
-            assert!(job.chunks() <= MOST_CHUNKS);
+            assert!(job.chunk_count() <= MAX_CHUNKS);
             let mut next = 0;
-            for chunk in 0..job.chunks() {
-                let points = job.chunk(chunk);
+            for chunk in 0..job.chunk_count() {
+                let points = job.chunk_range(chunk);
                 assert_eq!(points.start, next);
                 assert!(!points.is_empty());
                 next = points.end;

@@ -28,7 +28,7 @@ impl<'a> Lyapunov<'a> {
     /// # Errors
     /// An invalid window, or a model that cannot be differentiated.
     pub fn new(model: &'a CompiledModel, window: &Window) -> Result<Self, SweepError> {
-        let times = Times::of(model.model(), window, "lyapunov", FEWEST)?;
+        let times = Times::from_window(model.model(), window, "lyapunov", FEWEST)?;
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
                 "--measure lyapunov: the model has constraints (`{}`), which this measure does not \
@@ -50,7 +50,7 @@ impl<'a> Lyapunov<'a> {
         Ok(Self { model, times })
     }
 
-    fn method(&self) -> (&'static str, Vec<(String, String)>) {
+    fn method_and_options(&self) -> (&'static str, Vec<(String, String)>) {
         if self.model.piecewise_linear().is_ok() {
             return ("carried exactly", Vec::new());
         }
@@ -66,7 +66,7 @@ impl<'a> Lyapunov<'a> {
 impl Measure for Lyapunov<'_> {
     fn describe(&self) -> Description {
         let column = |(name, unit, about): (&str, &str, &str)| Column::new(name, unit, about);
-        let (how, options) = self.method();
+        let (how, options) = self.method_and_options();
         let when = match self.times {
             Times::Until(_) => "over the second half of the time",
             Times::Periods(..) => "once per forcing period",
@@ -108,8 +108,8 @@ impl Worker for &Lyapunov<'_> {
         let instance = self.model.with(settings)?;
         let stretches = self.times.stretches(&instance)?;
         let Growths { growths, switches } = match self.model.piecewise_linear() {
-            Ok(_) => exact(&instance, &stretches)?,
-            Err(_) => followed(&instance, &stretches)?,
+            Ok(_) => exact_growth(&instance, &stretches)?,
+            Err(_) => variational_growth(&instance, &stretches)?,
         };
         let exponent =
             mean_exponent(&growths, stretches.interval).map_err(|_| Failure::Undefined)?;
@@ -123,7 +123,7 @@ impl Worker for &Lyapunov<'_> {
     }
 }
 
-fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+fn exact_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let request = Request {
         transient: stretches.transient,
         interval: stretches.interval,
@@ -142,7 +142,7 @@ fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Fail
     })
 }
 
-fn followed(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+fn variational_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
     let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
     let system = Driven::new(&evaluator, &inputs)
         .with_typical_sizes(instance.model().typical_sizes())

@@ -28,7 +28,7 @@ impl Table {
 /// All missing or damaged chunks, parts of another job, or files that cannot be read.
 pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
     let job = folder.job();
-    let (all, measured) = (job.points(), job.measured());
+    let (all, measured) = (job.points(), job.measured_count());
     let varied = job.plan().parameters.len();
     let names: Vec<String> = job
         .columns()
@@ -37,10 +37,10 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
         .collect();
     let mut columns = vec![Vec::with_capacity(all.count()); names.len()];
     let mut missing: Vec<Range<usize>> = Vec::new();
-    for chunk in 0..job.chunks() {
-        let points = job.chunk(chunk);
+    for chunk in 0..job.chunk_count() {
+        let points = job.chunk_range(chunk);
         let Some(numbers) = folder.load(chunk)? else {
-            add(&mut missing, points);
+            add_gap(&mut missing, points);
             continue;
         };
         for (point, row) in points.zip(numbers.chunks(measured)) {
@@ -59,11 +59,11 @@ pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
             points: all.count(),
         });
     }
-    folder.tidy()?;
+    folder.remove_unfinished_files()?;
     Ok(Table { names, columns })
 }
 
-fn add(missing: &mut Vec<Range<usize>>, points: Range<usize>) {
+fn add_gap(missing: &mut Vec<Range<usize>>, points: Range<usize>) {
     match missing.last_mut() {
         Some(last) if last.end == points.start => last.end = points.end,
         _ => missing.push(points),

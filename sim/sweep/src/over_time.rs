@@ -7,44 +7,44 @@ use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::SweepError;
-use crate::failure::of_motion;
+use crate::failure::finished_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 
 /// Number of sample intervals, the same as in `simulate`.
-const SAMPLES: usize = 1000;
+const SAMPLES_IN_WINDOW: usize = 1000;
 
 const TOLERANCE: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Statistic {
-    Greatest,
+    Maximum,
     RootMeanSquare,
-    Last,
+    Final,
 }
 
 impl Statistic {
-    const ALL: [Self; 3] = [Self::Greatest, Self::RootMeanSquare, Self::Last];
+    const ALL: [Self; 3] = [Self::Maximum, Self::RootMeanSquare, Self::Final];
 
     fn name(self) -> &'static str {
         match self {
-            Self::Greatest => "max",
+            Self::Maximum => "max",
             Self::RootMeanSquare => "rms",
-            Self::Last => "final",
+            Self::Final => "final",
         }
     }
 
     fn about(self) -> &'static str {
         match self {
-            Self::Greatest => "greatest",
+            Self::Maximum => "greatest",
             Self::RootMeanSquare => "root mean square of",
-            Self::Last => "last",
+            Self::Final => "last",
         }
     }
 }
 
 /// Returns the names that [`OverTime::new`] accepts, with `NAME` for the quantity.
-pub fn forms() -> impl Iterator<Item = String> {
+pub fn measure_names() -> impl Iterator<Item = String> {
     Statistic::ALL
         .into_iter()
         .map(|statistic| format!("{}:NAME", statistic.name()))
@@ -78,10 +78,10 @@ impl<'a> OverTime<'a> {
         let (statistic, name) = asked.split_once(':')?;
         let mut statistics = Statistic::ALL.into_iter();
         let statistic = statistics.find(|known| known.name() == statistic)?;
-        Some(Self::of(model, statistic, name, window))
+        Some(Self::build(model, statistic, name, window))
     }
 
-    fn of(
+    fn build(
         model: &'a CompiledModel,
         statistic: Statistic,
         name: &str,
@@ -108,7 +108,7 @@ impl<'a> OverTime<'a> {
                 model.model().name
             )));
         };
-        let times = Times::of(model.model(), window, &asked, 1)?;
+        let times = Times::from_window(model.model(), window, &asked, 1)?;
         Ok(Self {
             model,
             statistic,
@@ -120,19 +120,23 @@ impl<'a> OverTime<'a> {
     }
 
     /// Returns the times of the samples in s, and the index of the first one in the window.
-    fn times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
+    fn sample_times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
         let (begin, end) = self.times.range(instance)?;
         let sample = |place: usize| match place {
-            SAMPLES => end,
-            _ => begin + (end - begin) * place as f64 / SAMPLES as f64,
+            SAMPLES_IN_WINDOW => end,
+            _ => begin + (end - begin) * place as f64 / SAMPLES_IN_WINDOW as f64,
         };
-        let looked_at = (0..=SAMPLES).map(sample);
+        let looked_at = (0..=SAMPLES_IN_WINDOW).map(sample);
         let before = usize::from(begin > 0.0);
         let times = std::iter::repeat_n(0.0, before).chain(looked_at);
         Ok((times.collect(), before))
     }
 
-    fn course(&self, instance: &Instance<'_>, motion: &Motion) -> Result<Vec<f64>, Failure> {
+    fn values_over_time(
+        &self,
+        instance: &Instance<'_>,
+        motion: &Motion,
+    ) -> Result<Vec<f64>, Failure> {
         Ok(match self.quantity {
             Quantity::State(place) => {
                 let states = motion.trajectory.states.iter();
@@ -153,11 +157,11 @@ impl Measure for OverTime<'_> {
         let asked = format!("{}:{}", self.statistic.name(), self.name);
         let about = format!("{} {}", self.statistic.about(), self.name);
         Description {
-            about: format!("{about}, of {SAMPLES} samples and one"),
+            about: format!("{about}, of {SAMPLES_IN_WINDOW} samples and one"),
             options: BTreeMap::from_iter(self.times.options().into_iter().chain([
                 option("solver", Solver::Auto.name().to_owned()),
                 option("tolerance", format!("{TOLERANCE:?}")),
-                option("samples", (SAMPLES + 1).to_string()),
+                option("samples", (SAMPLES_IN_WINDOW + 1).to_string()),
             ])),
             columns: vec![Column::new(&asked, &self.unit, about)],
             drawn: vec![asked.clone()],
@@ -174,7 +178,7 @@ impl Measure for OverTime<'_> {
 impl Worker for &OverTime<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with(settings)?;
-        let (times, first) = self.times(&instance)?;
+        let (times, first) = self.sample_times(&instance)?;
         let inputs = instance.no_inputs();
         let request = Request {
             initial: instance.initial(),
@@ -185,13 +189,13 @@ impl Worker for &OverTime<'_> {
             max_step: f64::INFINITY,
             audit: false,
         };
-        let motion = of_motion(instance.follow(&request, &mut |_| {}))?;
-        let course = self.course(&instance, &motion)?;
+        let motion = finished_motion(instance.follow(&request, &mut |_| {}))?;
+        let course = self.values_over_time(&instance, &motion)?;
         let (times, course) = (&times[first..], &course[first..]);
         out[0] = match self.statistic {
-            Statistic::Greatest => greatest(course),
+            Statistic::Maximum => greatest(course),
             Statistic::RootMeanSquare => root_mean_square(times, course),
-            Statistic::Last => course.last().copied(),
+            Statistic::Final => course.last().copied(),
         }
         .ok_or(Failure::Undefined)?;
         Ok(())

@@ -19,17 +19,17 @@ use super::job::Job;
 const TITLE: &str = "eomgen sweep part 1";
 
 #[derive(Debug, PartialEq, Eq)]
-pub enum Found {
-    Whole,
+pub enum PartState {
+    Complete,
     Damaged,
-    Other,
+    OtherJob,
 }
 
 /// Returns the bytes of a chunk; all NaNs are equal, because their bits depend on the machine.
 pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
     let mut text = header(job, chunk);
     text.reserve(numbers.len() * 17);
-    for row in numbers.chunks(job.measured()) {
+    for row in numbers.chunks(job.measured_count()) {
         for (place, number) in row.iter().enumerate() {
             let number = if number.is_nan() { f64::NAN } else { *number };
             let between = if place == 0 { "" } else { " " };
@@ -44,30 +44,30 @@ pub fn header_length(job: &Job) -> usize {
     header(job, 0).len()
 }
 
-pub fn judge(job: &Job, chunk: usize, length: u64, start: &[u8]) -> Found {
+pub fn inspect_part(job: &Job, chunk: usize, length: u64, start: &[u8]) -> PartState {
     let expected = header(job, chunk);
-    let whole = expected.len() + job.chunk(chunk).len() * job.measured() * 17;
+    let whole = expected.len() + job.chunk_range(chunk).len() * job.measured_count() * 17;
     if start == expected.as_bytes() {
         return if length == whole as u64 {
-            Found::Whole
+            PartState::Complete
         } else {
-            Found::Damaged
+            PartState::Damaged
         };
     }
     let lines = |text: &str| text.lines().take(2).map(str::to_owned).collect::<Vec<_>>();
     let found = lines(&String::from_utf8_lossy(start));
     let is_part = found.len() == 2 && found[0] == TITLE && start.len() == expected.len();
     if is_part && found != lines(&expected) {
-        return Found::Other;
+        return PartState::OtherJob;
     }
-    Found::Damaged
+    PartState::Damaged
 }
 
 /// Parses the numbers of a complete part, point by point; `None` if it is incomplete.
 pub fn decode(job: &Job, chunk: usize, bytes: &[u8]) -> Option<Vec<f64>> {
     let text = std::str::from_utf8(bytes).ok()?;
     let body = text.strip_prefix(&header(job, chunk))?;
-    let count = job.chunk(chunk).len() * job.measured();
+    let count = job.chunk_range(chunk).len() * job.measured_count();
     if body.len() != count * 17 {
         return None;
     }
@@ -80,7 +80,7 @@ pub fn decode(job: &Job, chunk: usize, bytes: &[u8]) -> Option<Vec<f64>> {
 }
 
 fn header(job: &Job, chunk: usize) -> String {
-    let points = job.chunk(chunk);
+    let points = job.chunk_range(chunk);
     format!(
         "{TITLE}\njob {}\npoints {:08} {:08}\n",
         job.hash(),
@@ -119,21 +119,25 @@ mod tests {
         let start = header_length(&job);
         let judged = |job: &Job, chunk, text: &str| {
             let bytes = text.as_bytes();
-            judge(
+            inspect_part(
                 job,
                 chunk,
                 bytes.len() as u64,
                 &bytes[..start.min(bytes.len())],
             )
         };
-        assert_eq!(judged(&job, 7, &text), Found::Whole);
-        assert_eq!(judged(&job, 8, &text), Found::Damaged);
+        assert_eq!(judged(&job, 7, &text), PartState::Complete);
+        assert_eq!(judged(&job, 8, &text), PartState::Damaged);
         assert_eq!(
             judged(&super::super::job::tests::job(1999), 7, &text),
-            Found::Other
+            PartState::OtherJob
         );
         for length in 0..text.len() {
-            assert_eq!(judged(&job, 7, &text[..length]), Found::Damaged, "{length}");
+            assert_eq!(
+                judged(&job, 7, &text[..length]),
+                PartState::Damaged,
+                "{length}"
+            );
             assert_eq!(
                 decode(&job, 7, &text.as_bytes()[..length]),
                 None,

@@ -14,15 +14,15 @@ use super::shard::Shard;
 
 /// Result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Done {
+pub struct RunSummary {
     /// Points of this shard that were complete before.
-    pub found: usize,
+    pub complete_points: usize,
     /// Points computed.
-    pub computed: usize,
+    pub computed_points: usize,
 }
 
 /// Range of a measure's numbers at a point, and its worker.
-type Place<'a> = (Range<usize>, Box<dyn Worker + 'a>);
+type WorkerColumns<'a> = (Range<usize>, Box<dyn Worker + 'a>);
 
 /// Computes the missing chunks of a shard, with the plan's `measures` and `threads` threads (0: one
 /// per core). `progress` receives the numbers of computed points and of all points.
@@ -36,10 +36,13 @@ pub fn run(
     shard: Shard,
     threads: usize,
     progress: &mut (dyn FnMut(usize, usize) + Send),
-) -> Result<Done, SweepError> {
+) -> Result<RunSummary, SweepError> {
     let job = folder.job();
-    let (missing, found) = missing(folder, shard)?;
-    let whole = missing.iter().map(|chunk| job.chunk(*chunk).len()).sum();
+    let (missing, found) = missing_chunks(folder, shard)?;
+    let whole = missing
+        .iter()
+        .map(|chunk| job.chunk_range(*chunk).len())
+        .sum();
     let state = Mutex::new((0, progress));
     let point_is_done = || {
         // A thread that panicked with the lock did not change the count.
@@ -58,24 +61,24 @@ pub fn run(
         missing.par_iter().try_for_each_init(
             || workers(measures),
             |workers, chunk| {
-                let numbers = compute(job, *chunk, workers, &point_is_done);
+                let numbers = compute_chunk(job, *chunk, workers, &point_is_done);
                 folder.store(*chunk, &numbers)
             },
         )
     })?;
-    Ok(Done {
-        found,
-        computed: whole,
+    Ok(RunSummary {
+        complete_points: found,
+        computed_points: whole,
     })
 }
 
 /// Returns the missing chunks of a shard, and the number of its complete points.
-fn missing(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), SweepError> {
+fn missing_chunks(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), SweepError> {
     let job = folder.job();
     let (mut missing, mut found) = (Vec::new(), 0);
-    for chunk in (0..job.chunks()).filter(|chunk| shard.holds(*chunk)) {
-        if folder.holds(chunk)? {
-            found += job.chunk(chunk).len();
+    for chunk in (0..job.chunk_count()).filter(|chunk| shard.contains(*chunk)) {
+        if folder.has_chunk(chunk)? {
+            found += job.chunk_range(chunk).len();
         } else {
             missing.push(chunk);
         }
@@ -83,7 +86,7 @@ fn missing(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), SweepEr
     Ok((missing, found))
 }
 
-fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<Place<'a>> {
+fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<WorkerColumns<'a>> {
     let mut start = 0;
     let mut workers = Vec::with_capacity(measures.len());
     for measure in measures {
@@ -95,15 +98,15 @@ fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<Place<'a>> {
 }
 
 /// Returns the numbers of a chunk, point by point: each measure's, then its status.
-fn compute(
+fn compute_chunk(
     job: &Job,
     chunk: usize,
-    workers: &mut [Place<'_>],
+    workers: &mut [WorkerColumns<'_>],
     point_is_done: &dyn Fn(),
 ) -> Vec<f64> {
-    let points = job.chunk(chunk);
-    let mut numbers = vec![f64::NAN; points.len() * job.measured()];
-    for (point, row) in points.zip(numbers.chunks_mut(job.measured())) {
+    let points = job.chunk_range(chunk);
+    let mut numbers = vec![f64::NAN; points.len() * job.measured_count()];
+    for (point, row) in points.zip(numbers.chunks_mut(job.measured_count())) {
         let settings = job.points().settings(point);
         for (place, worker) in workers.iter_mut() {
             let outcome = worker.measure(&settings, &mut row[place.clone()]);
@@ -158,7 +161,7 @@ mod tests {
         let mut seen = Vec::new();
         let mut progress = |done, whole| seen.push((done, whole));
         let done = run(&folder, &measures(), Shard::WHOLE, 2, &mut progress).expect("a run");
-        assert_eq!((done.found, done.computed), (0, 5));
+        assert_eq!((done.complete_points, done.computed_points), (0, 5));
         assert_eq!(seen, [(1, 5), (2, 5), (3, 5), (4, 5), (5, 5)]);
         let table = merge(&folder).expect("all is there");
         assert_eq!(table.names, ["x", "m_value", "m_status"]);
@@ -177,9 +180,9 @@ mod tests {
         let first = merge(&folder).expect("all is there");
         assert_eq!(
             go(),
-            Done {
-                found: 5,
-                computed: 0
+            RunSummary {
+                complete_points: 5,
+                computed_points: 0
             }
         );
         let part = place.path().join("parts/0003.part");
@@ -187,9 +190,9 @@ mod tests {
         std::fs::write(&part, &bytes[..bytes.len() - 1]).expect("a part cut short");
         assert_eq!(
             go(),
-            Done {
-                found: 4,
-                computed: 1
+            RunSummary {
+                complete_points: 4,
+                computed_points: 1
             }
         );
         assert_eq!(std::fs::read(&part).expect("the part"), bytes);

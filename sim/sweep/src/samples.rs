@@ -15,11 +15,11 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
 use crate::error::SweepError;
-use crate::grid::MOST_POINTS;
+use crate::grid::MAX_POINTS;
 
 /// Maximum number of draws of a normal number within its bounds; then the mean is used. The bounds
 /// are at least one standard deviation away, so all draws fail with a probability of 10^-30.
-const MOST_DRAWS: usize = 64;
+const MAX_DRAWS: usize = 64;
 
 /// Independent random samples of parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,13 +29,13 @@ pub struct Samples {
     /// Seed of the sequence.
     pub seed: u64,
     /// Distributions of the parameters.
-    pub parameters: Vec<Sampled>,
+    pub parameters: Vec<SampledParameter>,
 }
 
 /// Distribution of a parameter, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "law", rename_all = "snake_case")]
-pub enum Sampled {
+pub enum SampledParameter {
     /// Normal distribution, truncated to the bounds.
     Normal {
         /// Name of the parameter.
@@ -60,7 +60,7 @@ pub enum Sampled {
     },
 }
 
-impl From<Spread> for Sampled {
+impl From<Spread> for SampledParameter {
     fn from(Spread { name, law }: Spread) -> Self {
         match law {
             Law::Normal {
@@ -97,35 +97,35 @@ impl Samples {
         let samples = Self {
             count,
             seed,
-            parameters: spreads.into_iter().map(Sampled::from).collect(),
+            parameters: spreads.into_iter().map(SampledParameter::from).collect(),
         };
         samples.check()?;
         Ok(samples)
     }
 
     pub(crate) fn check(&self) -> Result<(), SweepError> {
-        if (1..=MOST_POINTS).contains(&self.count) {
+        if (1..=MAX_POINTS).contains(&self.count) {
             return Ok(());
         }
         Err(SweepError::Request(format!(
-            "--samples {}: expected a number from 1 to {MOST_POINTS}",
+            "--samples {}: expected a number from 1 to {MAX_POINTS}",
             self.count
         )))
     }
 
     /// Returns the sampled parameters.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().map(Sampled::name)
+        self.parameters.iter().map(SampledParameter::name)
     }
 
     /// Returns the parameters' values in a sample, in the order of [`Samples::names`].
     pub fn settings(&self, sample: usize) -> Vec<(&str, f64)> {
-        let value = |parameter: &Sampled| {
+        let value = |parameter: &SampledParameter| {
             let mut state = self.seed;
-            for word in [word_of(parameter.name()), sample as u64] {
+            for word in [hash_name(parameter.name()), sample as u64] {
                 state = SplitMix64::seed_from_u64(state ^ word).next_u64();
             }
-            parameter.drawn(&mut SplitMix64::seed_from_u64(state))
+            parameter.draw(&mut SplitMix64::seed_from_u64(state))
         };
         self.parameters
             .iter()
@@ -134,7 +134,7 @@ impl Samples {
     }
 }
 
-impl Sampled {
+impl SampledParameter {
     /// Returns the parameter's name.
     pub fn name(&self) -> &str {
         match self {
@@ -142,9 +142,11 @@ impl Sampled {
         }
     }
 
-    fn drawn(&self, random: &mut SplitMix64) -> f64 {
+    fn draw(&self, random: &mut SplitMix64) -> f64 {
         match *self {
-            Self::Uniform { low, high, .. } => (low + (high - low) * unit(random)).clamp(low, high),
+            Self::Uniform { low, high, .. } => {
+                (low + (high - low) * draw_unit(random)).clamp(low, high)
+            }
             Self::Normal {
                 mean,
                 sd,
@@ -155,25 +157,25 @@ impl Sampled {
                 let inside = |value: &f64| {
                     low.is_none_or(|low| low <= *value) && high.is_none_or(|high| *value <= high)
                 };
-                let mut draws = (0..MOST_DRAWS).map(|_| mean + sd * normal(random));
+                let mut draws = (0..MAX_DRAWS).map(|_| mean + sd * draw_normal(random));
                 draws.find(inside).unwrap_or(mean)
             }
         }
     }
 }
 
-fn unit(random: &mut SplitMix64) -> f64 {
+fn draw_unit(random: &mut SplitMix64) -> f64 {
     (random.next_u64() >> 11) as f64 * 0.5_f64.powi(53)
 }
 
-fn normal(random: &mut SplitMix64) -> f64 {
+fn draw_normal(random: &mut SplitMix64) -> f64 {
     // 1 - [0, 1) excludes 0, so its logarithm exists.
-    let radius = (-2.0 * Function::Ln.apply(&[1.0 - unit(random)])).sqrt();
-    radius * Function::Cos.apply(&[TAU * unit(random)])
+    let radius = (-2.0 * Function::Ln.apply(&[1.0 - draw_unit(random)])).sqrt();
+    radius * Function::Cos.apply(&[TAU * draw_unit(random)])
 }
 
 /// Returns the hash of a name by Fowler, Noll and Vo, FNV-1a.
-fn word_of(name: &str) -> u64 {
+fn hash_name(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
@@ -183,9 +185,9 @@ fn word_of(name: &str) -> u64 {
 mod tests {
     use super::*;
 
-    fn normal_law(name: &str, low: Option<f64>) -> Sampled {
+    fn normal_law(name: &str, low: Option<f64>) -> SampledParameter {
         let name = name.to_owned();
-        Sampled::Normal {
+        SampledParameter::Normal {
             name,
             mean: 3.0,
             sd: 0.5,
@@ -194,7 +196,7 @@ mod tests {
         }
     }
 
-    fn values(parameter: &Sampled, seed: u64, count: usize) -> Vec<f64> {
+    fn values(parameter: &SampledParameter, seed: u64, count: usize) -> Vec<f64> {
         let samples = Samples {
             count,
             seed,
@@ -252,7 +254,7 @@ mod tests {
     fn uniform_numbers_fill_range_evenly() {
         let name = "k".to_owned();
         let values = values(
-            &Sampled::Uniform {
+            &SampledParameter::Uniform {
                 name,
                 low: -1.0,
                 high: 3.0,

@@ -48,7 +48,7 @@ impl Shard {
     }
 
     /// Returns true if a chunk, counted from 0, belongs to this shard.
-    pub fn holds(self, chunk: usize) -> bool {
+    pub fn contains(self, chunk: usize) -> bool {
         chunk % self.count == self.number - 1
     }
 }
@@ -67,9 +67,9 @@ mod tests {
     fn every_chunk_belongs_to_one_shard() {
         let shards = ["1/3", "2/3", "3/3"].map(|text| Shard::parse(text).expect("a shard"));
         for chunk in 0..20 {
-            let holders = shards.iter().filter(|shard| shard.holds(chunk)).count();
+            let holders = shards.iter().filter(|shard| shard.contains(chunk)).count();
             assert_eq!(holders, 1, "chunk {chunk}");
-            assert!(Shard::WHOLE.holds(chunk));
+            assert!(Shard::WHOLE.contains(chunk));
         }
     }
 

@@ -3,7 +3,7 @@
 use super::error::SweepError;
 
 /// Maximum number of periods of a measurement; rounding dominates long before.
-pub const MOST_PERIODS: usize = 1_000_000;
+pub const MAX_PERIODS: usize = 1_000_000;
 
 /// Transient and measured time, in forcing periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,12 +17,12 @@ pub struct Span {
 impl Span {
     /// Checks that at least `least` and at most [`MOST_PERIODS`] periods are measured.
     pub fn check(&self, measure: &str, least: usize) -> Result<(), SweepError> {
-        if self.periods >= least && self.transient.saturating_add(self.periods) <= MOST_PERIODS {
+        if self.periods >= least && self.transient.saturating_add(self.periods) <= MAX_PERIODS {
             return Ok(());
         }
         Err(SweepError::Request(format!(
             "--measure {measure}: expected at least {least} --periods, and --transient and \
-             --periods of at most {MOST_PERIODS} together"
+             --periods of at most {MAX_PERIODS} together"
         )))
     }
 }

@@ -10,7 +10,7 @@ use crate::measure::Failure;
 use crate::span::Span;
 
 /// Number of intervals in the second half of a time for the measurement of growth.
-const STRETCHES: usize = 100;
+const GROWTH_INTERVALS: usize = 100;
 
 /// Time window of a measure.
 #[derive(Clone, Debug)]
@@ -40,14 +40,14 @@ impl Times {
     ///
     /// # Errors
     /// An invalid window, or a parameter that is not a frequency.
-    pub fn of(
+    pub fn from_window(
         model: &Model,
         window: &Window,
         asked: &str,
         least: usize,
     ) -> Result<Self, SweepError> {
         match window {
-            Window::Until(end) => time(*end).map(Self::Until),
+            Window::Until(end) => check_time(*end).map(Self::Until),
             Window::Periods { forcing, span } => {
                 span.check(asked, least)?;
                 let known = frequency(model, forcing).map_err(|error| {
@@ -93,8 +93,8 @@ impl Times {
         Ok(match self {
             Self::Until(end) => Stretches {
                 transient: 0.5 * end,
-                interval: 0.5 * end / STRETCHES as f64,
-                intervals: STRETCHES,
+                interval: 0.5 * end / GROWTH_INTERVALS as f64,
+                intervals: GROWTH_INTERVALS,
             },
             Self::Periods(frequency, span) => {
                 let period = frequency.period(instance)?;
@@ -109,7 +109,7 @@ impl Times {
 }
 
 /// Checks that a time, in s, is positive and finite.
-pub fn time(until: f64) -> Result<f64, SweepError> {
+pub fn check_time(until: f64) -> Result<f64, SweepError> {
     if until > 0.0 && until.is_finite() {
         return Ok(until);
     }

@@ -9,16 +9,16 @@ use eomgen_model_spec::assignment::{Assignment, QuantityReader};
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_sim::ode::{Settings, SolveError, System, simulate};
 
-use super::quantity::place;
-use super::rotation::{Looks, turns_over};
+use super::quantity::state_index;
+use super::rotation::{MotionSamples, is_periodic_angle};
 use crate::error::SweepError;
 use crate::measure::Failure;
 
 /// Number of parts of the simulated time, so that it can end soon after the last crossing.
-const PARTS: usize = 64;
+const TIME_PARTS: usize = 64;
 
 /// Number of samples in each part, for the extent of the motion.
-const LOOKS: usize = 64;
+const SAMPLES_PER_PART: usize = 64;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
@@ -47,7 +47,7 @@ impl Crossing {
             Some((_, other)) => return Err(refused(format!("\"{other}\" is not a direction"))),
         };
         let name = name.trim();
-        let state = place(model, name).map_err(refused)?;
+        let state = state_index(model, name).map_err(refused)?;
         let units = model.model().state_units(model.orders());
         let wrong = |found: Diagnostics| SweepError::Request(found.to_string());
         let given = Assignment::split("--section", &format!("{name}={value}")).map_err(wrong)?;
@@ -61,7 +61,7 @@ impl Crossing {
     }
 
     /// Returns the fraction of the way at which the motion crosses `value` in the right direction.
-    fn between(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
+    fn crossing_fraction(&self, value: f64, before: &[f64], after: &[f64]) -> Option<f64> {
         let sign = if self.is_upwards { 1.0 } else { -1.0 };
         let above = |y: &[f64]| sign * (y[self.state] - value);
         let (from, to) = (above(before), above(after));
@@ -69,16 +69,20 @@ impl Crossing {
     }
 
     /// Returns true if all crossings are at one value, or at values with equal equations.
-    fn is_one_value(&self, instance: &Instance<'_>, seen: &Seen) -> Result<bool, Failure> {
+    fn is_one_value(
+        &self,
+        instance: &Instance<'_>,
+        seen: &CrossingResult,
+    ) -> Result<bool, Failure> {
         let is_near = |point: &Vec<f64>| (point[self.state] - self.value).abs() < 0.5 * TAU;
         if !instance.is_angle(self.state) || seen.points.iter().all(is_near) {
             return Ok(true);
         }
-        let looks = Looks {
+        let looks = MotionSamples {
             times: &seen.times,
             states: &seen.points,
         };
-        turns_over(instance, &looks, self.state)
+        is_periodic_angle(instance, &looks, self.state)
     }
 }
 
@@ -89,24 +93,24 @@ impl std::fmt::Display for Crossing {
     }
 }
 
-pub struct Seen {
+pub struct CrossingResult {
     pub times: Vec<f64>,
     pub points: Vec<Vec<f64>>,
     /// States between the crossings, approximately from the first one on.
-    pub between: Vec<Vec<f64>>,
+    pub states_between: Vec<Vec<f64>>,
 }
 
 /// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle.
-pub fn crossings(
+pub fn find_crossings(
     instance: &Instance<'_>,
     crossing: &Crossing,
     (transient, kept): (usize, usize),
     until: f64,
     settings: &Settings,
-) -> Result<Seen, Failure> {
+) -> Result<CrossingResult, Failure> {
     let find = |in_every_turn| {
         let wanted = (transient, kept);
-        followed(instance, (crossing, in_every_turn), wanted, until, settings)
+        follow_crossings(instance, (crossing, in_every_turn), wanted, until, settings)
     };
     let mut seen = find(instance.is_angle(crossing.state))?;
     if !crossing.is_one_value(instance, &seen)? {
@@ -123,36 +127,36 @@ pub fn crossings(
 }
 
 /// Returns crossings, in every turn or only at the value itself, until there are enough.
-fn followed(
+fn follow_crossings(
     instance: &Instance<'_>,
     (crossing, in_every_turn): (&Crossing, bool),
     wanted: (usize, usize),
     until: f64,
     settings: &Settings,
-) -> Result<Seen, Failure> {
+) -> Result<CrossingResult, Failure> {
     let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-    let watched = Watched {
+    let watched = SectionSystem {
         system: instance.driven(&evaluator, &inputs)?,
         surface: Surface {
             crossing,
-            turn: in_every_turn.then(Cell::default),
+            turn_start: in_every_turn.then(Cell::default),
         },
-        found: RefCell::default(),
+        found_crossings: RefCell::default(),
     };
     let (initial, _) = instance.consistent(instance.initial(), 0.0, &inputs)?;
     let between = watched.follow(&initial, until, wanted, settings)?;
-    let (times, points) = watched.found.into_inner().into_iter().unzip();
-    Ok(Seen {
+    let (times, points) = watched.found_crossings.into_inner().into_iter().unzip();
+    Ok(CrossingResult {
         times,
         points,
-        between,
+        states_between: between,
     })
 }
 
 struct Surface<'c> {
     crossing: &'c Crossing,
     /// Current turn, if every turn has a section. It changes only at crossings, so none is skipped.
-    turn: Option<Cell<f64>>,
+    turn_start: Option<Cell<f64>>,
 }
 
 impl Surface<'_> {
@@ -162,8 +166,8 @@ impl Surface<'_> {
         (start(turn), start(turn + 1.0))
     }
 
-    fn enter(&self, y: &[f64]) {
-        let Some(turn) = &self.turn else { return };
+    fn set_turn(&self, y: &[f64]) {
+        let Some(turn) = &self.turn_start else { return };
         let value = y[self.crossing.state];
         let rounded = ((value - self.crossing.value) / TAU).floor();
         let (from, to) = self.bounds(rounded);
@@ -177,7 +181,7 @@ impl Surface<'_> {
     /// Returns the guard; its sign alternates between turns, so that it is continuous.
     fn guard(&self, y: &[f64]) -> f64 {
         let value = y[self.crossing.state];
-        let Some(turn) = &self.turn else {
+        let Some(turn) = &self.turn_start else {
             return value - self.crossing.value;
         };
         let (from, to) = self.bounds(turn.get());
@@ -190,8 +194,8 @@ impl Surface<'_> {
     }
 
     /// Returns the next value that the motion crosses in the direction of the section.
-    fn next(&self) -> f64 {
-        let Some(turn) = &self.turn else {
+    fn next_value(&self) -> f64 {
+        let Some(turn) = &self.turn_start else {
             return self.crossing.value;
         };
         let (from, to) = self.bounds(turn.get());
@@ -199,13 +203,13 @@ impl Surface<'_> {
     }
 }
 
-struct Watched<'c, S> {
+struct SectionSystem<'c, S> {
     system: S,
     surface: Surface<'c>,
-    found: RefCell<Vec<(f64, Vec<f64>)>>,
+    found_crossings: RefCell<Vec<(f64, Vec<f64>)>>,
 }
 
-impl<S: System> Watched<'_, S> {
+impl<S: System> SectionSystem<'_, S> {
     /// Simulates up to the last crossing; returns the samples from the first one that counts.
     fn follow(
         &self,
@@ -215,20 +219,20 @@ impl<S: System> Watched<'_, S> {
         settings: &Settings,
     ) -> Result<Vec<Vec<f64>>, SolveError> {
         let (mut state, mut between, mut settings) = (initial.to_vec(), Vec::new(), *settings);
-        let count = || self.found.borrow().len();
-        for part in 0..PARTS {
+        let count = || self.found_crossings.borrow().len();
+        for part in 0..TIME_PARTS {
             if count() >= transient + kept {
                 break;
             }
-            let time = |share: f64| until * (part as f64 + share) / PARTS as f64;
+            let time = |share: f64| until * (part as f64 + share) / TIME_PARTS as f64;
             let span = (time(0.0), time(1.0));
-            let samples: Vec<f64> = (0..=LOOKS)
+            let samples: Vec<f64> = (0..=SAMPLES_PER_PART)
                 .map(|look| match look {
-                    LOOKS => span.1,
-                    _ => time(look as f64 / LOOKS as f64),
+                    SAMPLES_PER_PART => span.1,
+                    _ => time(look as f64 / SAMPLES_PER_PART as f64),
                 })
                 .collect();
-            self.surface.enter(&state);
+            self.surface.set_turn(&state);
             let motion = simulate(self, &state, span, &samples, &settings, &mut |_| {})?;
             let work = motion.work;
             let steps = work.steps + work.rejected + work.trials;
@@ -242,7 +246,7 @@ impl<S: System> Watched<'_, S> {
     }
 }
 
-impl<S: System> System for Watched<'_, S> {
+impl<S: System> System for SectionSystem<'_, S> {
     fn states(&self) -> usize {
         self.system.states()
     }
@@ -285,14 +289,14 @@ impl<S: System> System for Watched<'_, S> {
     }
 
     fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
-        let value = self.surface.next();
-        if let Some(part) = self.surface.crossing.between(value, start, y) {
+        let value = self.surface.next_value();
+        if let Some(part) = self.surface.crossing.crossing_fraction(value, start, y) {
             let on = |from: f64, to: f64| from + part * (to - from);
             let state = start.iter().zip(&*y).map(|(from, to)| on(*from, *to));
             let point = (on(before, t), state.collect());
-            self.found.borrow_mut().push(point);
+            self.found_crossings.borrow_mut().push(point);
         }
-        self.surface.enter(y);
+        self.surface.set_turn(y);
         self.system.cross((before, start), t, y);
     }
 

@@ -11,24 +11,24 @@ mod rotation;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use self::crossing::{Crossing, crossings};
-use self::numbers::{EQUAL, linear_parts, repetition, statistics};
+use self::crossing::{Crossing, find_crossings};
+use self::numbers::{MAX_RELATIVE_DISTANCE, find_repetition, linear_comparisons, statistics};
 use self::quantity::Quantity;
-use self::rotation::{Looks, without_drift};
+use self::rotation::{MotionSamples, remove_drift};
 use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::span::Span;
-use crate::window::time;
+use crate::window::check_time;
 use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
 /// Samples per forcing period: one is on the section, all give the extent of the motion.
-const LOOKS: usize = 8;
+const SAMPLES_PER_PERIOD: usize = 8;
 
 /// Maximum number of points that become columns.
-pub const MOST_POINTS_KEPT: usize = 1000;
+pub const MAX_POINTS_KEPT: usize = 1000;
 
 /// Relative accuracy of the exact solver's states. That of the general solver is ten tolerances.
 const EXACT_RESOLUTION: f64 = 1e-12;
@@ -49,7 +49,7 @@ pub enum Section {
     },
 }
 
-enum Places {
+enum ResolvedSection {
     Forcing(Frequency),
     Crossing(Crossing, f64),
 }
@@ -57,9 +57,9 @@ enum Places {
 /// Section of a model's motion at many parameter values.
 pub struct Poincare<'a> {
     model: &'a CompiledModel,
-    asked: String,
+    measure_name: String,
     quantity: Quantity,
-    places: Places,
+    places: ResolvedSection,
     span: Span,
     keep_points: bool,
     settings: Settings,
@@ -84,10 +84,16 @@ impl<'a> Poincare<'a> {
             Some((NAME, name)) => Some(name),
             _ => return None,
         };
-        Some(Self::of(model, (asked, name), section, span, keep_points))
+        Some(Self::build(
+            model,
+            (asked, name),
+            section,
+            span,
+            keep_points,
+        ))
     }
 
-    fn of(
+    fn build(
         model: &'a CompiledModel,
         (asked, name): (&str, Option<&str>),
         section: &Section,
@@ -96,9 +102,9 @@ impl<'a> Poincare<'a> {
     ) -> Result<Self, SweepError> {
         let refused = |reason: String| SweepError::Request(reason);
         span.check(asked, 2)?;
-        if keep_points && span.periods > MOST_POINTS_KEPT {
+        if keep_points && span.periods > MAX_POINTS_KEPT {
             return Err(refused(format!(
-                "--periods {}: expected at most {MOST_POINTS_KEPT}, because each point becomes a column",
+                "--periods {}: expected at most {MAX_POINTS_KEPT}, because each point becomes a column",
                 span.periods
             )));
         }
@@ -106,7 +112,7 @@ impl<'a> Poincare<'a> {
         let name = name.or(states.first().map(String::as_str));
         let name = name
             .ok_or_else(|| refused("--measure poincare: the model has no coordinate".to_owned()))?;
-        let quantity = Quantity::of(model, name);
+        let quantity = Quantity::from_name(model, name);
         let places = match section {
             Section::Forcing(parameter) => {
                 let known = frequency(model.model(), parameter).map_err(|error| {
@@ -115,16 +121,16 @@ impl<'a> Poincare<'a> {
                          the event of the section"
                     ))
                 })?;
-                Places::Forcing(known)
+                ResolvedSection::Forcing(known)
             }
             Section::Crossing { event, until } => {
-                Places::Crossing(Crossing::parse(model, event)?, time(*until)?)
+                ResolvedSection::Crossing(Crossing::parse(model, event)?, check_time(*until)?)
             }
         };
         Ok(Self {
             quantity: quantity.map_err(|reason| refused(format!("--measure {asked}: {reason}")))?,
             places,
-            asked: asked.to_owned(),
+            measure_name: asked.to_owned(),
             model,
             span,
             keep_points,
@@ -136,8 +142,10 @@ impl<'a> Poincare<'a> {
         let Quantity { name, unit, .. } = &self.quantity;
         let longest = LONGEST_PERIOD.min(self.span.periods / 2);
         let (periods, after) = match self.places {
-            Places::Forcing(_) => ("forcing periods", "one forcing period after the other"),
-            Places::Crossing(..) => ("returns", "one return after the other"),
+            ResolvedSection::Forcing(_) => {
+                ("forcing periods", "one forcing period after the other")
+            }
+            ResolvedSection::Crossing(..) => ("returns", "one return after the other"),
         };
         let columns = [
             (
@@ -160,11 +168,13 @@ impl<'a> Poincare<'a> {
             ),
         ];
         let time = match self.places {
-            Places::Forcing(_) => None,
-            Places::Crossing(..) => Some(("time", "s", "mean time between crossings".to_owned())),
+            ResolvedSection::Forcing(_) => None,
+            ResolvedSection::Crossing(..) => {
+                Some(("time", "s", "mean time between crossings".to_owned()))
+            }
         };
         let about = format!("{name} on the section, {after}");
-        let points = self.points().into_iter();
+        let points = self.point_columns().into_iter();
         columns
             .into_iter()
             .chain(time)
@@ -174,10 +184,10 @@ impl<'a> Poincare<'a> {
     }
 
     fn column(&self, part: &str) -> String {
-        format!("{}_{part}", self.asked)
+        format!("{}_{part}", self.measure_name)
     }
 
-    fn points(&self) -> Vec<String> {
+    fn point_columns(&self) -> Vec<String> {
         let count = if self.keep_points {
             self.span.periods
         } else {
@@ -191,7 +201,7 @@ impl<'a> Poincare<'a> {
 
 impl Measure for Poincare<'_> {
     fn describe(&self) -> Description {
-        let (name, points) = (&self.quantity.name, self.points());
+        let (name, points) = (&self.quantity.name, self.point_columns());
         let option = |name: &str, value: String| (name.to_owned(), value);
         let general = || {
             vec![
@@ -200,7 +210,7 @@ impl Measure for Poincare<'_> {
             ]
         };
         let (seen, options) = match &self.places {
-            Places::Forcing(frequency) => {
+            ResolvedSection::Forcing(frequency) => {
                 let mut options = match self.model.piecewise_linear() {
                     Ok(_) => vec![option("solver", "exact".to_owned())],
                     Err(_) => general(),
@@ -212,7 +222,7 @@ impl Measure for Poincare<'_> {
                 );
                 (at, options)
             }
-            Places::Crossing(crossing, until) => {
+            ResolvedSection::Crossing(crossing, until) => {
                 let mut options = general();
                 options.push(option("section", crossing.to_string()));
                 options.push(option("until", format!("{until:?}")));
@@ -226,9 +236,9 @@ impl Measure for Poincare<'_> {
             (points, name.clone())
         };
         Description {
-            name: self.asked.clone(),
+            name: self.measure_name.clone(),
             about: format!(
-                "{name} {seen}; period and clusters also of its {}, points being equal within {EQUAL} \
+                "{name} {seen}; period and clusters also of its {}, points being equal within {MAX_RELATIVE_DISTANCE} \
                  of the extent of the motion",
                 match name.ends_with("_dot") {
                     true => "coordinate",
@@ -253,13 +263,15 @@ impl Measure for Poincare<'_> {
 impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with(settings)?;
-        let OnSection {
+        let SectionPoints {
             points,
             repetition,
             time,
         } = match &self.places {
-            Places::Forcing(frequency) => self.once_per_period(&instance, frequency)?,
-            Places::Crossing(crossing, until) => self.where_crossed(&instance, crossing, *until)?,
+            ResolvedSection::Forcing(frequency) => self.points_per_period(&instance, frequency)?,
+            ResolvedSection::Crossing(crossing, until) => {
+                self.points_at_crossings(&instance, crossing, *until)?
+            }
         };
         let statistics = statistics(&points).ok_or(Failure::Undefined)?;
         let points = points.iter().map(|[x, _]| *x);
@@ -275,7 +287,7 @@ impl Worker for &Poincare<'_> {
     }
 }
 
-struct OnSection {
+struct SectionPoints {
     /// Points, without full turns of a rotating angle.
     points: Vec<[f64; 2]>,
     /// Period and clusters of the points; 0 for none.
@@ -285,72 +297,75 @@ struct OnSection {
 }
 
 impl Poincare<'_> {
-    fn once_per_period(
+    fn points_per_period(
         &self,
         instance: &Instance<'_>,
         frequency: &Frequency,
-    ) -> Result<OnSection, Failure> {
-        let times = self.times(frequency.period(instance)?);
+    ) -> Result<SectionPoints, Failure> {
+        let times = self.sample_times(frequency.period(instance)?);
         let motion = self.motion(instance, &times)?;
-        let seen: Vec<[f64; 2]> = self.seen(&motion.states);
-        let points = seen.iter().step_by(LOOKS).copied().collect();
-        let looks = Looks {
+        let seen: Vec<[f64; 2]> = self.quantity_values(&motion.states);
+        let points = seen.iter().step_by(SAMPLES_PER_PERIOD).copied().collect();
+        let looks = MotionSamples {
             times: &motion.times,
             states: &motion.states,
         };
-        self.on_section(instance, &looks, (&seen, points), None)
+        self.analyse_points(instance, &looks, (&seen, points), None)
     }
 
-    fn on_section(
+    fn analyse_points(
         &self,
         instance: &Instance<'_>,
-        looks: &Looks<'_>,
+        looks: &MotionSamples<'_>,
         (seen, mut points): (&[[f64; 2]], Vec<[f64; 2]>),
         time: Option<f64>,
-    ) -> Result<OnSection, Failure> {
-        let is_exact =
-            matches!(self.places, Places::Forcing(_)) && self.model.piecewise_linear().is_ok();
+    ) -> Result<SectionPoints, Failure> {
+        let is_exact = matches!(self.places, ResolvedSection::Forcing(_))
+            && self.model.piecewise_linear().is_ok();
         let resolution = match is_exact {
             true => EXACT_RESOLUTION,
             false => 10.0 * self.settings.tolerance,
         };
-        let mut parts = linear_parts(seen, resolution);
-        let mut found = repetition(&points, parts).ok_or(Failure::Undefined)?;
+        let mut parts = linear_comparisons(seen, resolution);
+        let mut found = find_repetition(&points, parts).ok_or(Failure::Undefined)?;
         if found[0] == 0.0 {
             let seen = (seen, &mut points[..]);
-            without_drift(instance, &self.quantity, looks, seen, &mut parts)?;
-            found = repetition(&points, parts).ok_or(Failure::Undefined)?;
+            remove_drift(instance, &self.quantity, looks, seen, &mut parts)?;
+            found = find_repetition(&points, parts).ok_or(Failure::Undefined)?;
         }
-        Ok(OnSection {
+        Ok(SectionPoints {
             points,
             repetition: found,
             time,
         })
     }
 
-    fn where_crossed(
+    fn points_at_crossings(
         &self,
         instance: &Instance<'_>,
         crossing: &Crossing,
         until: f64,
-    ) -> Result<OnSection, Failure> {
+    ) -> Result<SectionPoints, Failure> {
         let wanted = (self.span.transient, self.span.periods);
-        let found = crossings(instance, crossing, wanted, until, &self.settings)?;
-        let (points, between) = (self.seen(&found.points), self.seen(&found.between));
+        let found = find_crossings(instance, crossing, wanted, until, &self.settings)?;
+        let (points, between) = (
+            self.quantity_values(&found.points),
+            self.quantity_values(&found.states_between),
+        );
         let seen = [&points[..], &between].concat();
         let time = found.times.last().zip(found.times.first());
         let time = time.map(|(last, first)| (last - first) / (found.times.len() - 1) as f64);
-        let looks = Looks {
+        let looks = MotionSamples {
             times: &found.times,
             states: &found.points,
         };
-        self.on_section(instance, &looks, (&seen, points), time)
+        self.analyse_points(instance, &looks, (&seen, points), time)
     }
 
-    fn seen(&self, states: &[Vec<f64>]) -> Vec<[f64; 2]> {
+    fn quantity_values(&self, states: &[Vec<f64>]) -> Vec<[f64; 2]> {
         states
             .iter()
-            .map(|state| self.quantity.seen(state))
+            .map(|state| self.quantity.values_in_state(state))
             .collect()
     }
 
@@ -376,11 +391,14 @@ impl Poincare<'_> {
     }
 
     /// Returns the times of all samples in s; every [`LOOKS`]th, from the first, is on the section.
-    fn times(&self, period: f64) -> Vec<f64> {
+    fn sample_times(&self, period: f64) -> Vec<f64> {
         let look = |look: usize| {
-            let periods = self.span.transient + look / LOOKS;
-            (periods as f64 + (look % LOOKS) as f64 / LOOKS as f64) * period
+            let periods = self.span.transient + look / SAMPLES_PER_PERIOD;
+            (periods as f64 + (look % SAMPLES_PER_PERIOD) as f64 / SAMPLES_PER_PERIOD as f64)
+                * period
         };
-        (0..self.span.periods * LOOKS).map(look).collect()
+        (0..self.span.periods * SAMPLES_PER_PERIOD)
+            .map(look)
+            .collect()
     }
 }

@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use eomgen_analysis::poincare::{Section, Shape};
 
 /// Distance below which points are equal, relative to the extent of the motion.
-pub const EQUAL: f64 = 1e-3;
+pub const MAX_RELATIVE_DISTANCE: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Part {
+pub enum CoordinateComparison {
     /// Difference relative to the extent of the motion.
     Linear {
         /// Range of the coordinate over the whole motion.
@@ -21,13 +21,13 @@ pub enum Part {
 }
 
 /// Returns period and clusters of the points, 0 for none; `None` if they are not finite.
-pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
+pub fn find_repetition(points: &[[f64; 2]], parts: [CoordinateComparison; 2]) -> Option<[f64; 2]> {
     let mut scale = Vec::with_capacity(4);
     for part in parts {
         match part {
-            Part::Linear { extent } => scale.push(extent),
-            Part::Angle => scale.extend([TAU, TAU]),
-            Part::Ignored => {}
+            CoordinateComparison::Linear { extent } => scale.push(extent),
+            CoordinateComparison::Angle => scale.extend([TAU, TAU]),
+            CoordinateComparison::Ignored => {}
         }
     }
     if !points.as_flattened().iter().all(|value| value.is_finite()) {
@@ -40,9 +40,9 @@ pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
     let mut flat = Vec::with_capacity(points.len() * scale.len());
     for (value, part) in points.iter().flat_map(|point| point.iter().zip(parts)) {
         match part {
-            Part::Linear { .. } => flat.push(*value),
-            Part::Angle => flat.extend([value.cos(), value.sin()]),
-            Part::Ignored => {}
+            CoordinateComparison::Linear { .. } => flat.push(*value),
+            CoordinateComparison::Angle => flat.extend([value.cos(), value.sin()]),
+            CoordinateComparison::Ignored => {}
         }
     }
     let section = Section {
@@ -51,7 +51,7 @@ pub fn repetition(points: &[[f64; 2]], parts: [Part; 2]) -> Option<[f64; 2]> {
     };
     let Shape {
         period, clusters, ..
-    } = section.shape(EQUAL).ok()?;
+    } = section.shape(MAX_RELATIVE_DISTANCE).ok()?;
     Some([period, clusters].map(|count| count.unwrap_or(0) as f64))
 }
 
@@ -72,12 +72,12 @@ pub fn statistics(points: &[[f64; 2]]) -> Option<[f64; 4]> {
 }
 
 /// Returns comparisons; a coordinate is constant if it changes by at most `resolution` of its size.
-pub fn linear_parts(seen: &[[f64; 2]], resolution: f64) -> [Part; 2] {
+pub fn linear_comparisons(seen: &[[f64; 2]], resolution: f64) -> [CoordinateComparison; 2] {
     extents(seen.iter()).map(|(least, greatest)| {
         let extent = greatest - least;
         match extent <= resolution * least.abs().max(greatest.abs()) {
-            true => Part::Ignored,
-            false => Part::Linear { extent },
+            true => CoordinateComparison::Ignored,
+            false => CoordinateComparison::Linear { extent },
         }
     })
 }
@@ -90,7 +90,7 @@ pub fn extents<'s>(seen: impl Iterator<Item = &'s [f64; 2]> + Clone) -> [(f64, f
     })
 }
 
-pub fn within_a_turn(angle: f64, from: f64) -> f64 {
+pub fn wrap_angle(angle: f64, from: f64) -> f64 {
     let turned = (angle - from + PI).rem_euclid(TAU) - PI;
     from + turned
 }
@@ -116,15 +116,15 @@ mod tests {
         (0..periods * LOOKS).map(look).collect()
     }
 
-    fn of(seen: &[[f64; 2]]) -> [f64; 6] {
+    fn analyse(seen: &[[f64; 2]]) -> [f64; 6] {
         let points: Vec<[f64; 2]> = seen.iter().step_by(LOOKS).copied().collect();
         let [period, clusters] =
-            repetition(&points, linear_parts(seen, RESOLUTION)).expect("numbers");
+            find_repetition(&points, linear_comparisons(seen, RESOLUTION)).expect("numbers");
         let [mean, min, max, rms] = statistics(&points).expect("numbers");
         [period, clusters, mean, min, max, rms]
     }
 
-    fn close(found: f64, expected: f64) {
+    fn assert_close(found: f64, expected: f64) {
         // Rounding of a few dozen terms of order 10.
         assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
     }
@@ -132,20 +132,20 @@ mod tests {
     #[test]
     fn motion_with_half_forcing_frequency_has_two_points() {
         // On the section x alternates between a + b + c and a + b - c.
-        let [period, clusters, mean, min, max, rms] = of(&seen(10, [3.0, 4.0, 1.0]));
+        let [period, clusters, mean, min, max, rms] = analyse(&seen(10, [3.0, 4.0, 1.0]));
         assert_eq!((period, clusters), (2.0, 2.0));
-        close(mean, 7.0);
-        close(min, 6.0);
-        close(max, 8.0);
-        close(rms, 50.0_f64.sqrt());
+        assert_close(mean, 7.0);
+        assert_close(min, 6.0);
+        assert_close(max, 8.0);
+        assert_close(rms, 50.0_f64.sqrt());
     }
 
     #[test]
     fn motion_with_forcing_frequency_and_rest_have_one_point() {
-        let found = of(&seen(10, [3.0, 4.0, 0.0]));
+        let found = analyse(&seen(10, [3.0, 4.0, 0.0]));
         assert_eq!(found[..2], [1.0, 1.0]);
-        close(found[2], 7.0);
-        let rest = of(&[[2.0, 0.0]; 5 * LOOKS]);
+        assert_close(found[2], 7.0);
+        let rest = analyse(&[[2.0, 0.0]; 5 * LOOKS]);
         assert_eq!(rest, [1.0, 1.0, 2.0, 2.0, 2.0, 2.0]);
     }
 
@@ -155,12 +155,18 @@ mod tests {
         let points: Vec<[f64; 2]> = (0..20)
             .map(|k| [PI + 2.0 * TAU * f64::from(k) + 1e-9 * f64::from(k % 2), 1.0])
             .collect();
-        let parts = [Part::Angle, Part::Ignored];
-        assert_eq!(repetition(&points, parts), Some([1.0, 1.0]));
+        let parts = [CoordinateComparison::Angle, CoordinateComparison::Ignored];
+        assert_eq!(find_repetition(&points, parts), Some([1.0, 1.0]));
         let extent = 40.0 * TAU;
-        let parts = [Part::Linear { extent }, Part::Ignored];
-        assert_eq!(repetition(&points, parts).map(|found| found[0]), Some(0.0));
-        assert!((within_a_turn(7.0, 0.0) - (7.0 - TAU)).abs() < 1e-15);
-        assert!((within_a_turn(PI + 0.1, PI) - (PI + 0.1)).abs() < 1e-15);
+        let parts = [
+            CoordinateComparison::Linear { extent },
+            CoordinateComparison::Ignored,
+        ];
+        assert_eq!(
+            find_repetition(&points, parts).map(|found| found[0]),
+            Some(0.0)
+        );
+        assert!((wrap_angle(7.0, 0.0) - (7.0 - TAU)).abs() < 1e-15);
+        assert!((wrap_angle(PI + 0.1, PI) - (PI + 0.1)).abs() < 1e-15);
     }
 }

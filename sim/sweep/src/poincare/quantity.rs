@@ -3,7 +3,7 @@
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::suggest::did_you_mean;
 
-pub fn place(model: &CompiledModel, name: &str) -> Result<usize, String> {
+pub fn state_index(model: &CompiledModel, name: &str) -> Result<usize, String> {
     let states = model.state_names();
     let place = states.iter().position(|known| known == name);
     place.ok_or_else(|| {
@@ -20,14 +20,14 @@ pub struct Quantity {
     pub name: String,
     /// SI unit of the reported quantity.
     pub unit: String,
-    places: [usize; 2],
+    state_indices: [usize; 2],
     /// Position of the coordinate among the two; the other one is its rate.
     coordinate: usize,
 }
 
 impl Quantity {
-    pub fn of(model: &CompiledModel, name: &str) -> Result<Self, String> {
-        let shown = place(model, name)?;
+    pub fn from_name(model: &CompiledModel, name: &str) -> Result<Self, String> {
+        let shown = state_index(model, name)?;
         let (partner, coordinate) = match name.strip_suffix("_dot") {
             Some(coordinate) => (coordinate.to_owned(), 1),
             None => (format!("{name}_dot"), 0),
@@ -36,16 +36,16 @@ impl Quantity {
             coordinate,
             name: name.to_owned(),
             unit: model.state_units()[shown].clone(),
-            places: [shown, place(model, &partner)?],
+            state_indices: [shown, state_index(model, &partner)?],
         })
     }
 
     /// Returns the position of the coordinate among the two, and its index in the state.
     pub fn coordinate(&self) -> (usize, usize) {
-        (self.coordinate, self.places[self.coordinate])
+        (self.coordinate, self.state_indices[self.coordinate])
     }
 
-    pub fn seen(&self, state: &[f64]) -> [f64; 2] {
-        self.places.map(|place| state[place])
+    pub fn values_in_state(&self, state: &[f64]) -> [f64; 2] {
+        self.state_indices.map(|place| state[place])
     }
 }

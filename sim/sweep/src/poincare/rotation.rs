@@ -6,51 +6,51 @@ use std::f64::consts::TAU;
 
 use eomgen_compiled_model::{Instance, OperatingPoint};
 
-use super::numbers::{Part, extents, within_a_turn};
+use super::numbers::{CoordinateComparison, extents, wrap_angle};
 use super::quantity::Quantity;
 use crate::measure::Failure;
 
 /// Number of states at which the equations are compared after a turn.
-const COMPARED: usize = 8;
+const COMPARED_STATES: usize = 8;
 
-pub struct Looks<'m> {
+pub struct MotionSamples<'m> {
     /// Times of the samples, in s.
     pub times: &'m [f64],
     pub states: &'m [Vec<f64>],
 }
 
 /// Replaces the comparison of a drifting coordinate, and removes full turns from the points.
-pub fn without_drift(
+pub fn remove_drift(
     instance: &Instance<'_>,
     quantity: &Quantity,
-    looks: &Looks<'_>,
+    looks: &MotionSamples<'_>,
     (seen, points): (&[[f64; 2]], &mut [[f64; 2]]),
-    parts: &mut [Part; 2],
+    parts: &mut [CoordinateComparison; 2],
 ) -> Result<(), Failure> {
     let (shown, place) = quantity.coordinate();
     let is_angle = instance.is_angle(place);
     let extent = extents(seen.iter())[shown];
     let turns = is_angle && extent.1 - extent.0 >= TAU;
     if is_cyclic(instance, looks, place)? {
-        parts[shown] = Part::Ignored;
-    } else if turns && repeats(instance, looks, place)? {
-        parts[shown] = Part::Angle;
+        parts[shown] = CoordinateComparison::Ignored;
+    } else if turns && has_equal_equations_after_turn(instance, looks, place)? {
+        parts[shown] = CoordinateComparison::Angle;
     } else {
         return Ok(());
     }
     if is_angle {
         let start = instance.initial()[place];
         for point in points {
-            point[shown] = within_a_turn(point[shown], start);
+            point[shown] = wrap_angle(point[shown], start);
         }
     }
     Ok(())
 }
 
 /// Returns true if a coordinate is an angle and the equations are periodic in it.
-pub fn turns_over(
+pub fn is_periodic_angle(
     instance: &Instance<'_>,
-    looks: &Looks<'_>,
+    looks: &MotionSamples<'_>,
     place: usize,
 ) -> Result<bool, Failure> {
     if !instance.is_angle(place) {
@@ -59,14 +59,14 @@ pub fn turns_over(
     // All samples can be at one angle, so the angle is varied.
     let turned = |state: &[f64], part: usize| {
         let mut state = state.to_vec();
-        state[place] += TAU * part as f64 / COMPARED as f64;
+        state[place] += TAU * part as f64 / COMPARED_STATES as f64;
         state
     };
-    let step = (looks.states.len() / COMPARED).max(1);
+    let step = (looks.states.len() / COMPARED_STATES).max(1);
     let (mut times, mut states) = (Vec::new(), Vec::new());
     for (t, state) in looks.times.iter().zip(looks.states).step_by(step) {
-        times.extend([*t; COMPARED]);
-        states.extend((0..COMPARED).map(|part| turned(state, part)));
+        times.extend([*t; COMPARED_STATES]);
+        states.extend((0..COMPARED_STATES).map(|part| turned(state, part)));
     }
     let compared: Vec<(f64, &[f64])> = times
         .into_iter()
@@ -75,7 +75,11 @@ pub fn turns_over(
     Ok(is_cyclic(instance, looks, place)? || instance.repeats_with_a_turn(place, &compared)?)
 }
 
-fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
+fn is_cyclic(
+    instance: &Instance<'_>,
+    looks: &MotionSamples<'_>,
+    place: usize,
+) -> Result<bool, Failure> {
     let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {
         return Ok(false);
     };
@@ -89,8 +93,12 @@ fn is_cyclic(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
 }
 
-fn repeats(instance: &Instance<'_>, looks: &Looks<'_>, place: usize) -> Result<bool, Failure> {
-    let step = (looks.states.len() / COMPARED).max(1);
+fn has_equal_equations_after_turn(
+    instance: &Instance<'_>,
+    looks: &MotionSamples<'_>,
+    place: usize,
+) -> Result<bool, Failure> {
+    let step = (looks.states.len() / COMPARED_STATES).max(1);
     let compared: Vec<(f64, &[f64])> = looks
         .times
         .iter()

@@ -106,7 +106,7 @@ pub fn parts(folder: &Path) -> Vec<String> {
 }
 
 pub fn table(folder: &Path) -> Table {
-    merge(&Folder::existing(folder).expect("a sweep")).expect("all points")
+    merge(&Folder::open_existing(folder).expect("a sweep")).expect("all points")
 }
 
 pub fn column<'a>(table: &'a Table, name: &str) -> &'a [f64] {
