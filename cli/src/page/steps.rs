@@ -1,6 +1,6 @@
 //! Sections of the tour's page, except the equations.
 
-use eomgen_page::{figure, folded, number, table};
+use eomgen_page::{collapsible_file, figure, number, table};
 use maud::{Markup, html};
 
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
@@ -18,7 +18,7 @@ pub(super) fn specification(specification: &Specification<'_>) -> Markup {
             "and the units of every term are checked: " strong { (found) } "."
         }
         @for warning in warnings { pre.warning { (warning) } }
-        (folded("Specification", specification.text, false))
+        (collapsible_file("Specification", specification.text, false))
     }
 }
 
@@ -30,9 +30,9 @@ pub(super) fn source(source: &Source<'_>) -> Markup {
             "crates."
         }
         @if let Some(rates) = rates_function(source.text) {
-            (folded("The right-hand side: rates", rates, true))
+            (collapsible_file("The right-hand side: rates", rates, true))
         }
-        (folded("Whole file", source.text, false))
+        (collapsible_file("Whole file", source.text, false))
     }
 }
 
@@ -116,7 +116,7 @@ pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
         p { (hidden.summary) " Records and results are in " code { (hidden.path) } "." }
         (page("Report of the comparison", before, false))
         (page("Report of the discovery", after, true))
-        (folded("Extended specification", hidden.extended, false))
+        (collapsible_file("Extended specification", hidden.extended, false))
     }
 }
 

@@ -17,7 +17,7 @@ const SCRIPT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
 /// forbids both. Control characters and characters that reverse the writing direction appear as
 /// escapes such as `\u{202e}`.
 pub fn document(title: &str, body: &Markup) -> String {
-    around(title, POLICY, &html! {}, body)
+    wrap_body(title, POLICY, &html! {}, body)
 }
 
 /// Parts of a page with a script.
@@ -44,7 +44,7 @@ pub fn scripted_document(parts: &ScriptedDocument<'_>) -> String {
         script #model type="application/json" { (PreEscaped(data)) }
         script { (PreEscaped(parts.script)) }
     };
-    around(parts.title, SCRIPT_POLICY, &head, &body)
+    wrap_body(parts.title, SCRIPT_POLICY, &head, &body)
 }
 
 /// Escapes hidden characters of JSON and `<`, so that it cannot end an HTML element.
@@ -63,7 +63,7 @@ fn data_text(json: &str) -> String {
     text
 }
 
-fn around(title: &str, policy: &str, head: &Markup, body: &Markup) -> String {
+fn wrap_body(title: &str, policy: &str, head: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -9,7 +9,7 @@ use crate::formula::formula;
 use crate::number::number;
 use crate::parts::table;
 
-const SHOWN_VALUES: usize = 8;
+const MAX_SHOWN_VALUES: usize = 8;
 
 /// Returns the equations of a report, with formulas as MathML.
 pub fn equations(report: &Report) -> Markup {
@@ -19,27 +19,27 @@ pub fn equations(report: &Report) -> Markup {
     };
     html! {
         (introduction(report))
-        (lines(&html! { "Definitions" }, &report.definitions, formula))
-        (lines(&terms, &report.terms, formula))
+        (equation_section(&html! { "Definitions" }, &report.definitions, formula))
+        (equation_section(&terms, &report.terms, formula))
         (energies(report))
-        (lines(&html! { "Shared subexpressions" }, &report.shared, formula))
+        (equation_section(&html! { "Shared subexpressions" }, &report.shared, formula))
         (mass_matrix(&report.mass_matrix))
-        (lines(
+        (equation_section(
             &html! { "Pivots of its factorisation, which must be positive" },
             &report.pivots,
             formula,
         ))
-        (lines(&html! { "Velocity terms " i { "c" } }, &report.velocity_terms, |name| {
-            indexed("c", &[name])
+        (equation_section(&html! { "Velocity terms " i { "c" } }, &report.velocity_terms, |name| {
+            indexed_letter("c", &[name])
         }))
-        (lines(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
-            indexed("f", &[name])
+        (equation_section(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
+            indexed_letter("f", &[name])
         }))
-        (lines(&html! { "Rates of first-order states" }, &report.state_rates, formula))
-        (lines(&html! { "Constraints, which are zero" }, &report.constraints, formula))
-        (lines(&html! { "Multipliers of the constraints" }, &report.multipliers, formula))
+        (equation_section(&html! { "Rates of first-order states" }, &report.state_rates, formula))
+        (equation_section(&html! { "Constraints, which are zero" }, &report.constraints, formula))
+        (equation_section(&html! { "Multipliers of the constraints" }, &report.multipliers, formula))
         (coefficients(&report.coefficients))
-        (lines(&html! { "Accelerations" }, &report.accelerations, formula))
+        (equation_section(&html! { "Accelerations" }, &report.accelerations, formula))
         (guards(&report.guards))
         p { (sentence(&report.linearity)) }
         (solution(&report.solution, has_modes))
@@ -58,7 +58,7 @@ fn introduction(report: &Report) -> Markup {
                 },
                 orders => {
                     " The flexible bodies have "
-                    (separated(orders, |order| html! { (order) })) " modes."
+                    (comma_list(orders, |order| html! { (order) })) " modes."
                 },
             }
             " Sums run over the modes " i { "i" } "; integrals over the mode shapes " i { "φ" }
@@ -67,13 +67,13 @@ fn introduction(report: &Report) -> Markup {
         }
         p {
             "The state: "
-            (separated(&report.state, |name| formula(&Formula::Symbol(Symbol::of_state(name)))))
+            (comma_list(&report.state, |name| formula(&Formula::Symbol(Symbol::of_state(name)))))
             "."
         }
     }
 }
 
-fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
+fn comma_list<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     html! {
         @for (place, item) in items.iter().enumerate() {
             @if place > 0 { ", " }
@@ -82,8 +82,8 @@ fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     }
 }
 
-fn indexed(letter: &str, names: &[&Formula]) -> Markup {
-    html! { i { (letter) } sub { (separated(names, |name| formula(name))) } }
+fn indexed_letter(letter: &str, names: &[&Formula]) -> Markup {
+    html! { i { (letter) } sub { (comma_list(names, |name| formula(name))) } }
 }
 
 fn sentence(sentence: &Sentence) -> Markup {
@@ -94,41 +94,41 @@ fn sentence(sentence: &Sentence) -> Markup {
     }
 }
 
-fn row(left: &Markup, right: &Formula) -> Markup {
+fn equation_row(left: &Markup, right: &Formula) -> Markup {
     html! { tr { th scope="row" { (left) } td { "= " (formula(right)) } } }
 }
 
-fn under(heading: &Markup, rows: &Markup) -> Markup {
+fn section_under_heading(heading: &Markup, rows: &Markup) -> Markup {
     html! {
         h3 { (heading) }
         div.wide { table.equations { tbody { (rows) } } }
     }
 }
 
-fn lines(heading: &Markup, lines: &[Line], name: impl Fn(&Formula) -> Markup) -> Markup {
+fn equation_section(heading: &Markup, lines: &[Line], name: impl Fn(&Formula) -> Markup) -> Markup {
     if lines.is_empty() {
         return html! {};
     }
-    let rows = html! { @for line in lines { (row(&name(&line.name), &line.formula)) } };
-    under(heading, &rows)
+    let rows = html! { @for line in lines { (equation_row(&name(&line.name), &line.formula)) } };
+    section_under_heading(heading, &rows)
 }
 
 fn energies(report: &Report) -> Markup {
     let rows = html! {
-        (row(&html! { i { "T" } }, &report.kinetic))
-        (row(&html! { i { "V" } }, &report.potential))
+        (equation_row(&html! { i { "T" } }, &report.kinetic))
+        (equation_row(&html! { i { "V" } }, &report.potential))
     };
-    under(&html! { "Kinetic and potential energy" }, &rows)
+    section_under_heading(&html! { "Kinetic and potential energy" }, &rows)
 }
 
 fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
     let rows = html! {
         @for entry in entries {
-            (row(&indexed("M", &[&entry.row, &entry.column]), &entry.formula))
+            (equation_row(&indexed_letter("M", &[&entry.row, &entry.column]), &entry.formula))
         }
     };
     let heading = html! { "Mass matrix " b { "M" } ": symmetric, its nonzero entries" };
-    under(&heading, &rows)
+    section_under_heading(&heading, &rows)
 }
 
 fn coefficients(lines: &[CoefficientLine]) -> Markup {
@@ -154,11 +154,11 @@ fn coefficients(lines: &[CoefficientLine]) -> Markup {
 fn values(values: &[f64]) -> Markup {
     html! {
         @if values.is_empty() { "varies with time or state" }
-        @for (place, value) in values.iter().take(SHOWN_VALUES).enumerate() {
+        @for (place, value) in values.iter().take(MAX_SHOWN_VALUES).enumerate() {
             @if place > 0 { br; }
             (number(*value, 5))
         }
-        @if values.len() > SHOWN_VALUES { br; "… (" (values.len()) " values)" }
+        @if values.len() > MAX_SHOWN_VALUES { br; "… (" (values.len()) " values)" }
     }
 }
 
@@ -188,7 +188,7 @@ fn solution(solution: &Solution, has_modes: bool) -> Markup {
         h3 { "Solution for the accelerations" }
         p {
             "Elimination without pivoting, in the cheapest order: " (modes) (interfaces)
-            (separated(&solution.order, formula)) ". That takes " (solution.operations)
+            (comma_list(&solution.order, formula)) ". That takes " (solution.operations)
             " operations per call; the most expensive order takes " (solution.dearest) "."
         }
     }

@@ -26,4 +26,4 @@ pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;
 pub use formula::formula;
 pub use number::number;
-pub use parts::{Figure, figure, folded, section, table};
+pub use parts::{Figure, collapsible_file, figure, section, table};

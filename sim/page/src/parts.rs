@@ -25,7 +25,7 @@ pub fn table(headings: &[&str], rows: &Markup) -> Markup {
 }
 
 /// Returns a file's text as a collapsible element with a summary.
-pub fn folded(summary: &str, text: &str, is_open: bool) -> Markup {
+pub fn collapsible_file(summary: &str, text: &str, is_open: bool) -> Markup {
     html! {
         details open[is_open] {
             summary { (summary) }

@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::model::{Drawing, Ordinate};
-use eomgen_page::play::{encoded, printed};
+use eomgen_page::play::{encode_base64, format_unit};
 use serde_json::{Value, json};
 
 use super::quantities::Quantities;
@@ -19,16 +19,16 @@ pub(super) fn json(
     let names = compiled.state_names().into_iter();
     let state = names.zip(&quantities.units).zip(initial);
     let state: Vec<Value> = state
-        .map(|((name, unit), initial)| json!({ "name": name, "unit": printed(unit), "initial": initial }))
+        .map(|((name, unit), initial)| json!({ "name": name, "unit": format_unit(unit), "initial": initial }))
         .collect();
-    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": printed(&quantity.unit) });
+    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": format_unit(&quantity.unit) });
     let inputs = program.inputs.iter().zip(compiled.usual_inputs());
     let inputs = inputs.map(|(input, value)| {
-        json!({ "name": input.name, "unit": printed(&input.unit), "value": value })
+        json!({ "name": input.name, "unit": format_unit(&input.unit), "value": value })
     });
     let evaluator = compiled.evaluator(&program.default_parameters());
     let document = json!({
-        "module": encoded(module),
+        "module": encode_base64(module),
         "parameters": program.default_parameters(),
         "state": state,
         "inputs": inputs.collect::<Vec<_>>(),

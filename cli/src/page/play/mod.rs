@@ -43,7 +43,7 @@ pub fn interactive_page(compiled: &CompiledModel) -> Result<String> {
         style: &[play::STYLE, STYLE].concat(),
         body: &body(compiled, &quantities, &report),
         data: &data,
-        script: &play::script(&SCRIPT),
+        script: &play::join_scripts(&SCRIPT),
     }))
 }
 

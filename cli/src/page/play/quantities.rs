@@ -3,7 +3,7 @@
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::Model;
-use eomgen_page::play::{Slider, printed};
+use eomgen_page::play::{Slider, format_unit};
 
 use crate::error::{Error, Result};
 
@@ -46,7 +46,7 @@ impl<'m> Quantities<'m> {
         let parameters = parameters.filter_map(|(place, independent)| {
             let name = &independent.quantity.name;
             let declared = model.parameters.iter().find(|p| p.name == *name)?;
-            Some(Slider::of_parameter(declared, place, independent.value))
+            Some(Slider::from_parameter(declared, place, independent.value))
         });
         let inputs = model
             .inputs
@@ -58,7 +58,7 @@ impl<'m> Quantities<'m> {
             let (low, high) = range.unwrap_or((-10.0, 10.0));
             Slider {
                 name: input.name.clone(),
-                unit: printed(&input.unit.to_string()),
+                unit: format_unit(&input.unit.to_string()),
                 doc: &input.doc,
                 place,
                 factor: 1.0,
@@ -142,7 +142,7 @@ fn initial_state<'m>(
             .map(|state| &model.states[StateId::new(state)].doc);
         Slider {
             name: names[place].clone(),
-            unit: printed(&units[place]),
+            unit: format_unit(&units[place]),
             doc: coordinate.or(state).map_or("", String::as_str),
             place,
             factor: 1.0,
@@ -175,7 +175,7 @@ fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<CurveQuantity> {
     all.map(|(place, (name, unit))| CurveQuantity {
         at_first: place < degrees.min(MAX_INITIAL_CURVES - 1) || name == "energy",
         name,
-        unit: printed(&unit),
+        unit: format_unit(&unit),
         place,
     })
     .collect()

@@ -1,6 +1,6 @@
 //! Sliders for the found values: parameters of the extended specification, and sensors.
 
-use eomgen_page::play::{Slider, printed};
+use eomgen_page::play::{Slider, format_unit};
 use maud::{Markup, html};
 
 use crate::fit::fit_result::Fit;
@@ -44,7 +44,7 @@ fn control(
         let reach = (AROUND * (value - neutral).abs()).max(f64::MIN_POSITIVE);
         Slider {
             name: format!("{fault}_{}", problem.dataset.channels[channel].name),
-            unit: printed(unit),
+            unit: format_unit(unit),
             doc: "",
             place: channel,
             factor: 1.0,
@@ -76,7 +76,7 @@ fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
         return html! {};
     };
     let place = place.index();
-    let mut slider = Slider::of_parameter(declared, place, model.values[place]);
+    let mut slider = Slider::from_parameter(declared, place, model.values[place]);
     slider.value = rounded(slider.value);
     if is_inverse {
         (slider.low, slider.high) = (0.2 * slider.value, 5.0 * slider.value);

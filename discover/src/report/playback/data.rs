@@ -1,6 +1,6 @@
 //! Data of the script as JSON, with numeric columns as bytes in base 64.
 
-use eomgen_page::play::{encoded, printed};
+use eomgen_page::play::{encode_base64, format_unit};
 use serde_json::{Value, json};
 
 use crate::fit::fit_result::Fit;
@@ -35,7 +35,7 @@ pub(super) fn write_json(
     };
     let guards = model.create_evaluator(&model.values).guard_count();
     let document = json!({
-        "module": encoded(module),
+        "module": encode_base64(module),
         "parameters": model.values,
         "state": vec![0; model.state_count()],
         "inputs": vec![0; program.inputs.len()],
@@ -75,7 +75,7 @@ fn channels(
             };
             json!({
                 "name": channel.name,
-                "unit": printed(&channel.unit),
+                "unit": format_unit(&channel.unit),
                 "from": from,
                 "gain": sensors.gain[id],
                 "bias": sensors.bias[id],
@@ -88,5 +88,5 @@ fn channels(
 
 /// Numbers as their bytes, the low ones first, as browsers read them on every machine of today.
 fn doubles(numbers: impl Iterator<Item = f64>) -> String {
-    encoded(&numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
+    encode_base64(&numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
 }

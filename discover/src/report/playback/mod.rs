@@ -87,7 +87,7 @@ impl Playback {
 
     /// Returns the script of a page with this part.
     pub(crate) fn load_script() -> String {
-        play::script(&SCRIPT)
+        play::join_scripts(&SCRIPT)
     }
 }
 

@@ -3,22 +3,22 @@
 use eomgen_codegen::symbolic::tables::TableKind;
 use maud::{Markup, html};
 
-use super::{element, fenced, identifier};
+use super::{element, identifier, parenthesise};
 
 pub(super) fn table(kind: TableKind) -> Markup {
     match kind {
         TableKind::Wavenumber => wavenumber(),
         TableKind::Mixing => mixing(),
         TableKind::GrowingAmplitude => html! {
-            (fenced("(", &html! { mn { "1" } mo { "+" } (mixing()) }, ")"))
+            (parenthesise("(", &html! { mn { "1" } mo { "+" } (mixing()) }, ")"))
             msup { mi { "e" } mrow { (wavenumber()) } }
         },
         TableKind::FallingAmplitude => amplitude("−"),
         TableKind::RisingAmplitude => amplitude("+"),
-        TableKind::ShapeAtStart(derivative) => at_position(derivative, &html! { mn { "0" } }),
-        TableKind::ShapeAtEnd(derivative) => at_position(derivative, &html! { mn { "1" } }),
+        TableKind::ShapeAtStart(derivative) => shape_at_position(derivative, &html! { mn { "0" } }),
+        TableKind::ShapeAtEnd(derivative) => shape_at_position(derivative, &html! { mn { "1" } }),
         TableKind::ShapeAtPlace { bits, derivative } => {
-            at_position(derivative, &html! { mn { (f64::from_bits(bits)) } })
+            shape_at_position(derivative, &html! { mn { (f64::from_bits(bits)) } })
         }
         TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
         TableKind::OwnMoment { power, left, right } => {
@@ -30,13 +30,16 @@ pub(super) fn table(kind: TableKind) -> Markup {
         TableKind::NodePosition => element(&identifier("s"), "g"),
         TableKind::NodeWeight => element(&identifier("w"), "g"),
         TableKind::ShapeAtNodes(derivative) => {
-            at_position(derivative, &element(&identifier("s"), "g"))
+            shape_at_position(derivative, &element(&identifier("s"), "g"))
         }
     }
 }
 
 fn wavenumber() -> Markup {
-    element(&fenced("(", &html! { mi { "β" } mi { "l" } }, ")"), "i")
+    element(
+        &parenthesise("(", &html! { mi { "β" } mi { "l" } }, ")"),
+        "i",
+    )
 }
 
 fn mixing() -> Markup {
@@ -55,8 +58,8 @@ fn shape(index: &str, derivative: u8) -> Markup {
     }
 }
 
-fn at_position(derivative: u8, place: &Markup) -> Markup {
-    html! { (shape("i", derivative)) (fenced("(", place, ")")) }
+fn shape_at_position(derivative: u8, place: &Markup) -> Markup {
+    html! { (shape("i", derivative)) (parenthesise("(", place, ")")) }
 }
 
 fn integral(power: u32, shapes: &Markup) -> Markup {

@@ -10,7 +10,7 @@ use eomgen_model_spec::model::Function;
 use maud::{Markup, html};
 
 /// Invisible multiplication sign of Unicode.
-const TIMES: &str = "\u{2062}";
+const INVISIBLE_TIMES: &str = "\u{2062}";
 
 /// Returns a formula as MathML elements; lines can break between them.
 pub fn formula(formula: &Formula) -> Markup {
@@ -21,7 +21,7 @@ pub fn formula(formula: &Formula) -> Markup {
                 math { (term(of, place == 0)) }
             }
         },
-        other => html! { math { (at(other, Level::Sum)) } },
+        other => html! { math { (formula_at_level(other, Level::Sum)) } },
     }
 }
 
@@ -42,18 +42,18 @@ fn identifier(name: &str) -> Markup {
     html! { mi { (name) } }
 }
 
-fn fenced(open: &str, content: &Markup, close: &str) -> Markup {
+fn parenthesise(open: &str, content: &Markup, close: &str) -> Markup {
     html! { mrow { mo { (open) } (content) mo { (close) } } }
 }
 
 fn times() -> Markup {
-    html! { mo { (TIMES) } }
+    html! { mo { (INVISIBLE_TIMES) } }
 }
 
 /// Returns a formula at a level of precedence, with parentheses if necessary.
-fn at(formula: &Formula, level: Level) -> Markup {
+fn formula_at_level(formula: &Formula, level: Level) -> Markup {
     if formula.set_level() < level {
-        return fenced("(", &at(formula, Level::Sum), ")");
+        return parenthesise("(", &formula_at_level(formula, Level::Sum), ")");
     }
     match formula {
         Formula::Number(value) => number(*value),
@@ -64,23 +64,25 @@ fn at(formula: &Formula, level: Level) -> Markup {
         }
         Formula::Quotient { above, below } => quotient(above, below),
         Formula::Power(base, exponent) => html! {
-            msup { mrow { (at(base, Level::Base)) } mrow { (at(exponent, Level::Sum)) } }
+            msup { mrow { (formula_at_level(base, Level::Base)) } mrow { (formula_at_level(exponent, Level::Sum)) } }
         },
         Formula::Call(function, arguments) => call(*function, arguments),
-        Formula::Operation(name, operands) => html! { (identifier(name)) (list(operands)) },
+        Formula::Operation(name, operands) => {
+            html! { (identifier(name)) (argument_list(operands)) }
+        }
         Formula::Choice(choice) => cases(choice),
         Formula::Total(index, of) => html! {
             munder { mo { "∑" } (identifier(index.name())) }
-            mrow { (at(of, Level::Product)) }
+            mrow { (formula_at_level(of, Level::Product)) }
         },
         Formula::Applied(matrix, vector) => {
             let product = html! {
-                (at(matrix, Level::Product)) (times()) (at(vector, Level::Product))
+                (formula_at_level(matrix, Level::Product)) (times()) (formula_at_level(vector, Level::Product))
             };
-            element(&fenced("(", &product, ")"), "i")
+            element(&parenthesise("(", &product, ")"), "i")
         }
         Formula::Transposed(matrix) => html! {
-            msup { mrow { (at(matrix, Level::Base)) } mi mathvariant="normal" { "T" } }
+            msup { mrow { (formula_at_level(matrix, Level::Base)) } mi mathvariant="normal" { "T" } }
         },
         Formula::Matrix(parts) => html! {
             @for (place, part) in parts.iter().enumerate() {
@@ -98,9 +100,9 @@ fn term(term: &Term, is_first: bool) -> Markup {
         @if term.factor < 0.0 { mo { "\u{2212}" } } @else if !is_first { mo { "+" } }
         @match &term.of {
             None => (number(magnitude)),
-            Some(of) if term.factor == 1.0 => (at(of, Level::Sum)),
-            Some(of) if magnitude == 1.0 => (at(of, Level::Product)),
-            Some(of) => { (factor(magnitude)) (times()) (at(of, Level::Product)) },
+            Some(of) if term.factor == 1.0 => (formula_at_level(of, Level::Sum)),
+            Some(of) if magnitude == 1.0 => (formula_at_level(of, Level::Product)),
+            Some(of) => { (factor(magnitude)) (times()) (formula_at_level(of, Level::Product)) },
         }
     }
 }
@@ -108,15 +110,15 @@ fn term(term: &Term, is_first: bool) -> Markup {
 /// Returns factors in a row; a sum over modes before other factors has parentheses.
 fn product(factors: &[Formula]) -> Markup {
     if let [only] = factors {
-        return at(only, Level::Sum);
+        return formula_at_level(only, Level::Sum);
     }
     let last = factors.len().saturating_sub(1);
     html! {
         @for (place, factor) in factors.iter().enumerate() {
             @if place > 0 { (times()) }
             @match factor {
-                Formula::Total(..) if place < last => (fenced("(", &at(factor, Level::Sum), ")")),
-                _ => (at(factor, Level::Product)),
+                Formula::Total(..) if place < last => (parenthesise("(", &formula_at_level(factor, Level::Sum), ")")),
+                _ => (formula_at_level(factor, Level::Product)),
             }
         }
     }
@@ -124,7 +126,7 @@ fn product(factors: &[Formula]) -> Markup {
 
 fn quotient(above: &[Formula], below: &[Formula]) -> Markup {
     match (above, below) {
-        ([only], []) => at(only, Level::Product),
+        ([only], []) => formula_at_level(only, Level::Product),
         (above, []) => product(above),
         (above, below) => html! {
             mfrac {
@@ -136,27 +138,27 @@ fn quotient(above: &[Formula], below: &[Formula]) -> Markup {
 }
 
 fn call(function: Function, arguments: &[Formula]) -> Markup {
-    let inner = |a: &Formula| at(a, Level::Sum);
+    let inner = |a: &Formula| formula_at_level(a, Level::Sum);
     match (function, arguments) {
         (Function::Sqrt, [a]) => html! { msqrt { (inner(a)) } },
-        (Function::Abs, [a]) => fenced("|", &inner(a), "|"),
+        (Function::Abs, [a]) => parenthesise("|", &inner(a), "|"),
         (Function::Exp, [a]) => html! { msup { mi { "e" } mrow { (inner(a)) } } },
-        _ => html! { (identifier(function.name())) (list(arguments)) },
+        _ => html! { (identifier(function.name())) (argument_list(arguments)) },
     }
 }
 
-fn list(arguments: &[Formula]) -> Markup {
+fn argument_list(arguments: &[Formula]) -> Markup {
     let arguments = html! {
         @for (place, argument) in arguments.iter().enumerate() {
             @if place > 0 { mo { "," } }
-            (at(argument, Level::Sum))
+            (formula_at_level(argument, Level::Sum))
         }
     };
-    fenced("(", &arguments, ")")
+    parenthesise("(", &arguments, ")")
 }
 
 fn cases(choice: &Choice) -> Markup {
-    let inner = |part: &Formula| at(part, Level::Sum);
+    let inner = |part: &Formula| formula_at_level(part, Level::Sum);
     html! {
         mrow {
             mo { "{" }
@@ -172,19 +174,23 @@ fn cases(choice: &Choice) -> Markup {
 }
 
 fn matrix_part(part: &MatrixPart) -> Markup {
-    let bracketed =
-        |of: &Formula, index: &str| element(&fenced("[", &at(of, Level::Sum), "]"), index);
+    let bracketed = |of: &Formula, index: &str| {
+        element(
+            &parenthesise("[", &formula_at_level(of, Level::Sum), "]"),
+            index,
+        )
+    };
     html! {
         @match part {
             MatrixPart::Diagonal(diagonal) => {
-                (element(&identifier("δ"), "ij")) (times()) (at(diagonal, Level::Product))
+                (element(&identifier("δ"), "ij")) (times()) (formula_at_level(diagonal, Level::Product))
             },
             MatrixPart::Outer(u, v) => {
                 (bracketed(u, "i")) (times()) (bracketed(v, "j"))
             },
             MatrixPart::Scaled(row, matrix, column) => {
                 (bracketed(row, "i")) (times())
-                (at(matrix, Level::Product)) (times())
+                (formula_at_level(matrix, Level::Product)) (times())
                 (bracketed(column, "j"))
             },
         }

@@ -5,11 +5,11 @@ mod slider;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-pub use slider::{Slider, printed};
+pub use slider::{Slider, format_unit};
 
 /// Start of every script: the classes `Machine` (an emitted module with its arrays) and `Motion`
 /// (its integration), `bytes` (the inverse of [`encoded`]), and functions for pictures and sliders.
-const COMMON: [&str; 3] = [
+const COMMON_SCRIPTS: [&str; 3] = [
     include_str!("motion.js"),
     include_str!("canvas.js"),
     include_str!("slider.js"),
@@ -19,15 +19,15 @@ const COMMON: [&str; 3] = [
 pub const STYLE: &str = include_str!("play.css");
 
 /// Encodes bytes in base 64 for a script.
-pub fn encoded(bytes: &[u8]) -> String {
+pub fn encode_base64(bytes: &[u8]) -> String {
     STANDARD.encode(bytes)
 }
 
 /// Returns a script of these parts after the common ones, in a block without global names.
-pub fn script(parts: &[&str]) -> String {
+pub fn join_scripts(parts: &[&str]) -> String {
     [
         "\"use strict\";\n{\n",
-        &COMMON.concat(),
+        &COMMON_SCRIPTS.concat(),
         &parts.concat(),
         "}\n",
     ]

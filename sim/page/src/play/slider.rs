@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::formula::formula;
 
-const STEPS: f64 = 400.0;
+const SLIDER_STEPS: f64 = 400.0;
 
 /// Quantity that a page can change.
 #[derive(Clone, Debug)]
@@ -31,16 +31,16 @@ pub struct Slider<'m> {
 
 impl<'m> Slider<'m> {
     /// Creates the slider of a parameter, by default from 0 to twice its `value`, which is in SI.
-    pub fn of_parameter(parameter: &'m Parameter, place: usize, value: f64) -> Self {
+    pub fn from_parameter(parameter: &'m Parameter, place: usize, value: f64) -> Self {
         let unit = &parameter.unit;
         let value = unit.from_si(value);
-        let (low, high) = around(value);
+        let (low, high) = default_range(value);
         let (min, max) = (parameter.min, parameter.max);
         let low = min.map_or(low, |min| unit.from_si(min));
         let high = max.map_or(high, |max| unit.from_si(max));
         Self {
             name: parameter.name.clone(),
-            unit: printed(&unit.to_string()),
+            unit: format_unit(&unit.to_string()),
             doc: &parameter.doc,
             place,
             factor: unit.to_si(1.0),
@@ -64,10 +64,10 @@ impl<'m> Slider<'m> {
         } = self;
 
         let id = format!("{kind}-{place}");
-        let step = (high / STEPS - low / STEPS).max(f64::MIN_POSITIVE);
-        let [value, low, high, step] = [*value, *low, *high, step].map(written);
+        let step = (high / SLIDER_STEPS - low / SLIDER_STEPS).max(f64::MIN_POSITIVE);
+        let [value, low, high, step] = [*value, *low, *high, step].map(format_number);
         html! {
-            div.control data-kind=(kind) data-place=(place) data-factor=(written(*factor)) {
+            div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) {
                 label.name for=(id) {
                     (formula(&Formula::Symbol(Symbol::of_state(name))))
                     @if unit != "1" { span.unit { (unit) } }
@@ -82,7 +82,7 @@ impl<'m> Slider<'m> {
 }
 
 /// Returns the finite range from 0 to twice a value, or around 0 for 0.
-fn around(value: f64) -> (f64, f64) {
+fn default_range(value: f64) -> (f64, f64) {
     let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
     if value > 0.0 {
         (0.0, twice)
@@ -93,7 +93,7 @@ fn around(value: f64) -> (f64, f64) {
     }
 }
 
-fn written(value: f64) -> String {
+fn format_number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e6).contains(&size) {
         value.to_string()
@@ -103,7 +103,7 @@ fn written(value: f64) -> String {
 }
 
 /// Formats a unit with superscript exponents, unless it has a fraction as an exponent.
-pub fn printed(unit: &str) -> String {
+pub fn format_unit(unit: &str) -> String {
     if unit.contains("^(") {
         return unit.to_owned();
     }
@@ -137,14 +137,14 @@ mod tests {
             ("1", "1"),
             ("m^(1/2)", "m^(1/2)"),
         ] {
-            assert_eq!(printed(unit), shown);
+            assert_eq!(format_unit(unit), shown);
         }
     }
 
     #[test]
     fn slider_has_finite_range() {
         for value in [0.0, 1.0, -2.0, 1.7e308, -1.7e308, 5e-324] {
-            let (low, high) = around(value);
+            let (low, high) = default_range(value);
             assert!(low <= value && value <= high && low < high, "{value}");
             assert!(low.is_finite() && high.is_finite(), "{value}");
         }
