@@ -7,7 +7,7 @@ use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
+use eomgen_paper::reference::equation_22::{EliminatedArm, Equation22};
 
 use crate::contenders::equation_22;
 use crate::instructions::CALLS;

@@ -16,7 +16,7 @@ use eomgen_codegen::c;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::Eliminated;
+use eomgen_paper::reference::equation_22::EliminatedArm;
 
 /// Number of states in a pass.
 const STATES: usize = 1024;

@@ -14,7 +14,7 @@ use eomgen_benches::history::{Contenders, Times, curves, development, heading, l
 use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
 use eomgen_benches::{at_all_orders, cases, state, variants};
 use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
+use eomgen_paper::reference::equation_22::{EliminatedArm, Equation22};
 
 /// Number of calls per measurement.
 const CALLS: u32 = 100;

@@ -2,7 +2,7 @@
 
 use eomgen_benches::{state, variants};
 use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{Coefficients, Eliminated};
+use eomgen_paper::reference::equation_22::{Coefficients, EliminatedArm};
 
 /// Rounding error of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;

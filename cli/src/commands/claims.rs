@@ -1,11 +1,11 @@
 //! `eomgen paper claims`: the paper's claims at the assumed values and over plausible ranges of undisclosed parameters.
 
 use eomgen_paper::studies::StudyError;
-use eomgen_paper::studies::arm::{Arm, Shapes, Undisclosed};
-use eomgen_paper::studies::case::Length;
-use eomgen_paper::studies::charts::charts;
-use eomgen_paper::studies::claims_table::markdown;
-use eomgen_paper::studies::search::{Request, judge_all, orders, search};
+use eomgen_paper::studies::arm::{Arm, ArmShapes, UndisclosedParameters};
+use eomgen_paper::studies::case::RunLength;
+use eomgen_paper::studies::charts::draw_charts;
+use eomgen_paper::studies::claims_table::format_markdown;
+use eomgen_paper::studies::search::{SearchRequest, judge_all, orders, search};
 use eomgen_paper::studies::search_report;
 use eomgen_paper::studies::tally::shares;
 
@@ -33,17 +33,17 @@ pub fn run(options: &Claims) -> Result {
         )));
     }
     let shapes = match options.mode_shapes {
-        ModeShapes::Corrected => Shapes::Corrected,
-        ModeShapes::Printed => Shapes::Printed,
+        ModeShapes::Corrected => ArmShapes::Corrected,
+        ModeShapes::Printed => ArmShapes::Printed,
     };
-    let arm = Arm::with(shapes, &orders()).map_err(input_error)?;
-    let request = Request {
+    let arm = Arm::with_shapes(shapes, &orders()).map_err(input_error)?;
+    let request = SearchRequest {
         sets,
         seed: options.seed,
         confirmed: CONFIRMED.min(sets),
         neighbours: NEIGHBOURS.min(sets),
-        screening: Length::SCREENING,
-        confirming: Length::CONFIRMING,
+        screening: RunLength::SCREENING,
+        confirming: RunLength::CONFIRMING,
     };
     let bar = Bar::new(
         "judging",
@@ -55,11 +55,11 @@ pub fn run(options: &Claims) -> Result {
     })
     .map_err(input_error)?;
     drop(bar);
-    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
+    let (_, assumed) = judge_all(&arm, UndisclosedParameters::ASSUMED, &RunLength::FULL);
     write_file(&table, search_report::csv(&found).as_bytes())?;
-    let claims = markdown(&assumed, &shares(&found.screened));
+    let claims = format_markdown(&assumed, &shares(&found.screened));
     write_file(&out.join("claims.md"), claims.as_bytes())?;
-    for figure in charts(&found, &assumed).map_err(input_error)? {
+    for figure in draw_charts(&found, &assumed).map_err(input_error)? {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
     }
     let report = search_report::document(&request, &assumed, &found);

@@ -22,7 +22,7 @@
 //! ```
 
 pub mod certification;
+pub mod equation_comparison;
 pub mod reference;
 pub mod reference_equations;
-pub mod same_motion;
 pub mod studies;

@@ -4,21 +4,21 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 
+use crate::equation_comparison::first_difference;
 use crate::reference::closed_forms::{self, StateAndParameters};
 use crate::reference::equation_10::{self, ShaftMotion};
 use crate::reference::equation_22::{Coefficients, Equation22};
 use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
-use crate::same_motion::difference;
 use eomgen_validate::certificate::Check;
 use eomgen_validate::certify::{Reference, ReferenceEquations};
 use eomgen_validate::checks::ROW_TOLERANCE;
 
 /// Time scale omega_n = sqrt(k_sp/M_sp), rad/s, and displacement scale b_c, m, of the paper.
-const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
+const TIME_AND_LENGTH_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// Specifications with hand-written equations. A model is compared by its equations and not by its
 /// name, because a model of the same name may follow other conventions.
-const SHIPPED: [&str; 14] = [
+const SPECIFICATIONS_WITH_REFERENCES: [&str; 14] = [
     models::PLANETARY_ARM.text,
     models::DOUBLE_PENDULUM.text,
     models::CART_TWO_ARMS.text,
@@ -36,18 +36,18 @@ const SHIPPED: [&str; 14] = [
 ];
 
 /// Derived parameters of the arm that its hand-written equations take as given.
-const GIVEN_OF_THE_ARM: [&str; 3] = ["I_s", "I_p", "I_c"];
+const GIVEN_DERIVED_PARAMETERS: [&str; 3] = ["I_s", "I_p", "I_c"];
 
 /// Returns the hand-written equations for `model` at `order`, with parameter values in SI.
 pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> ReferenceEquations {
-    let known = match written(model) {
+    let known = match matching_specification(model) {
         Ok(known) => known,
-        Err(reason) => return absent("reference", reason),
+        Err(reason) => return absent_reference("reference", reason),
     };
     if known.name == "planetary_arm" {
         return match arm_parameters(model, values) {
-            Some(parameters) => arm(parameters, order),
-            None => absent("reference", "a parameter is missing".to_owned()),
+            Some(parameters) => arm_references(parameters, order),
+            None => absent_reference("reference", "a parameter is missing".to_owned()),
         };
     }
     match closed_form(&known, model, order, values) {
@@ -55,11 +55,11 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
             references: vec![reference],
             absent: Vec::new(),
         },
-        Err(reason) => absent("reference closed_form", reason),
+        Err(reason) => absent_reference("reference closed_form", reason),
     }
 }
 
-fn absent(name: &str, reason: String) -> ReferenceEquations {
+fn absent_reference(name: &str, reason: String) -> ReferenceEquations {
     ReferenceEquations {
         references: Vec::new(),
         absent: vec![Check::not_applicable(name, ROW_TOLERANCE, reason)],
@@ -68,9 +68,9 @@ fn absent(name: &str, reason: String) -> ReferenceEquations {
 
 /// Returns the shipped specification with the equations of `model`, or the reason that none
 /// matches.
-fn written(model: &Model) -> Result<Model, String> {
+fn matching_specification(model: &Model) -> Result<Model, String> {
     let mut reason = format!("there are no hand-written equations of {}", model.name);
-    for text in SHIPPED {
+    for text in SPECIFICATIONS_WITH_REFERENCES {
         let Ok(checked) = eomgen_model_spec::check(Source::new("a shipped specification", text))
         else {
             continue;
@@ -78,10 +78,10 @@ fn written(model: &Model) -> Result<Model, String> {
         let known = checked.model;
         let all: Vec<&str> = known.parameters.iter().map(|p| p.name.as_str()).collect();
         let given = match known.name.as_str() {
-            "planetary_arm" => &GIVEN_OF_THE_ARM[..],
+            "planetary_arm" => &GIVEN_DERIVED_PARAMETERS[..],
             _ => &all,
         };
-        match difference(model, &known, given) {
+        match first_difference(model, &known, given) {
             None => return Ok(known),
             Some(found) if known.name == model.name => {
                 reason = format!(
@@ -97,7 +97,7 @@ fn written(model: &Model) -> Result<Model, String> {
 
 /// Returns Eq. (12) and Eq. (10) for the rigid arm, or Eq. (22) in SI and in the scales of the
 /// paper for the flexible arm.
-fn arm(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
+fn arm_references(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
     if order == 0 {
         return ReferenceEquations {
             references: rigid_arm(parameters),
@@ -116,7 +116,7 @@ fn arm(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
         )],
         absent: Vec::new(),
     };
-    match scaled(&parameters, order) {
+    match dimensionless_reference(&parameters, order) {
         Some(reference) => found.references.push(reference),
         None => found.absent.push(Check::not_applicable(
             "reference equation_22_dimensionless",
@@ -132,13 +132,14 @@ fn rigid_arm(parameters: PlanetaryArmParameters) -> Vec<Reference> {
         reference(
             "equation_12",
             move |t, state, _, accelerations| match <&[f64; 6]>::try_from(state) {
-                Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+                Ok(state) => equation_12::corrected_accelerations(&parameters, t, state)
+                    .deviation(accelerations),
                 Err(_) => f64::INFINITY,
             },
         ),
         reference("equation_10", move |t, state, _, accelerations| {
             shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
-                equation_10::corrected(&parameters, t, &motion).worst()
+                equation_10::corrected_residuals(&parameters, t, &motion).worst()
             })
         }),
     ]
@@ -169,7 +170,7 @@ fn shaft_motion(
 }
 
 /// Returns Eq. (22) in dimensionless form, for orders fixed at compile time.
-fn scaled(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
+fn dimensionless_reference(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
     macro_rules! at_orders {
         ($($s:literal)*) => {
             match order {
@@ -182,7 +183,7 @@ fn scaled(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference
 }
 
 fn scaled_reference<const S: usize>(parameters: &PlanetaryArmParameters) -> Reference {
-    let (omega_n, b_c) = PAPER_SCALES;
+    let (omega_n, b_c) = TIME_AND_LENGTH_SCALES;
     let equation = Equation22::<S>::new(parameters, omega_n, b_c);
     let scales = Coefficients::new(parameters, S);
     reference(
@@ -229,7 +230,7 @@ fn closed_form(
     order: usize,
     values: &[f64],
 ) -> Result<Reference, String> {
-    let form = closed_forms::find(&known.name).ok_or("there is no closed form")?;
+    let form = closed_forms::find_closed_form(&known.name).ok_or("there is no closed form")?;
     // A parameter of this model only is in none of the equations.
     let stands = |name: &str| known.parameters.iter().any(|own| own.name == name);
     let parameters: Vec<(String, f64)> = model

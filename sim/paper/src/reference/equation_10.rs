@@ -39,7 +39,11 @@ impl Residuals {
 
 /// Evaluates the corrected Eq. (10): only its mesh loads the sun, the sum of both meshes loads the
 /// carrier, and the third row has the acceleration of the carrier.
-pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMotion) -> Residuals {
+pub fn corrected_residuals(
+    parameters: &PlanetaryArmParameters,
+    t: f64,
+    motion: &ShaftMotion,
+) -> Residuals {
     let (f_sp, f_pr) = mesh_forces(parameters, motion);
     let acceleration = motion.acceleration;
     rows([
@@ -61,7 +65,11 @@ pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMoti
 
 /// Evaluates the printed Eq. (10): the ring mesh loads the sun, and the third row multiplies the
 /// inertia of the carrier by the acceleration of the sun and subtracts the forces.
-pub fn printed(parameters: &PlanetaryArmParameters, t: f64, motion: &ShaftMotion) -> Residuals {
+pub fn printed_residuals(
+    parameters: &PlanetaryArmParameters,
+    t: f64,
+    motion: &ShaftMotion,
+) -> Residuals {
     let (f_sp, f_pr) = mesh_forces(parameters, motion);
     let acceleration = motion.acceleration;
     rows([

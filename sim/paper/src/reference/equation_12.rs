@@ -87,7 +87,11 @@ impl MeshForces {
 }
 
 /// Evaluates the corrected Eq. (12): x_sp'', x_pr'', x_c'', m/s^2.
-pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, state: &[f64; 6]) -> Evaluation {
+pub fn corrected_accelerations(
+    parameters: &PlanetaryArmParameters,
+    t: f64,
+    state: &[f64; 6],
+) -> Evaluation {
     let masses = EquivalentMasses::new(parameters);
     let forces = MeshForces::new(parameters, state);
     let [.., x_sp_dot, x_pr_dot, x_c_dot] = *state;
@@ -123,7 +127,7 @@ pub fn corrected(parameters: &PlanetaryArmParameters, t: f64, state: &[f64; 6]) 
 
 /// Evaluates the printed Eq. (12): x_sp'', x_pr'', x_c'', m/s^2. The motor damping acts only on
 /// x_sp' and x_c', F_csp lacks D in the second row, and the fluctuation of Eq. (11) is missing.
-pub fn printed(parameters: &PlanetaryArmParameters, state: &[f64; 6]) -> Evaluation {
+pub fn printed_accelerations(parameters: &PlanetaryArmParameters, state: &[f64; 6]) -> Evaluation {
     let masses = EquivalentMasses::new(parameters);
     let forces = MeshForces::new(parameters, state);
     let [.., x_sp_dot, _, x_c_dot] = *state;

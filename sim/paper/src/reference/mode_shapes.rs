@@ -51,7 +51,7 @@ impl ModeShape {
     /// Computes shape `r` (counted from 1) as printed in Eq. (18) and (19): beta_r l = pi (r - 1/2)
     /// and xi_r = (cos + cosh)/(sin + sinh). It grows like exp(beta l), and its squares overflow
     /// beyond r of about 110.
-    pub fn printed(r: usize) -> Self {
+    pub fn as_printed(r: usize) -> Self {
         let z = PI * (r as f64 - 0.5);
         let xi = (z.cos() + z.cosh()) / (z.sin() + z.sinh());
         Self {
@@ -63,7 +63,7 @@ impl ModeShape {
 
     /// Creates the shape of Eq. (17) with any `beta_l` and `xi`, for instance the printed frequency
     /// with the correct amplitude ratio.
-    pub fn with(beta_l: f64, xi: f64) -> Self {
+    pub fn with_values(beta_l: f64, xi: f64) -> Self {
         Self {
             beta_l,
             xi,
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn printed_shapes_leave_forces_at_the_free_end() {
         for r in 1..=4 {
-            let shape = ModeShape::printed(r);
+            let shape = ModeShape::as_printed(r);
             let moment = shape.derivative(2, 1.0) / shape.beta_l.powi(2);
             let shear = shape.derivative(3, 1.0) / shape.beta_l.powi(3);
             assert!(

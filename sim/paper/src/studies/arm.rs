@@ -17,7 +17,7 @@ const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
 /// Parameters that the paper does not disclose. Both meshes have the same damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Undisclosed {
+pub struct UndisclosedParameters {
     /// Second moment of area I of the arm, m^4.
     pub second_moment: f64,
     /// Constant motor torque a_m of Eq. (11), N m.
@@ -30,7 +30,7 @@ pub struct Undisclosed {
     pub c: f64,
 }
 
-impl Undisclosed {
+impl UndisclosedParameters {
     /// Assumed values of the shipped specification; the arm has a square section of 10 mm.
     pub const ASSUMED: Self = Self {
         second_moment: 8.333e-10,
@@ -51,7 +51,7 @@ pub struct Case {
     /// Frequency of the torque ripple, rad/s.
     pub omega: f64,
     /// Undisclosed parameters.
-    pub undisclosed: Undisclosed,
+    pub undisclosed: UndisclosedParameters,
 }
 
 impl Case {
@@ -63,7 +63,7 @@ impl Case {
 
 /// Mode shapes of the arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shapes {
+pub enum ArmShapes {
     /// Mode shapes of a clamped-free beam.
     #[default]
     Corrected,
@@ -71,7 +71,7 @@ pub enum Shapes {
     Printed,
 }
 
-impl Shapes {
+impl ArmShapes {
     fn basis(self) -> &'static str {
         match self {
             Self::Corrected => "\"clamped_free\"",
@@ -82,14 +82,14 @@ impl Shapes {
     fn shape(self, number: usize) -> ModeShape {
         match self {
             Self::Corrected => ModeShape::clamped_free(number),
-            Self::Printed => ModeShape::printed(number),
+            Self::Printed => ModeShape::as_printed(number),
         }
     }
 }
 
 /// Planetary arm, derived once per order.
 pub struct Arm {
-    shapes: Shapes,
+    shapes: ArmShapes,
     model: Model,
     derived: Vec<(usize, CompiledModel)>,
     names: Vec<String>,
@@ -102,15 +102,15 @@ impl Arm {
     /// # Errors
     /// An order at which it cannot be derived.
     pub fn new(orders: &[usize]) -> Result<Self, StudyError> {
-        Self::with(Shapes::Corrected, orders)
+        Self::with_shapes(ArmShapes::Corrected, orders)
     }
 
     /// Derives the shipped arm with these mode shapes.
     ///
     /// # Errors
     /// An order at which it cannot be derived.
-    pub fn with(shapes: Shapes, orders: &[usize]) -> Result<Self, StudyError> {
-        let text = SPECIFICATION.replace(Shapes::Corrected.basis(), shapes.basis());
+    pub fn with_shapes(shapes: ArmShapes, orders: &[usize]) -> Result<Self, StudyError> {
+        let text = SPECIFICATION.replace(ArmShapes::Corrected.basis(), shapes.basis());
         let source = Source::new("planetary_arm.toml", text);
         let checked = eomgen_model_spec::check(source)
             .map_err(|diagnostics| StudyError::Request(diagnostics.render(false)))?;
@@ -140,7 +140,7 @@ impl Arm {
     }
 
     /// Returns the mode shapes of the derivation.
-    pub fn shapes(&self) -> Shapes {
+    pub fn shapes(&self) -> ArmShapes {
         self.shapes
     }
 
@@ -163,7 +163,7 @@ impl Arm {
         Ok(compiled)
     }
 
-    fn shipped(&self, name: &str) -> f64 {
+    fn shipped_value(&self, name: &str) -> f64 {
         let place = self.names.iter().position(|known| known == name);
         let value = place.and_then(|place| self.values.get(place));
         value.copied().unwrap_or(f64::NAN)
@@ -173,7 +173,7 @@ impl Arm {
     ///
     /// # Errors
     /// An order that was not derived, or inadmissible values.
-    pub fn closed(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
+    pub fn closed_mesh_frequencies(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
         let compiled = self.compiled(case)?;
         let instance = compiled.with(&settings(case))?;
         // A point beyond every backlash of the paper; the linearisation is the same in the whole
@@ -187,8 +187,8 @@ impl Arm {
     }
 
     /// Returns the conversion factors of a case.
-    pub fn lengths(&self, case: &Case) -> Lengths {
-        let at = |name| self.shipped(name);
+    pub fn lengths(&self, case: &Case) -> ConversionFactors {
+        let at = |name| self.shipped_value(name);
         let (rho, area, l) = (at("rho"), at("A"), at("l"));
         let bending = at("E") * case.undisclosed.second_moment / (rho * area * l.powi(4));
         let shapes = (1..=case.order).map(|number| self.shapes.shape(number));
@@ -198,10 +198,10 @@ impl Arm {
                 / at("i_sH").powi(2);
         let planets = 3.0 * at("I_p") * (at("r_s") / (2.0 * at("r_p"))).powi(2);
         let inertia = at("I_s") + planets + carrier;
-        Lengths {
-            transmission: l / (at("r_s") * at("i_sH")),
-            at_tip: shapes.iter().map(|shape| shape.value(1.0)).collect(),
-            natural: shapes
+        ConversionFactors {
+            transmission_factor: l / (at("r_s") * at("i_sH")),
+            tip_amplitudes: shapes.iter().map(|shape| shape.value(1.0)).collect(),
+            natural_frequencies: shapes
                 .iter()
                 .map(|shape| shape.beta_l.powi(2) * bending.sqrt() / TAU)
                 .collect(),
@@ -215,7 +215,7 @@ impl Arm {
 
 /// Returns the parameters set by a case, in SI.
 fn settings(case: &Case) -> [(&'static str, f64); 9] {
-    let Undisclosed {
+    let UndisclosedParameters {
         second_moment,
         a_m,
         b_m,
@@ -237,11 +237,11 @@ fn settings(case: &Case) -> [(&'static str, f64); 9] {
 
 /// Factors that convert a state to the quantities of the paper, and scales of energy.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lengths {
+pub struct ConversionFactors {
     /// Ratio l dtheta/(x_sp + x_pr) of Eq. (23), (24): l/(r_s i_sH).
-    pub transmission: f64,
+    pub transmission_factor: f64,
     /// phi_i(l) of each mode.
-    pub at_tip: Vec<f64>,
+    pub tip_amplitudes: Vec<f64>,
     /// Rate x_c' at which the drive has the kinetic energy of the arm at unit rate.
     pub carrier_rate: f64,
     /// Deflection of a mesh with the energy of the arm at unit rate.
@@ -249,7 +249,7 @@ pub struct Lengths {
     /// Rate of a mesh with this energy, if the sun moves.
     pub mesh_rate: f64,
     /// Natural frequencies of the clamped arm, Hz.
-    pub natural: Vec<f64>,
+    pub natural_frequencies: Vec<f64>,
     /// Inertia of the drive with a rigid arm and tight meshes, referred to the sun, kg m^2.
     pub inertia: f64,
 }

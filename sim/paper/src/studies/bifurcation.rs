@@ -6,18 +6,18 @@ use std::f64::consts::PI;
 use eomgen_plot::{Axes, Frame, Panel, Series, SeriesStyle};
 use rayon::prelude::*;
 
-use super::arm::{Arm, Case, Undisclosed};
+use super::arm::{Arm, Case, UndisclosedParameters};
 use super::error::StudyError;
-use super::figures::{Heading, figure as drawn};
-use super::report::{Columns, Figure};
+use super::figures::{Heading, draw_frames as drawn};
+use super::report::{Figure, Table};
 use super::run::Run;
 use super::series::Record;
 
 /// Half-backlashes, um.
-const MICROMETRES: std::ops::RangeInclusive<u32> = 0..=100;
+const HALF_BACKLASHES_UM: std::ops::RangeInclusive<u32> = 0..=100;
 /// Numbers of forcing periods of the transient, and of the plot.
-const WAITED: usize = 160;
-const SHOWN: usize = 80;
+const TRANSIENT_PERIODS: usize = 160;
+const SHOWN_PERIODS: usize = 80;
 
 /// Stroboscopic points over the backlash; each list has one entry per point.
 #[derive(Clone, Debug)]
@@ -28,24 +28,24 @@ pub(super) struct Bifurcation {
     b: Vec<f64>,
     x_sp: Vec<f64>,
     /// Compression x_sp - b of the driving flank, m.
-    beyond: Vec<f64>,
+    compression: Vec<f64>,
     dr: Vec<f64>,
 }
 
 impl Bifurcation {
     /// Runs all backlashes, each from rest at zero.
-    pub fn of(arm: &Arm, order: usize, omega: f64) -> Result<Self, StudyError> {
-        let sections = MICROMETRES.into_par_iter().map(|micrometres| {
+    pub fn run(arm: &Arm, order: usize, omega: f64) -> Result<Self, StudyError> {
+        let sections = HALF_BACKLASHES_UM.into_par_iter().map(|micrometres| {
             let case = Case {
                 order,
                 backlash: f64::from(micrometres) * 1e-6,
                 omega,
-                undisclosed: Undisclosed::ASSUMED,
+                undisclosed: UndisclosedParameters::ASSUMED,
             };
             let mut propagator = arm.propagator(&case)?;
-            let mut run = Run::start(&mut propagator, &case, WAITED, 1)?;
-            run.extend(&mut propagator, SHOWN)?;
-            let record = Record::of(&run.times, &run.states, &arm.lengths(&case));
+            let mut run = Run::start(&mut propagator, &case, TRANSIENT_PERIODS, 1)?;
+            run.extend(&mut propagator, SHOWN_PERIODS)?;
+            let record = Record::from_states(&run.times, &run.states, &arm.lengths(&case));
             Ok((case.backlash, record))
         });
         let sections = sections.collect::<Result<Vec<_>, StudyError>>()?;
@@ -54,22 +54,24 @@ impl Bifurcation {
             omega,
             b: Vec::new(),
             x_sp: Vec::new(),
-            beyond: Vec::new(),
+            compression: Vec::new(),
             dr: Vec::new(),
         };
         for (b, record) in sections {
             found.b.extend(std::iter::repeat_n(b, record.x_sp.len()));
-            found.beyond.extend(record.x_sp.iter().map(|x_sp| x_sp - b));
+            found
+                .compression
+                .extend(record.x_sp.iter().map(|x_sp| x_sp - b));
             found.x_sp.extend(record.x_sp);
             found.dr.extend(record.dr);
         }
         Ok(found)
     }
 
-    pub fn table(&self) -> Columns {
+    pub fn table(&self) -> Table {
         let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
         let multiple = (self.omega / PI).round();
-        Columns {
+        Table {
             file: format!("bifurcation_w{multiple:02}pi_s{}.parquet", self.order),
             columns: vec![
                 column("b", &self.b),
@@ -93,7 +95,7 @@ impl Bifurcation {
             self.arm(),
             self.omega / PI
         );
-        frame(title, "x_sp − b", &self.b, &self.beyond)
+        frame(title, "x_sp − b", &self.b, &self.compression)
     }
 
     fn deflection(&self, letter: &str) -> Frame<'_> {
@@ -138,8 +140,8 @@ pub(super) fn figure(found: &[Bifurcation]) -> Result<Figure, StudyError> {
         file: "bifurcation.svg".to_owned(),
         paper: String::new(),
         caption: format!(
-            "Bifurcation diagram over half the backlash b = 0 to 100 um in steps of 1 um: {SHOWN} forcing \
-             periods after {WAITED} from rest, each motion seen once per forcing period: x_sp less b, which is how far \
+            "Bifurcation diagram over half the backlash b = 0 to 100 um in steps of 1 um: {SHOWN_PERIODS} forcing \
+             periods after {TRANSIENT_PERIODS} from rest, each motion seen once per forcing period: x_sp less b, which is how far \
              the mesh is beyond its flank, and dr; the modes from the \
              second on are hardly damped and have not died away by then"
         ),

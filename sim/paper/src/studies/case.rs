@@ -11,33 +11,33 @@ use eomgen_analysis::poincare::Shape;
 use eomgen_analysis::spectrum::{Trend, welch, without_harmonics};
 use eomgen_sim::piecewise_linear::Propagator;
 
-use super::arm::{Arm, Case, Lengths};
+use super::arm::{Arm, Case, ConversionFactors};
 use super::error::StudyError;
-use super::kind::{Known, find, is_strong};
-use super::neighbours::Neighbours;
+use super::kind::{MotionProperties, classify_motion, is_strong_growth};
+use super::neighbours::TangentMotion;
 use super::run::Run;
 use super::series::extents;
 pub use super::series::{Amplitude, Record};
 
 /// Forcing periods per segment of a spectrum: harmonics are then 20 steps apart.
-const SEGMENT: usize = 20;
+const PERIODS_PER_SEGMENT: usize = 20;
 /// Smallest number of segments, overlapping by half, for which peaks of noise do not count as
 /// lines.
-const FEWEST_SEGMENTS: usize = 8;
+const MIN_SEGMENTS: usize = 8;
 /// Approximate ratio of the limits of a band to its natural frequency.
-const BAND: f64 = 2.5;
+const BAND_RATIO: f64 = 2.5;
 /// Limits of the number of samples per forcing period.
-const LEAST_SAMPLES: usize = 64;
-const MOST_SAMPLES: usize = 16_384;
+const MIN_SAMPLES_PER_PERIOD: usize = 64;
+const MAX_SAMPLES_PER_PERIOD: usize = 16_384;
 /// Length of the transient in time constants J/b_m of the drive. The first mode of the arm decays
 /// through the motor about six times more slowly than the rotation (estimated from the extracted
 /// power, with the assumed values). From the second mode on, the arm is nearly undamped: remaining
 /// vibrations can make a motion quasi-periodic that would be periodic after minutes.
-const TIME_CONSTANTS: f64 = 30.0;
+const TRANSIENT_TIME_CONSTANTS: f64 = 30.0;
 
 /// Lengths of the phases of a run, in forcing periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Length {
+pub struct RunLength {
     /// Limits of the transient. Between them it is 30 time constants J/b_m of the drive, which also
     /// determine the decay of the first mode. `Measurement::trend` shows a remaining transient.
     pub transient: (usize, usize),
@@ -46,23 +46,23 @@ pub struct Length {
     /// Limits of the periods used for the classification, doubled until it is decided. The record
     /// does not grow with them. The exponent of intermittent chaos has a reliable error from about
     /// 1000 on.
-    pub followed: (usize, usize),
+    pub classified_periods: (usize, usize),
     /// Recorded periods after which fast growth ends the classification: by more than a factor e
     /// per period after three standard errors. Such chaos needs no second test and is the most
     /// expensive to simulate. `None` disables this.
-    pub strong: Option<usize>,
+    pub strong_growth_periods: Option<usize>,
     /// Number of modes whose bands the spectra resolve, which sets the sampling rate. The variance
     /// of a modal coordinate does not need this rate.
     pub modes: usize,
 }
 
-impl Length {
+impl RunLength {
     /// Lengths for thousands of parameter sets.
     pub const SCREENING: Self = Self {
         transient: (20, 60),
         periods: 100,
-        followed: (100, 400),
-        strong: Some(30),
+        classified_periods: (100, 400),
+        strong_growth_periods: Some(30),
         modes: 1,
     };
 
@@ -70,8 +70,8 @@ impl Length {
     pub const CONFIRMING: Self = Self {
         transient: (100, 300),
         periods: 300,
-        followed: (1000, 2000),
-        strong: None,
+        classified_periods: (1000, 2000),
+        strong_growth_periods: None,
         modes: 1,
     };
 
@@ -79,18 +79,18 @@ impl Length {
     pub const FULL: Self = Self {
         transient: (150, 1000),
         periods: 400,
-        followed: (1000, 2000),
-        strong: None,
+        classified_periods: (1000, 2000),
+        strong_growth_periods: None,
         modes: 4,
     };
 
-    fn samples(&self, case: &Case, lengths: &Lengths) -> usize {
-        let shown = self.modes.min(lengths.natural.len());
+    fn samples(&self, case: &Case, lengths: &ConversionFactors) -> usize {
+        let shown = self.modes.min(lengths.natural_frequencies.len());
         let highest = shown
             .checked_sub(1)
-            .and_then(|mode| lengths.natural.get(mode));
-        let needed = highest.map_or(0.0, |highest| 2.6 * BAND * highest * case.period());
-        (needed as usize).clamp(LEAST_SAMPLES, MOST_SAMPLES)
+            .and_then(|mode| lengths.natural_frequencies.get(mode));
+        let needed = highest.map_or(0.0, |highest| 2.6 * BAND_RATIO * highest * case.period());
+        (needed as usize).clamp(MIN_SAMPLES_PER_PERIOD, MAX_SAMPLES_PER_PERIOD)
     }
 }
 
@@ -160,7 +160,7 @@ impl Measurement {
 ///
 /// # Errors
 /// A length that is too short, inadmissible values, an unbounded number of switches.
-pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, StudyError> {
+pub fn measure(arm: &Arm, case: &Case, length: &RunLength) -> Result<Measurement, StudyError> {
     if length.periods < 100 || !(case.period() > 0.0 && case.period().is_finite()) {
         return Err(StudyError::Request(
             "expected at least 100 forcing periods of a positive frequency".to_owned(),
@@ -169,25 +169,25 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
     let lengths = arm.lengths(case);
     let samples = length.samples(case, &lengths);
     let mut propagator = arm.propagator(case)?;
-    let waited = waiting(case, length, &lengths);
+    let waited = transient_periods(case, length, &lengths);
     let mut run = Run::start(&mut propagator, case, waited, samples)?;
-    let mut neighbours = Neighbours::beside(&run, &mut propagator, case, &lengths)?;
-    let (recorded, followed) = match length.strong {
-        Some(periods) if parts_at_once(&mut neighbours, &mut propagator, case, periods)? => {
+    let mut neighbours = TangentMotion::start(&run, &mut propagator, case, &lengths)?;
+    let (recorded, followed) = match length.strong_growth_periods {
+        Some(periods) if grows_fast_at_once(&mut neighbours, &mut propagator, case, periods)? => {
             (periods, (periods, periods))
         }
-        _ => (length.periods, length.followed),
+        _ => (length.periods, length.classified_periods),
     };
     run.extend(&mut propagator, recorded)?;
-    let record = Record::of(&run.times, &run.states, &lengths);
+    let record = Record::from_states(&run.times, &run.states, &lengths);
     let interval = case.period() / samples as f64;
-    let segment = SEGMENT * samples;
-    let known = Known {
+    let segment = PERIODS_PER_SEGMENT * samples;
+    let known = MotionProperties {
         case,
         extents: &extents(&run.states),
         line_share: line_share(&record.x_sp, interval, samples)?,
     };
-    let found = find(&mut neighbours, &mut propagator, &known, followed)?;
+    let found = classify_motion(&mut neighbours, &mut propagator, &known, followed)?;
     let signed = record.dr.iter().zip(&record.transmission);
     let signed: Vec<f64> = signed.map(|(dr, lag)| dr - lag).collect();
     let halves = record.f_la.split_at(record.f_la.len() / 2);
@@ -199,15 +199,15 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
         section: found.section,
         shape: found.shape,
         periods: found.periods,
-        x_sp: Amplitude::of(&record.x_sp),
-        f_la: Amplitude::of(&record.f_la),
-        f_la_signed: Amplitude::of(&signed),
-        transmission: Amplitude::of(&record.transmission),
-        dr: Amplitude::of(&record.dr),
-        shares: tip_shares(&modal, &lengths.at_tip)?,
+        x_sp: Amplitude::from_values(&record.x_sp),
+        f_la: Amplitude::from_values(&record.f_la),
+        f_la_signed: Amplitude::from_values(&signed),
+        transmission: Amplitude::from_values(&record.transmission),
+        dr: Amplitude::from_values(&record.dr),
+        shares: tip_shares(&modal, &lengths.tip_amplitudes)?,
         vibration: vibration(&record.modal, interval, segment, &lengths)?,
         bands: bands(&record.dr, interval, segment, &lengths)?,
-        trend: (Amplitude::of(halves.1).rms / Amplitude::of(halves.0).rms).ln(),
+        trend: (Amplitude::from_values(halves.1).rms / Amplitude::from_values(halves.0).rms).ln(),
         transient: run.begin,
         switches: run.switches as f64 / (run.end() - run.begin),
         record,
@@ -215,37 +215,37 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
 }
 
 /// Reports growth over the first periods that is fast enough to decide.
-fn parts_at_once(
-    neighbours: &mut Neighbours,
+fn grows_fast_at_once(
+    neighbours: &mut TangentMotion,
     propagator: &mut Propagator,
     case: &Case,
     periods: usize,
 ) -> Result<bool, StudyError> {
     neighbours.extend(propagator, periods)?;
-    Ok(is_strong(&neighbours.exponent()?, case))
+    Ok(is_strong_growth(&neighbours.exponent()?, case))
 }
 
 /// Returns the length of the transient in forcing periods.
-fn waiting(case: &Case, length: &Length, lengths: &Lengths) -> usize {
+fn transient_periods(case: &Case, length: &RunLength, lengths: &ConversionFactors) -> usize {
     let (least, most) = length.transient;
     let b_m = case.undisclosed.b_m;
     if b_m <= 0.0 {
         return least;
     }
-    let time = TIME_CONSTANTS * lengths.inertia / b_m;
+    let time = TRANSIENT_TIME_CONSTANTS * lengths.inertia / b_m;
     ((time / case.period()).ceil() as usize).clamp(least, most.max(least))
 }
 
 /// Returns the share of spectral lines in the power of x_sp outside the forcing harmonics, or
 /// `None` if the record is so short that noise would count as lines.
 fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>, StudyError> {
-    if x_sp.len() < FEWEST_SEGMENTS * SEGMENT * samples / 2 {
+    if x_sp.len() < MIN_SEGMENTS * PERIODS_PER_SEGMENT * samples / 2 {
         return Ok(None);
     }
     let Some(rest) = without_harmonics(x_sp, samples) else {
         return Ok(None);
     };
-    Ok(welch(&rest, interval, SEGMENT * samples, Trend::Mean)?.line_share())
+    Ok(welch(&rest, interval, PERIODS_PER_SEGMENT * samples, Trend::Mean)?.line_share())
 }
 
 /// Computes the power above the first band. Frequencies above half the sampling rate are aliased
@@ -254,11 +254,14 @@ fn vibration(
     modal: &[Vec<f64>],
     interval: f64,
     segment: usize,
-    lengths: &Lengths,
+    lengths: &ConversionFactors,
 ) -> Result<Vec<f64>, StudyError> {
-    let low = lengths.natural.first().map_or(0.0, |first| first / BAND);
+    let low = lengths
+        .natural_frequencies
+        .first()
+        .map_or(0.0, |first| first / BAND_RATIO);
     let mut powers = Vec::with_capacity(modal.len());
-    for (series, at_tip) in modal.iter().zip(&lengths.at_tip) {
+    for (series, at_tip) in modal.iter().zip(&lengths.tip_amplitudes) {
         let spectrum = welch(series, interval, segment, Trend::Mean)?;
         powers.push(at_tip * at_tip * spectrum.power_between(low, f64::INFINITY));
     }
@@ -269,12 +272,12 @@ fn bands(
     dr: &[f64],
     interval: f64,
     segment: usize,
-    lengths: &Lengths,
+    lengths: &ConversionFactors,
 ) -> Result<Option<BandPower>, StudyError> {
-    match lengths.natural.last() {
-        Some(highest) if 2.0 * BAND * highest * interval < 1.0 => {
+    match lengths.natural_frequencies.last() {
+        Some(highest) if 2.0 * BAND_RATIO * highest * interval < 1.0 => {
             let spectrum = welch(dr, interval, segment, Trend::Mean)?;
-            Ok(Some(band_power(&spectrum, &lengths.natural)?))
+            Ok(Some(band_power(&spectrum, &lengths.natural_frequencies)?))
         }
         _ => Ok(None),
     }

@@ -5,33 +5,33 @@ use eomgen_plot::{PlotError, Reference};
 
 use super::claims::CLAIMS;
 use super::error::StudyError;
-use super::judge::{Holding, Judgement};
+use super::judge::{Judgement, Verdict};
 use super::report::Figure;
-use super::search::Found;
+use super::search::SearchResult;
 use super::tally;
 
 /// Draws the figures of a search, with the claims judged at the assumed values.
 ///
 /// # Errors
 /// A search without judged sets.
-pub fn charts(found: &Found, assumed: &[Judgement]) -> Result<Vec<Figure>, StudyError> {
+pub fn draw_charts(found: &SearchResult, assumed: &[Judgement]) -> Result<Vec<Figure>, StudyError> {
     let refused = |error: PlotError| StudyError::Request(error.to_string());
     Ok(vec![
-        together(found, assumed).map_err(refused)?,
-        one_by_one(found).map_err(refused)?,
+        draw_claims_at_once(found, assumed).map_err(refused)?,
+        draw_shares_of_claims(found).map_err(refused)?,
     ])
 }
 
 /// Draws the numbers of sets over the number of claims that hold.
-fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
-    let holds = |judgement: &&Judgement| judgement.holding == Holding::Holds;
+fn draw_claims_at_once(found: &SearchResult, assumed: &[Judgement]) -> Result<Figure, PlotError> {
+    let holds = |judgement: &&Judgement| judgement.holding == Verdict::Holds;
     let mark = |label: &str, number: usize| Reference {
         label: format!("{label}: {number}"),
         value: number as f64,
     };
     let mut marks = vec![mark("assumed values", assumed.iter().filter(holds).count())];
     if let Some(best) = found.confirmed.first() {
-        marks.push(mark("best", best.holding()));
+        marks.push(mark("best", best.holding_claims()));
     }
     marks.sort_by(|a, b| a.value.total_cmp(&b.value));
     let caption = format!(
@@ -50,14 +50,14 @@ fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
 }
 
 /// Draws the share of the sets in which each claim holds.
-fn one_by_one(found: &Found) -> Result<Figure, PlotError> {
+fn draw_shares_of_claims(found: &SearchResult) -> Result<Figure, PlotError> {
     let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
     let rows = rows.map(|(claim, share)| {
         // An underscore would start a subscript.
         let parts = vec![
             share.holds_strictly,
             share.holds - share.holds_strictly,
-            share.undecided,
+            share.undecided_share,
             share.fails,
         ];
         (claim.id.replace('_', " "), parts)

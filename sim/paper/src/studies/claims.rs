@@ -5,15 +5,15 @@
 //! counted separately, a periodic motion contradicts it. The positioning error also has two
 //! readings: with the correct sign, and as printed.
 
-use super::reading::{Forcing, Key};
+use super::reading::{CaseKey, Forcing};
 
 /// Rule that decides a claim, with its cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Regular motion.
-    Regular(Key),
+    Regular(CaseKey),
     /// Chaotic motion.
-    Chaotic(Key),
+    Chaotic(CaseKey),
     /// Regular motion at b = 10 um, chaotic at 100 um, without a return to regular in between.
     Route(Forcing),
     /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 % in
@@ -22,13 +22,13 @@ pub enum Rule {
     /// sufficient.
     ErrorGrows(Forcing),
     /// dr exceeds l dtheta, peak to peak and in RMS; undecided if these disagree.
-    DeflectionDominates(Key),
+    DeflectionDominates(CaseKey),
     /// l dtheta exceeds dr, peak to peak and in RMS; undecided if these disagree.
-    TransmissionDominates(Key),
+    TransmissionDominates(CaseKey),
     /// The ratio of l dtheta to dr, peak to peak, grows from each b to the next.
     ShareGrows(Forcing),
     /// This mode, counted from 1, has the largest vibration at the tip.
-    DominantMode(Key, usize),
+    DominantMode(CaseKey, usize),
     /// The mode with the largest vibration differs between the b > 0.
     ModeChanges(Forcing),
     /// Between b = 10 and 100 um, dr changes, peak to peak and in RMS, by less than a factor of 1.5
@@ -52,25 +52,25 @@ pub struct Claim {
     /// Section and figure of the paper.
     pub place: &'static str,
     /// Paraphrased claim.
-    pub says: &'static str,
+    pub text: &'static str,
     /// Rule that decides it.
     pub rule: Rule,
 }
 
 /// Half-backlashes of the paper, um.
-pub const BACKLASHES: [u32; 5] = [0, 10, 25, 50, 100];
+pub const HALF_BACKLASHES_UM: [u32; 5] = [0, 10, 25, 50, 100];
 
 use Forcing::{FivePi, TenPi};
 
-const fn five(b: u32) -> Key {
-    Key::flexible(FivePi, b)
+const fn at_five_pi(b: u32) -> CaseKey {
+    CaseKey::flexible(FivePi, b)
 }
 
-const fn ten(b: u32) -> Key {
-    Key::flexible(TenPi, b)
+const fn at_ten_pi(b: u32) -> CaseKey {
+    CaseKey::flexible(TenPi, b)
 }
 
-const RIGID: Key = Key {
+const RIGID: CaseKey = CaseKey {
     order: 0,
     forcing: TenPi,
     micrometres: 100,
@@ -80,7 +80,7 @@ const fn claim(id: &'static str, place: &'static str, says: &'static str, rule: 
     Claim {
         id,
         place,
-        says,
+        text: says,
         rule,
     }
 }
@@ -89,30 +89,30 @@ const fn claim(id: &'static str, place: &'static str, says: &'static str, rule: 
 #[rustfmt::skip]
 pub const CLAIMS: [Claim; 30] = [
     claim("order", "Sec. 3, Fig. 4", "four modes are enough: five change the tip's motion little", Rule::OrderSuffices),
-    claim("regular_5pi_10", "Sec. 4.2, Fig. 6", "quasi-periodic at 5 pi, b = 10 um", Rule::Regular(five(10))),
-    claim("regular_5pi_25", "Sec. 4.2, Fig. 7", "quasi-periodic at 5 pi, b = 25 um", Rule::Regular(five(25))),
-    claim("chaos_5pi_50", "Sec. 4.2, Fig. 8", "chaotic at 5 pi, b = 50 um", Rule::Chaotic(five(50))),
-    claim("chaos_5pi_100", "Sec. 4.2, Fig. 9", "chaotic at 5 pi, b = 100 um", Rule::Chaotic(five(100))),
+    claim("regular_5pi_10", "Sec. 4.2, Fig. 6", "quasi-periodic at 5 pi, b = 10 um", Rule::Regular(at_five_pi(10))),
+    claim("regular_5pi_25", "Sec. 4.2, Fig. 7", "quasi-periodic at 5 pi, b = 25 um", Rule::Regular(at_five_pi(25))),
+    claim("chaos_5pi_50", "Sec. 4.2, Fig. 8", "chaotic at 5 pi, b = 50 um", Rule::Chaotic(at_five_pi(50))),
+    claim("chaos_5pi_100", "Sec. 4.2, Fig. 9", "chaotic at 5 pi, b = 100 um", Rule::Chaotic(at_five_pi(100))),
     claim("route_5pi", "Sec. 4.1; 5 (2)", "from quasi-periodic to chaotic as b grows, at 5 pi", Rule::Route(FivePi)),
     claim("error_5pi", "Sec. 4.1, Fig. 5-9", "the positioning error grows with b, at 5 pi", Rule::ErrorGrows(FivePi)),
-    claim("small_b_5pi", "Sec. 4.1; 5 (3)", "the arm's deflection is the larger part of the error for small b (10 um, 5 pi)", Rule::DeflectionDominates(five(10))),
-    claim("large_b_5pi", "Sec. 4.1; 5 (3)", "the transmission error is the larger part for large b (100 um, 5 pi)", Rule::TransmissionDominates(five(100))),
+    claim("small_b_5pi", "Sec. 4.1; 5 (3)", "the arm's deflection is the larger part of the error for small b (10 um, 5 pi)", Rule::DeflectionDominates(at_five_pi(10))),
+    claim("large_b_5pi", "Sec. 4.1; 5 (3)", "the transmission error is the larger part for large b (100 um, 5 pi)", Rule::TransmissionDominates(at_five_pi(100))),
     claim("share_5pi", "Sec. 4.1; 5 (3)", "the ratio of transmission error to deflection grows with b, at 5 pi", Rule::ShareGrows(FivePi)),
-    claim("mode_5pi_10", "Sec. 4.1, Fig. 10 (a)", "the first mode dominates dr at 5 pi, b = 10 um", Rule::DominantMode(five(10), 1)),
-    claim("mode_5pi_25", "Sec. 4.1, Fig. 10 (b)", "the first mode dominates dr at 5 pi, b = 25 um", Rule::DominantMode(five(25), 1)),
-    claim("mode_5pi_50", "Sec. 4.1, Fig. 10 (c)", "the first mode dominates dr at 5 pi, b = 50 um", Rule::DominantMode(five(50), 1)),
-    claim("mode_5pi_100", "Sec. 4.1, Fig. 10 (d)", "the third mode dominates dr at 5 pi, b = 100 um", Rule::DominantMode(five(100), 3)),
-    claim("regular_10pi_10", "Sec. 4.2, Fig. 12", "quasi-periodic at 10 pi, b = 10 um", Rule::Regular(ten(10))),
-    claim("chaos_10pi_25", "Sec. 4.2, Fig. 13", "chaotic at 10 pi, b = 25 um", Rule::Chaotic(ten(25))),
-    claim("chaos_10pi_50", "Sec. 4.2, Fig. 14", "chaotic at 10 pi, b = 50 um", Rule::Chaotic(ten(50))),
-    claim("chaos_10pi_100", "Sec. 4.2, Fig. 15", "chaotic at 10 pi, b = 100 um", Rule::Chaotic(ten(100))),
+    claim("mode_5pi_10", "Sec. 4.1, Fig. 10 (a)", "the first mode dominates dr at 5 pi, b = 10 um", Rule::DominantMode(at_five_pi(10), 1)),
+    claim("mode_5pi_25", "Sec. 4.1, Fig. 10 (b)", "the first mode dominates dr at 5 pi, b = 25 um", Rule::DominantMode(at_five_pi(25), 1)),
+    claim("mode_5pi_50", "Sec. 4.1, Fig. 10 (c)", "the first mode dominates dr at 5 pi, b = 50 um", Rule::DominantMode(at_five_pi(50), 1)),
+    claim("mode_5pi_100", "Sec. 4.1, Fig. 10 (d)", "the third mode dominates dr at 5 pi, b = 100 um", Rule::DominantMode(at_five_pi(100), 3)),
+    claim("regular_10pi_10", "Sec. 4.2, Fig. 12", "quasi-periodic at 10 pi, b = 10 um", Rule::Regular(at_ten_pi(10))),
+    claim("chaos_10pi_25", "Sec. 4.2, Fig. 13", "chaotic at 10 pi, b = 25 um", Rule::Chaotic(at_ten_pi(25))),
+    claim("chaos_10pi_50", "Sec. 4.2, Fig. 14", "chaotic at 10 pi, b = 50 um", Rule::Chaotic(at_ten_pi(50))),
+    claim("chaos_10pi_100", "Sec. 4.2, Fig. 15", "chaotic at 10 pi, b = 100 um", Rule::Chaotic(at_ten_pi(100))),
     claim("route_10pi", "Sec. 5 (2)", "from quasi-periodic to chaotic as b grows, at 10 pi", Rule::Route(TenPi)),
     claim("frequency", "Sec. 4.2; 5 (2)", "the kind of motion depends on the forcing frequency", Rule::FrequencyMatters),
     claim("rigid_10pi_100", "Sec. 4.3, Fig. 19", "quasi-periodic with a rigid arm at 10 pi, b = 100 um", Rule::Regular(RIGID)),
     claim("flexibility", "Sec. 4.3; 5 (5)", "the arm's flexibility changes the kind of motion of the gears (10 pi, b = 100 um)", Rule::FlexibilityMatters),
     claim("error_10pi", "Sec. 5 (1), Fig. 11-15", "backlash impairs the positioning, at 10 pi", Rule::ErrorGrows(TenPi)),
-    claim("small_b_10pi", "Sec. 5 (3)", "the deflection is the larger part for small b (10 um, 10 pi)", Rule::DeflectionDominates(ten(10))),
-    claim("large_b_10pi", "Sec. 5 (3)", "the transmission error is the larger part for large b (100 um, 10 pi)", Rule::TransmissionDominates(ten(100))),
+    claim("small_b_10pi", "Sec. 5 (3)", "the deflection is the larger part for small b (10 um, 10 pi)", Rule::DeflectionDominates(at_ten_pi(10))),
+    claim("large_b_10pi", "Sec. 5 (3)", "the transmission error is the larger part for large b (100 um, 10 pi)", Rule::TransmissionDominates(at_ten_pi(100))),
     claim("share_10pi", "Sec. 5 (3)", "the ratio of transmission error to deflection grows with b, at 10 pi", Rule::ShareGrows(TenPi)),
     claim("steady_5pi", "Sec. 5 (4)", "backlash changes the amplitude of the deflection little, at 5 pi", Rule::DeflectionSteady(FivePi)),
     claim("steady_10pi", "Sec. 5 (4)", "backlash changes the amplitude of the deflection little, at 10 pi", Rule::DeflectionSteady(TenPi)),
@@ -122,9 +122,9 @@ pub const CLAIMS: [Claim; 30] = [
 
 impl Rule {
     /// Returns the cases of the rule.
-    pub fn cases(self) -> Vec<Key> {
-        let all = |forcing, backlashes: &[u32]| -> Vec<Key> {
-            let keys = backlashes.iter().map(|b| Key::flexible(forcing, *b));
+    pub fn cases(self) -> Vec<CaseKey> {
+        let all = |forcing, backlashes: &[u32]| -> Vec<CaseKey> {
+            let keys = backlashes.iter().map(|b| CaseKey::flexible(forcing, *b));
             keys.collect()
         };
         match self {
@@ -133,22 +133,22 @@ impl Rule {
             | Self::DeflectionDominates(key)
             | Self::TransmissionDominates(key)
             | Self::DominantMode(key, _) => vec![key],
-            Self::ErrorGrows(forcing) => all(forcing, &BACKLASHES),
+            Self::ErrorGrows(forcing) => all(forcing, &HALF_BACKLASHES_UM),
             Self::Route(forcing)
             | Self::ShareGrows(forcing)
             | Self::ModeChanges(forcing)
-            | Self::DeflectionSteady(forcing) => all(forcing, &BACKLASHES[1..]),
+            | Self::DeflectionSteady(forcing) => all(forcing, &HALF_BACKLASHES_UM[1..]),
             Self::FrequencyMatters => {
-                let mut keys = all(FivePi, &BACKLASHES[1..]);
-                keys.extend(all(TenPi, &BACKLASHES[1..]));
+                let mut keys = all(FivePi, &HALF_BACKLASHES_UM[1..]);
+                keys.extend(all(TenPi, &HALF_BACKLASHES_UM[1..]));
                 keys
             }
-            Self::FlexibilityMatters => vec![RIGID, ten(100)],
+            Self::FlexibilityMatters => vec![RIGID, at_ten_pi(100)],
             Self::OrderSuffices => vec![
-                five(0),
-                Key {
+                at_five_pi(0),
+                CaseKey {
                     order: 5,
-                    ..five(0)
+                    ..at_five_pi(0)
                 },
             ],
         }
@@ -156,8 +156,8 @@ impl Rule {
 }
 
 /// Returns the cases of all claims, each once, in a fixed order.
-pub fn cases() -> Vec<Key> {
-    let mut keys: Vec<Key> = CLAIMS.iter().flat_map(|claim| claim.rule.cases()).collect();
+pub fn cases() -> Vec<CaseKey> {
+    let mut keys: Vec<CaseKey> = CLAIMS.iter().flat_map(|claim| claim.rule.cases()).collect();
     keys.sort_unstable();
     keys.dedup();
     keys

@@ -2,11 +2,11 @@
 //! searched sets.
 
 use super::claims::CLAIMS;
-use super::judge::{Holding, Judgement};
+use super::judge::{Judgement, Verdict};
 use super::tally::Share;
 
 /// Formats the table from the judgements at the assumed values and the shares of a search.
-pub fn markdown(assumed: &[Judgement], shares: &[Share]) -> String {
+pub fn format_markdown(assumed: &[Judgement], shares: &[Share]) -> String {
     let mut text = "| claim | where | the paper says | here | strictly | holds in | undecided in | evidence |\n\
                     | --- | --- | --- | --- | --- | --- | --- | --- |\n"
         .to_owned();
@@ -15,21 +15,21 @@ pub fn markdown(assumed: &[Judgement], shares: &[Share]) -> String {
             "| `{}` | {} | {} | {} | {} | {:.0} % | {:.0} % | {} |\n",
             claim.id,
             claim.place,
-            claim.says,
+            claim.text,
             word(judged.holding),
             word(judged.strict),
             100.0 * share.holds,
-            100.0 * share.undecided,
+            100.0 * share.undecided_share,
             judged.evidence.replace('|', "\\|"),
         ));
     }
     text
 }
 
-fn word(holding: Holding) -> &'static str {
+fn word(holding: Verdict) -> &'static str {
     match holding {
-        Holding::Holds => "holds",
-        Holding::Fails => "fails",
-        Holding::Undecided => "undecided",
+        Verdict::Holds => "holds",
+        Verdict::Fails => "fails",
+        Verdict::Undecided => "undecided",
     }
 }

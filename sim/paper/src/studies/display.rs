@@ -10,21 +10,21 @@ use super::error::StudyError;
 use super::series::{FIRST_MODE, X_SP};
 
 /// Sampling rate, Hz: twice the rate needed for the 5 kHz vibration of the meshes.
-const RATE: f64 = 20_480.0;
+const SAMPLING_RATE_HZ: f64 = 20_480.0;
 /// Recorded time for spectra, s: a whole number of forcing periods.
-const RECORDED: f64 = 40.0;
+const RECORDED_S: f64 = 40.0;
 /// Forcing periods per segment of a spectrum, averaged over at least 19 segments.
-const SEGMENT: usize = 10;
+const PERIODS_PER_SEGMENT: usize = 10;
 /// Length of the time histories in figures, s: 5 or 10 forcing periods.
-pub(super) const WINDOW: f64 = 2.0;
+pub(super) const FIGURE_WINDOW_S: f64 = 2.0;
 /// Components of a point of the section.
-const SECTION: usize = 4;
+const SECTION_COMPONENTS: usize = 4;
 /// Band of the spectra, Hz: from below the forcing to above the meshes.
-pub(super) const BAND: (f64, f64) = (1.0, 1e4);
+pub(super) const FIGURE_BAND_HZ: (f64, f64) = (1.0, 1e4);
 
 /// Case sampled after its transient.
 #[derive(Clone, Debug)]
-pub struct Display {
+pub struct SampledCase {
     /// Case of the run.
     pub case: Case,
     /// Natural frequencies of the machine with both meshes closed, Hz.
@@ -44,39 +44,39 @@ pub struct Display {
     pub dr: PowerSpectrum,
 }
 
-impl Display {
+impl SampledCase {
     /// Runs a case from rest at zero and records it from `transient` s on.
     ///
     /// # Errors
     /// Inadmissible values, an unbounded number of switches.
-    pub fn of(arm: &Arm, case: &Case, transient: f64) -> Result<Self, StudyError> {
+    pub fn sample(arm: &Arm, case: &Case, transient: f64) -> Result<Self, StudyError> {
         let per_period = samples_per_period(case);
         let step = case.period() / per_period;
-        let periods = (RECORDED / case.period()).round();
+        let periods = (RECORDED_S / case.period()).round();
         let times = even_times(transient, step, (periods * per_period) as usize);
-        let (record, x_sp_dot) = with_rate(arm, case, &times)?;
-        let shown = (WINDOW / step).ceil() as usize + 1;
-        let segment = SEGMENT * per_period as usize;
+        let (record, x_sp_dot) = sample_with_rate(arm, case, &times)?;
+        let shown = (FIGURE_WINDOW_S / step).ceil() as usize + 1;
+        let segment = PERIODS_PER_SEGMENT * per_period as usize;
         let spectrum = |values: &[f64]| -> Result<PowerSpectrum, StudyError> {
             Ok(in_band(welch(values, step, segment, Trend::Mean)?))
         };
         Ok(Self {
             case: *case,
-            natural: arm.closed(case)?,
+            natural: arm.closed_mesh_frequencies(case)?,
             x_sp: spectrum(&record.x_sp)?,
             f_la: spectrum(&record.f_la)?,
             dr: spectrum(&record.dr)?,
-            history: first(record, shown),
+            history: first_samples(record, shown),
             x_sp_dot: x_sp_dot.into_iter().take(shown).collect(),
             section: Vec::new(),
         })
     }
 }
 
-impl Display {
+impl SampledCase {
     /// Returns one component of all points of the section: x_sp, x_pr, or their rates.
     pub(super) fn section_column(&self, place: usize) -> Vec<f64> {
-        let points = self.section.chunks_exact(SECTION);
+        let points = self.section.chunks_exact(SECTION_COMPONENTS);
         points
             .filter_map(|point| point.get(place).copied())
             .collect()
@@ -88,7 +88,7 @@ impl Display {
 }
 
 fn samples_per_period(case: &Case) -> f64 {
-    (RATE * case.period()).round()
+    (SAMPLING_RATE_HZ * case.period()).round()
 }
 
 pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
@@ -96,18 +96,22 @@ pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
 }
 
 /// Simulates a case from rest at zero and returns its series at these times, s.
-pub(super) fn sampled(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
-    Ok(with_rate(arm, case, times)?.0)
+pub(super) fn sample_series(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
+    Ok(sample_with_rate(arm, case, times)?.0)
 }
 
 /// Returns the series and the rate of x_sp, m/s.
-fn with_rate(arm: &Arm, case: &Case, times: &[f64]) -> Result<(Record, Vec<f64>), StudyError> {
+fn sample_with_rate(
+    arm: &Arm,
+    case: &Case,
+    times: &[f64],
+) -> Result<(Record, Vec<f64>), StudyError> {
     let mut propagator = arm.propagator(case)?;
     let end = times.last().copied().unwrap_or_default();
     let initial = vec![0.0; propagator.states()];
     let none = HeldInputs::zero(0);
     let trajectory = propagator.simulate(&initial, (0.0, end), times, &none, &mut |_| {})?;
-    let record = Record::of(times, &trajectory.states, &arm.lengths(case));
+    let record = Record::from_states(times, &trajectory.states, &arm.lengths(case));
     let rate = FIRST_MODE + case.order + X_SP;
     let rates = trajectory.states.iter();
     let rates = rates.map(|state| state.get(rate).copied().unwrap_or_default());
@@ -117,12 +121,12 @@ fn with_rate(arm: &Arm, case: &Case, times: &[f64]) -> Result<(Record, Vec<f64>)
 fn in_band(spectrum: PowerSpectrum) -> PowerSpectrum {
     let pairs = spectrum.frequency.into_iter().zip(spectrum.density);
     let (frequency, density) = pairs
-        .filter(|(frequency, _)| (BAND.0..=BAND.1).contains(frequency))
+        .filter(|(frequency, _)| (FIGURE_BAND_HZ.0..=FIGURE_BAND_HZ.1).contains(frequency))
         .unzip();
     PowerSpectrum { frequency, density }
 }
 
-fn first(mut record: Record, count: usize) -> Record {
+fn first_samples(mut record: Record, count: usize) -> Record {
     let series = [
         &mut record.times,
         &mut record.x_sp,

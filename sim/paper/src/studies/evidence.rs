@@ -1,12 +1,12 @@
 //! Evidence for a claim, as text.
 
 use super::claims::Rule;
-use super::reading::{Key, Reading};
+use super::reading::{CaseKey, Reading};
 
 /// Formats the readings that decide a rule.
-pub(super) fn evidence(rule: Rule, keys: &[Key], found: &[&Reading]) -> String {
-    let cases: Vec<(&Key, &&Reading)> = keys.iter().zip(found).collect();
-    let each = |say: &dyn Fn(&Key, &Reading) -> String| -> String {
+pub(super) fn format_evidence(rule: Rule, keys: &[CaseKey], found: &[&Reading]) -> String {
+    let cases: Vec<(&CaseKey, &&Reading)> = keys.iter().zip(found).collect();
+    let each = |say: &dyn Fn(&CaseKey, &Reading) -> String| -> String {
         let parts: Vec<String> = cases
             .iter()
             .map(|(key, reading)| say(key, reading))
@@ -50,7 +50,7 @@ fn kind(reading: &Reading) -> &str {
     reading.sentence.split(':').next().unwrap_or_default()
 }
 
-fn components(key: &Key, reading: &Reading) -> String {
+fn components(key: &CaseKey, reading: &Reading) -> String {
     let (t, d) = (&reading.transmission, &reading.dr);
     format!(
         "b = {}: l dtheta {:.3} mm peak to peak, rms {:.4}; dr {:.3} mm, rms {:.4}",
@@ -63,7 +63,7 @@ fn components(key: &Key, reading: &Reading) -> String {
 }
 
 /// Formats the share of each mode in the vibration.
-fn modes(key: &Key, reading: &Reading) -> String {
+fn modes(key: &CaseKey, reading: &Reading) -> String {
     let sum: f64 = reading.vibration.iter().sum();
     let shares: Vec<String> = reading
         .vibration

@@ -5,14 +5,14 @@ use std::f64::consts::TAU;
 use eomgen_analysis::spectrum::PowerSpectrum;
 use eomgen_plot::{Axes, Frame, Panel, Plate, Reference, Series, plate};
 
-use super::display::Display;
+use super::display::SampledCase;
 use super::error::StudyError;
 use super::planes::{orbit, section};
-use super::report::{Figure, id};
+use super::report::{Figure, case_name};
 
 /// Smallest density drawn, relative to the greatest. Smaller values are rounding or leakage of the
 /// window and are drawn at this level.
-const FLOOR: f64 = 1e-13;
+const MIN_RELATIVE_DENSITY: f64 = 1e-13;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -26,15 +26,15 @@ pub(super) struct Row<'a> {
     pub title: String,
     pub quantity: Quantity,
     /// Cases with their names in the legend.
-    pub cases: Vec<(String, &'a Display)>,
+    pub cases: Vec<(String, &'a SampledCase)>,
 }
 
 /// Row of a figure.
-pub(super) enum Shown<'a> {
+pub(super) enum FigureRow<'a> {
     /// Time history and power spectrum.
-    Course(Row<'a>),
+    TimeHistory(Row<'a>),
     /// Phase plane and stroboscopic section of the mesh, with their letter.
-    Planes(&'static str, &'a Display),
+    Planes(&'static str, &'a SampledCase),
 }
 
 impl Quantity {
@@ -46,7 +46,7 @@ impl Quantity {
         }
     }
 
-    fn history(self, display: &Display) -> &[f64] {
+    fn history(self, display: &SampledCase) -> &[f64] {
         match self {
             Self::MeshDeflection => &display.history.x_sp,
             Self::PositioningError => &display.history.f_la,
@@ -54,7 +54,7 @@ impl Quantity {
         }
     }
 
-    fn spectrum(self, display: &Display) -> &PowerSpectrum {
+    fn spectrum(self, display: &SampledCase) -> &PowerSpectrum {
         match self {
             Self::MeshDeflection => &display.x_sp,
             Self::PositioningError => &display.f_la,
@@ -72,36 +72,40 @@ pub(super) struct Heading {
 }
 
 /// Draws rows of two frames.
-pub(super) fn rows(heading: Heading, rows: &[Shown<'_>]) -> Result<Figure, StudyError> {
+pub(super) fn draw_rows(heading: Heading, rows: &[FigureRow<'_>]) -> Result<Figure, StudyError> {
     let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
     let sections: Vec<[Vec<f64>; 2]> = rows.iter().map(section_columns).collect();
     let frames = rows.iter().zip(drawn.iter().zip(&sections));
     let frames = frames.flat_map(|(row, (drawn, columns))| match row {
-        Shown::Course(row) => [history(row), spectrum(row, drawn)],
-        Shown::Planes(letter, display) => [orbit(letter, display), section(display, columns)],
+        FigureRow::TimeHistory(row) => [history(row), spectrum(row, drawn)],
+        FigureRow::Planes(letter, display) => [orbit(letter, display), section(display, columns)],
     });
     let mut cases: Vec<String> = rows.iter().flat_map(ids).collect();
     cases.sort();
     cases.dedup();
-    figure(heading, cases, frames.collect())
+    draw_frames(heading, cases, frames.collect())
 }
 
-fn ids(row: &Shown<'_>) -> Vec<String> {
+fn ids(row: &FigureRow<'_>) -> Vec<String> {
     match row {
-        Shown::Course(row) => row.cases.iter().map(|(_, of)| id(&of.case)).collect(),
-        Shown::Planes(_, display) => vec![id(&display.case)],
+        FigureRow::TimeHistory(row) => row
+            .cases
+            .iter()
+            .map(|(_, of)| case_name(&of.case))
+            .collect(),
+        FigureRow::Planes(_, display) => vec![case_name(&display.case)],
     }
 }
 
-fn section_columns(row: &Shown<'_>) -> [Vec<f64>; 2] {
+fn section_columns(row: &FigureRow<'_>) -> [Vec<f64>; 2] {
     match row {
-        Shown::Course(_) => [Vec::new(), Vec::new()],
-        Shown::Planes(_, display) => [0, 2].map(|place| display.section_column(place)),
+        FigureRow::TimeHistory(_) => [Vec::new(), Vec::new()],
+        FigureRow::Planes(_, display) => [0, 2].map(|place| display.section_column(place)),
     }
 }
 
 /// Draws frames in two columns.
-pub(super) fn figure(
+pub(super) fn draw_frames(
     Heading {
         file,
         paper,
@@ -125,19 +129,19 @@ pub(super) fn figure(
     })
 }
 
-fn densities(row: &Shown<'_>) -> Vec<Vec<f64>> {
-    let Shown::Course(row) = row else {
+fn densities(row: &FigureRow<'_>) -> Vec<Vec<f64>> {
+    let FigureRow::TimeHistory(row) = row else {
         return Vec::new();
     };
     let spectra = row.cases.iter().map(|(_, d)| row.quantity.spectrum(d));
     spectra
-        .map(|spectrum| above_floor(&spectrum.density))
+        .map(|spectrum| raise_to_floor(&spectrum.density))
         .collect()
 }
 
 /// Raises densities below the floor to the floor.
-pub(super) fn above_floor(density: &[f64]) -> Vec<f64> {
-    let floor = FLOOR * density.iter().copied().fold(0.0, f64::max);
+pub(super) fn raise_to_floor(density: &[f64]) -> Vec<f64> {
+    let floor = MIN_RELATIVE_DENSITY * density.iter().copied().fold(0.0, f64::max);
     density.iter().map(|density| density.max(floor)).collect()
 }
 
@@ -153,14 +157,14 @@ fn history<'a>(row: &Row<'a>) -> Frame<'a> {
             quantity: row.quantity.name().to_owned(),
             unit: "m".to_owned(),
             series: curves.collect(),
-            references: flanks(row),
+            references: flank_marks(row),
         },
         ..Frame::default()
     }
 }
 
 /// Returns the positions of the flanks in a time history of the mesh.
-fn flanks(row: &Row<'_>) -> Vec<Reference> {
+fn flank_marks(row: &Row<'_>) -> Vec<Reference> {
     let backlash = row.cases.first().map_or(0.0, |(_, d)| d.case.backlash);
     if row.quantity != Quantity::MeshDeflection || backlash == 0.0 {
         return Vec::new();
@@ -183,7 +187,10 @@ fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
     Frame {
         panel: density_panel(row.quantity.name(), curves.collect()),
         axes: Axes::Frequency,
-        marks: row.cases.last().map_or_else(Vec::new, |(_, d)| marks(d)),
+        marks: row
+            .cases
+            .last()
+            .map_or_else(Vec::new, |(_, d)| frequency_marks(d)),
         ..Frame::default()
     }
 }
@@ -200,7 +207,7 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
 }
 
 /// Returns marks at the forcing frequency and at the natural frequencies with both meshes closed.
-pub(super) fn marks(display: &Display) -> Vec<Reference> {
+pub(super) fn frequency_marks(display: &SampledCase) -> Vec<Reference> {
     let forcing = Reference {
         label: "ω/2π".to_owned(),
         value: display.case.omega / TAU,

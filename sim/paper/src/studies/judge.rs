@@ -3,23 +3,23 @@
 use std::collections::BTreeMap;
 
 use super::claims::{Claim, Rule};
-use super::reading::{Key, Kind, Reading};
+use super::reading::{CaseKey, Kind, Reading};
 
 /// Readings by case.
-pub type Readings = BTreeMap<Key, Reading>;
+pub type Readings = BTreeMap<CaseKey, Reading>;
 
 /// Relative decrease that still counts as growth, because the extremes of a chaotic record scatter.
-const FORGIVEN: f64 = 0.01;
+const MAX_RELATIVE_DECREASE: f64 = 0.01;
 /// Smallest total growth.
-const GAINED: f64 = 0.05;
+const MIN_TOTAL_GROWTH: f64 = 0.05;
 /// Largest ratio of a little change.
-const LITTLE: f64 = 1.5;
+const MAX_LITTLE_RATIO: f64 = 1.5;
 /// Largest relative difference between converged truncation orders.
-const CONVERGED: f64 = 0.02;
+const MAX_CONVERGED_DIFFERENCE: f64 = 0.02;
 
 /// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Holding {
+pub enum Verdict {
     /// The claim holds.
     Holds,
     /// The claim fails.
@@ -33,14 +33,14 @@ pub enum Holding {
 pub struct Judgement {
     /// Verdict in the generous reading: any regular motion counts as the paper's quasi-periodic
     /// motion, and the positioning error may have either sign.
-    pub holding: Holding,
+    pub holding: Verdict,
     /// Verdict in the strict reading of quasi-periodic motion and of Eq. (24).
-    pub strict: Holding,
+    pub strict: Verdict,
     /// Evidence as text.
     pub evidence: String,
 }
 
-impl Holding {
+impl Verdict {
     /// Returns the letter in tables: H, F or U.
     pub fn letter(self) -> char {
         match self {
@@ -72,56 +72,58 @@ pub fn judge(claim: &Claim, readings: &Readings) -> Judgement {
     let found: Option<Vec<&Reading>> = keys.iter().map(|key| readings.get(key)).collect();
     let Some(found) = found else {
         return Judgement {
-            holding: Holding::Undecided,
-            strict: Holding::Undecided,
+            holding: Verdict::Undecided,
+            strict: Verdict::Undecided,
             evidence: "a case could not be measured".to_owned(),
         };
     };
     let (holding, strict) = match claim.rule {
         Rule::Regular(_) => (is(&found, Kind::Regular), is_quasi_periodic(&found)),
         Rule::Chaotic(_) => twice(is(&found, Kind::Chaotic)),
-        Rule::Route(_) => (route(&found), strict_route(&found)),
-        Rule::ErrorGrows(_) => error_grows(&found),
-        Rule::DeflectionDominates(_) => twice(dominates(&found, 1.0)),
-        Rule::TransmissionDominates(_) => twice(dominates(&found, -1.0)),
+        Rule::Route(_) => (judge_route(&found), judge_strict_route(&found)),
+        Rule::ErrorGrows(_) => judge_error_growth(&found),
+        Rule::DeflectionDominates(_) => twice(judge_dominance(&found, 1.0)),
+        Rule::TransmissionDominates(_) => twice(judge_dominance(&found, -1.0)),
         Rule::ShareGrows(_) => twice(grows(&sizes(&found, |r| r.transmission.span / r.dr.span))),
         Rule::DominantMode(_, mode) => twice(mode_is(&found, mode)),
         Rule::ModeChanges(_) => twice(mode_changes(&found)),
         Rule::DeflectionSteady(_) => twice(is_steady(&found)),
-        Rule::FrequencyMatters => twice(frequency_matters(&found)),
+        Rule::FrequencyMatters => twice(judge_frequency(&found)),
         Rule::FlexibilityMatters => twice(differ(&found)),
         Rule::OrderSuffices => twice(agree(&found)),
     };
     Judgement {
         holding,
         strict,
-        evidence: super::evidence::evidence(claim.rule, &keys, &found),
+        evidence: super::evidence::format_evidence(claim.rule, &keys, &found),
     }
 }
 
-fn twice(holding: Holding) -> (Holding, Holding) {
+fn twice(holding: Verdict) -> (Verdict, Verdict) {
     (holding, holding)
 }
 
-fn is(found: &[&Reading], kind: Kind) -> Holding {
+fn is(found: &[&Reading], kind: Kind) -> Verdict {
     match found {
-        [reading] if reading.kind != Kind::Unknown => Holding::of(reading.kind == kind),
-        _ => Holding::Undecided,
+        [reading] if reading.kind != Kind::Unknown => Verdict::of(reading.kind == kind),
+        _ => Verdict::Undecided,
     }
 }
 
-fn is_quasi_periodic(found: &[&Reading]) -> Holding {
+fn is_quasi_periodic(found: &[&Reading]) -> Verdict {
     match found {
-        [reading] if reading.kind != Kind::Unknown => Holding::of(reading.quasi_periodic),
-        _ => Holding::Undecided,
+        [reading] if reading.kind != Kind::Unknown => {
+            Verdict::of(reading.is_strictly_quasi_periodic)
+        }
+        _ => Verdict::Undecided,
     }
 }
 
 /// Judges a route: motion may become chaotic anywhere between the ends, but not regular again. It
 /// is undecided if the unknown cases permit both.
-fn route(found: &[&Reading]) -> Holding {
+fn judge_route(found: &[&Reading]) -> Verdict {
     let (Some(first), Some(last)) = (found.first(), found.last()) else {
-        return Holding::Undecided;
+        return Verdict::Undecided;
     };
     let kinds: Vec<Kind> = found.iter().map(|reading| reading.kind).collect();
     // A chaotic case before a regular one is a return; an unknown case may be one.
@@ -132,16 +134,16 @@ fn route(found: &[&Reading]) -> Holding {
         kinds.iter().enumerate().any(turns)
     };
     let back = if pairs(&[Kind::Chaotic], &[Kind::Regular]) {
-        Holding::Fails
+        Verdict::Fails
     } else if pairs(
         &[Kind::Chaotic, Kind::Unknown],
         &[Kind::Regular, Kind::Unknown],
     ) {
-        Holding::Undecided
+        Verdict::Undecided
     } else {
-        Holding::Holds
+        Verdict::Holds
     };
-    Holding::all(&[
+    Verdict::all(&[
         is(&[first], Kind::Regular),
         is(&[last], Kind::Chaotic),
         back,
@@ -149,123 +151,123 @@ fn route(found: &[&Reading]) -> Holding {
 }
 
 /// Requires quasi-periodic motion in the strict sense at the smallest backlash.
-fn strict_route(found: &[&Reading]) -> Holding {
+fn judge_strict_route(found: &[&Reading]) -> Verdict {
     let first = found
         .first()
-        .map_or(Holding::Undecided, |first| is_quasi_periodic(&[first]));
-    Holding::all(&[route(found), first])
+        .map_or(Verdict::Undecided, |first| is_quasi_periodic(&[first]));
+    Verdict::all(&[judge_route(found), first])
 }
 
 fn sizes(found: &[&Reading], size: impl Fn(&Reading) -> f64) -> Vec<f64> {
     found.iter().map(|reading| size(reading)).collect()
 }
 
-fn grows(sizes: &[f64]) -> Holding {
+fn grows(sizes: &[f64]) -> Verdict {
     let steps = sizes.windows(2).all(|pair| match pair {
-        [before, after] => *after >= before * (1.0 - FORGIVEN),
+        [before, after] => *after >= before * (1.0 - MAX_RELATIVE_DECREASE),
         _ => true,
     });
     match (sizes.first(), sizes.last()) {
         (Some(first), Some(last)) if sizes.iter().all(|size| size.is_finite()) => {
-            Holding::of(steps && *last >= first * (1.0 + GAINED))
+            Verdict::of(steps && *last >= first * (1.0 + MIN_TOTAL_GROWTH))
         }
-        _ => Holding::Undecided,
+        _ => Verdict::Undecided,
     }
 }
 
 /// Returns the verdicts with either sign of the transmission error, and as printed.
-fn error_grows(found: &[&Reading]) -> (Holding, Holding) {
+fn judge_error_growth(found: &[&Reading]) -> (Verdict, Verdict) {
     let printed = grows(&sizes(found, |r| r.f_la.largest));
     let signed = grows(&sizes(found, |r| r.f_la_signed.largest));
     match (printed, signed) {
-        (Holding::Holds, _) | (_, Holding::Holds) => (Holding::Holds, printed),
+        (Verdict::Holds, _) | (_, Verdict::Holds) => (Verdict::Holds, printed),
         _ => (printed, printed),
     }
 }
 
 /// Compares dr with l dtheta by both measures: larger for `sign` 1, smaller for -1.
-fn dominates(found: &[&Reading], sign: f64) -> Holding {
+fn judge_dominance(found: &[&Reading], sign: f64) -> Verdict {
     let [reading] = found else {
-        return Holding::Undecided;
+        return Verdict::Undecided;
     };
     let (dr, transmission) = (&reading.dr, &reading.transmission);
     let span = sign * (dr.span - transmission.span);
     let rms = sign * (dr.rms - transmission.rms);
     if span > 0.0 && rms > 0.0 {
-        Holding::Holds
+        Verdict::Holds
     } else if span < 0.0 && rms < 0.0 {
-        Holding::Fails
+        Verdict::Fails
     } else {
-        Holding::Undecided
+        Verdict::Undecided
     }
 }
 
-fn mode_is(found: &[&Reading], mode: usize) -> Holding {
+fn mode_is(found: &[&Reading], mode: usize) -> Verdict {
     match found {
         [reading] => match reading.dominant_mode() {
-            Some(found) => Holding::of(found == mode),
-            None => Holding::Undecided,
+            Some(found) => Verdict::of(found == mode),
+            None => Verdict::Undecided,
         },
-        _ => Holding::Undecided,
+        _ => Verdict::Undecided,
     }
 }
 
-fn mode_changes(found: &[&Reading]) -> Holding {
+fn mode_changes(found: &[&Reading]) -> Verdict {
     let modes: Option<Vec<usize>> = found.iter().map(|r| r.dominant_mode()).collect();
     match modes {
-        Some(modes) => Holding::of(modes.iter().any(|mode| Some(mode) != modes.first())),
-        None => Holding::Undecided,
+        Some(modes) => Verdict::of(modes.iter().any(|mode| Some(mode) != modes.first())),
+        None => Verdict::Undecided,
     }
 }
 
 /// Returns the ratio of the greatest to the least size.
-fn spread(sizes: &[f64]) -> f64 {
+fn size_ratio(sizes: &[f64]) -> f64 {
     let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
     sizes.iter().copied().fold(0.0, f64::max) / least
 }
 
-fn is_steady(found: &[&Reading]) -> Holding {
-    let spans = spread(&sizes(found, |r| r.dr.span));
-    let rms = spread(&sizes(found, |r| r.dr.rms));
-    let transmission = spread(&sizes(found, |r| r.transmission.span));
+fn is_steady(found: &[&Reading]) -> Verdict {
+    let spans = size_ratio(&sizes(found, |r| r.dr.span));
+    let rms = size_ratio(&sizes(found, |r| r.dr.rms));
+    let transmission = size_ratio(&sizes(found, |r| r.transmission.span));
     if !(spans.is_finite() && rms.is_finite() && transmission.is_finite()) {
-        return Holding::Undecided;
+        return Verdict::Undecided;
     }
-    Holding::of(spans < LITTLE && rms < LITTLE && spans < transmission)
+    Verdict::of(spans < MAX_LITTLE_RATIO && rms < MAX_LITTLE_RATIO && spans < transmission)
 }
 
 /// Expects the readings of the first frequency, then those of the second.
-fn frequency_matters(found: &[&Reading]) -> Holding {
+fn judge_frequency(found: &[&Reading]) -> Verdict {
     let (one, other) = found.split_at(found.len() / 2);
-    let pairs: Vec<Holding> = one
+    let pairs: Vec<Verdict> = one
         .iter()
         .zip(other)
         .map(|(a, b)| differ(&[a, b]))
         .collect();
-    if pairs.contains(&Holding::Holds) {
-        Holding::Holds
-    } else if pairs.contains(&Holding::Undecided) {
-        Holding::Undecided
+    if pairs.contains(&Verdict::Holds) {
+        Verdict::Holds
+    } else if pairs.contains(&Verdict::Undecided) {
+        Verdict::Undecided
     } else {
-        Holding::Fails
+        Verdict::Fails
     }
 }
 
-fn differ(found: &[&Reading]) -> Holding {
+fn differ(found: &[&Reading]) -> Verdict {
     match found {
         [a, b] if a.kind != Kind::Unknown && b.kind != Kind::Unknown => {
-            Holding::of(a.kind != b.kind)
+            Verdict::of(a.kind != b.kind)
         }
-        _ => Holding::Undecided,
+        _ => Verdict::Undecided,
     }
 }
 
-fn agree(found: &[&Reading]) -> Holding {
-    let spans = spread(&sizes(found, |r| r.dr.span));
-    let rms = spread(&sizes(found, |r| r.dr.rms));
+fn agree(found: &[&Reading]) -> Verdict {
+    let spans = size_ratio(&sizes(found, |r| r.dr.span));
+    let rms = size_ratio(&sizes(found, |r| r.dr.rms));
     if spans.is_finite() && rms.is_finite() {
-        Holding::of(spans < 1.0 + CONVERGED && rms < 1.0 + CONVERGED)
+        Verdict::of(spans < 1.0 + MAX_CONVERGED_DIFFERENCE && rms < 1.0 + MAX_CONVERGED_DIFFERENCE)
     } else {
-        Holding::Undecided
+        Verdict::Undecided
     }
 }

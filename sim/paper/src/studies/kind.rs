@@ -8,15 +8,15 @@ use eomgen_sim::piecewise_linear::Propagator;
 
 use super::arm::Case;
 use super::error::StudyError;
-use super::neighbours::Neighbours;
+use super::neighbours::TangentMotion;
 use super::series::{FIRST_MODE, X_PR, X_SP};
 
 /// Tolerance for equal points of the section, relative to the extent of the motion: above the
 /// remains of a transient that decays over tens of periods, below visible differences.
-const TOLERANCE: f64 = 2e-3;
+const SECTION_TOLERANCE: f64 = 2e-3;
 
 /// Kind of a motion with its evidence.
-pub(super) struct Found {
+pub(super) struct Classification {
     pub evidence: Evidence,
     pub verdict: Verdict,
     /// Points of x_sp, x_pr and their rates once per forcing period; m and m/s.
@@ -27,7 +27,7 @@ pub(super) struct Found {
 }
 
 /// Properties of a motion that do not come from neighbouring motions.
-pub(super) struct Known<'a> {
+pub(super) struct MotionProperties<'a> {
     pub case: &'a Case,
     /// Extent of each component of the state.
     pub extents: &'a [f64],
@@ -36,12 +36,12 @@ pub(super) struct Known<'a> {
 
 /// Classifies a motion from `periods` forcing periods, and doubles them up to `most` until the kind
 /// is decided.
-pub(super) fn find(
-    neighbours: &mut Neighbours,
+pub(super) fn classify_motion(
+    neighbours: &mut TangentMotion,
     propagator: &mut Propagator,
-    known: &Known<'_>,
+    known: &MotionProperties<'_>,
     (mut periods, most): (usize, usize),
-) -> Result<Found, StudyError> {
+) -> Result<Classification, StudyError> {
     loop {
         neighbours.extend(propagator, periods)?;
         let found = weigh(neighbours, known, periods)?;
@@ -52,7 +52,11 @@ pub(super) fn find(
     }
 }
 
-fn weigh(neighbours: &Neighbours, known: &Known<'_>, periods: usize) -> Result<Found, StudyError> {
+fn weigh(
+    neighbours: &TangentMotion,
+    known: &MotionProperties<'_>,
+    periods: usize,
+) -> Result<Classification, StudyError> {
     let places = mesh_places(known.case);
     let section: Vec<f64> = neighbours
         .states()
@@ -68,7 +72,7 @@ fn weigh(neighbours: &Neighbours, known: &Known<'_>, periods: usize) -> Result<F
         points: &section,
         scale: &scale,
     }
-    .shape(TOLERANCE)?;
+    .shape(SECTION_TOLERANCE)?;
     let strobe: Vec<f64> = section.iter().step_by(places.len()).copied().collect();
     let evidence = Evidence {
         exponent: Some(neighbours.exponent()?),
@@ -77,7 +81,7 @@ fn weigh(neighbours: &Neighbours, known: &Known<'_>, periods: usize) -> Result<F
         line_share: known.line_share,
         forcing: known.case.omega,
     };
-    Ok(Found {
+    Ok(Classification {
         verdict: classify(&evidence),
         evidence,
         section,
@@ -86,16 +90,16 @@ fn weigh(neighbours: &Neighbours, known: &Known<'_>, periods: usize) -> Result<F
     })
 }
 
-impl Found {
+impl Classification {
     fn is_decided(&self, case: &Case) -> bool {
         let exponent = self.evidence.exponent;
         self.verdict.motion != Motion::Undecided
-            || exponent.is_some_and(|exponent| is_strong(&exponent, case))
+            || exponent.is_some_and(|exponent| is_strong_growth(&exponent, case))
     }
 }
 
 /// Reports growth that is fast enough to decide without other evidence.
-pub(super) fn is_strong(exponent: &Exponent, case: &Case) -> bool {
+pub(super) fn is_strong_growth(exponent: &Exponent, case: &Case) -> bool {
     (exponent.value - SIGNIFICANCE * exponent.standard_error) * case.period() > 1.0
 }
 

@@ -18,16 +18,23 @@ const LENGTH: f64 = 500.0 * SCALE;
 const PLANETS: [f64; 3] = [90.0, 210.0, 330.0];
 /// Angles of the carrier with and without backlash, degrees.
 const CARRIER: f64 = 12.0;
-const AHEAD: f64 = 23.0;
+const CARRIER_WITHOUT_BACKLASH: f64 = 23.0;
 /// Deflection of the tip, px.
 const TIP: f64 = 40.0;
 const PRESSURE: f64 = 24.6;
 
-pub(super) fn machine() -> Figure {
+pub(super) fn draw_machine() -> Figure {
     let caption = "The arm on its planetary reducer, every quantity drawn in its positive direction: angles theta_s, \
                    theta_p and theta_c, mesh deflections x_sp and x_pr, the deflection w of the arm and that of its end, \
                    tip (dr in the paper), the lag dtheta of the carrier, and the two positioning errors f_la and f_la_signed";
-    let parts = [gears(), meshes(), arm(), errors(), law(), formulas()];
+    let parts = [
+        gears(),
+        meshes(),
+        arm(),
+        errors(),
+        draw_mesh_force(),
+        formulas(),
+    ];
     Figure {
         file: "machine.svg".to_owned(),
         paper: String::new(),
@@ -146,7 +153,7 @@ fn arm() -> Vec<Part> {
 /// Draws lead and lag at the end of the arm.
 fn errors() -> Vec<Part> {
     let end = point_on_circle(CENTRE, LENGTH, CARRIER);
-    let ideal = point_on_circle(CENTRE, LENGTH + 36.0, AHEAD);
+    let ideal = point_on_circle(CENTRE, LENGTH + 36.0, CARRIER_WITHOUT_BACKLASH);
     let outside = LENGTH + 20.0;
     vec![
         Part::Line(LineStyle::Imaginary, vec![CENTRE, ideal]),
@@ -162,7 +169,7 @@ fn errors() -> Vec<Part> {
         words((end.0 - 12.0, end.1 - 17.0), 1, "tip"),
         Part::Arrow(
             LineStyle::Dimension,
-            arc_points(CENTRE, outside, (CARRIER, AHEAD)),
+            arc_points(CENTRE, outside, (CARRIER, CARRIER_WITHOUT_BACKLASH)),
         ),
         words(
             (
@@ -177,7 +184,7 @@ fn errors() -> Vec<Part> {
 }
 
 /// Draws the force of a mesh over its deflection.
-fn law() -> Vec<Part> {
+fn draw_mesh_force() -> Vec<Part> {
     let (x, y) = (200.0, 520.0);
     let (half, b, rise) = (130.0, 38.0, 56.0);
     vec![

@@ -12,16 +12,16 @@ use eomgen_analysis::exponent::{Exponent, mean_exponent};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::{Carried, Propagator};
 
-use super::arm::{Case, Lengths};
+use super::arm::{Case, ConversionFactors};
 use super::error::StudyError;
 use super::run::Run;
 use super::series::{FIRST_MODE, X_C, X_PR, X_SP};
 
 /// Forcing periods after which the tangent vector has the direction of fastest growth.
-const TURNING: usize = 5;
+const ALIGNMENT_PERIODS: usize = 5;
 
 /// Motion with a tangent vector, once per forcing period.
-pub(super) struct Neighbours {
+pub(super) struct TangentMotion {
     carried: Carried,
     begin: f64,
     period: f64,
@@ -31,13 +31,13 @@ pub(super) struct Neighbours {
     states: Vec<Vec<f64>>,
 }
 
-impl Neighbours {
+impl TangentMotion {
     /// Starts a tangent vector at the beginning of a recorded motion.
-    pub fn beside(
+    pub fn start(
         run: &Run,
         propagator: &mut Propagator,
         case: &Case,
-        lengths: &Lengths,
+        lengths: &ConversionFactors,
     ) -> Result<Self, StudyError> {
         let first = run.states.first().cloned().unwrap_or_default();
         let weights = weights(case, lengths);
@@ -73,7 +73,7 @@ impl Neighbours {
 
     /// Computes the largest exponent so far.
     pub fn exponent(&self) -> Result<Exponent, StudyError> {
-        let turned = self.growths.get(TURNING..).unwrap_or_default();
+        let turned = self.growths.get(ALIGNMENT_PERIODS..).unwrap_or_default();
         Ok(mean_exponent(turned, self.period)?)
     }
 }
@@ -81,12 +81,12 @@ impl Neighbours {
 /// Returns weights for which a free vibration of the arm on the closed drive keeps its norm, as it
 /// keeps its energy. Otherwise the phase of the vibration would appear as growth. Excluded
 /// components have weight 0.
-fn weights(case: &Case, lengths: &Lengths) -> Vec<f64> {
+fn weights(case: &Case, lengths: &ConversionFactors) -> Vec<f64> {
     let rates = FIRST_MODE + case.order;
     let mut weights = vec![1.0; 2 * rates];
     let meshes = [X_SP, X_PR].map(|mesh| (mesh, 1.0 / lengths.mesh_deflection));
     let mesh_rates = [X_SP, X_PR].map(|mesh| (rates + mesh, 1.0 / lengths.mesh_rate));
-    let modes = lengths.natural.iter().enumerate();
+    let modes = lengths.natural_frequencies.iter().enumerate();
     let modes = modes.map(|(mode, natural)| (FIRST_MODE + mode, TAU * natural));
     let is_restrained = case.undisclosed.b_m > 0.0;
     let carrier_rate = if is_restrained {

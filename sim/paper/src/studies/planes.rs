@@ -2,7 +2,7 @@
 
 use eomgen_plot::{Axes, Frame, Panel, Reference, Series, SeriesStyle};
 
-use super::display::Display;
+use super::display::SampledCase;
 
 /// Axes x_sp and its rate.
 const PLANE: Axes = Axes::Quantity {
@@ -11,7 +11,7 @@ const PLANE: Axes = Axes::Quantity {
 };
 
 /// Draws the phase plane over the first displayed forcing period.
-pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
+pub(super) fn orbit<'a>(letter: &str, display: &'a SampledCase) -> Frame<'a> {
     let count = display.per_period() + 1;
     let first = |values: &'a [f64]| values.get(..count).unwrap_or(values);
     let panel = panel(
@@ -23,7 +23,7 @@ pub(super) fn orbit<'a>(letter: &str, display: &'a Display) -> Frame<'a> {
 }
 
 /// Draws the stroboscopic section, given as columns.
-pub(super) fn section<'a>(display: &Display, [x_sp, x_sp_dot]: &'a [Vec<f64>; 2]) -> Frame<'a> {
+pub(super) fn section<'a>(display: &SampledCase, [x_sp, x_sp_dot]: &'a [Vec<f64>; 2]) -> Frame<'a> {
     let title = format!("Poincaré section, {} forcing periods", x_sp.len());
     frame(panel(title, x_sp, x_sp_dot), SeriesStyle::Points, display)
 }
@@ -42,7 +42,7 @@ fn panel<'a>(title: String, x_sp: &'a [f64], x_sp_dot: &'a [f64]) -> Panel<'a> {
     }
 }
 
-fn frame<'a>(panel: Panel<'a>, drawn: SeriesStyle, display: &Display) -> Frame<'a> {
+fn frame<'a>(panel: Panel<'a>, drawn: SeriesStyle, display: &SampledCase) -> Frame<'a> {
     let b = display.case.backlash;
     let flanks = [("−b", -b), ("+b", b)].map(|(label, value)| Reference {
         label: label.to_owned(),

@@ -5,9 +5,9 @@ use std::fmt;
 
 use eomgen_analysis::classify::{Evidence, HIDDEN_GROWTH, Motion, SIGNIFICANCE};
 
-use super::arm::{Case, Undisclosed};
+use super::arm::{Case, UndisclosedParameters};
 use super::case::{Amplitude, Measurement};
-use super::kind::is_strong;
+use super::kind::is_strong_growth;
 
 /// Forcing frequency of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,7 +20,7 @@ pub enum Forcing {
 
 /// Case of the paper, independent of the undisclosed values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Key {
+pub struct CaseKey {
     /// Modal truncation order; 0 is the rigid arm.
     pub order: usize,
     /// Forcing frequency.
@@ -39,7 +39,7 @@ impl Forcing {
     }
 }
 
-impl Key {
+impl CaseKey {
     /// Creates a case of the flexible arm with the order of the paper.
     pub const fn flexible(forcing: Forcing, micrometres: u32) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl Key {
     }
 
     /// Returns the case with these undisclosed values.
-    pub fn case(self, undisclosed: Undisclosed) -> Case {
+    pub fn case(self, undisclosed: UndisclosedParameters) -> Case {
         Case {
             order: self.order,
             backlash: f64::from(self.micrometres) * 1e-6,
@@ -60,7 +60,7 @@ impl Key {
     }
 }
 
-impl fmt::Display for Key {
+impl fmt::Display for CaseKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let arm = match self.order {
             0 => "rigid arm".to_owned(),
@@ -91,7 +91,7 @@ pub struct Reading {
     /// Kind of motion.
     pub kind: Kind,
     /// Quasi-periodic in the strict sense: regular, without a period.
-    pub quasi_periodic: bool,
+    pub is_strictly_quasi_periodic: bool,
     /// Sentence with the kind and its numbers.
     pub sentence: String,
     /// f_la as printed in Eq. (24), m.
@@ -115,7 +115,7 @@ impl Reading {
     /// of a nearly undamped mode with the forcing for diffusion, unless the record is much longer
     /// than the beat. The motion is chaotic if it grows by more than a factor e per forcing period
     /// and no period was found.
-    pub fn of(measurement: &Measurement) -> Self {
+    pub fn from_measurement(measurement: &Measurement) -> Self {
         let motion = measurement.verdict.motion;
         let kind = match motion {
             Motion::Periodic { .. } | Motion::QuasiPeriodic => Kind::Regular,
@@ -133,7 +133,8 @@ impl Reading {
         };
         Self {
             kind,
-            quasi_periodic: kind == Kind::Regular && measurement.evidence.period.is_none(),
+            is_strictly_quasi_periodic: kind == Kind::Regular
+                && measurement.evidence.period.is_none(),
             sentence: format!("{}{note}", measurement.verdict.sentence),
             f_la: measurement.f_la,
             f_la_signed: measurement.f_la_signed,
@@ -157,7 +158,7 @@ fn grows_fast(measurement: &Measurement) -> bool {
         exponent, period, ..
     } = &measurement.evidence;
     let case = &measurement.case;
-    period.is_none() && exponent.is_some_and(|exponent| is_strong(&exponent, case))
+    period.is_none() && exponent.is_some_and(|exponent| is_strong_growth(&exponent, case))
 }
 
 /// Reports an exponent that is not positive within a small error.

@@ -8,7 +8,7 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::arm::Case;
 use super::case::{Amplitude, Measurement};
-use super::display::Display;
+use super::display::SampledCase;
 
 /// Files of a study with their description.
 #[derive(Clone, Debug)]
@@ -16,11 +16,11 @@ pub struct Study {
     /// Figures.
     pub figures: Vec<Figure>,
     /// Tables of data.
-    pub tables: Vec<Columns>,
+    pub tables: Vec<Table>,
     /// Measured cases, each a JSON object.
     pub cases: Vec<Value>,
     /// Further entries of the document, by name.
-    pub more: Vec<(&'static str, Value)>,
+    pub further_entries: Vec<(&'static str, Value)>,
 }
 
 /// Figure.
@@ -40,7 +40,7 @@ pub struct Figure {
 
 /// Table of data: named columns, SI.
 #[derive(Clone, Debug)]
-pub struct Columns {
+pub struct Table {
     /// File name.
     pub file: String,
     /// Name and values of each column.
@@ -67,7 +67,7 @@ impl Study {
             "cases": self.cases,
         });
         if let Some(fields) = document.as_object_mut() {
-            for (name, value) in &self.more {
+            for (name, value) in &self.further_entries {
                 fields.insert((*name).to_owned(), value.clone());
             }
         }
@@ -76,7 +76,7 @@ impl Study {
 }
 
 /// Returns the name of a case in files: `b025_w10pi_s4`.
-pub(super) fn id(case: &Case) -> String {
+pub(super) fn case_name(case: &Case) -> String {
     let micrometres = (case.backlash * 1e6).round();
     let multiple = (case.omega / std::f64::consts::PI).round();
     format!("b{micrometres:03}_w{multiple:02}pi_s{}", case.order)
@@ -101,8 +101,8 @@ fn parameters(model: &Model) -> Value {
 }
 
 /// Returns the series and the spectra of a displayed case as tables.
-pub(super) fn tables(display: &Display) -> [Columns; 2] {
-    let id = id(&display.case);
+pub(super) fn tables(display: &SampledCase) -> [Table; 2] {
+    let id = case_name(&display.case);
     let history = &display.history;
     let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
     let mut columns = vec![
@@ -125,11 +125,11 @@ pub(super) fn tables(display: &Display) -> [Columns; 2] {
         density("G_dr", &display.dr),
     ];
     [
-        Columns {
+        Table {
             file: format!("{id}_history.parquet"),
             columns,
         },
-        Columns {
+        Table {
             file: format!("{id}_spectra.parquet"),
             columns: spectra,
         },
@@ -137,8 +137,8 @@ pub(super) fn tables(display: &Display) -> [Columns; 2] {
 }
 
 /// Returns a measured case with the names of its files.
-pub(super) fn case(measured: &Measurement) -> Value {
-    let id = id(&measured.case);
+pub(super) fn case_json(measured: &Measurement) -> Value {
+    let id = case_name(&measured.case);
     let evidence = &measured.evidence;
     json!({
         "case": id,

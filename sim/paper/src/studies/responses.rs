@@ -7,18 +7,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::arm::{Arm, Case, Undisclosed};
+use super::arm::{Arm, Case, UndisclosedParameters};
 use super::bifurcation::{Bifurcation, figure as bifurcation_figure};
-use super::case::{Length, measure};
-use super::claims::BACKLASHES;
-use super::display::Display;
+use super::case::{RunLength, measure};
+use super::claims::HALF_BACKLASHES_UM;
+use super::display::SampledCase;
 use super::error::StudyError;
-use super::figures::{Heading, Quantity, Row, Shown, rows};
-use super::machine::machine;
-use super::report::{Columns, Figure, Study, case, id, tables};
+use super::figures::{FigureRow, Heading, Quantity, Row, draw_rows};
+use super::machine::draw_machine;
+use super::report::{Figure, Study, Table, case_json, case_name, tables};
 
 /// Truncation order of the paper.
-const ORDER: usize = 4;
+const PAPER_ORDER: usize = 4;
 
 /// Callback with the completed share of the work.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
@@ -44,47 +44,47 @@ pub fn frequency(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
 /// # Errors
 /// As for [`backlash`].
 pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
-    let arm = Arm::new(&[0, ORDER])?;
-    let pairs = BACKLASHES.into_iter().filter(|b| *b > 0);
+    let arm = Arm::new(&[0, PAPER_ORDER])?;
+    let pairs = HALF_BACKLASHES_UM.into_iter().filter(|b| *b > 0);
     let cases: Vec<Case> = pairs
-        .flat_map(|b| [0, ORDER].map(|order| paper_case(order, b, 10.0 * PI)))
+        .flat_map(|b| [0, PAPER_ORDER].map(|order| paper_case(order, b, 10.0 * PI)))
         .collect();
     let (displays, mut study) = run(&arm, &cases, progress)?;
     for (place, pair) in displays.chunks(2).enumerate() {
         let [rigid, flexible] = pair else { continue };
         let row = |title: &str, display| Row {
-            title: format!("{title}, {}", brief(&rigid.case)),
+            title: format!("{title}, {}", short_title(&rigid.case)),
             quantity: Quantity::MeshDeflection,
             cases: vec![(String::new(), display)],
         };
         let caption = format!(
             "Transmission error x_sp with the rigid arm (a) and, for comparison, with the \
-             flexible arm, S = {ORDER} (b), and both in the plane of x_sp and its rate (c, d); {}",
+             flexible arm, S = {PAPER_ORDER} (b), and both in the plane of x_sp and its rate (c, d); {}",
             conditions(&rigid.case)
         );
         let drawn = [
-            Shown::Course(row("(a) rigid arm", rigid)),
-            Shown::Course(row("(b) flexible arm", flexible)),
-            Shown::Planes("(c) rigid arm,", rigid),
-            Shown::Planes("(d) flexible arm,", flexible),
+            FigureRow::TimeHistory(row("(a) rigid arm", rigid)),
+            FigureRow::TimeHistory(row("(b) flexible arm", flexible)),
+            FigureRow::Planes("(c) rigid arm,", rigid),
+            FigureRow::Planes("(d) flexible arm,", flexible),
         ];
         let heading = Heading {
             file: format!("fig_{:02}.svg", 16 + place),
             paper: format!("Fig. {}", 16 + place),
             caption,
         };
-        study.figures.push(rows(heading, &drawn)?);
+        study.figures.push(draw_rows(heading, &drawn)?);
     }
-    let found = [0, ORDER].map(|order| Bifurcation::of(&arm, order, 10.0 * PI));
+    let found = [0, PAPER_ORDER].map(|order| Bifurcation::run(&arm, order, 10.0 * PI));
     let [rigid, flexible] = found;
-    add(&mut study, &[rigid?, flexible?])?;
+    add_bifurcations(&mut study, &[rigid?, flexible?])?;
     Ok((study, arm))
 }
 
 /// Adds the bifurcation diagrams and the drawing of the machine.
-fn add(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
+fn add_bifurcations(study: &mut Study, found: &[Bifurcation]) -> Result<(), StudyError> {
     study.figures.push(bifurcation_figure(found)?);
-    study.figures.push(machine());
+    study.figures.push(draw_machine());
     study.tables.extend(found.iter().map(Bifurcation::table));
     Ok(())
 }
@@ -95,7 +95,7 @@ pub(super) fn paper_case(order: usize, micrometres: u32, omega: f64) -> Case {
         order,
         backlash: f64::from(micrometres) * 1e-6,
         omega,
-        undisclosed: Undisclosed::ASSUMED,
+        undisclosed: UndisclosedParameters::ASSUMED,
     }
 }
 
@@ -104,53 +104,61 @@ fn responses(
     first_figure: usize,
     progress: Progress<'_>,
 ) -> Result<(Study, Arm), StudyError> {
-    let arm = Arm::new(&[ORDER])?;
-    let cases = BACKLASHES.map(|b| paper_case(ORDER, b, omega));
+    let arm = Arm::new(&[PAPER_ORDER])?;
+    let cases = HALF_BACKLASHES_UM.map(|b| paper_case(PAPER_ORDER, b, omega));
     let (displays, mut study) = run(&arm, &cases, progress)?;
     for (place, display) in displays.iter().enumerate() {
-        study.figures.push(response(first_figure + place, display)?);
+        study
+            .figures
+            .push(draw_response(first_figure + place, display)?);
     }
     let backlash = first_figure == 5;
     let paper = if backlash { "Fig. 10" } else { "" };
     let file = if backlash { "fig_10.svg" } else { "dr.svg" };
     let with_play = displays.get(1..).unwrap_or_default();
-    study.figures.push(deflections(paper, file, with_play)?);
-    add(&mut study, &[Bifurcation::of(&arm, ORDER, omega)?])?;
+    study
+        .figures
+        .push(draw_deflections(paper, file, with_play)?);
+    add_bifurcations(&mut study, &[Bifurcation::run(&arm, PAPER_ORDER, omega)?])?;
     Ok((study, arm))
 }
 
-fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
+fn draw_response(number: usize, display: &SampledCase) -> Result<Figure, StudyError> {
     let row = |title: &str, quantity| Row {
-        title: format!("{title}, {}", brief(&display.case)),
+        title: format!("{title}, {}", short_title(&display.case)),
         quantity,
         cases: vec![(String::new(), display)],
     };
     let caption = format!(
-        "Dynamic response of the system with flexible arm, S = {ORDER}: transmission error x_sp \
+        "Dynamic response of the system with flexible arm, S = {PAPER_ORDER}: transmission error x_sp \
          (a), positioning error f_la (b), and x_sp over its rate in a forcing period and once per \
          period (c); {}",
         conditions(&display.case)
     );
     let drawn = [
-        Shown::Course(row("(a) x_sp", Quantity::MeshDeflection)),
-        Shown::Course(row("(b) f_la", Quantity::PositioningError)),
-        Shown::Planes("(c)", display),
+        FigureRow::TimeHistory(row("(a) x_sp", Quantity::MeshDeflection)),
+        FigureRow::TimeHistory(row("(b) f_la", Quantity::PositioningError)),
+        FigureRow::Planes("(c)", display),
     ];
     let heading = Heading {
         file: format!("fig_{number:02}.svg"),
         paper: format!("Fig. {number}"),
         caption,
     };
-    rows(heading, &drawn)
+    draw_rows(heading, &drawn)
 }
 
 /// Draws dr of several cases, one below the other.
-fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, StudyError> {
+fn draw_deflections(
+    paper: &str,
+    file: &str,
+    displays: &[SampledCase],
+) -> Result<Figure, StudyError> {
     let letters = ["(a)", "(b)", "(c)", "(d)"];
     let mut drawn = Vec::with_capacity(displays.len());
     for (display, letter) in displays.iter().zip(letters) {
-        drawn.push(Shown::Course(Row {
-            title: format!("{letter} {}", brief(&display.case)),
+        drawn.push(FigureRow::TimeHistory(Row {
+            title: format!("{letter} {}", short_title(&display.case)),
             quantity: Quantity::ArmDeflection,
             cases: vec![(String::new(), display)],
         }));
@@ -165,11 +173,11 @@ fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, 
         paper: paper.to_owned(),
         caption,
     };
-    rows(heading, &drawn)
+    draw_rows(heading, &drawn)
 }
 
 /// Returns the description of a case in the title of a panel.
-fn brief(case: &Case) -> String {
+fn short_title(case: &Case) -> String {
     let (micrometres, multiple) = (case.backlash * 1e6, case.omega / PI);
     format!("b = {micrometres:.0} µm, ω = {multiple:.0}π rad/s")
 }
@@ -188,53 +196,53 @@ pub(super) fn run(
     arm: &Arm,
     cases: &[Case],
     progress: Progress<'_>,
-) -> Result<(Vec<Display>, Study), StudyError> {
+) -> Result<(Vec<SampledCase>, Study), StudyError> {
     let done = AtomicUsize::new(0);
     let whole = 2.0 * cases.len() as f64;
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / whole);
     let found = cases.par_iter().map(|each| {
         // The long record, 100 MB, is dropped; only the transient time, the section and the numbers
         // are kept.
-        let (transient, section, mut report) = measured(arm, each)?;
+        let (transient, section, mut report) = measure_case(arm, each)?;
         step();
-        let display = Display {
+        let display = SampledCase {
             section,
-            ..Display::of(arm, each, transient)?
+            ..SampledCase::sample(arm, each, transient)?
         };
         report["natural_frequencies"] = json!(display.natural);
         step();
         Ok((display, report))
     });
-    let found: Vec<(Display, Value)> = found.collect::<Result<_, StudyError>>()?;
-    let (displays, cases): (Vec<Display>, Vec<Value>) = found.into_iter().unzip();
+    let found: Vec<(SampledCase, Value)> = found.collect::<Result<_, StudyError>>()?;
+    let (displays, cases): (Vec<SampledCase>, Vec<Value>) = found.into_iter().unzip();
     let study = Study {
         figures: Vec::new(),
         tables: displays.iter().flat_map(all_tables).collect(),
         cases,
-        more: vec![("notes", json!(NOTES))],
+        further_entries: vec![("notes", json!(NOTES))],
     };
     Ok((displays, study))
 }
 
 /// Returns the transient time, the section and the numbers of a case.
-fn measured(arm: &Arm, each: &Case) -> Result<(f64, Vec<f64>, Value), StudyError> {
-    let measured = measure(arm, each, &Length::FULL)?;
-    let mut report = case(&measured);
+fn measure_case(arm: &Arm, each: &Case) -> Result<(f64, Vec<f64>, Value), StudyError> {
+    let measured = measure(arm, each, &RunLength::FULL)?;
+    let mut report = case_json(&measured);
     report["section"] = json!(section_table(each));
     Ok((measured.transient, measured.section, report))
 }
 
 fn section_table(each: &Case) -> String {
-    format!("{}_section.parquet", id(each))
+    format!("{}_section.parquet", case_name(each))
 }
 
 /// Returns the series, the spectra and the section of a case as tables.
-fn all_tables(display: &Display) -> Vec<Columns> {
+fn all_tables(display: &SampledCase) -> Vec<Table> {
     let names = ["x_sp", "x_pr", "x_sp_dot", "x_pr_dot"]
         .into_iter()
         .enumerate();
     let columns = names.map(|(place, name)| (name.to_owned(), display.section_column(place)));
-    let section = Columns {
+    let section = Table {
         file: section_table(&display.case),
         columns: columns.collect(),
     };

@@ -9,22 +9,22 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::arm::{Arm, Shapes, Undisclosed};
-use super::case::{Length, measure};
+use super::arm::{Arm, ArmShapes, UndisclosedParameters};
+use super::case::{RunLength, measure};
 use super::claims::{CLAIMS, cases};
 use super::error::StudyError;
-use super::judge::{Holding, Judgement, Readings, judge};
+use super::judge::{Judgement, Readings, Verdict, judge};
 use super::reading::Reading;
-use super::sets::{neighbour, set};
+use super::sets::{neighbouring_set, parameter_set};
 
 /// Version of the rules; results of other versions are rejected.
-const RULES: u32 = 3;
+const RULES_VERSION: u32 = 3;
 
-const CHUNK: usize = 20;
+const SETS_PER_CHUNK: usize = 20;
 
 /// Request of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
+pub struct SearchRequest {
     /// Number of screened sets.
     pub sets: usize,
     /// Seed of the sequence of sets.
@@ -34,18 +34,18 @@ pub struct Request {
     /// Number of judged neighbours of the best set, within 10 % in each parameter.
     pub neighbours: usize,
     /// Lengths of the runs for screening.
-    pub screening: Length,
+    pub screening: RunLength,
     /// Lengths of the runs for the best sets.
-    pub confirming: Length,
+    pub confirming: RunLength,
 }
 
 /// Parameter set with its verdicts, one letter per claim: H, F or U.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct JudgedSet {
     /// Index in the sequence.
     pub index: usize,
     /// Values of the undisclosed parameters.
-    pub undisclosed: Undisclosed,
+    pub undisclosed: UndisclosedParameters,
     /// Verdicts in the generous reading.
     pub verdicts: Vec<char>,
     /// Verdicts in the strict reading.
@@ -54,18 +54,18 @@ pub struct Judged {
 
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct SearchResult {
     /// All sets as screened, in the order of the sequence.
-    pub screened: Vec<Judged>,
+    pub screened: Vec<JudgedSet>,
     /// Best sets judged again, the best first.
-    pub confirmed: Vec<Judged>,
+    pub confirmed: Vec<JudgedSet>,
     /// Neighbours of the best set.
-    pub neighbours: Vec<Judged>,
+    pub neighbours: Vec<JudgedSet>,
 }
 
-impl Judged {
+impl JudgedSet {
     /// Returns the number of claims that hold.
-    pub fn holding(&self) -> usize {
+    pub fn holding_claims(&self) -> usize {
         self.verdicts
             .iter()
             .filter(|letter| **letter == 'H')
@@ -78,8 +78,8 @@ impl Judged {
     }
 
     /// Formats a line: index, values, counts, verdicts, strict verdicts.
-    pub fn line(&self) -> String {
-        let Undisclosed {
+    pub fn to_line(&self) -> String {
+        let UndisclosedParameters {
             second_moment,
             a_m,
             b_m,
@@ -91,7 +91,7 @@ impl Judged {
         format!(
             "{},{second_moment:?},{a_m:?},{b_m:?},{f_w:?},{c:?},{},{},{letters},{strict}",
             self.index,
-            self.holding(),
+            self.holding_claims(),
             self.strictly_holding(),
         )
     }
@@ -104,7 +104,7 @@ impl Judged {
         };
         let judged = Self {
             index: index.parse().ok()?,
-            undisclosed: Undisclosed {
+            undisclosed: UndisclosedParameters {
                 second_moment: i.parse().ok()?,
                 a_m: a.parse().ok()?,
                 b_m: b.parse().ok()?,
@@ -131,23 +131,30 @@ pub fn orders() -> Vec<usize> {
 /// leaves its claims undecided.
 pub fn judge_all(
     arm: &Arm,
-    undisclosed: Undisclosed,
-    length: &Length,
+    undisclosed: UndisclosedParameters,
+    length: &RunLength,
 ) -> (Readings, Vec<Judgement>) {
     let readings = cases().into_par_iter().filter_map(|key| {
         let measured = measure(arm, &key.case(undisclosed), length);
-        measured.ok().map(|measured| (key, Reading::of(&measured)))
+        measured
+            .ok()
+            .map(|measured| (key, Reading::from_measurement(&measured)))
     });
     let readings: Readings = readings.collect();
     let judgements = CLAIMS.iter().map(|claim| judge(claim, &readings)).collect();
     (readings, judgements)
 }
 
-fn judged(arm: &Arm, index: usize, undisclosed: Undisclosed, length: &Length) -> Judged {
+fn judged(
+    arm: &Arm,
+    index: usize,
+    undisclosed: UndisclosedParameters,
+    length: &RunLength,
+) -> JudgedSet {
     let (_, judgements) = judge_all(arm, undisclosed, length);
     let letters =
-        |of: fn(&Judgement) -> Holding| judgements.iter().map(|j| of(j).letter()).collect();
-    Judged {
+        |of: fn(&Judgement) -> Verdict| judgements.iter().map(|j| of(j).letter()).collect();
+    JudgedSet {
         index,
         undisclosed,
         verdicts: letters(|judgement| judgement.holding),
@@ -161,38 +168,45 @@ fn judged(arm: &Arm, index: usize, undisclosed: Undisclosed, length: &Length) ->
 /// A folder that cannot be written, or that contains another search.
 pub fn search(
     arm: &Arm,
-    request: &Request,
+    request: &SearchRequest,
     folder: &Path,
     progress: &mut dyn FnMut(usize),
-) -> Result<Found, StudyError> {
+) -> Result<SearchResult, StudyError> {
     let store = Store::open(folder, request, arm.shapes())?;
-    let sets: Vec<(usize, Undisclosed)> = (0..request.sets)
-        .map(|index| (index, set(index, request.seed)))
+    let sets: Vec<(usize, UndisclosedParameters)> = (0..request.sets)
+        .map(|index| (index, parameter_set(index, request.seed)))
         .collect();
-    let mut run = |stage: &str, sets: &[(usize, Undisclosed)], length: &Length, done: usize| {
-        store.stage(
-            stage,
-            sets,
-            &|set| judged(arm, set.0, set.1, length),
-            &mut |count| progress(done + count),
-        )
-    };
+    let mut run =
+        |stage: &str, sets: &[(usize, UndisclosedParameters)], length: &RunLength, done: usize| {
+            store.stage(
+                stage,
+                sets,
+                &|set| judged(arm, parameter_set.0, parameter_set.1, length),
+                &mut |count| progress(done + count),
+            )
+        };
     let screened = run("screened", &sets, &request.screening, 0)?;
-    let best: Vec<(usize, Undisclosed)> = ranked(&screened)
+    let best: Vec<(usize, UndisclosedParameters)> = rank(&screened)
         .into_iter()
         .take(request.confirmed)
         .map(|judged| (judged.index, judged.undisclosed))
         .collect();
     let again = run("confirmed", &best, &request.confirming, request.sets)?;
-    let confirmed: Vec<Judged> = ranked(&again).into_iter().cloned().collect();
-    let around: Vec<(usize, Undisclosed)> = confirmed.first().map_or(Vec::new(), |best| {
-        (0..request.neighbours)
-            .map(|index| (index, neighbour(&best.undisclosed, index, request.seed)))
-            .collect()
-    });
+    let confirmed: Vec<JudgedSet> = rank(&again).into_iter().cloned().collect();
+    let around: Vec<(usize, UndisclosedParameters)> =
+        confirmed.first().map_or(Vec::new(), |best| {
+            (0..request.neighbours)
+                .map(|index| {
+                    (
+                        index,
+                        neighbouring_set(&best.undisclosed, index, request.seed),
+                    )
+                })
+                .collect()
+        });
     let done = request.sets + best.len();
     let neighbours = run("neighbours", &around, &request.confirming, done)?;
-    Ok(Found {
+    Ok(SearchResult {
         screened,
         confirmed,
         neighbours,
@@ -200,13 +214,13 @@ pub fn search(
 }
 
 /// Sorts by the number of claims that hold, then that hold strictly, then by index.
-pub fn ranked(judged: &[Judged]) -> Vec<&Judged> {
-    let mut ranked: Vec<&Judged> = judged.iter().collect();
-    ranked.sort_by_key(|judged| {
-        let counts = (judged.holding(), judged.strictly_holding());
+pub fn rank(judged: &[JudgedSet]) -> Vec<&JudgedSet> {
+    let mut ranked: Vec<&JudgedSet> = judged.iter().collect();
+    rank.sort_by_key(|judged| {
+        let counts = (judged.holding_claims(), judged.strictly_holding());
         (std::cmp::Reverse(counts), judged.index)
     });
-    ranked
+    rank
 }
 
 /// Folder of a search, with one file per complete chunk.
@@ -215,7 +229,7 @@ struct Store {
 }
 
 impl Store {
-    fn open(folder: &Path, request: &Request, shapes: Shapes) -> Result<Self, StudyError> {
+    fn open(folder: &Path, request: &SearchRequest, shapes: ArmShapes) -> Result<Self, StudyError> {
         let store = Self {
             folder: folder.to_owned(),
         };
@@ -223,7 +237,8 @@ impl Store {
         let description = folder.join("request.txt");
         let claims: Vec<&str> = CLAIMS.iter().map(|claim| claim.id).collect();
         let claims = claims.join(" ");
-        let text = format!("{request:?}\n{shapes:?} mode shapes\n{claims}\nrules {RULES}\n");
+        let text =
+            format!("{request:?}\n{shapes:?} mode shapes\n{claims}\nrules {RULES_VERSION}\n");
         match fs::read_to_string(&description) {
             Ok(found) if found == text => {}
             Ok(_) => {
@@ -240,18 +255,18 @@ impl Store {
     fn stage(
         &self,
         stage: &str,
-        sets: &[(usize, Undisclosed)],
-        judge: &(dyn Fn(&(usize, Undisclosed)) -> Judged + Sync),
+        sets: &[(usize, UndisclosedParameters)],
+        judge: &(dyn Fn(&(usize, UndisclosedParameters)) -> JudgedSet + Sync),
         progress: &mut dyn FnMut(usize),
-    ) -> Result<Vec<Judged>, StudyError> {
+    ) -> Result<Vec<JudgedSet>, StudyError> {
         let mut all = Vec::with_capacity(sets.len());
-        for (number, chunk) in sets.chunks(CHUNK).enumerate() {
+        for (number, chunk) in sets.chunks(SETS_PER_CHUNK).enumerate() {
             let path = self.folder.join(format!("{stage}_{number:05}.csv"));
             let judged = match read(&path, chunk.len()) {
                 Some(judged) => judged,
                 None => {
-                    let judged: Vec<Judged> = chunk.par_iter().map(judge).collect();
-                    let lines: Vec<String> = judged.iter().map(Judged::line).collect();
+                    let judged: Vec<JudgedSet> = chunk.par_iter().map(judge).collect();
+                    let lines: Vec<String> = judged.iter().map(JudgedSet::to_line).collect();
                     self.write(&path, &(lines.join("\n") + "\n"))?;
                     judged
                 }
@@ -272,9 +287,9 @@ impl Store {
 }
 
 /// Reads a chunk, or returns `None` if it is missing or incomplete.
-fn read(path: &Path, length: usize) -> Option<Vec<Judged>> {
+fn read(path: &Path, length: usize) -> Option<Vec<JudgedSet>> {
     let text = fs::read_to_string(path).ok()?;
-    let judged: Option<Vec<Judged>> = text.lines().map(Judged::parse).collect();
+    let judged: Option<Vec<JudgedSet>> = text.lines().map(JudgedSet::parse).collect();
     judged.filter(|judged| judged.len() == length)
 }
 

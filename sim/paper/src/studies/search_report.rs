@@ -4,15 +4,15 @@ use serde_json::{Value, json};
 
 use super::claims::CLAIMS;
 use super::judge::Judgement;
-use super::search::{Found, Judged, Request, ranked};
+use super::search::{JudgedSet, SearchRequest, SearchResult, rank};
 use super::sets::RANGES;
-use super::tally::{exclusive, histogram, share_with, shares, undecided};
+use super::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
 
 /// Number of sets listed in the document.
-const NAMED: usize = 20;
+const LISTED_SETS: usize = 20;
 
 /// Formats every judged set, with one column per claim: H holds, F fails, U undecided.
-pub fn csv(found: &Found) -> String {
+pub fn csv(found: &SearchResult) -> String {
     let mut text = "stage,set,I,a_m,b_m,F_w,c,holding,strictly_holding".to_owned();
     for claim in &CLAIMS {
         text.push(',');
@@ -39,7 +39,7 @@ pub fn csv(found: &Found) -> String {
                 u.b_m,
                 u.f_w,
                 u.c,
-                set.holding(),
+                set.holding_claims(),
                 set.strictly_holding()
             ));
             for letter in set.verdicts.iter().chain(&set.strict) {
@@ -53,16 +53,16 @@ pub fn csv(found: &Found) -> String {
 }
 
 /// Returns request and result as JSON.
-pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
+pub fn document(request: &SearchRequest, assumed: &[Judgement], found: &SearchResult) -> Value {
     let best = found.confirmed.first();
-    let most = best.map_or(0, Judged::holding);
+    let most = best.map_or(0, JudgedSet::holding_claims);
     let claims: Vec<Value> = CLAIMS
         .iter()
         .zip(assumed)
         .zip(shares(&found.screened))
         .map(|((claim, judged), share)| {
             json!({
-                "id": claim.id, "source": claim.place, "statement": claim.says,
+                "id": claim.id, "source": claim.place, "statement": claim.text,
                 "rule": format!("{:?}", claim.rule),
                 "assumed": {
                     "verdict": judged.holding.letter().to_string(),
@@ -70,7 +70,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
                     "evidence": judged.evidence,
                 },
                 "screened": {
-                    "holds": share.holds, "fails": share.fails, "undecided": share.undecided,
+                    "holds": share.holds, "fails": share.fails, "undecided": share.undecided_share,
                     "holds_strictly": share.holds_strictly,
                 },
             })
@@ -82,7 +82,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
             "to": range.bounds.1, "reason": range.reason,
         })
     });
-    let pairs = exclusive(&found.screened);
+    let pairs = exclusive_pairs(&found.screened);
     json!({
         "schema": 2,
         "sets": request.sets,
@@ -91,8 +91,8 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
         "claims": claims,
         "histogram": histogram(&found.screened),
         "undecided": undecided(&found.screened),
-        "best_screened": ranked(&found.screened).into_iter().take(NAMED).map(named).collect::<Vec<_>>(),
-        "confirmed": found.confirmed.iter().take(NAMED).map(named).collect::<Vec<_>>(),
+        "best_screened": rank(&found.screened).into_iter().take(LISTED_SETS).map(set_json).collect::<Vec<_>>(),
+        "confirmed": found.confirmed.iter().take(LISTED_SETS).map(set_json).collect::<Vec<_>>(),
         "neighbourhood": {
             "sets": found.neighbours.len(),
             "within": 0.1,
@@ -106,7 +106,7 @@ pub fn document(request: &Request, assumed: &[Judgement], found: &Found) -> Valu
     })
 }
 
-fn named(set: &Judged) -> Value {
+fn set_json(set: &JudgedSet) -> Value {
     let u = set.undisclosed;
     let with = |letter: char| -> Vec<&str> {
         let verdicts = CLAIMS.iter().zip(&set.verdicts);
@@ -116,17 +116,17 @@ fn named(set: &Judged) -> Value {
     json!({
         "set": set.index,
         "I": u.second_moment, "a_m": u.a_m, "b_m": u.b_m, "F_w": u.f_w, "c": u.c,
-        "holding": set.holding(), "strictly_holding": set.strictly_holding(),
+        "holding": set.holding_claims(), "strictly_holding": set.strictly_holding(),
         "fail": with('F'), "undecided": with('U'),
     })
 }
 
 /// Formats the verdicts at the assumed values and the number of claims that hold together.
-pub fn summary(assumed: &[Judgement], found: &Found) -> String {
+pub fn summary(assumed: &[Judgement], found: &SearchResult) -> String {
     let mut text = String::new();
     for (claim, judged) in CLAIMS.iter().zip(assumed) {
         let letter = judged.holding.letter();
-        text.push_str(&format!("{letter}  {:18} {}\n", claim.id, claim.says));
+        text.push_str(&format!("{letter}  {:18} {}\n", claim.id, claim.text));
     }
     let count = |letter| {
         assumed
@@ -142,20 +142,20 @@ pub fn summary(assumed: &[Judgement], found: &Found) -> String {
         count('U')
     ));
     if let Some(best) = found.confirmed.first() {
-        text.push_str(&together(best, found));
+        text.push_str(&format_best_set(best, found));
     }
     text
 }
 
 /// Formats the best set, its number of claims and its robustness.
-fn together(best: &Judged, found: &Found) -> String {
+fn format_best_set(best: &JudgedSet, found: &SearchResult) -> String {
     let u = best.undisclosed;
     let sets = found.screened.len();
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     let counts = histogram(&found.screened);
-    let as_many: usize = counts.iter().skip(best.holding()).sum();
+    let as_many: usize = counts.iter().skip(best.holding_claims()).sum();
     let within = |fewer: usize| {
-        let least = best.holding().saturating_sub(fewer);
+        let least = best.holding_claims().saturating_sub(fewer);
         percent(share_with(&found.neighbours, least))
     };
     format!(
@@ -165,8 +165,8 @@ fn together(best: &Judged, found: &Found) -> String {
          around it, within 10 %: {} of the sets keep them all, {} lose one at most, {} two\n\
          {} pairs of claims that hold somewhere never hold together\n",
         percent(undecided(&found.screened)),
-        best.holding(),
-        best.holding(),
+        best.holding_claims(),
+        best.holding_claims(),
         best.strictly_holding(),
         u.second_moment,
         u.a_m,
@@ -176,6 +176,6 @@ fn together(best: &Judged, found: &Found) -> String {
         within(0),
         within(1),
         within(2),
-        exclusive(&found.screened).len(),
+        exclusive_pairs(&found.screened).len(),
     )
 }

@@ -1,6 +1,6 @@
 //! Recorded series of a case in the quantities of the paper, and their sizes.
 
-use super::arm::Lengths;
+use super::arm::ConversionFactors;
 
 /// Indices of the coordinates in the state; the modes follow, then the rates.
 pub(super) const X_SP: usize = 0;
@@ -23,7 +23,7 @@ pub struct Amplitude {
 
 impl Amplitude {
     /// Computes the sizes of a series.
-    pub fn of(values: &[f64]) -> Self {
+    pub fn from_values(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -58,21 +58,25 @@ pub struct Record {
 }
 
 impl Record {
-    pub(super) fn of(times: &[f64], states: &[Vec<f64>], lengths: &Lengths) -> Self {
+    pub(super) fn from_states(
+        times: &[f64],
+        states: &[Vec<f64>],
+        lengths: &ConversionFactors,
+    ) -> Self {
         let column = |place: usize| -> Vec<f64> {
             let values = states.iter().map(|state| state.get(place).copied());
             values.map(Option::unwrap_or_default).collect()
         };
         let (x_sp, x_pr) = (column(X_SP), column(X_PR));
-        let modes = FIRST_MODE..FIRST_MODE + lengths.at_tip.len();
+        let modes = FIRST_MODE..FIRST_MODE + lengths.tip_amplitudes.len();
         let modal: Vec<Vec<f64>> = modes.map(column).collect();
         let transmission: Vec<f64> = x_sp
             .iter()
             .zip(&x_pr)
-            .map(|(x_sp, x_pr)| lengths.transmission * (x_sp + x_pr))
+            .map(|(x_sp, x_pr)| lengths.transmission_factor * (x_sp + x_pr))
             .collect();
         let mut dr = vec![0.0; x_sp.len()];
-        for (series, at_tip) in modal.iter().zip(&lengths.at_tip) {
+        for (series, at_tip) in modal.iter().zip(&lengths.tip_amplitudes) {
             for (sum, q) in dr.iter_mut().zip(series) {
                 *sum += at_tip * q;
             }

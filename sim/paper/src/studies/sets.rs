@@ -1,6 +1,6 @@
 //! Undisclosed parameters, spread evenly over plausible ranges.
 
-use super::arm::Undisclosed;
+use super::arm::UndisclosedParameters;
 
 /// Range of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,37 +26,37 @@ pub const RANGES: [Range; 5] = [
 ];
 
 /// Interval of the sets with b_m = 0.
-const UNDAMPED: usize = 4;
+const UNDAMPED_INTERVAL: usize = 4;
 
 /// Root above 1 of x^6 = x + 1. Powers of its inverse fill five dimensions evenly (M. Roberts, "The
 /// unreasonable effectiveness of quasirandom sequences", 2018).
-const HARMONIOUS: f64 = 1.134_724_138_401_519_5;
+const HARMONIOUS_ROOT: f64 = 1.134_724_138_401_519_5;
 
 /// Returns point `index` of a sequence that fills the unit cube evenly; the seed shifts it.
-pub fn point(index: usize, seed: u64) -> [f64; 5] {
+pub fn sequence_point(index: usize, seed: u64) -> [f64; 5] {
     let golden = 0.618_033_988_749_894_9;
     let mut inverse = 1.0;
     std::array::from_fn(|axis| {
-        inverse /= HARMONIOUS;
+        inverse /= HARMONIOUS_ROOT;
         let shift = 0.5 + golden * (seed % 1_000_003) as f64 * (axis + 1) as f64;
         (shift + inverse * (index + 1) as f64).fract()
     })
 }
 
 /// Returns parameter set `index` of a search.
-pub fn set(index: usize, seed: u64) -> Undisclosed {
-    let mut values = point(index, seed);
+pub fn parameter_set(index: usize, seed: u64) -> UndisclosedParameters {
+    let mut values = sequence_point(index, seed);
     for (value, range) in values.iter_mut().zip(&RANGES) {
         let (low, high) = range.bounds;
         *value = low * (high / low).powf(*value);
     }
     let [second_moment, a_m, b_m, f_w, c] = values;
-    let b_m = if index % UNDAMPED == UNDAMPED - 1 {
+    let b_m = if index % UNDAMPED_INTERVAL == UNDAMPED_INTERVAL - 1 {
         0.0
     } else {
         b_m
     };
-    Undisclosed {
+    UndisclosedParameters {
         second_moment,
         a_m,
         b_m,
@@ -66,9 +66,13 @@ pub fn set(index: usize, seed: u64) -> Undisclosed {
 }
 
 /// Returns neighbour `index` of a set, within +-10 % in each parameter.
-pub fn neighbour(of: &Undisclosed, index: usize, seed: u64) -> Undisclosed {
-    let [i, a, b, f, c] = point(index, seed).map(|share| 0.9 + 0.2 * share);
-    Undisclosed {
+pub fn neighbouring_set(
+    of: &UndisclosedParameters,
+    index: usize,
+    seed: u64,
+) -> UndisclosedParameters {
+    let [i, a, b, f, c] = sequence_point(index, seed).map(|share| 0.9 + 0.2 * share);
+    UndisclosedParameters {
         second_moment: i * of.second_moment,
         a_m: a * of.a_m,
         b_m: b * of.b_m,

@@ -1,7 +1,7 @@
 //! Counts of a search: share of each claim, number of claims that hold at once, exclusive pairs.
 
 use super::claims::CLAIMS;
-use super::search::Judged;
+use super::search::JudgedSet;
 
 /// Shares of the verdicts on one claim.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,41 +11,41 @@ pub struct Share {
     /// Share of the sets in which it fails.
     pub fails: f64,
     /// Share of the sets in which it is undecided.
-    pub undecided: f64,
+    pub undecided_share: f64,
     /// Share of the sets in which it holds strictly.
     pub holds_strictly: f64,
 }
 
 /// Returns the shares of all claims, in the order of [`CLAIMS`].
-pub fn shares(judged: &[Judged]) -> Vec<Share> {
+pub fn shares(judged: &[JudgedSet]) -> Vec<Share> {
     let count = judged.len().max(1) as f64;
-    let share = |verdicts: fn(&Judged) -> &[char], claim: usize, letter: char| {
-        let has_letter = |set: &&Judged| verdicts(set).get(claim) == Some(&letter);
+    let share = |verdicts: fn(&JudgedSet) -> &[char], claim: usize, letter: char| {
+        let has_letter = |set: &&JudgedSet| verdicts(set).get(claim) == Some(&letter);
         judged.iter().filter(has_letter).count() as f64 / count
     };
-    let generous: fn(&Judged) -> &[char] = |set| &set.verdicts;
+    let generous: fn(&JudgedSet) -> &[char] = |set| &set.verdicts;
     (0..CLAIMS.len())
         .map(|claim| Share {
             holds: share(generous, claim, 'H'),
             fails: share(generous, claim, 'F'),
-            undecided: share(generous, claim, 'U'),
+            undecided_share: share(generous, claim, 'U'),
             holds_strictly: share(|set| &set.strict, claim, 'H'),
         })
         .collect()
 }
 
 /// Returns the share of undecided verdicts.
-pub fn undecided(judged: &[Judged]) -> f64 {
+pub fn undecided(judged: &[JudgedSet]) -> f64 {
     let shares = shares(judged);
-    let sum: f64 = shares.iter().map(|share| share.undecided).sum();
+    let sum: f64 = shares.iter().map(|share| share.undecided_share).sum();
     sum / shares.len().max(1) as f64
 }
 
 /// Returns the number of sets with 0, 1, 2, ... claims that hold.
-pub fn histogram(judged: &[Judged]) -> Vec<usize> {
+pub fn histogram(judged: &[JudgedSet]) -> Vec<usize> {
     let mut counts = vec![0; CLAIMS.len() + 1];
     for set in judged {
-        if let Some(count) = counts.get_mut(set.holding()) {
+        if let Some(count) = counts.get_mut(set.holding_claims()) {
             *count += 1;
         }
     }
@@ -53,8 +53,8 @@ pub fn histogram(judged: &[Judged]) -> Vec<usize> {
 }
 
 /// Returns pairs of claims that each hold in some set and never together.
-pub fn exclusive(judged: &[Judged]) -> Vec<(usize, usize)> {
-    let holds = |set: &Judged, claim: usize| set.verdicts.get(claim) == Some(&'H');
+pub fn exclusive_pairs(judged: &[JudgedSet]) -> Vec<(usize, usize)> {
+    let holds = |set: &JudgedSet, claim: usize| set.verdicts.get(claim) == Some(&'H');
     let somewhere: Vec<usize> = (0..CLAIMS.len())
         .filter(|claim| judged.iter().any(|set| holds(set, *claim)))
         .collect();
@@ -73,7 +73,10 @@ pub fn exclusive(judged: &[Judged]) -> Vec<(usize, usize)> {
 }
 
 /// Returns the share of the sets with at least `holding` claims that hold.
-pub fn share_with(judged: &[Judged], holding: usize) -> f64 {
-    let found = judged.iter().filter(|set| set.holding() >= holding).count();
+pub fn share_with(judged: &[JudgedSet], holding: usize) -> f64 {
+    let found = judged
+        .iter()
+        .filter(|set| set.holding_claims() >= holding)
+        .count();
     found as f64 / judged.len().max(1) as f64
 }

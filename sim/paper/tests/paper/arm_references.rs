@@ -147,7 +147,7 @@ proptest! {
         let parameters = PlanetaryArmParameters::default();
         for regime in REGIMES {
             let state = state_in(regime, 0, &parameters, &numbers);
-            let rigid = equation_12::corrected(&parameters, t, state.as_slice().try_into().unwrap());
+            let rigid = equation_12::corrected_accelerations(&parameters, t, state.as_slice().try_into().unwrap());
             assert_rows_eq(&rigid, &evaluate(&parameters, 0, t, &state).accelerations);
         }
     }
@@ -157,9 +157,9 @@ proptest! {
         let parameters = PlanetaryArmParameters::default();
         for regime in REGIMES {
             let state: [f64; 6] = state_in(regime, 0, &parameters, &numbers).try_into().unwrap();
-            let rigid = equation_12::corrected(&parameters, t, &state);
+            let rigid = equation_12::corrected_accelerations(&parameters, t, &state);
             let motion = shafts(&parameters, &state, &rigid.accelerations);
-            let balance = equation_10::corrected(&parameters, t, &motion);
+            let balance = equation_10::corrected_residuals(&parameters, t, &motion);
             // Angles of order 10 rad give mesh deflections a rounding of r_s 10 eps, which the mesh
             // stiffness converts to a force.
             let rounding = 100.0 * f64::EPSILON * parameters.k_sp * parameters.r_c();
@@ -237,9 +237,9 @@ fn printed_equation_10_is_out_of_balance() {
     let parameters = PlanetaryArmParameters::default();
     // With both meshes closed, every misprinted term contributes.
     let state = [6e-5, 7e-5, 0.1, 0.01, -0.02, 0.3];
-    let rigid = equation_12::corrected(&parameters, 0.1, &state);
+    let rigid = equation_12::corrected_accelerations(&parameters, 0.1, &state);
     let motion = shafts(&parameters, &state, &rigid.accelerations);
-    let balance = equation_10::printed(&parameters, 0.1, &motion);
+    let balance = equation_10::printed_residuals(&parameters, 0.1, &motion);
     // Row 2 is correct as printed; its angles have the rounding of the closed meshes.
     for (row, is_correct) in [(0, false), (1, true), (2, false)] {
         let relative = balance.residual[row].abs() / balance.scale[row];

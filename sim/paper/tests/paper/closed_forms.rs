@@ -1,7 +1,7 @@
 //! Closed forms of the other machines: energy, textbook limits, errors.
 
 use eomgen_paper::reference::Evaluation;
-use eomgen_paper::reference::closed_forms::{NotApplicable, StateAndParameters, find};
+use eomgen_paper::reference::closed_forms::{NotApplicable, StateAndParameters, find_closed_form};
 use eomgen_paper::reference::mode_shapes::ModeShape;
 use proptest::prelude::*;
 
@@ -56,7 +56,7 @@ fn evaluate(
     order: usize,
     state: &[f64],
 ) -> Result<Evaluation, NotApplicable> {
-    let closed_form = find(model).expect("a known model");
+    let closed_form = find_closed_form(model).expect("a known model");
     let parameter = look_up(values);
     closed_form(&StateAndParameters {
         parameter: &parameter,
@@ -231,7 +231,7 @@ fn friction_opposes_the_motion_of_the_axis() {
 
 #[test]
 fn missing_parameters_are_named() {
-    assert!(find("planetary_arm").is_none());
+    assert!(find_closed_form("planetary_arm").is_none());
     let error = evaluate("pendulum", &[("m", 1.0), ("a", 1.0)], 0, &[0.0, 0.0]);
     assert_eq!(error, Err(NotApplicable::Parameter("g")));
     let error = evaluate("double_pendulum", DOUBLE, 0, &[0.0; 3]);

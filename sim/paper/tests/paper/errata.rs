@@ -33,7 +33,7 @@ fn rows_agree_with_corrections_and_differ_from_misprints() {
 fn printed_damping_fails_in_its_row() {
     let printed = |parameters: &PlanetaryArmParameters, order: usize, t: f64, state: &[f64]| {
         match <&[f64; 6]>::try_from(state) {
-            Ok(rigid) => equation_12::printed(parameters, rigid).accelerations,
+            Ok(rigid) => equation_12::printed_accelerations(parameters, rigid).accelerations,
             Err(_) => corrected(parameters, order, t, state),
         }
     };

@@ -5,18 +5,18 @@ use std::collections::BTreeMap;
 
 use eomgen_analysis::classify::Motion;
 use eomgen_analysis::exponent::mean_exponent;
-use eomgen_paper::studies::arm::{Arm, Case, Shapes, Undisclosed};
-use eomgen_paper::studies::case::{Amplitude, Length, measure};
+use eomgen_paper::studies::arm::{Arm, ArmShapes, Case, UndisclosedParameters};
+use eomgen_paper::studies::case::{Amplitude, RunLength, measure};
 use eomgen_paper::studies::claims::{CLAIMS, Claim, cases};
-use eomgen_paper::studies::judge::{Holding, Readings, judge};
-use eomgen_paper::studies::reading::{Forcing, Key, Kind, Reading};
-use eomgen_paper::studies::search::{Judged, Request, orders, search};
-use eomgen_paper::studies::sets::{RANGES, set};
-use eomgen_paper::studies::tally::{exclusive, histogram, share_with, shares, undecided};
+use eomgen_paper::studies::judge::{Readings, Verdict, judge};
+use eomgen_paper::studies::reading::{CaseKey, Forcing, Kind, Reading};
+use eomgen_paper::studies::search::{JudgedSet, SearchRequest, orders, search};
+use eomgen_paper::studies::sets::{RANGES, parameter_set};
+use eomgen_paper::studies::tally::{exclusive_pairs, histogram, share_with, shares, undecided};
 use eomgen_sim::inputs::HeldInputs;
 
 /// Returns a reading whose transmission error grows with b, with a constant deflection.
-fn reading(key: &Key, kind: Kind) -> Reading {
+fn reading(key: &CaseKey, kind: Kind) -> Reading {
     let of = |span: f64| Amplitude {
         largest: span / 2.0,
         mean: 0.0,
@@ -26,7 +26,7 @@ fn reading(key: &Key, kind: Kind) -> Reading {
     let b = f64::from(key.micrometres);
     Reading {
         kind,
-        quasi_periodic: kind == Kind::Regular,
+        is_strictly_quasi_periodic: kind == Kind::Regular,
         sentence: String::new(),
         f_la: of(1e-3 + 2e-5 * b),
         f_la_signed: of(1e-3 + 2e-5 * b),
@@ -38,7 +38,7 @@ fn reading(key: &Key, kind: Kind) -> Reading {
 
 /// Returns the readings that the paper describes.
 fn paper() -> Readings {
-    let kind = |key: &Key| match (key.order, key.forcing, key.micrometres) {
+    let kind = |key: &CaseKey| match (key.order, key.forcing, key.micrometres) {
         (0, ..) => Kind::Regular,
         (_, Forcing::FivePi, 0..=25) | (_, Forcing::TenPi, 0..=10) => Kind::Regular,
         _ => Kind::Chaotic,
@@ -56,8 +56,8 @@ fn all_claims_hold_for_readings_of_the_paper() {
     let readings = paper();
     for claim in &CLAIMS {
         let judged = judge(claim, &readings);
-        assert_eq!(judged.holding, Holding::Holds, "{}", claim.id);
-        assert_eq!(judged.strict, Holding::Holds, "{}", claim.id);
+        assert_eq!(judged.holding, Verdict::Holds, "{}", claim.id);
+        assert_eq!(judged.strict, Verdict::Holds, "{}", claim.id);
     }
 }
 
@@ -84,9 +84,9 @@ fn each_claim_can_fail() {
             reading.dr.rms = 1.0;
         }
     }
-    let reference = readings[&Key::flexible(Forcing::FivePi, 0)].clone();
+    let reference = readings[&CaseKey::flexible(Forcing::FivePi, 0)].clone();
     readings.insert(
-        Key::flexible(Forcing::FivePi, 0),
+        CaseKey::flexible(Forcing::FivePi, 0),
         Reading {
             dr: Amplitude {
                 span: 0.5,
@@ -101,7 +101,7 @@ fn each_claim_can_fail() {
     for claim in CLAIMS.iter().filter(|claim| !still.contains(&claim.id)) {
         assert_eq!(
             judge(claim, &readings).holding,
-            Holding::Fails,
+            Verdict::Fails,
             "{}",
             claim.id
         );
@@ -110,13 +110,13 @@ fn each_claim_can_fail() {
 
 #[test]
 fn periodic_motion_is_quasi_periodic_only_in_the_generous_reading() {
-    let key = Key::flexible(Forcing::FivePi, 10);
+    let key = CaseKey::flexible(Forcing::FivePi, 10);
     let mut readings = paper();
-    readings.get_mut(&key).unwrap().quasi_periodic = false;
+    readings.get_mut(&key).unwrap().is_strictly_quasi_periodic = false;
     for id in ["regular_5pi_10", "route_5pi"] {
         let judged = judge(claim(id), &readings);
-        assert_eq!(judged.holding, Holding::Holds);
-        assert_eq!(judged.strict, Holding::Fails);
+        assert_eq!(judged.holding, Verdict::Holds);
+        assert_eq!(judged.strict, Verdict::Fails);
     }
 }
 
@@ -124,23 +124,23 @@ fn periodic_motion_is_quasi_periodic_only_in_the_generous_reading() {
 fn route_with_a_possible_return_is_undecided() {
     use Kind::{Chaotic as C, Regular as R, Unknown as U};
     for (kinds, expected) in [
-        ([R, R, C, C], Holding::Holds),
+        ([R, R, C, C], Verdict::Holds),
         // One unknown case between regular and chaotic may be either.
-        ([R, U, C, C], Holding::Holds),
-        ([R, R, U, C], Holding::Holds),
+        ([R, U, C, C], Verdict::Holds),
+        ([R, R, U, C], Verdict::Holds),
         // Two unknown cases may be chaotic then regular; so may one after chaos or before regular
         // motion.
-        ([R, U, U, C], Holding::Undecided),
-        ([R, C, U, C], Holding::Undecided),
-        ([R, U, R, C], Holding::Undecided),
-        ([R, C, R, C], Holding::Fails),
-        ([R, R, C, R], Holding::Fails),
-        ([C, U, C, C], Holding::Fails),
-        ([U, C, C, C], Holding::Undecided),
+        ([R, U, U, C], Verdict::Undecided),
+        ([R, C, U, C], Verdict::Undecided),
+        ([R, U, R, C], Verdict::Undecided),
+        ([R, C, R, C], Verdict::Fails),
+        ([R, R, C, R], Verdict::Fails),
+        ([C, U, C, C], Verdict::Fails),
+        ([U, C, C, C], Verdict::Undecided),
     ] {
         let mut readings = paper();
         for (b, kind) in [10, 25, 50, 100].into_iter().zip(kinds) {
-            let key = Key::flexible(Forcing::FivePi, b);
+            let key = CaseKey::flexible(Forcing::FivePi, b);
             readings.insert(key, reading(&key, kind));
         }
         let judged = judge(claim("route_5pi"), &readings);
@@ -152,7 +152,7 @@ fn route_with_a_possible_return_is_undecided() {
 fn missing_cases_leave_claims_undecided() {
     for claim in &CLAIMS {
         let judged = judge(claim, &BTreeMap::new());
-        assert_eq!(judged.holding, Holding::Undecided, "{}", claim.id);
+        assert_eq!(judged.holding, Verdict::Undecided, "{}", claim.id);
     }
 }
 
@@ -162,7 +162,7 @@ fn assumed(forcing: Forcing, backlash: f64) -> Case {
         order: 4,
         backlash,
         omega: forcing.omega(),
-        undisclosed: Undisclosed::ASSUMED,
+        undisclosed: UndisclosedParameters::ASSUMED,
     }
 }
 
@@ -205,12 +205,12 @@ fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64>
 fn exponent_matches_the_divergence_of_two_motions() {
     let arm = Arm::new(&[4]).unwrap();
     let case = assumed(Forcing::TenPi, 100e-6);
-    let length = Length {
-        strong: None,
-        ..Length::SCREENING
+    let length = RunLength {
+        strong_growth_periods: None,
+        ..RunLength::SCREENING
     };
     let measured = measure(&arm, &case, &length).unwrap();
-    let reading = Reading::of(&measured);
+    let reading = Reading::from_measurement(&measured);
     assert_eq!(reading.kind, Kind::Chaotic, "{}", reading.sentence);
     let carried = measured.evidence.exponent.unwrap();
     let parted = mean_exponent(&parting(&arm, &case, 40, 200), case.period()).unwrap();
@@ -229,10 +229,10 @@ fn exponent_matches_the_divergence_of_two_motions() {
 #[test]
 fn exponent_errors_match_their_scatter() {
     let arm = Arm::new(&[4]).unwrap();
-    let length = Length {
+    let length = RunLength {
         transient: (200, 200),
         modes: 1,
-        ..Length::FULL
+        ..RunLength::FULL
     };
     // Intermittent chaos over hundreds of periods.
     let exponents: Vec<_> = (0..16)
@@ -261,10 +261,10 @@ fn undecided_cases_are_extended() {
     let arm = Arm::new(&[4]).unwrap();
     let case = assumed(Forcing::FivePi, 10e-6);
     let motion = |most: usize| {
-        let length = Length {
+        let length = RunLength {
             transient: (150, 150),
-            followed: (100, most),
-            ..Length::SCREENING
+            classified_periods: (100, most),
+            ..RunLength::SCREENING
         };
         let measured = measure(&arm, &case, &length).unwrap();
         // The record does not grow.
@@ -280,16 +280,16 @@ fn undecided_cases_are_extended() {
 
 #[test]
 fn printed_mode_shapes_give_chaos_without_a_dominant_third_mode() {
-    let arm = Arm::with(Shapes::Printed, &[4]).unwrap();
-    let length = Length {
+    let arm = Arm::with_shapes(ArmShapes::Printed, &[4]).unwrap();
+    let length = RunLength {
         modes: 1,
-        ..Length::FULL
+        ..RunLength::FULL
     };
     for micrometres in [10, 25, 50, 100] {
         for forcing in [Forcing::FivePi, Forcing::TenPi] {
-            let key = Key::flexible(forcing, micrometres);
-            let measured = measure(&arm, &key.case(Undisclosed::ASSUMED), &length);
-            let reading = Reading::of(&measured.unwrap());
+            let key = CaseKey::flexible(forcing, micrometres);
+            let measured = measure(&arm, &key.case(UndisclosedParameters::ASSUMED), &length);
+            let reading = Reading::from_measurement(&measured.unwrap());
             // One of the eight cases becomes periodic.
             let settles = (forcing, micrometres) == (Forcing::FivePi, 50);
             let kind = if settles {
@@ -310,10 +310,10 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
         order: 4,
         backlash: 0.0,
         omega: Forcing::TenPi.omega(),
-        undisclosed: Undisclosed::ASSUMED,
+        undisclosed: UndisclosedParameters::ASSUMED,
     };
-    let measured = measure(&arm, &case, &Length::SCREENING).unwrap();
-    assert_eq!(Reading::of(&measured).kind, Kind::Regular);
+    let measured = measure(&arm, &case, &RunLength::SCREENING).unwrap();
+    assert_eq!(Reading::from_measurement(&measured).kind, Kind::Regular);
     // Check of scale, quasi-static bending by the acceleration of the hub: the tip of a cantilever
     // under the load rho A x a/l deflects by 11 rho A a l^4/(120 E I).
     let torque = case.undisclosed.f_w;
@@ -331,14 +331,22 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
 
 #[test]
 fn sets_fill_their_ranges() {
-    let sets: Vec<Undisclosed> = (0..1000).map(|index| set(index, 1)).collect();
-    let values = |set: &Undisclosed| [set.second_moment, set.a_m, set.b_m, set.f_w, set.c];
+    let sets: Vec<UndisclosedParameters> = (0..1000).map(|index| parameter_set(index, 1)).collect();
+    let values = |set: &UndisclosedParameters| {
+        [
+            parameter_set.second_moment,
+            parameter_set.a_m,
+            parameter_set.b_m,
+            parameter_set.f_w,
+            parameter_set.c,
+        ]
+    };
     for (axis, range) in RANGES.iter().enumerate() {
         let (low, high) = range.bounds;
         let mut counts = [0; 10];
         let inside = sets
             .iter()
-            .map(|set| values(set)[axis])
+            .map(|set| values(parameter_set)[axis])
             .filter(|value| *value > 0.0);
         for value in inside {
             assert!((low..=high).contains(&value));
@@ -355,14 +363,14 @@ fn sets_fill_their_ranges() {
 #[test]
 fn interrupted_search_resumes_to_the_same_bytes() {
     let arm = Arm::new(&orders()).unwrap();
-    let short = Length {
+    let short = RunLength {
         transient: (2, 2),
         periods: 100,
-        followed: (100, 100),
-        strong: Some(30),
+        classified_periods: (100, 100),
+        strong_growth_periods: Some(30),
         modes: 1,
     };
-    let request = Request {
+    let request = SearchRequest {
         sets: 3,
         seed: 7,
         confirmed: 1,
@@ -371,7 +379,7 @@ fn interrupted_search_resumes_to_the_same_bytes() {
         confirming: short,
     };
     let folder = tempfile::tempdir().unwrap();
-    let run = |request: &Request| search(&arm, request, folder.path(), &mut |_| {});
+    let run = |request: &SearchRequest| search(&arm, request, folder.path(), &mut |_| {});
     let first = run(&request).unwrap();
     let part = folder.path().join("screened_00000.csv");
     let bytes = std::fs::read(&part).unwrap();
@@ -381,9 +389,9 @@ fn interrupted_search_resumes_to_the_same_bytes() {
     assert_eq!(run(&request).unwrap(), first);
     assert_eq!(std::fs::read(&part).unwrap(), bytes);
     for judged in &first.screened {
-        assert_eq!(Judged::parse(&judged.line()).as_ref(), Some(judged));
+        assert_eq!(JudgedSet::parse(&judged.to_line()).as_ref(), Some(judged));
     }
-    let other = Request { seed: 8, ..request };
+    let other = SearchRequest { seed: 8, ..request };
     assert!(run(&other).is_err());
 }
 
@@ -394,9 +402,9 @@ fn tally_counts_verdicts() {
             let rest = std::iter::repeat_n('F', CLAIMS.len() - first.len());
             first.chars().chain(rest).collect()
         };
-        Judged {
+        JudgedSet {
             index,
-            undisclosed: Undisclosed::ASSUMED,
+            undisclosed: UndisclosedParameters::ASSUMED,
             verdicts: letters(first),
             strict: letters(&first.replacen('H', "F", 1)),
         }
@@ -410,13 +418,19 @@ fn tally_counts_verdicts() {
         judged(3, "FFF"),
     ];
     let all = shares(&sets);
-    let of = |place: usize| (all[place].holds, all[place].fails, all[place].undecided);
+    let of = |place: usize| {
+        (
+            all[place].holds,
+            all[place].fails,
+            all[place].undecided_share,
+        )
+    };
     assert_eq!(of(0), (0.5, 0.5, 0.0));
     assert_eq!(of(1), (0.25, 0.5, 0.25));
     assert_eq!(of(2), (0.25, 0.5, 0.25));
     assert_eq!((all[0].holds_strictly, all[2].holds_strictly), (0.0, 0.25));
     assert!((undecided(&sets) - 0.5 / CLAIMS.len() as f64).abs() < 1e-15);
     assert_eq!(histogram(&sets)[..4], [1, 2, 1, 0]);
-    assert_eq!(exclusive(&sets), [(0, 1), (1, 2)]);
+    assert_eq!(exclusive_pairs(&sets), [(0, 1), (1, 2)]);
     assert_eq!((share_with(&sets, 1), share_with(&sets, 2)), (0.75, 0.25));
 }

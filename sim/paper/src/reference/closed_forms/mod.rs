@@ -64,7 +64,7 @@ impl fmt::Display for NotApplicable {
 impl std::error::Error for NotApplicable {}
 
 /// Returns the closed form for the model called `name`.
-pub fn find(name: &str) -> Option<ClosedForm> {
+pub fn find_closed_form(name: &str) -> Option<ClosedForm> {
     match name {
         "cart_two_arms" => Some(cart_two_arms::accelerations),
         "chaplygin_sleigh" => Some(chaplygin_sleigh::accelerations),

@@ -93,11 +93,12 @@ fn torques(
     for (i, link) in links.iter().enumerate() {
         let spin = [0.0, 0.0, rates[i]];
         let turn = plus(cross(omega, spin), [0.0, 0.0, accelerations[i]]);
-        let carried = at_arm(omega, alpha, link.origin);
-        a = inward(link, q[i], plus(a, carried));
-        alpha = inward(link, q[i], plus(alpha, turn));
-        omega = inward(link, q[i], plus(omega, spin));
-        let force = plus(a, at_arm(omega, alpha, link.centre)).map(|a| link.mass * a);
+        let carried = relative_acceleration(omega, alpha, link.origin);
+        a = to_link(link, q[i], plus(a, carried));
+        alpha = to_link(link, q[i], plus(alpha, turn));
+        omega = to_link(link, q[i], plus(omega, spin));
+        let force =
+            plus(a, relative_acceleration(omega, alpha, link.centre)).map(|a| link.mass * a);
         let [x, y, z] = link.inertia;
         let times = |v: Vector| [x * v[0], y * v[1], z * v[2]];
         let moment = plus(times(alpha), cross(omega, times(omega)));
@@ -107,8 +108,8 @@ fn torques(
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for (i, link) in links.iter().enumerate().rev() {
         let (own_force, own_moment) = loads[i];
-        force = outward(link, q[i], plus(force, own_force));
-        moment = outward(link, q[i], plus(moment, own_moment));
+        force = to_previous_link(link, q[i], plus(force, own_force));
+        moment = to_previous_link(link, q[i], plus(moment, own_moment));
         found[i] = moment[2];
         moment = plus(moment, cross(link.origin, force));
     }
@@ -116,12 +117,12 @@ fn torques(
 }
 
 /// Computes the acceleration of a point at `arm` relative to the origin.
-fn at_arm(omega: Vector, alpha: Vector, arm: Vector) -> Vector {
+fn relative_acceleration(omega: Vector, alpha: Vector, arm: Vector) -> Vector {
     plus(cross(alpha, arm), cross(omega, cross(omega, arm)))
 }
 
 /// Converts components of the previous link to components of this link.
-fn inward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
+fn to_link(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
     let (sin, cos) = q.sin_cos();
     let (x, y) = (cos * x + sin * y, cos * y - sin * x);
     if link.tilt == 0.0 {
@@ -132,7 +133,7 @@ fn inward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
 }
 
 /// Converts components of this link to components of the previous link.
-fn outward(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
+fn to_previous_link(link: &Link, q: f64, [x, y, z]: Vector) -> Vector {
     let (y, z) = if link.tilt == 0.0 {
         (y, z)
     } else {

@@ -10,7 +10,7 @@ use crate::reference::mesh::{f_c, f_k};
 use crate::reference::parameters::PlanetaryArmParameters;
 
 /// Largest number of modes summed without partial sums.
-const FEW: usize = 8;
+const MAX_UNSPLIT_MODES: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mesh {
@@ -24,7 +24,7 @@ struct Mesh {
 
 /// Arm of order `S`, prepared for one set of parameters.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Eliminated<const S: usize> {
+pub struct EliminatedArm<const S: usize> {
     sun_planet: Mesh,
     planet_ring: Mesh,
     /// a_m/(r_s M_s), m/s^2
@@ -57,7 +57,7 @@ impl Mesh {
     }
 }
 
-impl<const S: usize> Eliminated<S> {
+impl<const S: usize> EliminatedArm<S> {
     /// Prepares the equations for `parameters`.
     pub fn new(parameters: &PlanetaryArmParameters) -> Self {
         let a = Coefficients::new(parameters, S);
@@ -90,7 +90,7 @@ impl<const S: usize> Eliminated<S> {
 
     /// Returns all prepared numbers in the order of the fields, for the same equations in C
     /// (`benches/c/by_hand.h`).
-    pub fn prepared(&self) -> Vec<f64> {
+    pub fn prepared_numbers(&self) -> Vec<f64> {
         let mesh = |mesh: Mesh| [mesh.stiffness, mesh.damping, mesh.half_width];
         let scalars = [
             self.motor,
@@ -158,7 +158,7 @@ pub fn copy_in_pairs(from: &[f64], to: &mut [f64]) {
 
 #[inline(always)]
 fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
-    if S > FEW {
+    if S > MAX_UNSPLIT_MODES {
         return sum_in_blocks(a, b);
     }
     a.iter().zip(b).map(|(a, b)| a * b).sum()

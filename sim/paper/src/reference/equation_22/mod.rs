@@ -9,5 +9,5 @@ pub mod eliminated;
 pub mod rates;
 
 pub use coefficients::{Coefficients, ModeRow};
-pub use eliminated::{Eliminated, copy_in_pairs};
+pub use eliminated::{EliminatedArm, copy_in_pairs};
 pub use rates::Equation22;

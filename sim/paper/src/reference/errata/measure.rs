@@ -6,11 +6,11 @@
 use crate::reference::parameters::PlanetaryArmParameters;
 
 /// Derived right-hand side: accelerations at (parameters, order, t, state).
-pub type Derived<'a> = dyn Fn(&PlanetaryArmParameters, usize, f64, &[f64]) -> Vec<f64> + 'a;
+pub type DerivedModel<'a> = dyn Fn(&PlanetaryArmParameters, usize, f64, &[f64]) -> Vec<f64> + 'a;
 
 /// Compression of a mesh beyond its dead band, m: its spring force is then of the order of its
 /// damping force at 1 m/s.
-const PRESS: f64 = 1e-6;
+const PROBE_COMPRESSION_M: f64 = 1e-6;
 
 /// Change of all accelerations per unit of one quantity.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub struct Response(Vec<f64>);
 impl Response {
     /// Returns the entry for coordinate `row`, or NaN if the derived model returned too few
     /// accelerations.
-    pub fn at(&self, row: usize) -> f64 {
+    pub fn entry(&self, row: usize) -> f64 {
         self.0.get(row).copied().unwrap_or(f64::NAN)
     }
 
@@ -49,21 +49,29 @@ pub struct Responses {
 
 impl Responses {
     /// Measures `derived` at `order`.
-    pub fn of(derived: &Derived<'_>, parameters: &PlanetaryArmParameters, order: usize) -> Self {
+    pub fn measure(
+        derived: &DerivedModel<'_>,
+        parameters: &PlanetaryArmParameters,
+        order: usize,
+    ) -> Self {
         let probe = Probe {
             derived,
             parameters,
             order,
         };
         let rate = |coordinate| probe.slope(&[(probe.rate_of(coordinate), 1.0)], 1.0, &[]);
-        let pressed = [parameters.b_sp + PRESS, parameters.b_pr + PRESS];
+        let pressed = [
+            parameters.b_sp + PROBE_COMPRESSION_M,
+            parameters.b_pr + PROBE_COMPRESSION_M,
+        ];
         let quarter = std::f64::consts::FRAC_PI_2 / parameters.omega;
         let constant = probe.at(0.0, &[]);
         Self {
             fluctuation: probe.at(quarter, &[]).minus(&constant),
             constant,
             rate: [0, 1, 2].map(rate),
-            spring: [0, 1].map(|mesh| probe.slope(&[(mesh, pressed[mesh])], PRESS, &[])),
+            spring: [0, 1]
+                .map(|mesh| probe.slope(&[(mesh, pressed[mesh])], PROBE_COMPRESSION_M, &[])),
             damping: [0, 1].map(|mesh| {
                 let moving = [(probe.rate_of(mesh), 1.0)];
                 probe
@@ -83,7 +91,7 @@ impl Responses {
 
 /// Evaluation of the derived model at states given by their nonzero entries.
 struct Probe<'a> {
-    derived: &'a Derived<'a>,
+    derived: &'a DerivedModel<'a>,
     parameters: &'a PlanetaryArmParameters,
     order: usize,
 }

@@ -12,8 +12,8 @@ mod measure;
 mod rigid;
 mod table;
 
-pub use measure::Derived;
-pub use table::{ErrataTable, ErratumOutcome, Stated};
+pub use measure::DerivedModel;
+pub use table::{ErrataTable, ErratumOutcome, Statement};
 
 use super::equation_12::EquivalentMasses;
 use super::equation_22::Coefficients;
@@ -36,18 +36,18 @@ struct Sources {
 /// `derived(parameters, order, t, state)` returns the accelerations of x_sp, x_pr, x_c, q_1 .. q_S
 /// (m/s^2) at time t (s) and the state (coordinates in m, then their rates in m/s). It is called
 /// with orders 0 and 4.
-pub fn errata_table(derived: &Derived<'_>) -> ErrataTable {
+pub fn errata_table(derived: &DerivedModel<'_>) -> ErrataTable {
     let parameters = distinct_parameters();
     let sources = Sources {
         parameters,
         masses: EquivalentMasses::new(&parameters),
         coefficients: Coefficients::new(&parameters, PRINTED_ORDER),
-        rigid: Responses::of(derived, &parameters, 0),
-        flexible: Responses::of(derived, &parameters, PRINTED_ORDER),
+        rigid: Responses::measure(derived, &parameters, 0),
+        flexible: Responses::measure(derived, &parameters, PRINTED_ORDER),
     };
     let mut table = ErrataTable::default();
-    rigid::state(&sources, &mut table);
-    flexible::state(&sources, &mut table);
+    rigid::add_rows(&sources, &mut table);
+    flexible::add_rows(&sources, &mut table);
     consequences::state(&sources, derived, &mut table);
     table
 }

@@ -6,15 +6,15 @@ use crate::reference::evaluation::relative;
 
 /// Largest deviation of equal values: rounding of differences of accelerations, a few hundred
 /// operations at 1e-16.
-const AGREEMENT: f64 = 1e-11;
+const MAX_EQUAL_DEVIATION: f64 = 1e-11;
 
 /// Smallest deviation of different values: far above rounding, below the smallest misprint (beta_4
 /// of Eq. (18), 3e-6).
-const DIFFERENCE: f64 = 1e-6;
+const MIN_DIFFERENT_DEVIATION: f64 = 1e-6;
 
 /// Printed or corrected statement, with its value at the parameters of the table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stated {
+pub struct Statement {
     /// Formula in ASCII.
     pub text: String,
     /// Value, SI.
@@ -27,9 +27,9 @@ pub struct ErratumOutcome {
     /// Equation and compared quantity.
     pub place: String,
     /// Printed statement if it is wrong; `None` if it is correct.
-    pub printed: Option<Stated>,
+    pub printed: Option<Statement>,
     /// Statement consistent with the energies.
-    pub corrected: Stated,
+    pub corrected: Statement,
     /// Value of the derived model.
     pub derived: f64,
     /// |derived - corrected| relative to the larger of the stated magnitudes.
@@ -41,13 +41,13 @@ pub struct ErratumOutcome {
 impl ErratumOutcome {
     /// Returns true if the derived value equals the corrected value up to rounding.
     pub fn agrees_with_corrected(&self) -> bool {
-        self.deviation_from_corrected <= AGREEMENT
+        self.deviation_from_corrected <= MAX_EQUAL_DEVIATION
     }
 
     /// Returns true if the derived value differs from a wrong printed value, or if none is wrong.
     pub fn differs_from_printed(&self) -> bool {
         self.deviation_from_printed
-            .is_none_or(|deviation| deviation > DIFFERENCE)
+            .is_none_or(|deviation| deviation > MIN_DIFFERENT_DEVIATION)
     }
 
     /// Returns true if both conditions hold.
@@ -70,7 +70,7 @@ impl ErrataTable {
     }
 
     /// Adds a row with a wrong printed statement.
-    pub(super) fn misprint(
+    pub(super) fn add_misprint(
         &mut self,
         place: impl Into<String>,
         (printed_text, printed): (&str, f64),
@@ -80,11 +80,11 @@ impl ErrataTable {
         let scale = printed.abs().max(corrected.abs());
         self.rows.push(ErratumOutcome {
             place: place.into(),
-            printed: Some(Stated {
+            printed: Some(Statement {
                 text: printed_text.to_owned(),
                 value: printed,
             }),
-            corrected: Stated {
+            corrected: Statement {
                 text: corrected_text.to_owned(),
                 value: corrected,
             },
@@ -94,7 +94,7 @@ impl ErrataTable {
         });
     }
 
-    pub(super) fn correct(
+    pub(super) fn add_correct(
         &mut self,
         place: impl Into<String>,
         (text, value): (&str, f64),
@@ -103,7 +103,7 @@ impl ErrataTable {
         self.rows.push(ErratumOutcome {
             place: place.into(),
             printed: None,
-            corrected: Stated {
+            corrected: Statement {
                 text: text.to_owned(),
                 value,
             },

@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::arm::{Arm, Case};
-use super::case::{Amplitude, Length, measure};
-use super::display::{Display, WINDOW, even_times, sampled};
+use super::case::{Amplitude, RunLength, measure};
+use super::display::{FIGURE_WINDOW_S, SampledCase, even_times, sample_series};
 use super::error::StudyError;
-use super::report::{Study, case, tables};
+use super::report::{Study, case_json, tables};
 use super::responses::{Progress, paper_case};
-use differences::{convergence, numbers, table};
+use differences::{convergence, convergence_json, table};
 use plates::{chaotic, fig_4};
 use run::{
-    BACKLASH, COARSE_STEP, HIGHEST, OMEGA, REFERENCE, Run, SHORT, SHOWN, START, STATISTICS, STEP,
-    TRANSIENT,
+    BACKLASH, COARSE_INTERVAL_S, HIGHEST_ORDER, OMEGA, REFERENCE_ORDER, Run, SAMPLING_INTERVAL_S,
+    SHORT_TIME_S, SHOWN_ORDERS, START_TIME_S, STATISTICS_TIME_S, TRANSIENT_S,
 };
 
 /// Runs the study of Fig. 4 and of convergence.
@@ -33,10 +33,10 @@ use run::{
 /// # Errors
 /// A case that cannot be run, a figure that cannot be drawn.
 pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
-    let orders: Vec<usize> = (1..=HIGHEST).chain([REFERENCE]).collect();
+    let orders: Vec<usize> = (1..=HIGHEST_ORDER).chain([REFERENCE_ORDER]).collect();
     let arm = Arm::new(&orders)?;
     let done = AtomicUsize::new(0);
-    let whole = (2 * orders.len() + 2 + SHOWN.len()) as f64;
+    let whole = (2 * orders.len() + 2 + SHOWN_ORDERS.len()) as f64;
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / whole);
     let requests = [0, BACKLASH].map(|b| orders.iter().map(move |s| (b, *s)));
     let requests: Vec<(u32, usize)> = requests.into_iter().flatten().collect();
@@ -48,47 +48,55 @@ pub fn order(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     let mut tight: Vec<Run> = found.collect::<Result<_, _>>()?;
     let loose = tight.split_off(orders.len());
     let shown = [(0, 4), (0, 5)].into_iter();
-    let shown: Vec<(u32, usize)> = shown.chain(SHOWN.map(|s| (BACKLASH, s))).collect();
+    let shown: Vec<(u32, usize)> = shown.chain(SHOWN_ORDERS.map(|s| (BACKLASH, s))).collect();
     let found = shown.par_iter().map(|&(b, s)| {
         let pair = display(&arm, &paper_case(s, b, OMEGA));
         step();
         pair
     });
-    let found: Vec<(Display, Value)> = found.collect::<Result<_, StudyError>>()?;
-    let (displays, cases): (Vec<Display>, Vec<Value>) = found.into_iter().unzip();
+    let found: Vec<(SampledCase, Value)> = found.collect::<Result<_, StudyError>>()?;
+    let (displays, cases): (Vec<SampledCase>, Vec<Value>) = found.into_iter().unzip();
     let study = study(&tight, &loose, &displays, cases)?;
     Ok((study, arm))
 }
 
 fn run(arm: &Arm, each: &Case) -> Result<Run, StudyError> {
-    let mut start = sampled(arm, each, &even_times(0.0, STEP, (START / STEP) as usize))?;
+    let mut start = sample_series(
+        arm,
+        each,
+        &even_times(
+            0.0,
+            SAMPLING_INTERVAL_S,
+            (START_TIME_S / SAMPLING_INTERVAL_S) as usize,
+        ),
+    )?;
     start.modal.clear();
-    let steps = (STATISTICS / COARSE_STEP) as usize;
-    let long = even_times(TRANSIENT, COARSE_STEP, steps);
-    let long = sampled(arm, each, &long)?;
+    let steps = (STATISTICS_TIME_S / COARSE_INTERVAL_S) as usize;
+    let long = even_times(TRANSIENT_S, COARSE_INTERVAL_S, steps);
+    let long = sample_series(arm, each, &long)?;
     Ok(Run {
         order: each.order,
         start,
-        statistics: [&long.x_sp, &long.f_la, &long.dr].map(|series| Amplitude::of(series)),
+        statistics: [&long.x_sp, &long.f_la, &long.dr].map(|series| Amplitude::from_values(series)),
     })
 }
 
-fn display(arm: &Arm, each: &Case) -> Result<(Display, Value), StudyError> {
+fn display(arm: &Arm, each: &Case) -> Result<(SampledCase, Value), StudyError> {
     let (transient, report) = {
-        let measured = measure(arm, each, &Length::FULL)?;
-        (measured.transient, case(&measured))
+        let measured = measure(arm, each, &RunLength::FULL)?;
+        (measured.transient, case_json(&measured))
     };
-    Ok((Display::of(arm, each, transient)?, report))
+    Ok((SampledCase::sample(arm, each, transient)?, report))
 }
 
 fn study(
     tight: &[Run],
     loose: &[Run],
-    displays: &[Display],
+    displays: &[SampledCase],
     cases: Vec<Value>,
 ) -> Result<Study, StudyError> {
-    let whole = convergence(tight, WINDOW)?;
-    let short = convergence(loose, SHORT)?;
+    let whole = convergence(tight, FIGURE_WINDOW_S)?;
+    let short = convergence(loose, SHORT_TIME_S)?;
     let (without, with) = displays.split_at_checked(2).unwrap_or_default();
     let tables = displays.iter().flat_map(tables);
     Ok(Study {
@@ -105,19 +113,19 @@ fn study(
             )])
             .collect(),
         cases,
-        more: vec![
+        further_entries: vec![
             (
                 "convergence",
                 json!([
-                    numbers(0, WINDOW, tight, &whole),
-                    numbers(BACKLASH, SHORT, loose, &short),
+                    convergence_json(0, FIGURE_WINDOW_S, tight, &whole),
+                    convergence_json(BACKLASH, SHORT_TIME_S, loose, &short),
                 ]),
             ),
             (
                 "notes",
                 json!([
                     format!(
-                        "differences are rms over the given seconds from the start at rest, to S = {REFERENCE}; lengths in m"
+                        "differences are rms over the given seconds from the start at rest, to S = {REFERENCE_ORDER}; lengths in m"
                     ),
                     "without backlash the machine is linear and the series converge at every time",
                     "with backlash the motion is chaotic and two orders diverge exponentially: the series converge over a short time only, the statistics over a long time",

@@ -1,30 +1,35 @@
 //! Figures of the study: Fig. 4, and convergence of chaotic motion.
 
-use crate::studies::display::{Display, WINDOW};
+use crate::studies::display::{FIGURE_WINDOW_S, SampledCase};
 use crate::studies::error::StudyError;
-use crate::studies::figures::{Heading, above_floor, density_panel, figure, marks};
-use crate::studies::report::{Figure, id};
+use crate::studies::figures::{
+    Heading, density_panel, draw_frames, frequency_marks, raise_to_floor,
+};
+use crate::studies::report::{Figure, case_name};
 use eomgen_plot::{Axes, Frame, Panel, Series};
 
-use super::differences::{Convergence, NAMES, at, largest, statistics};
-use super::run::{BACKLASH, REFERENCE, Run, SHORT, SHOWN, STATISTICS, STEP, TRANSIENT};
+use super::differences::{Convergence, NAMES, largest_differences, run_at_order, statistics};
+use super::run::{
+    BACKLASH, REFERENCE_ORDER, Run, SAMPLING_INTERVAL_S, SHORT_TIME_S, SHOWN_ORDERS,
+    STATISTICS_TIME_S, TRANSIENT_S,
+};
 
 /// Draws dr without backlash with four and five modes, as in Fig. 4, and the convergence of the
 /// series.
 pub(super) fn fig_4(
     runs: &[Run],
-    displays: &[Display],
+    displays: &[SampledCase],
     convergence: &Convergence,
 ) -> Result<Figure, StudyError> {
-    let (four, five) = (&at(runs, 4)?.start, &at(runs, 5)?.start);
+    let (four, five) = (&run_at_order(runs, 4)?.start, &run_at_order(runs, 5)?.start);
     // One second.
-    let count = ((1.0 / STEP) as usize + 1).min(four.dr.len());
+    let count = ((1.0 / SAMPLING_INTERVAL_S) as usize + 1).min(four.dr.len());
     let first = |values: &[f64]| values.get(..count).unwrap_or_default().to_vec();
     let (t, dr_4, dr_5) = (first(&four.times), first(&four.dr), first(&five.dr));
     let difference: Vec<f64> = dr_5.iter().zip(&dr_4).map(|(a, b)| a - b).collect();
     let drawn: Vec<Vec<f64>> = displays
         .iter()
-        .map(|d| above_floor(&d.dr.density))
+        .map(|d| raise_to_floor(&d.dr.density))
         .collect();
     let frames = vec![
         Frame {
@@ -47,7 +52,7 @@ pub(super) fn fig_4(
             &[("", &difference)],
         ),
         over_order(
-            &format!("(d) rms difference to S = {REFERENCE}"),
+            &format!("(d) rms difference to S = {REFERENCE_ORDER}"),
             "m",
             "rms difference",
             convergence,
@@ -59,29 +64,32 @@ pub(super) fn fig_4(
         caption: format!(
             "Deformation dr of the arm's end without backlash, omega = 10 pi rad/s, S = 4 and S = 5: from the \
              start at rest (a), its spectrum after the transient (b), the difference of the two (c), \
-             and rms differences to S = {REFERENCE} over {WINDOW} s from the start (d), where f_la lies on dr"
+             and rms differences to S = {REFERENCE_ORDER} over {FIGURE_WINDOW_S} s from the start (d), where f_la lies on dr"
         ),
     };
-    figure(heading, ids(displays), frames)
+    draw_frames(heading, ids(displays), frames)
 }
 
 /// Draws the convergence with backlash: over time, over a short time, and of long-time statistics.
 pub(super) fn chaotic(
     runs: &[Run],
-    displays: &[Display],
+    displays: &[SampledCase],
     convergence: &Convergence,
 ) -> Result<Figure, StudyError> {
-    let reference = &at(runs, REFERENCE)?.start;
-    let mut growths = Vec::with_capacity(SHOWN.len());
-    for order in SHOWN {
-        growths.push((order, largest(&at(runs, order)?.start, reference)));
+    let reference = &run_at_order(runs, REFERENCE_ORDER)?.start;
+    let mut growths = Vec::with_capacity(SHOWN_ORDERS.len());
+    for order in SHOWN_ORDERS {
+        growths.push((
+            order,
+            largest_differences(&run_at_order(runs, order)?.start, reference),
+        ));
     }
     let curves = growths.iter().map(|(order, (times, values))| Series {
         label: format!("S = {order}"),
         abscissa: times,
         values,
     });
-    let title = format!("(a) difference of x_sp to S = {REFERENCE}");
+    let title = format!("(a) difference of x_sp to S = {REFERENCE_ORDER}");
     let growth = Frame {
         panel: panel(&title, "difference", curves.collect()),
         axes: Axes::Growth,
@@ -90,19 +98,19 @@ pub(super) fn chaotic(
     let statistics = statistics(runs)?;
     let drawn: Vec<Vec<f64>> = displays
         .iter()
-        .map(|d| above_floor(&d.f_la.density))
+        .map(|d| raise_to_floor(&d.f_la.density))
         .collect();
-    let milliseconds = SHORT * 1e3;
+    let milliseconds = SHORT_TIME_S * 1e3;
     let frames = vec![
         growth,
         over_order(
-            &format!("(b) rms difference to S = {REFERENCE} over {milliseconds:.0} ms"),
+            &format!("(b) rms difference to S = {REFERENCE_ORDER} over {milliseconds:.0} ms"),
             "m",
             "rms difference",
             convergence,
         ),
         over_order(
-            &format!("(c) rms over {STATISTICS:.0} s, relative to S = {REFERENCE}"),
+            &format!("(c) rms over {STATISTICS_TIME_S:.0} s, relative to S = {REFERENCE_ORDER}"),
             "",
             "relative difference",
             &statistics,
@@ -114,15 +122,18 @@ pub(super) fn chaotic(
         paper: String::new(),
         caption: format!(
             "Convergence over the modal truncation order with b = {BACKLASH} um, omega = 10 pi rad/s, where the motion is chaotic: \
-             orders part exponentially (a, the largest difference in each 5 ms); differences over {SHORT} s from the start (b), where f_la lies on dr; rms over \
-             {STATISTICS} s after {TRANSIENT} s, compared with S = {REFERENCE} (c) and the spectrum of f_la (d)"
+             orders part exponentially (a, the largest difference in each 5 ms); differences over {SHORT_TIME_S} s from the start (b), where f_la lies on dr; rms over \
+             {STATISTICS_TIME_S} s after {TRANSIENT_S} s, compared with S = {REFERENCE_ORDER} (c) and the spectrum of f_la (d)"
         ),
     };
-    figure(heading, ids(displays), frames)
+    draw_frames(heading, ids(displays), frames)
 }
 
-fn ids(displays: &[Display]) -> Vec<String> {
-    displays.iter().map(|display| id(&display.case)).collect()
+fn ids(displays: &[SampledCase]) -> Vec<String> {
+    displays
+        .iter()
+        .map(|display| case_name(&display.case))
+        .collect()
 }
 
 fn panel<'a>(title: &str, quantity: &str, series: Vec<Series<'a>>) -> Panel<'a> {
@@ -172,7 +183,7 @@ fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) 
 /// Returns the spectra of dr or f_la, which have the same frequencies.
 fn spectra<'a>(
     letter: &str,
-    displays: &'a [Display],
+    displays: &'a [SampledCase],
     drawn: &'a [Vec<f64>],
     of: &str,
 ) -> Frame<'a> {
@@ -186,7 +197,7 @@ fn spectra<'a>(
     Frame {
         panel,
         axes: Axes::Frequency,
-        marks: displays.last().map_or_else(Vec::new, marks),
+        marks: displays.last().map_or_else(Vec::new, frequency_marks),
         ..Frame::default()
     }
 }

@@ -5,24 +5,24 @@ use std::f64::consts::PI;
 use crate::studies::case::{Amplitude, Record};
 
 /// Highest compared order, and the reference order.
-pub const HIGHEST: usize = 16;
-pub const REFERENCE: usize = 32;
+pub const HIGHEST_ORDER: usize = 16;
+pub const REFERENCE_ORDER: usize = 32;
 /// Forcing frequency, rad/s, which the paper does not give for Fig. 4, and half-backlash of the
 /// chaotic case, um.
 pub const OMEGA: f64 = 10.0 * PI;
 pub const BACKLASH: u32 = 25;
 /// Sampling intervals, s: for series, and for long-time statistics.
-pub const STEP: f64 = 1.0 / 20_480.0;
-pub const COARSE_STEP: f64 = 1.0 / 4_096.0;
+pub const SAMPLING_INTERVAL_S: f64 = 1.0 / 20_480.0;
+pub const COARSE_INTERVAL_S: f64 = 1.0 / 4_096.0;
 /// Recorded time from the start, s.
-pub const START: f64 = 6.0;
+pub const START_TIME_S: f64 = 6.0;
 /// Time from the start for differences with backlash, s.
-pub const SHORT: f64 = 0.02;
+pub const SHORT_TIME_S: f64 = 0.02;
 /// Time of the statistics and of the transient before them, s.
-pub const STATISTICS: f64 = 40.0;
-pub const TRANSIENT: f64 = 60.0;
+pub const STATISTICS_TIME_S: f64 = 40.0;
+pub const TRANSIENT_S: f64 = 60.0;
 /// Orders in the figures of differences and spectra.
-pub const SHOWN: [usize; 4] = [1, 4, 5, 16];
+pub const SHOWN_ORDERS: [usize; 4] = [1, 4, 5, 16];
 
 /// Series of one order at one backlash.
 pub struct Run {

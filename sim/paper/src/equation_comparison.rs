@@ -10,8 +10,8 @@ use eomgen_model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterVal
 ///
 /// A parameter that `known` derives from others may have any value if it is among `given`. Other
 /// derived parameters must be derived in the same way.
-pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String> {
-    let pair = Pair { model, known };
+pub fn first_difference(model: &Model, known: &Model, given: &[&str]) -> Option<String> {
+    let pair = ModelPair { model, known };
     pair.coordinates()
         .or_else(|| pair.inputs())
         .or_else(|| pair.states())
@@ -23,18 +23,18 @@ pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String
         .or_else(|| pair.derived_parameters(given))
 }
 
-struct Pair<'m> {
+struct ModelPair<'m> {
     model: &'m Model,
     known: &'m Model,
 }
 
-impl Pair<'_> {
+impl ModelPair<'_> {
     fn coordinates(&self) -> Option<String> {
         let names = |model: &Model| -> Vec<String> {
             let coordinates = model.coordinates.iter();
             coordinates.map(|known| known.name.clone()).collect()
         };
-        listed("coordinates", &names(self.model), &names(self.known))
+        name_difference("coordinates", &names(self.model), &names(self.known))
     }
 
     fn inputs(&self) -> Option<String> {
@@ -42,7 +42,7 @@ impl Pair<'_> {
             let inputs = model.inputs.iter();
             inputs.map(|input| input.name.clone()).collect()
         };
-        listed("inputs", &names(self.model), &names(self.known))
+        name_difference("inputs", &names(self.model), &names(self.known))
     }
 
     fn states(&self) -> Option<String> {
@@ -50,9 +50,9 @@ impl Pair<'_> {
             let states = model.states.iter();
             states.map(|state| state.name.clone()).collect()
         };
-        listed("states", &names(self.model), &names(self.known)).or_else(|| {
+        name_difference("states", &names(self.model), &names(self.known)).or_else(|| {
             let mut pairs = self.model.states.iter().zip(self.known.states.iter());
-            let other = pairs.find(|(state, known)| !self.same(&state.rate, &known.rate));
+            let other = pairs.find(|(state, known)| !self.is_same(&state.rate, &known.rate));
             other.map(|(state, _)| format!("the rate of its state `{}` differs", state.name))
         })
     }
@@ -61,24 +61,24 @@ impl Pair<'_> {
         let (fields, known) = (&self.model.fields, &self.known.fields);
         let alike = |(field, known): (&Field, &Field)| {
             field.basis == known.basis
-                && self.same(&field.from, &known.from)
-                && self.same(&field.to, &known.to)
+                && self.is_same(&field.from, &known.from)
+                && self.is_same(&field.to, &known.to)
         };
         (fields.len() != known.len() || !fields.iter().zip(known).all(alike))
             .then(|| "its fields, their domains or bases differ".to_owned())
     }
 
     fn terms(&self, section: &str, terms: &[Term], known: &[Term]) -> Option<String> {
-        let same = |term: &Term, known: &Term| self.same(&term.value, &known.value);
-        matched(section, terms, known, same, |term| &term.name)
+        let same = |term: &Term, known: &Term| self.is_same(&term.value, &known.value);
+        unmatched_entry(section, terms, known, same, |term| &term.name)
     }
 
     fn forces(&self) -> Option<String> {
         let same = |force: &Force, known: &Force| {
-            self.same(&force.on, &known.on) && self.same(&force.value, &known.value)
+            self.is_same(&force.on, &known.on) && self.is_same(&force.value, &known.value)
         };
         let (forces, known) = (&self.model.forces, &self.known.forces);
-        matched("forces", forces, known, same, |force| &force.name)
+        unmatched_entry("forces", forces, known, same, |force| &force.name)
     }
 
     /// Returns a difference in a derived parameter that is not among `given`.
@@ -92,7 +92,7 @@ impl Pair<'_> {
         for (name, value) in derived {
             let own = self.model.parameters.iter().find(|own| own.name == *name);
             let alike = own.is_none_or(|own| match &own.value {
-                ParameterValue::Expression(own) => self.same(own, value),
+                ParameterValue::Expression(own) => self.is_same(own, value),
                 ParameterValue::Number(_) => false,
             });
             if !alike {
@@ -104,34 +104,37 @@ impl Pair<'_> {
 
     /// Compares two expressions with definitions expanded. The recursion is bounded by the size of
     /// the known expression, even if the definitions of this model share parts.
-    fn same(&self, left: &Expr, right: &Expr) -> bool {
+    fn is_same(&self, left: &Expr, right: &Expr) -> bool {
         use ExprKind as K;
         if let K::Definition(index) = left.kind {
             let definition = self.model.definitions.get(index.index());
-            return definition.is_some_and(|own| self.same(&own.value, right));
+            return definition.is_some_and(|own| self.is_same(&own.value, right));
         }
-        let right = self.written_out(right);
+        let right = self.resolve_definitions(right);
         match (&left.kind, &right.kind) {
             (K::Parameter(own), K::Parameter(known)) => {
                 self.model.parameters.get(own.index()).map(|p| &p.name)
                     == self.known.parameters.get(known.index()).map(|p| &p.name)
             }
             (K::Dot(left), K::Dot(right)) | (K::Negate(left), K::Negate(right)) => {
-                self.same(left, right)
+                self.is_same(left, right)
             }
             (K::Diff(left, times), K::Diff(right, other)) => {
-                times == other && self.same(left, right)
+                times == other && self.is_same(left, right)
             }
             (K::At { .. }, K::At { .. })
             | (K::Integral { .. }, K::Integral { .. })
-            | (K::Sum { .. }, K::Sum { .. }) => self.same_in_field(&left.kind, &right.kind),
+            | (K::Sum { .. }, K::Sum { .. }) => self.is_same_in_field(&left.kind, &right.kind),
             (K::Binary(operator, a, b), K::Binary(other, c, d)) => {
-                operator == other && self.same(a, c) && self.same(b, d)
+                operator == other && self.is_same(a, c) && self.is_same(b, d)
             }
             (K::Call(function, arguments), K::Call(other, others)) => {
                 function == other
                     && arguments.len() == others.len()
-                    && arguments.iter().zip(others).all(|(a, b)| self.same(a, b))
+                    && arguments
+                        .iter()
+                        .zip(others)
+                        .all(|(a, b)| self.is_same(a, b))
             }
             // Leaves. Coordinates, inputs, states and fields were compared before.
             (left, right) => left == right,
@@ -139,7 +142,7 @@ impl Pair<'_> {
     }
 
     /// Compares expressions that belong to a field.
-    fn same_in_field(&self, left: &ExprKind, right: &ExprKind) -> bool {
+    fn is_same_in_field(&self, left: &ExprKind, right: &ExprKind) -> bool {
         use ExprKind as K;
         match (left, right) {
             (
@@ -153,27 +156,27 @@ impl Pair<'_> {
                     value: known,
                     position: place,
                 },
-            ) => field == other && self.same(value, known) && self.same(position, place),
+            ) => field == other && self.is_same(value, known) && self.is_same(position, place),
             (
                 K::Integral { field, integrand },
                 K::Integral {
                     field: other,
                     integrand: known,
                 },
-            ) => field == other && self.same(integrand, known),
+            ) => field == other && self.is_same(integrand, known),
             (
                 K::Sum { field, summand },
                 K::Sum {
                     field: other,
                     summand: known,
                 },
-            ) => field == other && self.same(summand, known),
+            ) => field == other && self.is_same(summand, known),
             _ => false,
         }
     }
 
     /// Follows references to definitions.
-    fn written_out<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
+    fn resolve_definitions<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
         while let ExprKind::Definition(index) = expression.kind {
             let Some(definition) = self.known.definitions.get(index.index()) else {
                 break;
@@ -185,7 +188,7 @@ impl Pair<'_> {
 }
 
 /// Returns a difference between two lists of names.
-fn listed(what: &str, own: &[String], known: &[String]) -> Option<String> {
+fn name_difference(what: &str, own: &[String], known: &[String]) -> Option<String> {
     (own != known).then(|| {
         let names = |names: &[String]| {
             if names.is_empty() {
@@ -199,7 +202,7 @@ fn listed(what: &str, own: &[String], known: &[String]) -> Option<String> {
 }
 
 /// Returns the first entry of one list without a partner in the other.
-fn matched<T>(
+fn unmatched_entry<T>(
     section: &str,
     own: &[T],
     known: &[T],
