@@ -77,9 +77,9 @@ fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<All
     Ok(Some(AllowedMatrices {
         count: allowed.count(),
         n: row_by_row(allowed.basis()),
-        a: allowed.of_states(&found.a),
-        b: allowed.of_inputs(&found.b, inputs.len()),
-        c: allowed.of_outputs(&found.c, found.observables.len()),
+        a: allowed.reduce_state_matrix(&found.a),
+        b: allowed.reduce_input_matrix(&found.b, inputs.len()),
+        c: allowed.reduce_output_matrix(&found.c, found.observables.len()),
     }))
 }
 

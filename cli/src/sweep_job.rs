@@ -23,7 +23,10 @@ pub fn input_error(error: SweepError) -> Error {
 }
 
 fn unknown_measure(name: &str) -> Error {
-    let known = MEASURES.map(str::to_owned).into_iter().chain(measure_names());
+    let known = MEASURES
+        .map(str::to_owned)
+        .into_iter()
+        .chain(measure_names());
     let known: Vec<String> = known.collect();
     Error::input(format!(
         "--measure {name}: unknown measure; expected one of {}",

@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 
 use crate::error::AnalysisError;
-use crate::null_space::{null_space, with_rows_of_one_size};
+use crate::null_space::{equilibrate_rows, null_space};
 
 /// The motions that satisfy linearised constraints.
 pub struct AllowedMotions {
@@ -23,13 +23,13 @@ impl AllowedMotions {
     pub fn new(held: &[f64], states: usize) -> Result<Self, AnalysisError> {
         if states == 0 || !held.len().is_multiple_of(states) {
             let (expected, given) = (states, held.len());
-            return Err(AnalysisError::Lengths { expected, given });
+            return Err(AnalysisError::LengthMismatch { expected, given });
         }
         if let Some(sample) = held.iter().position(|entry| !entry.is_finite()) {
             return Err(AnalysisError::NotFinite { sample });
         }
         let held = DMatrix::from_row_slice(held.len() / states, states, held);
-        let rows = with_rows_of_one_size(held);
+        let rows = equilibrate_rows(held);
         let basis = null_space(&(rows.transpose() * &rows));
         let basis = basis.ok_or_else(|| AnalysisError::not_converged(&rows))?;
         Ok(Self { basis })
@@ -46,20 +46,20 @@ impl AllowedMotions {
     }
 
     /// Computes N^T A N, row by row, from a square A.
-    pub fn of_states(&self, a: &[f64]) -> Vec<f64> {
+    pub fn reduce_state_matrix(&self, a: &[f64]) -> Vec<f64> {
         let states = self.basis.nrows();
         let a = DMatrix::from_row_slice(states, states, a);
         row_by_row(&(self.basis.transpose() * a * &self.basis))
     }
 
     /// Computes N^T B, row by row.
-    pub fn of_inputs(&self, b: &[f64], inputs: usize) -> Vec<f64> {
+    pub fn reduce_input_matrix(&self, b: &[f64], inputs: usize) -> Vec<f64> {
         let b = DMatrix::from_row_slice(self.basis.nrows(), inputs, b);
         row_by_row(&(self.basis.transpose() * b))
     }
 
     /// Computes C N, row by row.
-    pub fn of_outputs(&self, c: &[f64], outputs: usize) -> Vec<f64> {
+    pub fn reduce_output_matrix(&self, c: &[f64], outputs: usize) -> Vec<f64> {
         let c = DMatrix::from_row_slice(outputs, self.basis.nrows(), c);
         row_by_row(&(c * &self.basis))
     }
@@ -86,11 +86,12 @@ mod tests {
         let held = [[0.0, 3e5, 0.0, 0.0], [0.0, 0.0, 0.0, 1e-3]];
         let allowed = AllowedMotions::new(held.as_flattened(), 4).unwrap();
         assert_eq!(allowed.count(), 2);
-        let reduced = DMatrix::from_row_slice(2, 2, &allowed.of_states(a.as_flattened()));
+        let reduced = DMatrix::from_row_slice(2, 2, &allowed.reduce_state_matrix(a.as_flattened()));
         assert!((reduced.determinant() - 9.0).abs() < 1e-12 && reduced.trace().abs() < 1e-12);
-        let b = DMatrix::from_row_slice(2, 1, &allowed.of_inputs(&[0.0, 0.0, 2.0, 0.0], 1));
+        let b =
+            DMatrix::from_row_slice(2, 1, &allowed.reduce_input_matrix(&[0.0, 0.0, 2.0, 0.0], 1));
         let c = [1.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0, 0.0];
-        let c = DMatrix::from_row_slice(2, 2, &allowed.of_outputs(&c, 2));
+        let c = DMatrix::from_row_slice(2, 2, &allowed.reduce_output_matrix(&c, 2));
         // Transfer function at s = 1: 2/(1 + 9) from u to x, 0 from u to y.
         let inverse = (DMatrix::identity(2, 2) - reduced).try_inverse().unwrap();
         let gain = c * inverse * b;

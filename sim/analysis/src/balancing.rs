@@ -12,7 +12,7 @@ const MAX_SWEEPS: usize = 100;
 
 /// A state matrix in scaled states and scaled time.
 #[derive(Clone, Debug)]
-pub struct Balanced {
+pub struct BalancedMatrix {
     /// Scaled matrix T D^-1 A D.
     pub matrix: DMatrix<f64>,
     /// Diagonal of D: unit of each scaled state, relative to the largest.
@@ -21,7 +21,7 @@ pub struct Balanced {
     time: i32,
 }
 
-impl Balanced {
+impl BalancedMatrix {
     /// Balances a square matrix of finite numbers.
     pub fn new(matrix: &DMatrix<f64>) -> Self {
         let exponents = Exponents::new(matrix);
@@ -130,7 +130,7 @@ mod tests {
     fn balancing_equalises_entries_of_any_size() {
         for stiffness in [1e-300, 1e-200, 1.0, 1e150, 1e300] {
             let matrix = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -stiffness, 0.0]);
-            let balanced = Balanced::new(&matrix);
+            let balanced = BalancedMatrix::new(&matrix);
             let [up, down] = [balanced.matrix[(0, 1)], -balanced.matrix[(1, 0)]];
             assert!(up / down >= 0.25 && up / down <= 4.0 && up.max(down) >= 1.0);
             let frequency = balanced.per_second((up * down).sqrt());

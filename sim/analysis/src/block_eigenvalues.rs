@@ -14,7 +14,7 @@ use crate::qr_iteration;
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let speeds: Vec<f64> = matrix.row_iter().map(|row| row.amax()).collect();
     let mut all = Vec::with_capacity(matrix.nrows());
-    for mut group in groups(&coupled(matrix, &speeds)) {
+    for mut group in strongly_connected_groups(&state_dependencies(matrix, &speeds)) {
         group.sort_by(|a, b| speeds[*b].total_cmp(&speeds[*a]));
         let block = DMatrix::from_fn(group.len(), group.len(), |row, column| {
             matrix[(group[row], group[column])]
@@ -29,7 +29,7 @@ pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
 
 /// Returns, for each state, the states that its rate depends on. Entries below the rounding of both
 /// rates are ignored.
-fn coupled(matrix: &DMatrix<f64>, speeds: &[f64]) -> Vec<Vec<usize>> {
+fn state_dependencies(matrix: &DMatrix<f64>, speeds: &[f64]) -> Vec<Vec<usize>> {
     let counts = |row: usize, column: usize| {
         matrix[(row, column)].abs() > f64::EPSILON * speeds[row].min(speeds[column])
     };
@@ -47,7 +47,7 @@ fn coupled(matrix: &DMatrix<f64>, speeds: &[f64]) -> Vec<Vec<usize>> {
 
 /// Returns the groups of mutually dependent states (strongly connected components, by S. R.
 /// Kosaraju's two searches).
-fn groups(depends_on: &[Vec<usize>]) -> Vec<Vec<usize>> {
+fn strongly_connected_groups(depends_on: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut needed_by = vec![Vec::new(); depends_on.len()];
     for (state, others) in depends_on.iter().enumerate() {
         for other in others {
@@ -57,19 +57,24 @@ fn groups(depends_on: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; depends_on.len()];
     let mut order = Vec::with_capacity(depends_on.len());
     for state in 0..depends_on.len() {
-        search(depends_on, state, &mut seen, &mut order);
+        append_reachable(depends_on, state, &mut seen, &mut order);
     }
     seen.fill(false);
     let found = order.into_iter().rev().map(|state| {
         let mut group = Vec::new();
-        search(&needed_by, state, &mut seen, &mut group);
+        append_reachable(&needed_by, state, &mut seen, &mut group);
         group
     });
     found.filter(|group| !group.is_empty()).collect()
 }
 
 /// Appends all unseen nodes reachable from `state`, each after its successors.
-fn search(next: &[Vec<usize>], state: usize, seen: &mut [bool], finished: &mut Vec<usize>) {
+fn append_reachable(
+    next: &[Vec<usize>],
+    state: usize,
+    seen: &mut [bool],
+    finished: &mut Vec<usize>,
+) {
     if std::mem::replace(&mut seen[state], true) {
         return;
     }
@@ -98,7 +103,7 @@ mod tests {
     #[test]
     fn mutually_dependent_states_form_a_group() {
         // 0 and 2 depend on each other, 1 on 0, 3 on none.
-        let found = groups(&[vec![2], vec![0], vec![0], vec![]]);
+        let found = strongly_connected_groups(&[vec![2], vec![0], vec![0], vec![]]);
         let mut found: Vec<Vec<usize>> = found
             .into_iter()
             .map(|mut group| {

@@ -49,21 +49,21 @@ pub struct Verdict {
 
 /// Least growth per forcing period that counts as growth: a factor e in 100 periods. The exponent
 /// of a neutral direction in a finite record is smaller.
-pub const LEAST_GROWTH: f64 = 0.01;
+pub const MIN_GROWTH_PER_PERIOD: f64 = 0.01;
 /// Largest growth per forcing period that the error of an exponent near zero may hide.
-pub const HIDDEN_GROWTH: f64 = 0.1;
+pub const MAX_HIDDEN_GROWTH_PER_PERIOD: f64 = 0.1;
 /// Number of standard errors of a significant exponent.
-pub const SIGNIFICANCE: f64 = 3.0;
+pub const SIGNIFICANT_STANDARD_ERRORS: f64 = 3.0;
 /// Smallest K that indicates chaos without further evidence.
-pub const CHAOS: f64 = 0.8;
+pub const MIN_CHAOTIC_K: f64 = 0.8;
 /// Largest K that indicates regular motion without further evidence.
-pub const REGULAR: f64 = 0.2;
+pub const MAX_REGULAR_K: f64 = 0.2;
 /// Limit for K if the spectrum gives the same indication.
-pub const MIDDLE: f64 = 0.5;
+pub const K_LIMIT_WITH_SPECTRUM: f64 = 0.5;
 /// Largest share of spectral lines in a continuous spectrum.
-pub const CONTINUOUS: f64 = 0.5;
+pub const MAX_CONTINUOUS_LINE_SHARE: f64 = 0.5;
 /// Smallest share of spectral lines in a discrete spectrum.
-pub const DISCRETE: f64 = 0.9;
+pub const MIN_DISCRETE_LINE_SHARE: f64 = 0.9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Growth {
@@ -93,13 +93,13 @@ pub fn classify(evidence: &Evidence) -> Verdict {
     let (motion, reason) = judge(evidence);
     Verdict {
         motion,
-        sentence: format!("{motion}: {reason} ({}).", Numbers(evidence)),
+        sentence: format!("{motion}: {reason} ({}).", EvidenceNumbers(evidence)),
     }
 }
 
 fn judge(evidence: &Evidence) -> (Motion, &'static str) {
-    let k = finite(evidence.chaos_indicator);
-    let lines = finite(evidence.line_share);
+    let k = only_finite(evidence.chaos_indicator);
+    let lines = only_finite(evidence.line_share);
     match (growth(evidence), evidence.period, k) {
         (Growth::Unknown, ..) => (Motion::Undecided, "the exponent is not known well enough"),
         (Growth::Positive, Some(_), _) => (
@@ -117,11 +117,11 @@ fn judge(evidence: &Evidence) -> (Motion, &'static str) {
 }
 
 fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
-    let is_continuous = lines.is_some_and(|share| share < CONTINUOUS);
-    if k >= CHAOS {
+    let is_continuous = lines.is_some_and(|share| share < MAX_CONTINUOUS_LINE_SHARE);
+    if k >= MIN_CHAOTIC_K {
         let reason = "neighbouring motions separate and the section diffuses";
         (Motion::Chaotic, reason)
-    } else if k >= MIDDLE && is_continuous {
+    } else if k >= K_LIMIT_WITH_SPECTRUM && is_continuous {
         let reason = "neighbouring motions separate and the spectrum is continuous";
         (Motion::Chaotic, reason)
     } else {
@@ -131,12 +131,12 @@ fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
 }
 
 fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
-    let is_discrete = lines.is_some_and(|share| share > DISCRETE);
-    if k <= REGULAR {
+    let is_discrete = lines.is_some_and(|share| share > MIN_DISCRETE_LINE_SHARE);
+    if k <= MAX_REGULAR_K {
         let reason = "neighbouring motions stay together and the section neither repeats nor \
                       diffuses";
         (Motion::QuasiPeriodic, reason)
-    } else if k <= MIDDLE && is_discrete {
+    } else if k <= K_LIMIT_WITH_SPECTRUM && is_discrete {
         let reason = "neighbouring motions stay together, the section does not repeat and the \
                       spectrum has lines only";
         (Motion::QuasiPeriodic, reason)
@@ -155,20 +155,20 @@ fn growth(evidence: &Evidence) -> Growth {
         return Growth::Unknown;
     };
     let per_second = evidence.forcing / TAU;
-    let hidden = SIGNIFICANCE * standard_error;
-    let least = hidden.max(LEAST_GROWTH * per_second);
+    let hidden = SIGNIFICANT_STANDARD_ERRORS * standard_error;
+    let least = hidden.max(MIN_GROWTH_PER_PERIOD * per_second);
     let is_known =
         value.is_finite() && hidden.is_finite() && per_second.is_finite() && per_second > 0.0;
     if is_known && value > least {
         Growth::Positive
-    } else if is_known && value + hidden <= HIDDEN_GROWTH * per_second {
+    } else if is_known && value + hidden <= MAX_HIDDEN_GROWTH_PER_PERIOD * per_second {
         Growth::NotPositive
     } else {
         Growth::Unknown
     }
 }
 
-fn finite(number: Option<f64>) -> Option<f64> {
+fn only_finite(number: Option<f64>) -> Option<f64> {
     number.filter(|number| number.is_finite())
 }
 
@@ -188,9 +188,9 @@ impl fmt::Display for Motion {
     }
 }
 
-struct Numbers<'a>(&'a Evidence);
+struct EvidenceNumbers<'a>(&'a Evidence);
 
-impl fmt::Display for Numbers<'_> {
+impl fmt::Display for EvidenceNumbers<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Evidence {
             exponent,
@@ -209,7 +209,7 @@ impl fmt::Display for Numbers<'_> {
             )?,
             None => write!(f, "no exponent")?,
         }
-        match finite(*chaos_indicator) {
+        match only_finite(*chaos_indicator) {
             Some(k) => write!(f, "; 0-1 test K = {k:.2}")?,
             None => write!(f, "; no 0-1 test")?,
         }
@@ -218,7 +218,7 @@ impl fmt::Display for Numbers<'_> {
             Some(period) => write!(f, "; period {period} forcing periods")?,
             None => write!(f, "; no period found")?,
         }
-        match finite(*line_share) {
+        match only_finite(*line_share) {
             Some(share) => write!(
                 f,
                 "; {:.0} % of the power outside the forcing harmonics in spectral lines",

@@ -6,12 +6,14 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::allowed_motions::{AllowedMotions, row_by_row};
-use crate::balancing::Balanced;
+use crate::balancing::BalancedMatrix;
 use crate::block_eigenvalues;
 use crate::error::AnalysisError;
 use crate::independent_parts::independent_parts;
-use crate::inverse_iteration::{SparseRows, null_vector_at};
-use crate::natural_modes::{NaturalMode, connected_modes, equal, gather, natural_modes};
+use crate::inverse_iteration::{SparseRows, null_vector};
+use crate::natural_modes::{
+    NaturalMode, collect_modes, connected_modes, natural_modes, vectors_of_eigenvalue,
+};
 use crate::null_space::{null_space, zero_eigenvalues};
 
 /// Computes the natural modes of d(q, q', z)/dt = A (q, q', z), subject to C (q, q', z) = 0, lowest
@@ -31,7 +33,7 @@ pub fn constrained_modes(
     }
     if states * states != matrix.len() || !held.len().is_multiple_of(states) {
         let (expected, given) = (states * states, matrix.len());
-        return Err(AnalysisError::Lengths { expected, given });
+        return Err(AnalysisError::LengthMismatch { expected, given });
     }
     if let Some(sample) = matrix.iter().position(|entry| !entry.is_finite()) {
         return Err(AnalysisError::NotFinite { sample });
@@ -39,19 +41,21 @@ pub fn constrained_modes(
     let matrix = DMatrix::from_row_slice(states, states, matrix);
     let held = DMatrix::from_row_slice(held.len() / states, states, held);
     let parts = independent_parts(&matrix, &held, degrees);
-    gather(states - degrees, parts, |part| match part.held.nrows() {
-        0 => connected_modes(&part.matrix, part.degrees),
-        _ => modes_within(&part.matrix, &part.held, part.degrees),
+    collect_modes(states - degrees, parts, |part| {
+        match part.constraints.nrows() {
+            0 => connected_modes(&part.matrix, part.degrees),
+            _ => constrained_modes_of_part(&part.matrix, &part.constraints, part.degrees),
+        }
     })
 }
 
-fn modes_within(
+fn constrained_modes_of_part(
     matrix: &DMatrix<f64>,
     held: &DMatrix<f64>,
     degrees: usize,
 ) -> Result<Vec<NaturalMode>, AnalysisError> {
     let states = matrix.nrows();
-    let balanced = Balanced::new(matrix);
+    let balanced = BalancedMatrix::new(matrix);
     let not_converged = || AnalysisError::not_converged(matrix);
     let sizes = balanced.sizes.iter().cycle();
     let held: Vec<f64> = row_by_row(held)
@@ -87,7 +91,11 @@ fn modes_within(
     };
     let moving = eigenvalues.into_iter().skip(count);
     for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {
-        let motion = null_vector_at(shifted, eigenvalue, &equal(&modes, eigenvalue));
+        let motion = null_vector(
+            shifted,
+            eigenvalue,
+            &vectors_of_eigenvalue(&modes, eigenvalue),
+        );
         modes.push((eigenvalue, motion));
     }
     let mut in_si = allowed.map(Complex::from);

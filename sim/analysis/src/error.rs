@@ -20,7 +20,7 @@ pub enum AnalysisError {
         sample: usize,
     },
     /// Related slices have different lengths.
-    Lengths {
+    LengthMismatch {
         /// Length of the first slice.
         expected: usize,
         /// Length of the other slice.
@@ -29,7 +29,7 @@ pub enum AnalysisError {
     /// A length, a step or a scale is not positive.
     NotPositive {
         /// Name of the quantity.
-        what: &'static str,
+        quantity: &'static str,
     },
     /// The eigenvalue iteration did not converge.
     NotConverged {
@@ -67,10 +67,10 @@ impl fmt::Display for AnalysisError {
                 )
             }
             Self::NotFinite { sample } => write!(f, "value {sample} of the series is not finite"),
-            Self::Lengths { expected, given } => {
+            Self::LengthMismatch { expected, given } => {
                 write!(f, "a series has {given} values instead of {expected}")
             }
-            Self::NotPositive { what } => write!(f, "{what} must be positive and finite"),
+            Self::NotPositive { quantity: what } => write!(f, "{what} must be positive and finite"),
             Self::NotConverged { decades } => write!(
                 f,
                 "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; \
@@ -87,7 +87,7 @@ impl fmt::Display for AnalysisError {
 impl std::error::Error for AnalysisError {}
 
 /// Rejects fewer than `needed` values, and values whose squares overflow.
-pub(super) fn check(values: &[f64], needed: usize) -> Result<(), AnalysisError> {
+pub(super) fn check_values(values: &[f64], needed: usize) -> Result<(), AnalysisError> {
     if values.len() < needed {
         return Err(AnalysisError::TooFew {
             needed,
@@ -106,7 +106,7 @@ pub(super) fn check_positive(value: f64, what: &'static str) -> Result<(), Analy
     if (1e-100..1e100).contains(&value) {
         Ok(())
     } else {
-        Err(AnalysisError::NotPositive { what })
+        Err(AnalysisError::NotPositive { quantity: what })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Mean exponent of a series of logarithmic growths, with its standard error.
 
-use super::error::{AnalysisError, check, check_positive, mean};
+use super::error::{AnalysisError, check_positive, check_values, mean};
 
 /// Exponent with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,10 +16,10 @@ pub struct Exponent {
 ///
 /// Between 10 and 30, additional batches gain little, and batches should be long (B. Schmeiser,
 /// "Batch size effects in the analysis of simulation output", Oper. Res. 30 (1982) 556-568).
-const BATCHES: [(usize, f64); 3] = [(20, 1.027), (10, 1.059), (5, 1.142)];
+const BATCH_COUNTS_AND_FACTORS: [(usize, f64); 3] = [(20, 1.027), (10, 1.059), (5, 1.142)];
 
 /// Smallest number of growths for an exponent.
-pub const FEWEST: usize = BATCHES[0].0;
+pub const MIN_GROWTHS: usize = BATCH_COUNTS_AND_FACTORS[0].0;
 
 /// Computes the mean exponent of the growths ln(|v_k| / |v_(k-1)|) over equal intervals (s), with
 /// its standard error by non-overlapping batch means.
@@ -44,8 +44,8 @@ pub const FEWEST: usize = BATCHES[0].0;
 /// Fewer than 20 growths, growths that are not finite, an interval that is not positive.
 pub fn mean_exponent(growths: &[f64], interval: f64) -> Result<Exponent, AnalysisError> {
     check_positive(interval, "the interval of growth")?;
-    check(growths, FEWEST)?;
-    let means = BATCHES.map(|(batches, factor)| {
+    check_values(growths, MIN_GROWTHS)?;
+    let means = BATCH_COUNTS_AND_FACTORS.map(|(batches, factor)| {
         let (mean, error) = batch_mean(growths, batches);
         (mean / interval, factor * error / interval)
     });

@@ -7,11 +7,11 @@ pub(crate) struct Part {
     /// A of the part's coordinates, their rates and its first-order states.
     pub matrix: DMatrix<f64>,
     /// Rows of C of these states.
-    pub held: DMatrix<f64>,
+    pub constraints: DMatrix<f64>,
     /// Number of coordinates.
     pub degrees: usize,
     /// Indices of the coordinates and first-order states in the machine.
-    pub places: Vec<usize>,
+    pub indices: Vec<usize>,
 }
 
 /// Returns the parts of d(q, q', z)/dt = A (q, q', z) with C (q, q', z) = 0 that share no entry of
@@ -27,7 +27,7 @@ pub(crate) fn independent_parts(
         true => state,
         false => state - degrees,
     };
-    let mut groups = Groups::new(count);
+    let mut groups = DisjointSets::new(count);
     for row in 0..matrix.nrows() {
         for column in 0..matrix.nrows() {
             if matrix[(row, column)] != 0.0 {
@@ -53,7 +53,7 @@ pub(crate) fn independent_parts(
             parts.push(part(matrix, held, degrees, places, &rows_of[root]));
         }
     }
-    parts.sort_by_key(|part| part.places[0]);
+    parts.sort_by_key(|part| part.indices[0]);
     parts
 }
 
@@ -76,45 +76,45 @@ fn part(
         matrix: DMatrix::from_fn(states.len(), states.len(), |row, column| {
             matrix[(states[row], states[column])]
         }),
-        held: DMatrix::from_fn(rows.len(), states.len(), |row, column| {
+        constraints: DMatrix::from_fn(rows.len(), states.len(), |row, column| {
             held[(rows[row], states[column])]
         }),
         degrees: of_coordinates,
-        places,
+        indices: places,
     }
 }
 
 /// Disjoint sets of indices (union-find).
-struct Groups {
+struct DisjointSets {
     /// Parent of each index; the root is the smallest index of the set.
-    nearer: Vec<usize>,
+    parent: Vec<usize>,
 }
 
-impl Groups {
+impl DisjointSets {
     fn new(count: usize) -> Self {
         Self {
-            nearer: (0..count).collect(),
+            parent: (0..count).collect(),
         }
     }
 
     fn root(&mut self, place: usize) -> usize {
         let mut root = place;
-        while self.nearer[root] != root {
-            self.nearer[root] = self.nearer[self.nearer[root]];
-            root = self.nearer[root];
+        while self.parent[root] != root {
+            self.parent[root] = self.parent[self.parent[root]];
+            root = self.parent[root];
         }
         root
     }
 
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
-        self.nearer[a.max(b)] = a.min(b);
+        self.parent[a.max(b)] = a.min(b);
     }
 
     /// Returns the indices of each set, at the index of its root.
     fn members(&mut self) -> Vec<Vec<usize>> {
-        let mut members = vec![Vec::new(); self.nearer.len()];
-        for place in 0..self.nearer.len() {
+        let mut members = vec![Vec::new(); self.parent.len()];
+        for place in 0..self.parent.len() {
             members[self.root(place)].push(place);
         }
         members
@@ -144,7 +144,7 @@ mod tests {
     fn unconnected_masses_are_separate_parts() {
         let matrix = masses(4, &[(0, 2)]);
         let parts = independent_parts(&matrix, &DMatrix::zeros(0, 8), 4);
-        let places: Vec<&[usize]> = parts.iter().map(|part| &part.places[..]).collect();
+        let places: Vec<&[usize]> = parts.iter().map(|part| &part.indices[..]).collect();
         assert_eq!(places, [&[0, 2][..], &[1], &[3]]);
         assert_eq!(parts[0].matrix, masses(2, &[(0, 1)]));
     }
@@ -154,11 +154,11 @@ mod tests {
         let mut held = DMatrix::zeros(1, 8);
         (held[(0, 1)], held[(0, 7)]) = (1.0, -1.0);
         let parts = independent_parts(&masses(4, &[(0, 2)]), &held, 4);
-        assert_eq!(parts[1].places, [1, 3]);
+        assert_eq!(parts[1].indices, [1, 3]);
         assert_eq!(
-            parts[1].held,
+            parts[1].constraints,
             DMatrix::from_row_slice(1, 4, &[1.0, 0.0, 0.0, -1.0])
         );
-        assert_eq!(parts[0].held.nrows(), 0);
+        assert_eq!(parts[0].constraints.nrows(), 0);
     }
 }

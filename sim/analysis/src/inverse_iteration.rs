@@ -6,27 +6,27 @@ use nalgebra::{Complex, DVector};
 
 /// Relative distance of the shift from the eigenvalue. At this distance the matrix is not singular,
 /// and each step gains as many digits.
-const BESIDE: f64 = 1e-11;
+const RELATIVE_SHIFT: f64 = 1e-11;
 
 /// Number of steps; usually the second changes nothing.
-const STEPS: usize = 4;
+const ITERATION_STEPS: usize = 4;
 
 /// Nonzero entries of a square matrix row by row, with their columns.
 pub(crate) type SparseRows = Vec<Vec<(usize, Complex<f64>)>>;
 
 /// Computes the unit vector that `matrix(eigenvalue)` maps to 0, orthogonal to `earlier` vectors of
 /// the same eigenvalue.
-pub(crate) fn null_vector_at(
+pub(crate) fn null_vector(
     matrix: impl Fn(Complex<f64>) -> SparseRows,
     eigenvalue: Complex<f64>,
     earlier: &[DVector<Complex<f64>>],
 ) -> DVector<Complex<f64>> {
-    let factors = Factors::new(&matrix(eigenvalue * (1.0 + BESIDE)));
+    let factors = Factors::new(&matrix(eigenvalue * (1.0 + RELATIVE_SHIFT)));
     // The start vector has no symmetry that a machine might share.
     let mut vector = DVector::from_fn(factors.steps.len(), |row, _| {
         Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
     });
-    for _ in 0..STEPS {
+    for _ in 0..ITERATION_STEPS {
         for other in earlier {
             let part = other.dotc(&vector);
             vector.axpy(-part, other, Complex::from(1.0));
@@ -51,10 +51,10 @@ struct Factors {
 
 struct Step {
     /// Row exchanged with this one.
-    pivot: usize,
+    pivot_row: usize,
     /// Multipliers of the rows below.
     below: Vec<(usize, Complex<f64>)>,
-    own: Complex<f64>,
+    pivot_value: Complex<f64>,
     /// Entries of the upper factor to the right of the pivot.
     right: Vec<(usize, Complex<f64>)>,
 }
@@ -87,7 +87,7 @@ impl Factors {
     fn solve(&self, right: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
         let mut solution = right.clone();
         for (place, step) in self.steps.iter().enumerate() {
-            solution.swap_rows(place, step.pivot);
+            solution.swap_rows(place, step.pivot_row);
             let own = solution[place];
             for (row, factor) in &step.below {
                 solution[*row] -= factor * own;
@@ -96,7 +96,7 @@ impl Factors {
         for (place, step) in self.steps.iter().enumerate().rev() {
             let later = step.right.iter();
             let known: Complex<f64> = later.map(|(column, entry)| entry * solution[*column]).sum();
-            solution[place] = (solution[place] - known) / step.own;
+            solution[place] = (solution[place] - known) / step.pivot_value;
         }
         solution
     }
@@ -126,9 +126,9 @@ fn eliminate(rows: &mut [Vec<Complex<f64>>], place: usize, last_column: usize) -
         }
     }
     Step {
-        pivot,
+        pivot_row: pivot,
         below,
-        own,
+        pivot_value: own,
         right,
     }
 }
@@ -179,8 +179,8 @@ mod tests {
             rows.map(|row| row.iter().copied().enumerate().collect())
                 .collect()
         };
-        let first = null_vector_at(rows, 2.0.into(), &[]);
-        let second = null_vector_at(rows, 2.0.into(), std::slice::from_ref(&first));
+        let first = null_vector(rows, 2.0.into(), &[]);
+        let second = null_vector(rows, 2.0.into(), std::slice::from_ref(&first));
         for vector in [&first, &second] {
             assert!((at(2.0.into()) * vector).norm() < 1e-10, "{vector}");
         }

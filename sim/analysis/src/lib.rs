@@ -27,7 +27,6 @@ mod balancing;
 mod block_eigenvalues;
 pub mod classify;
 pub mod constrained_modes;
-pub mod course;
 mod error;
 pub mod exponent;
 mod independent_parts;
@@ -40,6 +39,7 @@ pub mod poincare;
 pub mod qr_iteration;
 pub mod spectrum;
 pub mod statistics;
+pub mod time_history;
 pub mod zero_one;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Dominant mode of a flexible body, by its share in the tip deflection and by frequency bands.
 
-use super::error::{AnalysisError, check, mean};
+use super::error::{AnalysisError, check_values, mean};
 use super::spectrum::PowerSpectrum;
 
 /// Contribution of each mode to the tip deflection, modes counted from 0.
@@ -54,7 +54,7 @@ impl BandPower {
 /// Different numbers of shapes and coordinates, coordinates of different lengths, no samples,
 /// values that are not finite.
 pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, AnalysisError> {
-    check(at_tip, 0)?;
+    check_values(at_tip, 0)?;
     check_length(coordinates.len(), at_tip.len())?;
     let samples = coordinates.first().map_or(0, |first| first.len());
     let mut shares = TipShares {
@@ -62,7 +62,7 @@ pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, A
         variance: Vec::with_capacity(at_tip.len()),
     };
     for (series, shape) in coordinates.iter().zip(at_tip) {
-        check(series, 1)?;
+        check_values(series, 1)?;
         check_length(samples, series.len())?;
         let average = mean(series);
         let square = |about: f64| {
@@ -85,7 +85,7 @@ pub fn tip_shares(coordinates: &[&[f64]], at_tip: &[f64]) -> Result<TipShares, A
 ///
 /// No natural frequency, a frequency that is not positive or not above the previous one.
 pub fn band_power(spectrum: &PowerSpectrum, natural: &[f64]) -> Result<BandPower, AnalysisError> {
-    check(natural, 1)?;
+    check_values(natural, 1)?;
     let edges = edges(natural)?;
     let bands = edges.windows(2).filter_map(|pair| match *pair {
         [low, high] => Some(spectrum.power_between(low, high)),
@@ -128,7 +128,7 @@ fn check_length(expected: usize, given: usize) -> Result<(), AnalysisError> {
     if expected == given {
         Ok(())
     } else {
-        Err(AnalysisError::Lengths { expected, given })
+        Err(AnalysisError::LengthMismatch { expected, given })
     }
 }
 

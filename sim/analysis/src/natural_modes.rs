@@ -10,16 +10,16 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::balancing::Balanced;
+use crate::balancing::BalancedMatrix;
 use crate::block_eigenvalues;
 use crate::error::AnalysisError;
 use crate::independent_parts::{Part, independent_parts};
-use crate::inverse_iteration::null_vector_at;
+use crate::inverse_iteration::null_vector;
 use crate::null_space::zero_eigenvalues;
 use crate::pencil::Pencil;
 
 /// Relative difference of eigenvalues that share a space of shapes.
-const EQUAL: f64 = 1e-7;
+const MAX_EQUAL_EIGENVALUE_DIFFERENCE: f64 = 1e-7;
 
 /// Natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +61,7 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
     let states = matrix.len().isqrt().max(2 * degrees);
     if states * states != matrix.len() {
         let (expected, given) = (states * states, matrix.len());
-        return Err(AnalysisError::Lengths { expected, given });
+        return Err(AnalysisError::LengthMismatch { expected, given });
     }
     if let Some(sample) = matrix.iter().position(|entry| !entry.is_finite()) {
         return Err(AnalysisError::NotFinite { sample });
@@ -71,7 +71,7 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
     }
     let matrix = DMatrix::from_row_slice(states, states, matrix);
     let parts = independent_parts(&matrix, &DMatrix::zeros(0, states), degrees);
-    gather(states - degrees, parts, |part| {
+    collect_modes(states - degrees, parts, |part| {
         connected_modes(&part.matrix, part.degrees)
     })
 }
@@ -81,7 +81,7 @@ pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>,
 ///
 /// # Errors
 /// As for the modes of a part.
-pub(crate) fn gather(
+pub(crate) fn collect_modes(
     count: usize,
     parts: Vec<Part>,
     modes: impl Fn(&Part) -> Result<Vec<NaturalMode>, AnalysisError>,
@@ -90,7 +90,7 @@ pub(crate) fn gather(
     for part in &parts {
         for mode in modes(part)? {
             let mut shape = vec![Complex::from(0.0); count];
-            for (place, amplitude) in part.places.iter().zip(mode.shape) {
+            for (place, amplitude) in part.indices.iter().zip(mode.shape) {
                 shape[*place] = amplitude;
             }
             all.push(NaturalMode { shape, ..mode });
@@ -107,7 +107,7 @@ pub(crate) fn connected_modes(
     degrees: usize,
 ) -> Result<Vec<NaturalMode>, AnalysisError> {
     let states = matrix.nrows();
-    let balanced = Balanced::new(matrix);
+    let balanced = BalancedMatrix::new(matrix);
     let not_converged = || AnalysisError::not_converged(matrix);
     let mut eigenvalues =
         block_eigenvalues::eigenvalues(&balanced.matrix).ok_or_else(not_converged)?;
@@ -122,7 +122,11 @@ pub(crate) fn connected_modes(
     modes.extend(rigid.shapes.into_iter().map(|shape| (0.0.into(), shape)));
     let moving = eigenvalues.into_iter().skip(rigid.multiplicity);
     for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {
-        let shape = null_vector_at(|at| pencil.at(at), eigenvalue, &equal(&modes, eigenvalue));
+        let shape = null_vector(
+            |at| pencil.at(at),
+            eigenvalue,
+            &vectors_of_eigenvalue(&modes, eigenvalue),
+        );
         modes.push((eigenvalue, shape));
     }
     let scaled = modes.into_iter().map(|(eigenvalue, shape)| NaturalMode {
@@ -133,11 +137,13 @@ pub(crate) fn connected_modes(
 }
 
 /// Returns the vectors of the modes with this eigenvalue.
-pub(crate) fn equal(
+pub(crate) fn vectors_of_eigenvalue(
     modes: &[(Complex<f64>, DVector<Complex<f64>>)],
     eigenvalue: Complex<f64>,
 ) -> Vec<DVector<Complex<f64>>> {
-    let is_equal = |other: &Complex<f64>| (eigenvalue - other).norm() < EQUAL * eigenvalue.norm();
+    let is_equal = |other: &Complex<f64>| {
+        (eigenvalue - other).norm() < MAX_EQUAL_EIGENVALUE_DIFFERENCE * eigenvalue.norm()
+    };
     let equal = modes.iter().filter(|(other, _)| is_equal(other));
     equal.map(|(_, vector)| vector.clone()).collect()
 }

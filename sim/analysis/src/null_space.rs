@@ -5,14 +5,14 @@ use nalgebra::DMatrix;
 use crate::qr_iteration;
 
 /// Largest singular value, relative to the greatest, that counts as rounding.
-pub(crate) const RANK: f64 = 1e-12;
+pub(crate) const RANK_TOLERANCE: f64 = 1e-12;
 
 /// Counts the eigenvalue 0 with Jordan chains of any length: null spaces are removed until none
 /// remains. Returns `None` if they cannot be computed.
 pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> Option<usize> {
     let mut count = 0;
     loop {
-        let null = null_space(&with_rows_of_one_size(matrix.clone()))?;
+        let null = null_space(&equilibrate_rows(matrix.clone()))?;
         if null.ncols() == 0 {
             return Some(count);
         }
@@ -36,7 +36,7 @@ pub(crate) fn null_space(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         .singular_values
         .iter()
         .zip(rows.row_iter())
-        .filter(|(value, _)| **value <= RANK * most)
+        .filter(|(value, _)| **value <= RANK_TOLERANCE * most)
         .map(|(_, row)| row.transpose())
         .collect();
     Some(match small.is_empty() {
@@ -47,7 +47,7 @@ pub(crate) fn null_space(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 
 /// Divides each row by its largest entry, which preserves the null space. A soft spring is then not
 /// neglected because of a stiff one.
-pub(crate) fn with_rows_of_one_size(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn equilibrate_rows(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
     for mut row in matrix.row_iter_mut() {
         let size = row.amax();
         if size > 0.0 {

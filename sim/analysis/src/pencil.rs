@@ -2,9 +2,9 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::balancing::Balanced;
+use crate::balancing::BalancedMatrix;
 use crate::inverse_iteration::SparseRows;
-use crate::null_space::{RANK, null_space, with_rows_of_one_size};
+use crate::null_space::{RANK_TOLERANCE, equilibrate_rows, null_space};
 use crate::qr_iteration;
 
 /// lambda^2 - lambda D - K in balanced coordinates. First-order states follow, with lambda instead
@@ -32,7 +32,7 @@ pub(crate) struct Rigid {
 
 impl Pencil {
     /// Creates the pencil of a balanced state matrix with `degrees` coordinates.
-    pub fn new(balanced: &Balanced, degrees: usize) -> Self {
+    pub fn new(balanced: &BalancedMatrix, degrees: usize) -> Self {
         let (balanced, sizes) = (&balanced.matrix, &balanced.sizes);
         let count = balanced.nrows() - degrees;
         // Index in the state of a coordinate or first-order state.
@@ -93,7 +93,7 @@ impl Pencil {
     /// Computes the motions with the eigenvalue 0. Returns `None` if the iteration does not
     /// converge.
     pub fn rigid(&self) -> Option<Rigid> {
-        let equilibrated = with_rows_of_one_size(self.stiffness.clone());
+        let equilibrated = equilibrate_rows(self.stiffness.clone());
         let (right, left) = (
             null_space(&equilibrated)?,
             null_space(&equilibrated.transpose())?,
@@ -121,7 +121,7 @@ impl Pencil {
         let most = most.amax();
         let again = singular
             .iter()
-            .filter(|value| **value <= RANK * most)
+            .filter(|value| **value <= RANK_TOLERANCE * most)
             .count();
         let complex = |column: nalgebra::DVectorView<'_, f64>| column.map(Complex::from);
         Some(Rigid {
@@ -146,7 +146,7 @@ impl Pencil {
             most.filter(|value| value.norm() > 0.0)
         };
         // Coordinates that move by rounding only do not set the scale.
-        let moves = shape.rows(0, self.degrees).norm() > RANK * shape.norm();
+        let moves = shape.rows(0, self.degrees).norm() > RANK_TOLERANCE * shape.norm();
         let largest = largest(&amplitudes[..self.degrees])
             .filter(|_| moves)
             .or_else(|| largest(&amplitudes))

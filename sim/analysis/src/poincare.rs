@@ -1,7 +1,7 @@
 //! Stroboscopic section of a forced motion: period, extent and dimension of the points seen once
 //! per forcing period.
 
-use super::error::{AnalysisError, check, check_positive};
+use super::error::{AnalysisError, check_positive, check_values};
 
 /// Longest period searched, in forcing periods, and largest number of clusters counted.
 pub const LONGEST_PERIOD: usize = 64;
@@ -83,10 +83,10 @@ impl Section<'_> {
         for scale in self.scale {
             check_positive(*scale, "the scale of a coordinate")?;
         }
-        check(self.points, 2 * width)?;
+        check_values(self.points, 2 * width)?;
         match self.points.len() % width {
             0 => Ok(()),
-            given => Err(AnalysisError::Lengths {
+            given => Err(AnalysisError::LengthMismatch {
                 expected: width,
                 given,
             }),

@@ -6,7 +6,7 @@
 
 use realfft::RealFftPlanner;
 
-use super::error::{AnalysisError, check, check_positive};
+use super::error::{AnalysisError, check_positive, check_values};
 
 /// One-sided power spectral density.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,7 +68,7 @@ pub fn welch(
     trend: Trend,
 ) -> Result<PowerSpectrum, AnalysisError> {
     check_positive(interval, "the sampling interval")?;
-    check(values, segment.max(8))?;
+    check_values(values, segment.max(8))?;
     if segment < 8 {
         return Err(AnalysisError::TooFew {
             needed: 8,
@@ -96,7 +96,7 @@ pub fn welch(
 /// Fewer than 8 values, values that are not finite, an interval that is not positive.
 pub fn periodogram(values: &[f64], interval: f64) -> Result<PowerSpectrum, AnalysisError> {
     check_positive(interval, "the sampling interval")?;
-    check(values, 8)?;
+    check_values(values, 8)?;
     let length = values.len();
     let whole = std::iter::once(values.to_vec());
     Ok(one_sided(whole, length, interval, length as f64))

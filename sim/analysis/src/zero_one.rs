@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::error::{AnalysisError, check, mean};
+use super::error::{AnalysisError, check_values, mean};
 
 /// Number of angles c for the median, as in the paper.
 const ANGLES: usize = 100;
@@ -34,7 +34,7 @@ const CONSTANT: f64 = 1e-10;
 ///
 /// Fewer than 100 values, values that are not finite.
 pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
-    check(values, LEAST)?;
+    check_values(values, LEAST)?;
     let average = mean(values);
     let series: Vec<f64> = values.iter().map(|value| value - average).collect();
     let largest = |series: &[f64]| series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

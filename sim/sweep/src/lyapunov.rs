@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::error::SweepError;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
-use eomgen_analysis::exponent::{FEWEST, mean_exponent};
+use eomgen_analysis::exponent::{MIN_GROWTHS, mean_exponent};
 use eomgen_compiled_model::{CompiledModel, Driven, Instance};
 use eomgen_sim::ode::Settings;
 use eomgen_sim::piecewise_linear::Lyapunov as Request;
@@ -28,7 +28,7 @@ impl<'a> Lyapunov<'a> {
     /// # Errors
     /// An invalid window, or a model that cannot be differentiated.
     pub fn new(model: &'a CompiledModel, window: &Window) -> Result<Self, SweepError> {
-        let times = Times::from_window(model.model(), window, "lyapunov", FEWEST)?;
+        let times = Times::from_window(model.model(), window, "lyapunov", MIN_GROWTHS)?;
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
                 "--measure lyapunov: the model has constraints (`{}`), which this measure does not \

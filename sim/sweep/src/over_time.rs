@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use eomgen_analysis::course::{greatest, root_mean_square};
+use eomgen_analysis::time_history::{greatest, root_mean_square};
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::suggest::did_you_mean;
 

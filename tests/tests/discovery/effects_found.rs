@@ -365,7 +365,8 @@ impl Machine {
         match hidden.by {
             Change::Entry(entry, order, values) => {
                 let candidate = self.candidate(hidden, entry, order);
-                let written = candidate.write_effect(self.specification, self.name, values, "hidden");
+                let written =
+                    candidate.write_effect(self.specification, self.name, values, "hidden");
                 // Records determine shape parameters less well than the size, so these are not
                 // compared.
                 let sizes = candidate.parameters.iter().zip(values);

@@ -222,7 +222,9 @@ other = { on = "theta", value = "-d_t*dot(slip)" }
 #[test]
 fn parallel_dampers_are_recognised_in_all_notations() {
     let model = check_model(DAMPERS);
-    let belt = find_sites(&model).into_iter().find(|site| site.name == "belt");
+    let belt = find_sites(&model)
+        .into_iter()
+        .find(|site| site.name == "belt");
     let dampers = belt.expect("a spring").dampers.into_iter();
     let dampers: Vec<[String; 2]> = dampers.map(|damper| [damper.term, damper.part]).collect();
     let expected = [

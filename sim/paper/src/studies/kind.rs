@@ -1,6 +1,6 @@
 //! Kind of motion of a case, from as many forcing periods as needed.
 
-use eomgen_analysis::classify::{Evidence, Motion, SIGNIFICANCE, Verdict, classify};
+use eomgen_analysis::classify::{Evidence, Motion, SIGNIFICANT_STANDARD_ERRORS, Verdict, classify};
 use eomgen_analysis::exponent::Exponent;
 use eomgen_analysis::poincare::{Section, Shape};
 use eomgen_analysis::zero_one::chaos_indicator;
@@ -100,7 +100,7 @@ impl Classification {
 
 /// Reports growth that is fast enough to decide without other evidence.
 pub(super) fn is_strong_growth(exponent: &Exponent, case: &Case) -> bool {
-    (exponent.value - SIGNIFICANCE * exponent.standard_error) * case.period() > 1.0
+    (exponent.value - SIGNIFICANT_STANDARD_ERRORS * exponent.standard_error) * case.period() > 1.0
 }
 
 /// Returns the indices of x_sp, x_pr and their rates in the state.

@@ -3,7 +3,9 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-use eomgen_analysis::classify::{Evidence, HIDDEN_GROWTH, Motion, SIGNIFICANCE};
+use eomgen_analysis::classify::{
+    Evidence, MAX_HIDDEN_GROWTH_PER_PERIOD, Motion, SIGNIFICANT_STANDARD_ERRORS,
+};
 
 use super::arm::{Case, UndisclosedParameters};
 use super::case::{Amplitude, Measurement};
@@ -166,7 +168,7 @@ fn does_not_grow(evidence: &Evidence) -> bool {
     let Some(exponent) = evidence.exponent else {
         return false;
     };
-    let error = SIGNIFICANCE * exponent.standard_error;
-    let bound = HIDDEN_GROWTH * evidence.forcing / TAU;
+    let error = SIGNIFICANT_STANDARD_ERRORS * exponent.standard_error;
+    let bound = MAX_HIDDEN_GROWTH_PER_PERIOD * evidence.forcing / TAU;
     exponent.value <= error && exponent.value + error <= bound
 }
