@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::unit::Unit;
 use eomgen_plot::map::{Coordinate, Map, Scatter, Shades};
-use eomgen_plot::{PlotError, map_png, scatter_png};
+use eomgen_plot::{PlotError, draw_map, draw_scatter, render_png};
 use eomgen_sweep::{Column, Description, Job, Table};
 
 /// Draws each measure as PNG, with the measure's name. There are none unless one or two axes have several values.
@@ -45,7 +45,7 @@ fn map(
     });
     let values: Vec<f64> = cells.collect();
     let signed = values.iter().any(|value| *value < 0.0) && values.iter().any(|value| *value > 0.0);
-    Some(map_png(&Map {
+    let svg = draw_map(&Map {
         title: title(job, &column.about),
         horizontal: along.coordinate(),
         vertical: up.coordinate(),
@@ -57,7 +57,8 @@ fn map(
             Shades::Sequential
         },
         values: &values,
-    }))
+    });
+    Some(svg.and_then(|svg| render_png(&svg)))
 }
 
 /// Draws all columns over the axis.
@@ -94,11 +95,12 @@ fn diagram(
         values: &ordinates,
         ..Coordinate::default()
     };
-    Some(scatter_png(&Scatter {
+    let svg = draw_scatter(&Scatter {
         title: title(job, &first.about),
         horizontal,
         vertical,
-    }))
+    });
+    Some(svg.and_then(|svg| render_png(&svg)))
 }
 
 fn title(job: &Job, about: &str) -> String {

@@ -43,8 +43,8 @@ pub(super) const COLUMN_COLOUR: &str = "#56a0d3";
 /// Two strong colours for the parts of interest, grey and a pale one; all differ in lightness.
 const PART_COLOURS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
-const GRID_STROKE: Stroke = thin_stroke("#e6e6e6", "");
-const FRAME_STROKE: Stroke = thin_stroke("#444444", "");
+pub(super) const GRID_STROKE: Stroke = thin_stroke("#e6e6e6", "");
+pub(super) const FRAME_STROKE: Stroke = thin_stroke("#444444", "");
 const MARK_STROKE: Stroke = thin_stroke("#555555", "5 4");
 
 const fn thin_stroke(colour: &'static str, dashes: &'static str) -> Stroke {

@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
 use super::decimate::Point;
 use super::lettering::{escape_xml, svg_spans};
 
@@ -93,11 +96,50 @@ impl Canvas {
         ));
     }
 
+    /// Draws discs of one colour, each with an opacity from 0 to 1.
+    pub fn dots(
+        &mut self,
+        centres: impl Iterator<Item = Point>,
+        radius: f64,
+        colour: &str,
+        opacity: f64,
+    ) {
+        let radius = format_pixel(radius);
+        let mut circles = String::new();
+        for (x, y) in centres {
+            let (x, y) = (format_pixel(x), format_pixel(y));
+            let _ = writeln!(circles, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
+        }
+        self.element(format_args!(
+            "<g fill=\"{colour}\" fill-opacity=\"{opacity}\">\n{circles}</g>"
+        ));
+    }
+
+    /// Draws a PNG, stretched to a size from its upper left corner, without interpolation.
+    pub fn image(&mut self, (x, y): Point, (width, height): Point, png: &[u8]) {
+        self.element(format_args!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+             preserveAspectRatio=\"none\" image-rendering=\"pixelated\" \
+             href=\"data:image/png;base64,{}\"/>",
+            STANDARD.encode(png)
+        ));
+    }
+
     pub fn text(&mut self, text: Text<'_>) {
         self.rotated_text(text, 0.0);
     }
 
     pub fn rotated_text(&mut self, text: Text<'_>, angle: f64) {
+        let spans = svg_spans(text.text, text.size);
+        self.write_text(text, angle, &spans);
+    }
+
+    /// Draws text without subscripts and Greek letters of names.
+    pub fn verbatim_text(&mut self, text: Text<'_>) {
+        self.write_text(text, 0.0, &escape_xml(text.text));
+    }
+
+    fn write_text(&mut self, text: Text<'_>, angle: f64, spans: &str) {
         let (x, y) = text.position;
         let anchor = match text.anchor {
             Anchor::Start => "start",
@@ -115,9 +157,8 @@ impl Canvas {
         };
         self.element(format_args!(
             "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{}\" \
-             text-anchor=\"{anchor}\"{weight}{turn} xml:space=\"preserve\">{}</text>",
-            text.size,
-            svg_spans(text.text, text.size)
+             text-anchor=\"{anchor}\"{weight}{turn} xml:space=\"preserve\">{spans}</text>",
+            text.size
         ));
     }
 

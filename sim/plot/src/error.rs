@@ -57,9 +57,9 @@ pub enum PlotError {
         /// Index of the value.
         index: usize,
     },
-    /// A picture that could not be encoded.
+    /// A figure that could not be rendered as PNG.
     Encoding {
-        /// Message of the encoder.
+        /// Message of the renderer or the encoder.
         reason: String,
     },
 }
@@ -105,7 +105,9 @@ impl fmt::Display for PlotError {
                 "value {index} of `{axis}` along an axis of the map is not greater than \
                  the previous one, or cannot be drawn on the axis"
             ),
-            Self::Encoding { reason } => write!(f, "the picture could not be encoded: {reason}"),
+            Self::Encoding { reason } => {
+                write!(f, "the figure could not be rendered as PNG: {reason}")
+            }
         }
     }
 }

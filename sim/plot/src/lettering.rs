@@ -26,12 +26,28 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
 }
 
 pub(super) fn truncate_to_width(text: &str, size: f64, available: f64) -> String {
-    let room = (available / (size * CHARACTER_WIDTH)).max(1.0) as usize;
-    if text.chars().count() <= room || text_width(text, size) <= available {
-        return text.to_owned();
+    let text = visible(text);
+    let room = (available / (size * CHARACTER_WIDTH)).max(1.0);
+    let excess: f64 = text.chars().map(|c| relative_width(c) - 1.0).sum();
+    if text_width(&text, size) + excess * size * CHARACTER_WIDTH <= available {
+        return text.into_owned();
     }
-    let kept: String = text.chars().take(room.saturating_sub(1)).collect();
+    let mut end = 1.0;
+    let is_inside = |c: &char| {
+        end += relative_width(*c);
+        end <= room
+    };
+    let kept: String = text.chars().take_while(is_inside).collect();
     format!("{}…", kept.trim_end())
+}
+
+/// Returns the maximum width of a character in units of the usual width.
+fn relative_width(c: char) -> f64 {
+    match c {
+        'm' | 'w' | 'M' | 'W' | '@' | '%' | '\u{2e80}'.. => 1.6,
+        c if c.is_uppercase() => 1.25,
+        _ => 1.0,
+    }
 }
 
 pub(super) fn svg_spans(text: &str, size: f64) -> String {

@@ -1,4 +1,4 @@
-//! Figures: time histories and power spectra as self-contained SVG, maps over parameters as PNG.
+//! Figures as self-contained SVG: time histories, power spectra, maps over parameters. PNG of them.
 //!
 //! ```
 //! use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -28,7 +28,8 @@
 //! parts), `panel` (drawing), `canvas` (SVG elements). `symbol` and `lettering` write names and
 //! text. [`mod@plate`] arranges frames with separate axes. [`bars`] contains histograms and shares,
 //! [`mod@distribution`] distributions of numbers, [`mod@modes`] shapes of natural modes, [`map`]
-//! pictures of pixels, and [`mod@drawing`] free drawings. This crate does not depend on models.
+//! maps and scatter plots, and [`mod@drawing`] free drawings. [`render_png`] renders the SVG of any
+//! of them. This crate does not depend on models.
 //!
 //! The SVG has no script, style sheet, identifier or external reference, so a page can contain it
 //! several times. The crate writes it directly: plotting crates round points to whole pixels or
@@ -49,6 +50,7 @@ pub mod modes;
 mod panel;
 pub mod plate;
 mod quantity;
+mod rendering;
 mod symbol;
 
 #[cfg(test)]
@@ -56,9 +58,10 @@ mod tests;
 
 pub use error::PlotError;
 pub use figure::{FrequencyAxis, Panel, Reference, Series, SeriesStyle, Spectrum, TimeHistory};
-pub use map::{map_png, scatter_png};
+pub use map::{draw_map, draw_scatter};
 pub use plate::{Axes, Frame, Plate, plate};
 pub use quantity::scaled_unit;
+pub use rendering::render_png;
 
 use axis::Scale;
 use layout::{Abscissa, Format, Layout};

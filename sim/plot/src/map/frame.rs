@@ -1,26 +1,35 @@
-//! Frame of a picture: axes, ticks, grid and labels.
+//! Frame of a map or a scatter plot: axes, ticks, grid and labels.
 
-use super::super::axis::{Axis, Range, Scale, Tick, ticks};
-use super::super::error::{PlotError, is_drawable};
-use super::super::quantity::Quantity;
-use super::raster::{Colour, HEIGHT, Raster, WIDTH};
-use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
 use super::types::{Coordinate, largest};
+use crate::axis::{Axis, Range, Scale, Tick, ticks};
+use crate::bars::{FRAME_STROKE, GRID_STROKE, draw_label, draw_outline, write_text};
+use crate::canvas::{Anchor, Canvas, Text};
+use crate::decimate::Point;
+use crate::error::{PlotError, is_drawable};
+use crate::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
+use crate::lettering::{text_width, truncate_to_width};
+use crate::quantity::Quantity;
 
-pub const LABEL_SIZE: f64 = 17.0;
-const TITLE_SIZE: f64 = 18.0;
+/// Size of every map and scatter plot, in px.
+pub const WIDTH: f64 = 1000.0;
+pub const HEIGHT: f64 = 760.0;
 pub const TICK_LENGTH: f64 = 5.0;
-pub const FRAME: Colour = [51; 3];
-const GRID: Colour = [226; 3];
 
-const TOP: f64 = 52.0;
-const BOTTOM: f64 = 690.0;
+/// Upper and lower edge of every frame, in px.
+const TOP: f64 = 48.0;
+const BOTTOM: f64 = 696.0;
 const RIGHT_MARGIN: f64 = 28.0;
-const LABEL_ROOM: f64 = 46.0;
+/// Space for the name of the vertical axis, in px.
+const LABEL_ROOM: f64 = 36.0;
+const TICK_LABEL_GAP: f64 = TICK_LENGTH + 6.0;
+/// Width of regular text relative to that of bold text.
+const BOLD_ROOM: f64 = 0.9;
+/// Distance between the edges of even cells and of the cells of a map, in px.
+const MAX_CELL_SHIFT_PX: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Outside of the frame, so that they cover no cell.
+    /// Outside of the frame, so that ticks cover no cell.
     Outside,
     Inside,
 }
@@ -31,7 +40,7 @@ pub struct Units {
     scale: Scale,
 }
 
-/// Two axes around an area of pixels.
+/// Two axes around an area of whole pixels.
 #[derive(Debug)]
 pub struct Frame {
     horizontal: FrameEdge,
@@ -108,22 +117,20 @@ impl Frame {
         vertical: &Coordinate<'_>,
         ranges: (Range, Range),
         beside: f64,
-        typeface: &Typeface,
     ) -> Self {
         let vertical = FrameEdge::new(vertical, ranges.1, (BOTTOM, TOP), 8);
-        let widest = typeface.widest(&vertical.ticks);
-        let left = (LABEL_ROOM + widest + TICK_LENGTH + 6.0).ceil().min(300.0);
-        let right = WIDTH as f64 - beside.min(400.0) - RIGHT_MARGIN;
-        let pixels = (left, right.floor());
+        let left = LABEL_ROOM + widest_label(&vertical.ticks) + TICK_LABEL_GAP;
+        let right = WIDTH - beside.min(400.0) - RIGHT_MARGIN;
+        let pixels = (left.ceil().min(300.0), right.floor());
         Self {
             horizontal: FrameEdge::new(horizontal, ranges.0, pixels, 8),
             vertical,
         }
     }
 
-    /// Returns the right edge, in px.
-    pub fn right(&self) -> f64 {
-        self.horizontal.axis.pixels.1
+    /// Returns the left and the right edge, in px.
+    pub fn horizontal_pixels(&self) -> (f64, f64) {
+        self.horizontal.axis.pixels
     }
 
     /// Returns the lower and the upper edge, in px.
@@ -131,99 +138,74 @@ impl Frame {
         self.vertical.axis.pixels
     }
 
-    /// Returns the pixels inside, as columns and rows.
-    pub fn pixels(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let (left, right) = self.horizontal.axis.pixels;
-        let (bottom, top) = self.vertical.axis.pixels;
-        (top as usize..bottom as usize)
-            .flat_map(move |row| (left as usize..right as usize).map(move |column| (column, row)))
-    }
-
-    /// Returns the position along the axes of the middle of a pixel.
-    pub fn place(&self, column: usize, row: usize) -> (f64, f64) {
-        (
-            self.horizontal.place(column as f64 + 0.5),
-            self.vertical.place(row as f64 + 0.5),
-        )
-    }
-
     /// Returns the point of a position along the axes, in px.
-    pub fn pixel(&self, along: f64, up: f64) -> (f64, f64) {
-        (
-            self.horizontal.axis.pixel(along),
-            self.vertical.axis.pixel(up),
-        )
+    pub fn pixel(&self, (x, y): Point) -> Point {
+        (self.horizontal.axis.pixel(x), self.vertical.axis.pixel(y))
+    }
+
+    /// Returns the column and row of cells for each column of an image over the frame from the
+    /// left, and for each row from the top. The image has at most one pixel per px.
+    pub fn cells(&self, edges: (&[f64], &[f64])) -> (Vec<Option<usize>>, Vec<Option<usize>>) {
+        let columns = self.horizontal.cells(edges.0);
+        let mut rows = self.vertical.cells(edges.1);
+        rows.reverse();
+        (columns, rows)
+    }
+
+    /// Draws an image over the whole frame.
+    pub fn draw_image(&self, canvas: &mut Canvas, png: &[u8]) {
+        let ((left, right), (bottom, top)) = (self.horizontal_pixels(), self.vertical_pixels());
+        canvas.image((left, top), (right - left, bottom - top), png);
     }
 
     /// Draws faint lines at the ticks.
-    pub fn draw_grid(&self, raster: &mut Raster) {
-        let (left, right) = self.horizontal.axis.pixels;
-        let (bottom, top) = self.vertical.axis.pixels;
-        let (width, height) = ((right - left) as usize, (bottom - top) as usize);
-        for x in self.horizontal.marks() {
-            raster.fill((x, top as usize), (1, height), GRID);
-        }
-        for y in self.vertical.marks() {
-            raster.fill((left as usize, y), (width, 1), GRID);
-        }
+    pub fn draw_grid(&self, canvas: &mut Canvas) {
+        let ((left, right), (bottom, top)) = (self.horizontal_pixels(), self.vertical_pixels());
+        let upright = self.horizontal.tick_pixels();
+        let upright = upright.map(|x| ((x, bottom), (x, top)));
+        let level = self.vertical.tick_pixels();
+        let level = level.map(|y| ((left, y), (right, y)));
+        canvas.segments(&upright.chain(level).collect::<Vec<_>>(), GRID_STROKE);
     }
 
     /// Draws the frame with its ticks, the labels and the title.
-    pub fn draw(&self, raster: &mut Raster, typeface: &Typeface, title: &str, side: Side) {
-        let (across, up) = (self.horizontal.axis.pixels, self.vertical.axis.pixels);
-        outline(raster, across, up);
-        self.draw_marks(raster, side);
-        self.draw_tick_labels(raster, typeface);
-        let name = Line {
-            size: LABEL_SIZE,
-            ..Line::level(&self.horizontal.label, Align::Middle)
-        };
-        let at = ((across.0 + across.1) / 2.0, HEIGHT as f64 - 18.0);
-        typeface.write_within(raster, name, at, across.1 - across.0);
-        let name = Line {
-            text: &self.vertical.label,
-            direction: Direction::Up,
-            ..name
-        };
-        let at = (26.0, (up.0 + up.1) / 2.0);
-        typeface.write_within(raster, name, at, up.0 - up.1);
-        let heading = Line {
-            size: TITLE_SIZE,
-            heading: true,
-            ..Line::level(title, Align::Start)
-        };
-        let room = WIDTH as f64 - RIGHT_MARGIN - across.0;
-        typeface.write_within(raster, heading, (across.0, TOP - 18.0), room);
-    }
-
-    fn draw_marks(&self, raster: &mut Raster, side: Side) {
-        let (left, _) = self.horizontal.axis.pixels;
-        let (bottom, _) = self.vertical.axis.pixels;
-        let length = TICK_LENGTH as usize;
-        let (from_left, from_bottom) = match side {
-            Side::Outside => (left as usize - 1 - length, bottom as usize + 1),
-            Side::Inside => (left as usize, bottom as usize - length),
-        };
-        for x in self.horizontal.marks() {
-            raster.fill((x, from_bottom), (1, length), FRAME);
-        }
-        for y in self.vertical.marks() {
-            raster.fill((from_left, y), (length, 1), FRAME);
-        }
-    }
-
-    fn draw_tick_labels(&self, raster: &mut Raster, typeface: &Typeface) {
-        let (left, _) = self.horizontal.axis.pixels;
-        let (bottom, _) = self.vertical.axis.pixels;
+    pub fn draw(&self, canvas: &mut Canvas, title: &str, side: Side) {
+        let ((left, right), (bottom, top)) = (self.horizontal_pixels(), self.vertical_pixels());
+        draw_cell_outline(canvas, (left, right), (bottom, top));
+        self.draw_tick_marks(canvas, side);
         for tick in &self.horizontal.ticks {
-            let at = (self.horizontal.axis.pixel(tick.place), bottom + 24.0);
-            typeface.write(raster, Line::level(&tick.label, Align::Middle), at);
+            let at = (self.horizontal.axis.pixel(tick.place), bottom + 23.0);
+            write_text(canvas, &tick.label, at, Anchor::Middle);
         }
         for tick in &self.vertical.ticks {
-            let y = self.vertical.axis.pixel(tick.place) + 0.36 * TICK_SIZE;
-            let at = (left - TICK_LENGTH - 6.0, y);
-            typeface.write(raster, Line::level(&tick.label, Align::End), at);
+            let y = self.vertical.axis.pixel(tick.place) + 0.35 * TICK_SIZE;
+            write_text(canvas, &tick.label, (left - TICK_LABEL_GAP, y), Anchor::End);
         }
+        let name = truncate_to_width(&self.horizontal.label, LABEL_SIZE, right - left);
+        draw_label(canvas, &name, ((left + right) / 2.0, bottom + 47.0), 0.0);
+        let name = truncate_to_width(&self.vertical.label, LABEL_SIZE, bottom - top);
+        draw_label(canvas, &name, (20.0, (bottom + top) / 2.0), -90.0);
+        let room = BOLD_ROOM * (WIDTH - RIGHT_MARGIN - left);
+        canvas.verbatim_text(Text {
+            text: &truncate_to_width(title, TITLE_SIZE, room),
+            position: (left, top - 18.0),
+            size: TITLE_SIZE,
+            anchor: Anchor::Start,
+            is_bold: true,
+        });
+    }
+
+    fn draw_tick_marks(&self, canvas: &mut Canvas, side: Side) {
+        let (left, bottom) = (self.horizontal_pixels().0, self.vertical_pixels().0);
+        let length = match side {
+            Side::Outside => -TICK_LENGTH,
+            Side::Inside => TICK_LENGTH,
+        };
+        let below = self.horizontal.tick_pixels();
+        let below = below.map(|x| ((x, bottom), (x, bottom - length)));
+        let beside = self.vertical.tick_pixels();
+        let beside = beside.map(|y| ((left, y), (left + length, y)));
+        canvas.segments(&below.chain(beside).collect::<Vec<_>>(), FRAME_STROKE);
     }
 }
 
@@ -241,24 +223,44 @@ impl FrameEdge {
         }
     }
 
-    fn marks(&self) -> impl Iterator<Item = usize> + '_ {
+    /// Returns the ticks at middles of pixels, so that lines of 1 px are sharp.
+    fn tick_pixels(&self) -> impl Iterator<Item = f64> + '_ {
         let pixels = self.ticks.iter().map(|tick| self.axis.pixel(tick.place));
-        pixels.map(|pixel| pixel.round().max(0.0) as usize)
+        pixels.map(|pixel| pixel.floor() + 0.5)
     }
 
-    fn place(&self, pixel: f64) -> f64 {
+    /// Returns the cells along the axis: each one once if they have equal widths of at least 1 px,
+    /// otherwise the cell at each pixel.
+    fn cells(&self, edges: &[f64]) -> Vec<Option<usize>> {
         let (start, end) = self.axis.pixels;
+        let (cells, pixels) = (edges.len().saturating_sub(1), (end - start).abs());
+        let is_even = |(index, edge): (usize, &f64)| {
+            let even = start + (end - start) * index as f64 / cells as f64;
+            (self.axis.pixel(*edge) - even).abs() < MAX_CELL_SHIFT_PX
+        };
+        if cells as f64 <= pixels && edges.iter().enumerate().all(is_even) {
+            return (0..cells).map(Some).collect();
+        }
         let Range { low, high } = self.axis.range;
-        low + (pixel - start) / (end - start) * (high - low)
+        (0..pixels as usize)
+            .map(|pixel| find_cell(edges, low + (pixel as f64 + 0.5) / pixels * (high - low)))
+            .collect()
     }
 }
 
-/// Draws a rectangle with lines of one pixel just outside an area of pixels.
-pub fn outline(raster: &mut Raster, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
-    let corner = (left as usize - 1, top as usize - 1);
-    let (width, height) = ((right - left) as usize + 2, (bottom - top) as usize + 2);
-    raster.fill(corner, (width, 1), FRAME);
-    raster.fill(corner, (1, height), FRAME);
-    raster.fill((corner.0, bottom as usize), (width, 1), FRAME);
-    raster.fill((right as usize, corner.1), (1, height), FRAME);
+fn find_cell(edges: &[f64], place: f64) -> Option<usize> {
+    let cell = edges
+        .partition_point(|edge| *edge <= place)
+        .checked_sub(1)?;
+    (cell + 1 < edges.len()).then_some(cell)
+}
+
+pub fn widest_label(ticks: &[Tick]) -> f64 {
+    let widths = ticks.iter().map(|tick| text_width(&tick.label, TICK_SIZE));
+    widths.fold(0.0, f64::max)
+}
+
+/// Draws a rectangle with lines of 1 px just outside an area of whole pixels.
+pub fn draw_cell_outline(canvas: &mut Canvas, (left, right): Point, (bottom, top): Point) {
+    draw_outline(canvas, (left - 0.5, right + 0.5), (bottom + 0.5, top - 0.5));
 }

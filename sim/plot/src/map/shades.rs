@@ -1,12 +1,15 @@
 //! Colours of values, and the colour bar.
 
-use super::super::axis::{Range, Scale, Tick, ticks};
-use super::super::error::{PlotError, is_drawable};
-use super::super::quantity::Quantity;
-use super::frame::{FRAME, Frame, LABEL_SIZE, TICK_LENGTH, outline};
-use super::raster::{Colour, Raster, mixed};
-use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
-use super::types::{GREY, Map, Shades, WHITE, empty_error};
+use super::frame::{Frame, TICK_LENGTH, draw_cell_outline, widest_label};
+use super::types::{Colour, GREY, Map, Shades, WHITE, empty_error, hexadecimal};
+use crate::axis::{Range, Scale, Tick, ticks};
+use crate::bars::{FRAME_STROKE, draw_label, write_text};
+use crate::canvas::{Anchor, Canvas};
+use crate::error::{PlotError, is_drawable};
+use crate::layout::{LABEL_SIZE, TICK_SIZE};
+use crate::lettering::truncate_to_width;
+use crate::quantity::Quantity;
+use crate::rendering::encode_png;
 
 /// Viridis by S. van der Walt and N. Smith, at every tenth.
 const VIRIDIS: [Colour; 11] = [
@@ -45,7 +48,7 @@ const MIN_LOPSIDED_RATIO: f64 = 3.0;
 const GAP: f64 = 28.0;
 const LABEL_GAP: f64 = TICK_LENGTH + 6.0;
 /// Width of the bar, in px.
-const BAR: usize = 24;
+const BAR: f64 = 24.0;
 /// Space for the name of the quantity next to the labels, in px.
 const LABEL: f64 = 34.0;
 
@@ -100,8 +103,8 @@ impl Bar {
     }
 
     /// Returns the width of the bar with its labels, in px.
-    pub fn width(&self, typeface: &Typeface) -> f64 {
-        GAP + BAR as f64 + LABEL_GAP + typeface.widest(&self.ticks) + LABEL
+    pub fn width(&self) -> f64 {
+        GAP + BAR + LABEL_GAP + widest_label(&self.ticks) + LABEL
     }
 
     /// Returns the position of a value on the bar, from 0 at its lower end to 1.
@@ -122,42 +125,46 @@ impl Bar {
     }
 
     /// Draws the bar to the right of a frame.
-    pub fn draw(&self, raster: &mut Raster, typeface: &Typeface, frame: &Frame) {
-        let (left, (bottom, top)) = (frame.right() + GAP, frame.vertical_pixels());
-        for row in top as usize..bottom as usize {
-            let colour = self.colour_at((bottom - row as f64 - 0.5) / (bottom - top));
-            raster.fill((left as usize, row), (BAR, 1), colour);
-        }
-        let edge = left + BAR as f64;
-        outline(raster, (left, edge), (bottom, top));
+    pub fn draw(&self, canvas: &mut Canvas, frame: &Frame) -> Result<(), PlotError> {
+        let (left, (bottom, top)) = (frame.horizontal_pixels().1 + GAP, frame.vertical_pixels());
+        let (right, height) = (left + BAR, bottom - top);
+        let colours = (0..height as u32).map(|row| {
+            let from_top = (f64::from(row) + 0.5) / height;
+            self.colour_at(1.0 - from_top)
+        });
+        let bytes: Vec<u8> = colours.flatten().collect();
+        let png = encode_png((1, height as u32), png::ColorType::Rgb, &bytes)?;
+        canvas.image((left, top), (BAR, height), &png);
+        draw_cell_outline(canvas, (left, right), (bottom, top));
+        let mut marks = Vec::with_capacity(self.ticks.len());
         for tick in &self.ticks {
-            let y = bottom - self.position_on_bar(tick.place) * (bottom - top);
-            let mark = (edge as usize + 1, y.round() as usize);
-            raster.fill(mark, (TICK_LENGTH as usize, 1), FRAME);
-            let at = (edge + LABEL_GAP, y + 0.36 * TICK_SIZE);
-            typeface.write(raster, Line::level(&tick.label, Align::Start), at);
+            let y = bottom - self.position_on_bar(tick.place) * height;
+            let middle = y.floor() + 0.5;
+            marks.push(((right, middle), (right + TICK_LENGTH, middle)));
+            let at = (right + LABEL_GAP, y + 0.35 * TICK_SIZE);
+            write_text(canvas, &tick.label, at, Anchor::Start);
         }
-        let name = Line {
-            size: LABEL_SIZE,
-            direction: Direction::Up,
-            ..Line::level(&self.quantity.label, Align::Middle)
-        };
-        let beyond = edge + LABEL_GAP + typeface.widest(&self.ticks) + 24.0;
-        let at = (beyond, (top + bottom) / 2.0);
-        typeface.write_within(raster, name, at, bottom - top);
+        canvas.segments(&marks, FRAME_STROKE);
+        let name = truncate_to_width(&self.quantity.label, LABEL_SIZE, height);
+        let beyond = right + LABEL_GAP + widest_label(&self.ticks) + 22.0;
+        draw_label(canvas, &name, (beyond, (top + bottom) / 2.0), -90.0);
         if self.has_gaps {
-            draw_gap_key(raster, typeface, (left, bottom + 16.0));
+            draw_gap_key(canvas, (left, bottom + 16.0));
         }
+        Ok(())
     }
 }
 
-fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64)) {
-    let side = 16;
-    raster.fill((left as usize, top as usize), (BAR, side), GREY);
-    let (right, bottom) = (left + BAR as f64, top + side as f64);
-    outline(raster, (left, right), (bottom, top));
-    let line = Line::level("no value", Align::Start);
-    typeface.write(raster, line, (right + LABEL_GAP, bottom - 3.0));
+fn draw_gap_key(canvas: &mut Canvas, (left, top): (f64, f64)) {
+    let (right, bottom) = (left + BAR, top + 16.0);
+    canvas.rectangle(
+        (left, top),
+        (right - left, bottom - top),
+        &hexadecimal(GREY),
+    );
+    draw_cell_outline(canvas, (left, right), (bottom, top));
+    let at = (right + LABEL_GAP, bottom - 3.0);
+    write_text(canvas, "no value", at, Anchor::Start);
 }
 
 /// Returns a range around zero: symmetric, unless one side is much larger.
@@ -197,7 +204,16 @@ fn interpolate_colour(colours: &[Colour; 11], share: f64) -> Colour {
     let along = 10.0 * share.clamp(0.0, 1.0);
     let below = (along.floor() as usize).min(9);
     match colours.get(below..) {
-        Some([low, high, ..]) => mixed(*low, *high, along - below as f64),
+        Some([low, high, ..]) => mix_colours(*low, *high, along - below as f64),
         _ => GREY,
     }
+}
+
+fn mix_colours(under: Colour, over: Colour, share: f64) -> Colour {
+    let mut mixture = under;
+    for (channel, over) in mixture.iter_mut().zip(over) {
+        let (low, high) = (f64::from(*channel), f64::from(over));
+        *channel = (low + share.clamp(0.0, 1.0) * (high - low)).round() as u8;
+    }
+    mixture
 }

@@ -1,7 +1,12 @@
-//! Tests of complete pictures: size, colours at known places, and invalid input.
+//! Tests of complete figures: size, colours at known places, text, and invalid input.
 
-use super::raster::Colour;
+use std::collections::BTreeSet;
+
+use roxmltree::{Document, Node};
+
+use super::types::Colour;
 use super::*;
+use crate::render_png;
 
 const NAN: f64 = f64::NAN;
 
@@ -12,6 +17,10 @@ struct Picture {
 }
 
 impl Picture {
+    fn render(svg: &str) -> Result<Self, PlotError> {
+        Ok(Self::decode(&render_png(svg)?))
+    }
+
     fn decode(png: &[u8]) -> Self {
         let decoder = png::Decoder::new(std::io::Cursor::new(png));
         let mut reader = decoder.read_info().unwrap();
@@ -53,7 +62,7 @@ fn coordinate<'a>(name: &str, unit: &str, values: &'a [f64]) -> Coordinate<'a> {
 
 fn exponents<'a>(columns: &'a [f64], rows: &'a [f64], values: &'a [f64]) -> Map<'a> {
     Map {
-        title: "Largest exponent".to_owned(),
+        title: "Largest exponent of arm_1".to_owned(),
         horizontal: coordinate("b_sp", "m", columns),
         vertical: coordinate("omega", "rad/s", rows),
         quantity: "lambda_1".to_owned(),
@@ -68,7 +77,7 @@ fn cells_have_their_colours() -> Result<(), PlotError> {
     // Bottom row: least, zero; top row: greatest, no value.
     let (columns, rows) = ([0.0, 1e-4], [10.0, 20.0]);
     let map = exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]);
-    let picture = Picture::decode(&map_png(&map)?);
+    let picture = Picture::render(&draw_map(&map)?)?;
     assert_eq!((picture.width, picture.height), (1000, 760));
     // Middles of the four quarters of the frame, which is from 85 px to 845 px wide.
     let (left, right, low, high) = (280, 650, 530, 210);
@@ -83,7 +92,7 @@ fn cells_have_their_colours() -> Result<(), PlotError> {
 fn map_with_unequal_sides_shows_both_signs() -> Result<(), PlotError> {
     let (columns, rows) = ([0.0, 1.0, 2.0], [1.0]);
     let strong = exponents(&columns, &rows, &[-2.0, 5.0, 100.0]);
-    let picture = Picture::decode(&map_png(&strong)?);
+    let picture = Picture::render(&draw_map(&strong)?)?;
     // Row 600 is within the only row of cells; the bar has one colour along it.
     let colours = picture.row_colours(600);
     for end in [[0x05, 0x30, 0x61], [0x67, 0x00, 0x1f]] {
@@ -91,7 +100,7 @@ fn map_with_unequal_sides_shows_both_signs() -> Result<(), PlotError> {
     }
     // Within a factor of three, equal magnitudes have equal shades: -4 of 8 is half way.
     let even = exponents(&columns, &rows, &[-4.0, 4.0, 8.0]);
-    let picture = Picture::decode(&map_png(&even)?);
+    let picture = Picture::render(&draw_map(&even)?)?;
     let colours = picture.row_colours(600);
     // Half way between the middle and an end of eleven colours, between two of them.
     let (blue, red) = ([0x6b, 0xac, 0xd1], [0xe5, 0x83, 0x68]);
@@ -108,7 +117,7 @@ fn sequential_shades_go_from_least_to_greatest() -> Result<(), PlotError> {
     let mut map = exponents(&columns, &rows, &[1e-6, 2e-6, 3e-6]);
     map.shades = Shades::Sequential;
     map.horizontal.spacing = Spacing::Logarithmic;
-    let picture = Picture::decode(&map_png(&map)?);
+    let picture = Picture::render(&draw_map(&map)?)?;
     let colours = picture.row_colours(400);
     for shade in [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] {
         assert!(colours.contains(&shade), "{shade:02x?} in {colours:02x?}");
@@ -132,7 +141,7 @@ fn points_are_at_their_coordinates() -> Result<(), PlotError> {
         horizontal: coordinate("b_sp", "m", &along),
         vertical: coordinate("x_sp", "m", &up),
     };
-    let picture = Picture::decode(&scatter_png(&scatter)?);
+    let picture = Picture::render(&draw_scatter(&scatter)?)?;
     let is_ink = |colour: Colour| colour[2].saturating_sub(colour[0]) > 60;
     // Three discs of radius 3 px: 28 px each, less at their edges.
     let ink = picture.count(is_ink);
@@ -149,7 +158,7 @@ fn diagram_is_independent_of_order_and_reproducible() -> Result<(), PlotError> {
     let along: Vec<f64> = (0..5000).map(|i| f64::from(i / 50)).collect();
     let up: Vec<f64> = (0..5000).map(|i| (f64::from(i) * 0.7).sin()).collect();
     let picture = |along: &[f64], up: &[f64]| {
-        scatter_png(&Scatter {
+        draw_scatter(&Scatter {
             title: "t".to_owned(),
             horizontal: coordinate("b", "m", along),
             vertical: coordinate("x", "m", up),
@@ -158,39 +167,164 @@ fn diagram_is_independent_of_order_and_reproducible() -> Result<(), PlotError> {
     let forwards = picture(&along, &up)?;
     assert_eq!(forwards, picture(&along, &up)?);
     let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<_>>();
-    let backwards = Picture::decode(&picture(&reversed(&along), &reversed(&up))?);
-    let forwards = Picture::decode(&forwards);
+    let backwards = Picture::render(&picture(&reversed(&along), &reversed(&up))?)?;
+    let forwards = Picture::render(&forwards)?;
     // Products in another order differ in the last bit, so a rounding can differ.
     let differing = forwards.bytes.iter().zip(&backwards.bytes);
     assert!(differing.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
     Ok(())
 }
 
+/// Checks that a figure is well formed, without identifiers, and that no text reaches its edges.
+fn check(svg: &str) -> Result<(), PlotError> {
+    let document = Document::parse(svg).unwrap();
+    let allowed = [
+        "svg", "title", "rect", "path", "text", "tspan", "image", "g", "circle",
+    ];
+    for node in document.descendants().filter(Node::is_element) {
+        assert!(allowed.contains(&node.tag_name().name()), "{node:?}");
+        let link = node.attribute("href").unwrap_or("data:image/png;base64,");
+        assert!(link.starts_with("data:image/png;base64,"), "{link}");
+    }
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    let picture = Picture::render(svg)?;
+    assert_eq!((picture.width, picture.height), (1000, 760));
+    let is_white = |column, row| picture.colour_at(column, row) == [255; 3];
+    assert!((0..1000).all(|column| is_white(column, 0) && is_white(column, 759)));
+    assert!((0..760).all(|row| is_white(0, row) && is_white(999, row)));
+    Ok(())
+}
+
 #[test]
 fn extreme_maps_are_drawn() -> Result<(), PlotError> {
-    let hostile = "\0\u{1b}[31m θ̈ 漢字 ".repeat(200);
     for (columns, values) in [
-        ([0.0, 1e-300], [0.0, 0.0]),
-        ([1.0, 1.0 + 1e-15], [5.0, 5.0]),
-        ([-1e99, 1e99], [1e99, -1e99]),
-        ([1.0, 2.0], [NAN, 5e-324]),
-        ([1.0, 2.0], [f64::INFINITY, -3.0]),
+        (&[0.0, 1e-300][..], &[0.0, 0.0][..]),
+        (&[1.0, 1.0 + 1e-15], &[5.0, 5.0]),
+        (&[-1e99, 1e99], &[1e99, -1e99]),
+        (&[1.0, 2.0], &[NAN, 5e-324]),
+        (&[1.0, 2.0], &[f64::INFINITY, -3.0]),
+        (&[3.0], &[7.0]),
     ] {
         for shades in [Shades::Signed, Shades::Sequential] {
-            let mut map = exponents(&columns, &[1.0], &values);
+            let mut map = exponents(columns, &[1.0], values);
             map.shades = shades;
-            map.title = hostile.clone();
-            map.quantity = hostile.clone();
-            map.vertical.name = hostile.clone();
-            Picture::decode(&map_png(&map)?);
+            check(&draw_map(&map)?)?;
         }
     }
     Ok(())
 }
 
 #[test]
+fn hostile_text_is_escaped_and_inside_the_figure() -> Result<(), PlotError> {
+    for hostile in [
+        "\0\u{1b}[31m θ̈ 漢字 ".repeat(200),
+        "W".repeat(300),
+        "</text><script>alert(1)</script> & \" ' ".repeat(20),
+        String::new(),
+    ] {
+        let mut map = exponents(&[1.0, 2.0], &[1.0], &[NAN, 5.0]);
+        map.title = hostile.clone();
+        map.quantity = hostile.clone();
+        map.horizontal.unit = hostile.clone();
+        map.vertical.name = hostile.clone();
+        check(&draw_map(&map)?)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn extreme_scatter_plots_are_drawn() -> Result<(), PlotError> {
+    for (along, up) in [
+        (vec![1.0], vec![0.0]),
+        (vec![0.0, 1.0], vec![-1e99, 1e99]),
+        (vec![0.0, 1.0, 2.0], vec![f64::INFINITY, 5e-324, NAN]),
+        (vec![4.0; 9000], vec![-2.0; 9000]),
+    ] {
+        let title = "W_1 ".repeat(300);
+        let scatter = Scatter {
+            title: title.clone(),
+            horizontal: coordinate(&title, "m", &along),
+            vertical: coordinate(&title, &title, &up),
+        };
+        check(&draw_scatter(&scatter)?)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn size_is_bounded() -> Result<(), PlotError> {
+    // A linear congruential generator, so that the image can hardly be compressed.
+    let mut state = 1_u32;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state >> 8) / f64::from(1_u32 << 24)
+    };
+    let values: Vec<f64> = (0..1_000_000).map(|_| next()).collect();
+    let lines: Vec<f64> = (0..1000).map(f64::from).collect();
+    let svg = draw_map(&exponents(&lines, &lines, &values))?;
+    // Three bytes per pixel of the frame, and four characters for three bytes.
+    assert!(svg.len() < 4 * 1000 * 760, "{} bytes", svg.len());
+    for count in [2000, 200_000] {
+        let svg = draw_scatter(&Scatter {
+            title: String::new(),
+            horizontal: coordinate("b", "m", &values[..count]),
+            vertical: coordinate("x", "m", &values[count..2 * count]),
+        })?;
+        assert!(svg.len() < 1_500_000, "{count}: {} bytes", svg.len());
+    }
+    Ok(())
+}
+
+#[test]
+fn uneven_cells_have_their_widths() -> Result<(), PlotError> {
+    // Edges at -0.5, 0.5, 2.5 and 5.5.
+    let (columns, rows) = ([0.0, 1.0, 4.0], [1.0]);
+    let mut map = exponents(&columns, &rows, &[0.0, 1.0, 2.0]);
+    map.shades = Shades::Sequential;
+    let picture = Picture::render(&draw_map(&map)?)?;
+    let width = |shade| {
+        (0..860)
+            .filter(|x| picture.colour_at(*x, 400) == shade)
+            .count()
+    };
+    let widths = [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]].map(width);
+    let unit = widths.iter().sum::<usize>() / 6;
+    for (width, share) in widths.into_iter().zip([1, 2, 3]) {
+        assert!(width.abs_diff(share * unit) <= 4, "{widths:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn text_is_lettered_like_other_figures() -> Result<(), PlotError> {
+    let (columns, rows) = ([0.0, 1e-4], [10.0, 20.0]);
+    let svg = draw_map(&exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]))?;
+    let document = Document::parse(&svg).unwrap();
+    let texts = document.descendants().filter(|n| n.has_tag_name("text"));
+    let texts: BTreeSet<String> = texts
+        .map(|node| {
+            node.descendants()
+                .filter(Node::is_text)
+                .filter_map(|n| n.text())
+                .collect()
+        })
+        .collect();
+    for text in [
+        "Largest exponent of arm_1",
+        "bsp [µm]",
+        "ω [rad/s]",
+        "λ1 [1/s]",
+        "−4",
+        "no value",
+    ] {
+        assert!(texts.contains(text), "{text} is not in {texts:?}");
+    }
+    Ok(())
+}
+
+#[test]
 fn invalid_pictures_are_an_error() {
-    let attempt = |columns: &[f64], values: &[f64]| map_png(&exponents(columns, &[1.0], values));
+    let attempt = |columns: &[f64], values: &[f64]| draw_map(&exponents(columns, &[1.0], values));
     assert_eq!(
         attempt(&[1.0, 2.0], &[1.0]),
         Err(PlotError::Cells {
@@ -209,11 +343,11 @@ fn invalid_pictures_are_an_error() {
     let mut logarithmic = exponents(&[0.0, 1.0], &[1.0], &[1.0, 1.0]);
     logarithmic.horizontal.spacing = Spacing::Logarithmic;
     assert!(matches!(
-        map_png(&logarithmic),
+        draw_map(&logarithmic),
         Err(PlotError::Grid { index: 0, .. })
     ));
     let scatter = |along, up| {
-        scatter_png(&Scatter {
+        draw_scatter(&Scatter {
             title: String::new(),
             horizontal: coordinate("b", "m", along),
             vertical: coordinate("x", "m", up),

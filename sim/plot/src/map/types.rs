@@ -1,6 +1,5 @@
-//! Content of pictures, and their colours.
+//! Content of maps and scatter plots, and their colours.
 
-use super::raster::Colour;
 use crate::error::{PlotError, is_drawable};
 
 /// Quantity over two parameters.
@@ -68,10 +67,17 @@ pub enum Shades {
     Signed,
 }
 
+/// Red, green and blue.
+pub(super) type Colour = [u8; 3];
+
 pub(super) const WHITE: Colour = [255; 3];
 pub(super) const GREY: Colour = [158; 3];
 pub(super) const INK: Colour = [0, 60, 110];
 pub(super) const OPACITY: f64 = 0.6;
+
+pub(super) fn hexadecimal([red, green, blue]: Colour) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
 
 pub(super) fn empty_error(name: &str) -> PlotError {
     PlotError::Empty {
