@@ -275,7 +275,7 @@ fn sweep_survives_a_lost_node() {
     };
     sweep("alone", &[]);
     let said = sweep("spread", &["--engine", "slurm", "--shards", "6"]);
-    assert!(said.contains("of 6 shards"), "{said}");
+    assert!(said.contains("with 6 shards"), "{said}");
     let (alone, spread) = (place.join("alone"), place.join("spread"));
     cluster.wait("parts", |_| parts(&spread) >= 4);
     assert!(cluster.kill("n2") > 0, "nothing ran on the node");

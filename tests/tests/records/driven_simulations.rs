@@ -162,7 +162,7 @@ fn record_can_be_truncated_and_start_late() {
     assert!(
         dataset
             .rejection(&["--until", "2.25"])
-            .contains("second sample")
+            .contains("fewer than two samples")
     );
     assert!(
         dataset

@@ -59,12 +59,12 @@ fn rust_only_options_are_rejected() {
     for (options, reason) in [
         (
             ["--certify", "--json"].as_slice(),
-            "a certificate is of the emitted Rust",
+            "a certificate covers the emitted Rust",
         ),
         (&["--with", "bench"], "the benchmark is a crate"),
         (
             &["--with", "jacobians,lanes"],
-            "generic in the type of numbers",
+            "generic over the number type",
         ),
     ] {
         let output = generate(&out, options);
