@@ -2,7 +2,7 @@
 
 use super::PlotError;
 use super::axis::{Axis, Range, Scale, Tick, ticks};
-use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke, Text};
 use super::figure::Reference;
 use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
 use super::lettering::text_width;
@@ -43,17 +43,7 @@ pub(super) const COLUMN_COLOUR: &str = "#56a0d3";
 /// Two strong colours for the parts of interest, grey and a pale one; all differ in lightness.
 const PART_COLOURS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
 
-pub(super) const GRID_STROKE: Stroke = thin_stroke("#e6e6e6", "");
-pub(super) const FRAME_STROKE: Stroke = thin_stroke("#444444", "");
-const MARK_STROKE: Stroke = thin_stroke("#555555", "5 4");
-
-const fn thin_stroke(colour: &'static str, dashes: &'static str) -> Stroke {
-    Stroke {
-        colour,
-        width: 1.0,
-        dashes,
-    }
-}
+const MARK_STROKE: Stroke = Stroke::new("#555555", 1.0, "5 4");
 
 /// Draws a histogram as an SVG document with a width of 720 px.
 ///

@@ -23,6 +23,19 @@ pub(super) struct Stroke {
     pub dashes: &'static str,
 }
 
+impl Stroke {
+    pub const fn new(colour: &'static str, width: f64, dashes: &'static str) -> Self {
+        Self {
+            colour,
+            width,
+            dashes,
+        }
+    }
+}
+
+pub(super) const GRID_STROKE: Stroke = Stroke::new("#e6e6e6", 0.8, "");
+pub(super) const FRAME_STROKE: Stroke = Stroke::new("#444444", 1.0, "");
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Text<'a> {
     pub text: &'a str,

@@ -33,11 +33,7 @@ const COLUMN_COUNT_RANGE: (usize, usize) = (5, 60);
 /// Points of the curve; more would be indistinguishable.
 const MAX_CURVE_POINTS: usize = 400;
 
-const CURVE: Stroke = Stroke {
-    colour: "#d55e00",
-    width: 1.6,
-    dashes: "",
-};
+const CURVE: Stroke = Stroke::new("#d55e00", 1.6, "");
 
 /// Draws a distribution as an SVG document with a width of 720 px.
 ///

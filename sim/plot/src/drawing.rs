@@ -49,11 +49,7 @@ impl LineStyle {
             Self::Dimension => ("#d55e00", 1.8, ""),
             Self::Imaginary => ("#8a8a8a", 1.1, "6 4"),
         };
-        Stroke {
-            colour,
-            width,
-            dashes,
-        }
+        Stroke::new(colour, width, dashes)
     }
 }
 

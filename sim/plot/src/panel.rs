@@ -1,7 +1,7 @@
 //! Drawing of one panel and of the shared horizontal axis.
 
 use super::axis::{Axis, Scale, Tick};
-use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke, Text};
 use super::decimate::{Point, polylines, separate_points, thin_orbit};
 use super::error::is_drawable;
 use super::figure::{Panel, Reference, Series, SeriesStyle};
@@ -17,26 +17,8 @@ const COLOURS: [&str; 7] = [
 /// Dashes distinguish curves after all colours are used, and overlapping curves.
 const DASHES: [&str; 3] = ["", "7 3", "2 3"];
 
-const GRID_STROKE: Stroke = full_stroke("#e6e6e6", 0.8);
-const FRAME_STROKE: Stroke = full_stroke("#444444", 1.0);
-const REFERENCE_STROKE: Stroke = Stroke {
-    colour: "#6a6a6a",
-    width: 1.1,
-    dashes: "6 4",
-};
-const MARK_STROKE: Stroke = Stroke {
-    colour: "#8a8a8a",
-    width: 0.9,
-    dashes: "2 3",
-};
-
-const fn full_stroke(colour: &'static str, width: f64) -> Stroke {
-    Stroke {
-        colour,
-        width,
-        dashes: "",
-    }
-}
+const REFERENCE_STROKE: Stroke = Stroke::new("#6a6a6a", 1.1, "6 4");
+const MARK_STROKE: Stroke = Stroke::new("#8a8a8a", 0.9, "2 3");
 
 pub(super) fn draw_panel(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
     draw_grid(canvas, place, layout);

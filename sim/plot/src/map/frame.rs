@@ -2,8 +2,8 @@
 
 use super::types::{Coordinate, largest};
 use crate::axis::{Axis, Range, Scale, Tick, ticks};
-use crate::bars::{FRAME_STROKE, GRID_STROKE, draw_label, draw_outline, write_text};
-use crate::canvas::{Anchor, Canvas, Text};
+use crate::bars::{draw_label, draw_outline, write_text};
+use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Text};
 use crate::decimate::Point;
 use crate::error::{PlotError, is_drawable};
 use crate::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};

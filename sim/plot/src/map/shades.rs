@@ -3,8 +3,8 @@
 use super::frame::{Frame, TICK_LENGTH, draw_cell_outline, widest_label};
 use super::types::{Colour, GREY, Map, Shades, WHITE, empty_error, hexadecimal};
 use crate::axis::{Range, Scale, Tick, ticks};
-use crate::bars::{FRAME_STROKE, draw_label, write_text};
-use crate::canvas::{Anchor, Canvas};
+use crate::bars::{draw_label, write_text};
+use crate::canvas::{Anchor, Canvas, FRAME_STROKE};
 use crate::error::{PlotError, is_drawable};
 use crate::layout::{LABEL_SIZE, TICK_SIZE};
 use crate::lettering::truncate_to_width;

@@ -1,10 +1,10 @@
 //! Bars of amplitudes with names and numbers.
 
-use super::styles::{FRAME_STROKE, GRID_STROKE, IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR};
+use super::styles::{IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR};
 use super::types::Bar;
 use crate::axis::{Axis, Range, Scale};
 use crate::bars::{draw_outline, write_text};
-use crate::canvas::{Anchor, Canvas};
+use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE};
 use crate::layout::TICK_SIZE;
 use crate::lettering::{text_width, truncate_to_width};
 use crate::quantity::scaled_unit;

@@ -1,10 +1,10 @@
 //! Shape of a field over its length.
 
-use super::styles::{FRAME_STROKE, GRID_STROKE, IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR, stroke};
+use super::styles::{IN_PHASE_COLOUR, OUT_OF_PHASE_COLOUR};
 use super::types::Shape;
 use crate::axis::{Axis, Range, Scale, ticks};
 use crate::bars::{draw_label, draw_outline, write_text};
-use crate::canvas::{Anchor, Canvas};
+use crate::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke};
 use crate::decimate::Point;
 use crate::layout::TICK_SIZE;
 use crate::quantity::Quantity;
@@ -41,10 +41,13 @@ pub(super) fn draw_field(canvas: &mut Canvas, shape: &Shape, later: bool, place:
     if later {
         canvas.lines(
             &[curve(|[_, im]| -im)],
-            stroke(OUT_OF_PHASE_COLOUR, 1.6, "6 4"),
+            Stroke::new(OUT_OF_PHASE_COLOUR, 1.6, "6 4"),
         );
     }
-    canvas.lines(&[curve(|[re, _]| *re)], stroke(IN_PHASE_COLOUR, 2.0, ""));
+    canvas.lines(
+        &[curve(|[re, _]| *re)],
+        Stroke::new(IN_PHASE_COLOUR, 2.0, ""),
+    );
 }
 
 fn field_axes(shape: &Shape, (left, top, height): (f64, f64, f64)) -> Axes {
