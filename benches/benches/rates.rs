@@ -31,7 +31,7 @@ macro_rules! compare {
                 black_box(&rates);
             })
         });
-        let eliminated = Eliminated::<$order>::new(&parameters);
+        let eliminated = EliminatedArm::<$order>::new(&parameters);
         group.bench_function("hand_written", |bencher| {
             bencher.iter(|| {
                 black_box(&eliminated).rates(black_box(0.3), black_box(&state), &mut rates);

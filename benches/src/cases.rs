@@ -31,7 +31,7 @@ macro_rules! right_hand_sides {
             }
 
             #[inline(never)]
-            fn $hand_written(state: &[f64; variants::$module::STATES], arm: &Eliminated<$order>) {
+            fn $hand_written(state: &[f64; variants::$module::STATES], arm: &EliminatedArm<$order>) {
                 let mut rates = *state;
                 repeat(|| {
                     black_box(arm).rates(black_box(0.3), black_box(state), &mut rates);
@@ -55,7 +55,7 @@ macro_rules! right_hand_sides {
                 use variants::$module as arm;
                 let state = state::<{ arm::STATES }>();
                 $generated(&state, &arm::Coefficients::prepare(&arm::Parameters::default()));
-                $hand_written(&state, &Eliminated::new(&parameters));
+                $hand_written(&state, &EliminatedArm::new(&parameters));
                 $equation_22(&state, &Equation22::new(&parameters, 1.0, 1.0));
             })*
         }

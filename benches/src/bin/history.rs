@@ -107,7 +107,7 @@ macro_rules! times {
             let inputs = arm::Inputs::default();
             let parameters = PlanetaryArmParameters::default();
             let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
-            let eliminated = Eliminated::<$order>::new(&parameters);
+            let eliminated = EliminatedArm::<$order>::new(&parameters);
             let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
             Times {
                 order: $order,

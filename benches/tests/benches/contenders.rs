@@ -17,7 +17,7 @@ macro_rules! agree {
             use variants::$module as arm;
             let parameters = PlanetaryArmParameters::default();
             let reference = Coefficients::new(&parameters, $order);
-            let eliminated = Eliminated::<$order>::new(&parameters);
+            let eliminated = EliminatedArm::<$order>::new(&parameters);
             let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
             for (x_sp, x_pr) in DEFLECTIONS.into_iter().flat_map(|a| DEFLECTIONS.map(|b| (a, b))) {
                 let mut state = state::<{ arm::STATES }>();

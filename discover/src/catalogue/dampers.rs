@@ -6,7 +6,7 @@ use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::model::{Expr, ExprKind, Force, Model};
 
 use crate::catalogue::polynomial::Polynomial;
-use crate::catalogue::products::{find_squsplit_summands, is_constant};
+use crate::catalogue::products::{find_square, is_constant, split_sum};
 use crate::catalogue::site::{Damper, format_expression};
 
 /// Returns the dampers of a model that depend only on the rate of a deflection.

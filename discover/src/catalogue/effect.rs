@@ -55,7 +55,7 @@ impl Effect {
     /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
     /// the same.
     pub fn scales_stiffness(&self) -> bool {
-        let scales = |edit: &Change| matches!(edit, Change::Substitution { scope: SubstitutionScope::Site, pattern, .. } if find == "{k}");
+        let scales = |edit: &Change| matches!(edit, Change::Substitution { scope: SubstitutionScope::Site, pattern, .. } if pattern == "{k}");
         self.site_kind == SiteKind::Spring && self.edits.iter().all(scales)
     }
 }

@@ -3,7 +3,7 @@
 
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
-use crate::catalogue::products::{Square, find_squsplit_summands, is_constant};
+use crate::catalogue::products::{Square, find_square, is_constant, split_sum};
 use crate::catalogue::site::format_expression;
 use crate::catalogue::springs::{deflection_units, is_deflection, name_spring};
 

@@ -11,7 +11,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::dampers::find_dampers;
 use crate::catalogue::effect::SiteKind;
-use crate::catalogue::products::{Square, find_squsplit_summands, is_constant};
+use crate::catalogue::products::{Square, find_square, is_constant, split_sum};
 use crate::catalogue::site::{Site, format_expression};
 
 /// Returns the springs of a model.

@@ -44,7 +44,7 @@ pub(crate) fn instantiate_change(
             value,
         } => Edit::AddForce(NewForce {
             name: free(name),
-            on: fill(on)?,
+            on: fill(target)?,
             value: fill(value)?,
             doc: String::new(),
             source: String::new(),
@@ -71,7 +71,7 @@ pub(crate) fn instantiate_change(
             pattern,
             replacement,
         } => {
-            return substitutions(model, within, site, (find, replace), arguments);
+            return substitutions(model, scope, site, (pattern, replacement), arguments);
         }
     }])
 }

@@ -29,7 +29,7 @@ use crate::report::location::describe_location;
 use crate::report::motion_noise::note_motion_noise;
 use crate::report::origin::{Origin, Specification};
 use crate::report::overlay::draw_overlays;
-use crate::report::pictures::draw_residraw_force_sectionsection;
+use crate::report::pictures::{draw_force_section, draw_residuals};
 use crate::report::playback::Playback;
 use crate::report::remaining_gap::{ModelStage, RemainingGap};
 use crate::report::resimulation::resimulate;

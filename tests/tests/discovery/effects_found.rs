@@ -533,10 +533,8 @@ fn approximate_effect_is_reported_as_substitute() {
     let (truth, _) = OSCILLATOR.truth(&stops);
     let found = OSCILLATOR.answer(&stops, &truth);
     let effects = found["effects"].as_array().expect("effects");
-    let is_right = load_effects
-        .iter()
-        .all(|effect| effect["effect"] == "end_stop");
-    let is_said = load_effects
+    let is_right = effects.iter().all(|effect| effect["effect"] == "end_stop");
+    let is_said = effects
         .iter()
         .all(|effect| effect["status"] == "provisional");
     assert!(!effects.is_empty() && (is_right || is_said), "{effects:#?}");

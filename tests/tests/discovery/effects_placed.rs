@@ -56,7 +56,7 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
             }
         }
     }
-    for (place, effect) in load_effects.iter().enumerate() {
+    for (place, effect) in effects.iter().enumerate() {
         let homes = homes.get(&place).map_or(0, BTreeSet::len);
         assert!(
             homes > 0,
@@ -297,7 +297,7 @@ fn documented_effect() -> String {
     let examples = text.split("```toml\n").skip(1);
     let mut blocks = examples.filter_map(|rest| rest.split_once("```").map(|(block, _)| block));
     let effects = blocks.find(|block| block.contains("site = \"input\""));
-    load_effects.expect("an example").to_owned()
+    effects.expect("an example").to_owned()
 }
 
 #[test]

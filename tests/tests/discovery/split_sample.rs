@@ -148,14 +148,13 @@ fn p_values(seed: u64, force: f64) -> Vec<Option<f64>> {
         effects: &[],
         progress: &|_| {},
     };
-    let pool = CandidatePool::new(context, &all, &screen_candidates, true);
+    let pool = CandidatePool::new(context, &all, &screening, true);
     let of = |candidate: usize| {
-        let responses = ResponseId::first(screen_candidates.responses.len());
-        let response = { responses }.find(|response| {
-            screen_candidates.responses[*response].candidate.index() == candidate
-        })?;
+        let responses = ResponseId::first(screening.responses.len());
+        let response = { responses }
+            .find(|response| screening.responses[*response].candidate.index() == candidate)?;
         let hypothesis = Hypothesis {
-            predicted_sizes: screen_candidates.responses[response].sizes.clone(),
+            predicted_sizes: screening.responses[response].sizes.clone(),
             responses: vec![response],
             replaced_parameter: None,
         };

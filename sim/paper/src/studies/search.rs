@@ -181,7 +181,7 @@ pub fn search(
             store.stage(
                 stage,
                 sets,
-                &|set| judged(arm, parameter_set.0, parameter_set.1, length),
+                &|set| judged(arm, set.0, set.1, length),
                 &mut |count| progress(done + count),
             )
         };
@@ -216,11 +216,11 @@ pub fn search(
 /// Sorts by the number of claims that hold, then that hold strictly, then by index.
 pub fn rank(judged: &[JudgedSet]) -> Vec<&JudgedSet> {
     let mut ranked: Vec<&JudgedSet> = judged.iter().collect();
-    rank.sort_by_key(|judged| {
+    ranked.sort_by_key(|judged| {
         let counts = (judged.holding_claims(), judged.strictly_holding());
         (std::cmp::Reverse(counts), judged.index)
     });
-    rank
+    ranked
 }
 
 /// Folder of a search, with one file per complete chunk.

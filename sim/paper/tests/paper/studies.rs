@@ -332,21 +332,14 @@ fn motion_without_backlash_is_regular_and_matches_observables() {
 #[test]
 fn sets_fill_their_ranges() {
     let sets: Vec<UndisclosedParameters> = (0..1000).map(|index| parameter_set(index, 1)).collect();
-    let values = |set: &UndisclosedParameters| {
-        [
-            parameter_set.second_moment,
-            parameter_set.a_m,
-            parameter_set.b_m,
-            parameter_set.f_w,
-            parameter_set.c,
-        ]
-    };
+    let values =
+        |set: &UndisclosedParameters| [set.second_moment, set.a_m, set.b_m, set.f_w, set.c];
     for (axis, range) in RANGES.iter().enumerate() {
         let (low, high) = range.bounds;
         let mut counts = [0; 10];
         let inside = sets
             .iter()
-            .map(|set| values(parameter_set)[axis])
+            .map(|set| values(set)[axis])
             .filter(|value| *value > 0.0);
         for value in inside {
             assert!((low..=high).contains(&value));
