@@ -23,7 +23,9 @@ pub fn render_png(svg: &str) -> Result<Vec<u8>, PlotError> {
         fontdb: Arc::new(fonts),
         ..Options::default()
     };
-    let tree = Tree::from_str(svg, &options).map_err(encoding_error)?;
+    // Without zero-width non-joiners, a letter and its subscript could become a ligature (f_la).
+    let svg = svg.replace("<tspan", "\u{200c}<tspan");
+    let tree = Tree::from_str(&svg, &options).map_err(encoding_error)?;
     let size = tree.size().to_int_size();
     let mut pixmap = Pixmap::new(size.width(), size.height())
         .ok_or_else(|| encoding_error("the figure is too large"))?;

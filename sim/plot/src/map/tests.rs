@@ -252,6 +252,31 @@ fn extreme_scatter_plots_are_drawn() -> Result<(), PlotError> {
 }
 
 #[test]
+fn subscript_is_below_base_line_without_ligature() -> Result<(), PlotError> {
+    let ink = |name: &str| -> Result<u32, PlotError> {
+        let picture = Picture::render(&draw_scatter(&Scatter {
+            title: String::new(),
+            horizontal: coordinate(name, "", &[1.0]),
+            vertical: coordinate("x", "", &[1.0]),
+        })?)?;
+        // The base line is at 743 px; subscripts are 3 px lower.
+        let rows = 744..747;
+        let pixels_of = |row| (0..1000).map(move |column| (column, row));
+        let pixels = rows.flat_map(pixels_of);
+        Ok(pixels
+            .map(|(x, y)| 255 - u32::from(picture.colour_at(x, y)[0]))
+            .sum())
+    };
+    // In f_la, the ligature of f and l would be above the base line.
+    let (expected, found) = (ink("x_la")?, ink("f_la")?);
+    assert!(
+        found.abs_diff(expected) < expected / 8,
+        "{found} {expected}"
+    );
+    Ok(())
+}
+
+#[test]
 fn size_is_bounded() -> Result<(), PlotError> {
     // A linear congruential generator, so that the image can hardly be compressed.
     let mut state = 1_u32;
