@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eomgen_codegen::rust::Packaging;
 use eomgen_model_spec::model::Model;
 use eomgen_paper::certification::certify_source;
-use eomgen_validate::of_model::unchecked;
+use eomgen_validate::model_certificate::unchecked_certificate;
 use serde_json::{Value, json};
 
 use crate::certification::document;
@@ -104,7 +104,7 @@ fn certificate_file(variant: &CheckedInVariant) -> String {
 fn is_certificate_of(path: &Path, model: &Model, variant: &CheckedInVariant) -> Result<bool> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let found: Value = serde_json::from_str(&text).unwrap_or_default();
-    let expected = unchecked(model, variant.order, &[], variant.text.clone())
+    let expected = unchecked_certificate(model, variant.order, &[], variant.text.clone())
         .map_err(|error| Error::model(&model.source, error))?;
     let expected =
         serde_json::to_value(expected).map_err(|error| Error::input(error.to_string()))?;

@@ -47,7 +47,7 @@ pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> C
         parameters: &parameters,
         variants: &variants,
         references: &[],
-        absent: &[],
+        not_applicable: &[],
         outputs: (!outputs.is_empty()).then_some(&functions),
         emitted: Err("judged elsewhere".to_owned()),
         regimes: Err("judged elsewhere".to_owned()),

@@ -75,7 +75,7 @@ pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Samp
     let mut sampler = Sampler::new(&oracle, seed).expect("states can be drawn");
     let mut samples = Vec::new();
     for regime in sampler
-        .regimes()
+        .visit_regimes()
         .expect("the oracle supports the model")
         .visited
     {

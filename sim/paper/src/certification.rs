@@ -8,7 +8,7 @@ use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::variant::ModelError;
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::of_model::certificate;
+use eomgen_validate::model_certificate::certificate;
 
 use crate::reference_equations::reference_equations;
 

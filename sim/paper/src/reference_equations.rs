@@ -53,7 +53,7 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
     match closed_form(&known, model, order, values) {
         Ok(reference) => ReferenceEquations {
             references: vec![reference],
-            absent: Vec::new(),
+            not_applicable: Vec::new(),
         },
         Err(reason) => absent_reference("reference closed_form", reason),
     }
@@ -62,7 +62,7 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
 fn absent_reference(name: &str, reason: String) -> ReferenceEquations {
     ReferenceEquations {
         references: Vec::new(),
-        absent: vec![Check::not_applicable(name, ROW_TOLERANCE, reason)],
+        not_applicable: vec![Check::not_applicable(name, ROW_TOLERANCE, reason)],
     }
 }
 
@@ -101,7 +101,7 @@ fn arm_references(parameters: PlanetaryArmParameters, order: usize) -> Reference
     if order == 0 {
         return ReferenceEquations {
             references: rigid_arm(parameters),
-            absent: Vec::new(),
+            not_applicable: Vec::new(),
         };
     }
     let coefficients = Coefficients::new(&parameters, order);
@@ -114,11 +114,11 @@ fn arm_references(parameters: PlanetaryArmParameters, order: usize) -> Reference
                     .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
             },
         )],
-        absent: Vec::new(),
+        not_applicable: Vec::new(),
     };
     match dimensionless_reference(&parameters, order) {
         Some(reference) => found.references.push(reference),
-        None => found.absent.push(Check::not_applicable(
+        None => found.not_applicable.push(Check::not_applicable(
             "reference equation_22_dimensionless",
             ROW_TOLERANCE,
             "written out for 1 to 8, 16, 32, 64 and 128 modes",

@@ -50,7 +50,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    fn of(checks: &[Check]) -> Self {
+    fn from_checks(checks: &[Check]) -> Self {
         let is_not_run = |check: &Check| {
             let skipped = check.skipped.as_ref();
             skipped.is_some_and(|skip| skip.kind == SkipKind::NotRun)
@@ -66,7 +66,7 @@ impl Verdict {
     }
 
     /// Returns the verdict's name in JSON.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Passed => "passed",
             Self::Partial => "partial",
@@ -114,7 +114,7 @@ pub struct Check {
 
 /// Subject of a certificate.
 #[derive(Clone, Debug, Default)]
-pub struct Certified {
+pub struct CertificateHeader {
     /// Name of the model.
     pub model: String,
     /// Order of the variant.
@@ -131,8 +131,8 @@ pub struct Certified {
 
 impl Certificate {
     /// Creates the certificate of `about`. A certificate without checks does not pass.
-    pub fn new(about: Certified, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
-        let verdict = Verdict::of(&checks);
+    pub fn new(about: CertificateHeader, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
+        let verdict = Verdict::from_checks(&checks);
         Self {
             schema: SCHEMA,
             model: about.model,
@@ -170,7 +170,7 @@ fn by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::O
 
 impl Check {
     /// Creates a check that was run, with `worst` as its largest deviation.
-    pub fn made(name: impl Into<String>, worst: Worst, tolerance: f64) -> Self {
+    pub fn from_deviation(name: impl Into<String>, worst: Worst, tolerance: f64) -> Self {
         Self {
             name: name.into(),
             value: worst.value.is_finite().then_some(worst.value),
@@ -187,7 +187,7 @@ impl Check {
         tolerance: f64,
         reason: impl Into<String>,
     ) -> Self {
-        Self::skipped(
+        Self::with_skip(
             name.into(),
             tolerance,
             SkipKind::NotApplicable,
@@ -197,11 +197,11 @@ impl Check {
 
     /// Creates a skipped check that applies but could not be run.
     pub fn not_run(name: impl Into<String>, tolerance: f64, reason: impl Into<String>) -> Self {
-        Self::skipped(name.into(), tolerance, SkipKind::NotRun, reason.into())
+        Self::with_skip(name.into(), tolerance, SkipKind::NotRun, reason.into())
     }
 
     /// Creates a skipped check.
-    pub fn skipped(name: String, tolerance: f64, kind: SkipKind, reason: String) -> Self {
+    pub fn with_skip(name: String, tolerance: f64, kind: SkipKind, reason: String) -> Self {
         Self {
             name,
             value: None,
@@ -231,7 +231,7 @@ impl Default for Worst {
 
 impl Worst {
     /// Creates a deviation with a description of its place. NaN becomes infinity.
-    pub fn of(value: f64, detail: impl Into<String>) -> Self {
+    pub fn from_deviation(value: f64, detail: impl Into<String>) -> Self {
         Self {
             value: if value.is_nan() { f64::INFINITY } else { value },
             detail: detail.into(),
@@ -247,7 +247,7 @@ impl Worst {
     }
 
     /// Prefixes the description with the number of compared items; `what` is their plural noun.
-    pub fn among(self, count: usize, what: &str) -> Self {
+    pub fn with_count(self, count: usize, what: &str) -> Self {
         Self {
             detail: format!("{count} {what}, worst: {}", self.detail),
             ..self
@@ -264,8 +264,8 @@ impl Worst {
 mod tests {
     use super::*;
 
-    fn arm() -> Certified {
-        Certified {
+    fn arm() -> CertificateHeader {
+        CertificateHeader {
             model: "arm".into(),
             order: 4,
             specification_sha256: "0123".into(),
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn certificate_has_documented_json_fields() {
         let checks = vec![
-            Check::made("made", Worst::of(1e-15, "200 states"), 1e-12),
+            Check::from_deviation("made", Worst::from_deviation(1e-15, "200 states"), 1e-12),
             Check::not_applicable("skipped", 0.0, "no field"),
         ];
         let json = serde_json::to_value(Certificate::new(arm(), None, checks)).unwrap_or_default();
@@ -306,13 +306,13 @@ mod tests {
 
     #[test]
     fn failed_nan_or_missing_check_fails_certificate() {
-        let good = Check::made("good", Worst::of(0.0, ""), 0.0);
+        let good = Check::from_deviation("good", Worst::from_deviation(0.0, ""), 0.0);
         for bad in [
-            Worst::of(1.0, ""),
-            Worst::of(f64::NAN, ""),
+            Worst::from_deviation(1.0, ""),
+            Worst::from_deviation(f64::NAN, ""),
             Worst::default(),
         ] {
-            let checks = vec![good.clone(), Check::made("bad", bad, 1e-12)];
+            let checks = vec![good.clone(), Check::from_deviation("bad", bad, 1e-12)];
             assert!(!Certificate::new(arm(), None, checks).passed);
         }
         assert!(!Certificate::new(arm(), None, Vec::new()).passed);
@@ -322,10 +322,10 @@ mod tests {
 
     #[test]
     fn only_checks_not_run_make_certificate_partial() {
-        let good = Check::made("good", Worst::of(0.0, ""), 0.0);
+        let good = Check::from_deviation("good", Worst::from_deviation(0.0, ""), 0.0);
         let absent = Check::not_applicable("a", 0.0, "no field");
         let missed = Check::not_run("b", 0.0, "no compiler");
-        let bad = Check::made("bad", Worst::of(1.0, ""), 0.0);
+        let bad = Check::from_deviation("bad", Worst::from_deviation(1.0, ""), 0.0);
         for (others, verdict) in [
             (vec![absent.clone()], Verdict::Passed),
             (vec![absent, missed.clone()], Verdict::Partial),
@@ -341,10 +341,10 @@ mod tests {
     #[test]
     fn the_worst_is_kept_with_its_place() {
         let mut worst = Worst::default();
-        worst.include(Worst::of(0.5, "here"));
-        worst.include(Worst::of(0.25, "there"));
-        assert_eq!(worst, Worst::of(0.5, "here"));
-        worst.include(Worst::of(f64::NAN, "lost"));
+        worst.include(Worst::from_deviation(0.5, "here"));
+        worst.include(Worst::from_deviation(0.25, "there"));
+        assert_eq!(worst, Worst::from_deviation(0.5, "here"));
+        worst.include(Worst::from_deviation(f64::NAN, "lost"));
         assert_eq!(worst.value(), f64::INFINITY);
     }
 }

@@ -1,7 +1,7 @@
 //! Runs all checks of a model at one order and writes the certificate.
 
-use super::certificate::{Certificate, Certified, Check, Coverage, SkipKind, Worst};
-use super::checks::outputs::Judged;
+use super::certificate::{Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst};
+use super::checks::outputs::CheckContext;
 use super::checks::{
     MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, outputs, regimes, states,
     zeros,
@@ -12,8 +12,8 @@ use super::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
-pub use super::checks::exact::{Derivative, Sized};
-pub use super::checks::linked::{Emitted, EmittedFunction};
+pub use super::checks::exact::{Derivative, ScaledRates};
+pub use super::checks::linked_program::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
 
 /// Hand-written equations of a model.
@@ -22,7 +22,7 @@ pub struct ReferenceEquations {
     /// Equations to compare with.
     pub references: Vec<Reference>,
     /// Skipped checks of hand-written equations that do not apply, with the reason.
-    pub absent: Vec<Check>,
+    pub not_applicable: Vec<Check>,
 }
 
 /// Model, variant and emitted source to validate.
@@ -38,7 +38,7 @@ pub struct Subject<'s> {
     /// Hand-written equations of this model.
     pub references: &'s [Reference],
     /// Skipped checks of hand-written equations that do not apply, with the reason.
-    pub absent: &'s [Check],
+    pub not_applicable: &'s [Check],
     /// Function that creates the requested outputs of this order; `None` if none were requested.
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// Emitted source with the parameters of the specification, or the reason for its absence.
@@ -52,25 +52,25 @@ pub struct Subject<'s> {
 /// Runs all checks and returns the certificate of `subject`. An error that prevents the checks, for
 /// example in the derivation of the variant, is reported as a failed check.
 pub fn certify(subject: &Subject<'_>) -> Certificate {
-    let (checks, coverage) = all_checks(subject).unwrap_or_else(|message| {
-        let worst = Worst::of(f64::INFINITY, message);
-        let check = Check::made("accelerations", worst, ROW_TOLERANCE);
+    let (checks, coverage) = run_checks(subject).unwrap_or_else(|message| {
+        let worst = Worst::from_deviation(f64::INFINITY, message);
+        let check = Check::from_deviation("accelerations", worst, ROW_TOLERANCE);
         (vec![check], Coverage::default())
     });
     let emitted = subject.emitted.as_ref().ok();
-    let about = about(subject.model, subject.order, subject.parameters, emitted);
+    let about = certificate_header(subject.model, subject.order, subject.parameters, emitted);
     Certificate::new(about, Some(coverage), checks)
 }
 
 /// Returns the header of the certificate; `parameters` are in SI.
-pub fn about(
+pub fn certificate_header(
     model: &Model,
     order: usize,
     parameters: &[f64],
     emitted: Option<&Emitted>,
-) -> Certified {
+) -> CertificateHeader {
     let names = model.parameters.iter().map(|known| known.name.clone());
-    Certified {
+    CertificateHeader {
         model: model.name.clone(),
         order,
         specification_sha256: model.hash(),
@@ -82,93 +82,96 @@ pub fn about(
     }
 }
 
-fn all_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
-    let oracle = oracle(subject, subject.order)?;
+fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
+    let oracle = build_oracle(subject, subject.order)?;
     let mut variant = (subject.variants)(subject.order)?;
     let variant = variant.as_mut();
     let found = states::check(&oracle, variant, subject.references);
-    let (mut checks, coverage) = found.map_err(text)?;
-    checks.extend_from_slice(subject.absent);
-    checks.push(balance::check(&oracle, variant).map_err(text)?);
-    checks.extend(nested(subject, &oracle, variant)?);
-    checks.extend(rigid(subject, variant)?);
+    let (mut checks, coverage) = found.map_err(describe_error)?;
+    checks.extend_from_slice(subject.not_applicable);
+    checks.push(balance::check(&oracle, variant).map_err(describe_error)?);
+    checks.extend(check_nesting(subject, &oracle, variant)?);
+    checks.extend(check_rigid_limit(subject, variant)?);
     let mut outputs = subject.outputs.map(|make| make()).transpose()?;
     if let Some(outputs) = &mut outputs {
-        let judged = Judged {
+        let judged = CheckContext {
             oracle: &oracle,
             model: subject.model,
             order: subject.order,
             parameters: subject.parameters,
         };
         let found = outputs::check(&judged, variant, outputs.as_mut());
-        checks.extend(found.map_err(text)?);
+        checks.extend(found.map_err(describe_error)?);
     }
     let jacobians = outputs.as_deref_mut();
-    checks.extend(zeros::check(&oracle, variant, jacobians).map_err(text)?);
+    checks.extend(zeros::check(&oracle, variant, jacobians).map_err(describe_error)?);
     checks.extend(match &subject.emitted {
         Ok(emitted) => {
             let outputs = outputs.as_deref_mut();
-            emitted::check(&oracle, variant, outputs, emitted).map_err(text)?
+            emitted::check(&oracle, variant, outputs, emitted).map_err(describe_error)?
         }
-        Err(reason) => emitted::skipped(None, SkipKind::NotApplicable, reason),
+        Err(reason) => emitted::skipped_checks(None, SkipKind::NotApplicable, reason),
     });
     checks.push(match &subject.regimes {
-        Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(text)?,
-        Err(reason) => regimes::skipped(reason),
+        Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(describe_error)?,
+        Err(reason) => regimes::skipped_check(reason),
     });
     checks.push(match &subject.exact {
-        Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(text)?,
-        Err(reason) => exact::skipped(reason),
+        Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(describe_error)?,
+        Err(reason) => exact::skipped_check(reason),
     });
     Ok((checks, coverage))
 }
 
-fn oracle(subject: &Subject<'_>, order: usize) -> Result<Oracle, String> {
-    Oracle::new(subject.model, order, subject.parameters).map_err(text)
+fn build_oracle(subject: &Subject<'_>, order: usize) -> Result<Oracle, String> {
+    Oracle::new(subject.model, order, subject.parameters).map_err(describe_error)
 }
 
-fn text(error: OracleError) -> String {
+fn describe_error(error: OracleError) -> String {
     format!("the oracle cannot evaluate this model: {error}")
 }
 
-fn nested(
+fn check_nesting(
     subject: &Subject<'_>,
     oracle: &Oracle,
     variant: &mut dyn Variant,
 ) -> Result<Vec<Check>, String> {
     if subject.model.fields.is_empty() {
-        return Ok(skipped("nesting", "the model has no field"));
+        return Ok(skipped_checks("nesting", "the model has no field"));
     }
     let found = if subject.order < subject.model.highest_order() {
         let mut larger = (subject.variants)(subject.order + 1)?;
         nesting::check("nesting", oracle, variant, larger.as_mut())
     } else {
         let order = subject.order.saturating_sub(1);
-        let smaller = self::oracle(subject, order)?;
+        let smaller = self::build_oracle(subject, order)?;
         let mut small = (subject.variants)(order)?;
         nesting::check("nesting", &smaller, small.as_mut(), variant)
     };
-    Ok(found.map_err(text)?.into())
+    Ok(found.map_err(describe_error)?.into())
 }
 
-fn rigid(subject: &Subject<'_>, variant: &mut dyn Variant) -> Result<Vec<Check>, String> {
+fn check_rigid_limit(
+    subject: &Subject<'_>,
+    variant: &mut dyn Variant,
+) -> Result<Vec<Check>, String> {
     const NAME: &str = "rigid_limit";
     if subject.model.fields.is_empty() {
-        return Ok(skipped(NAME, "the model has no field"));
+        return Ok(skipped_checks(NAME, "the model has no field"));
     }
     if subject.order == 0 {
-        return Ok(skipped(NAME, "order 0 is the rigid model itself"));
+        return Ok(skipped_checks(NAME, "order 0 is the rigid model itself"));
     }
-    let oracle = oracle(subject, 0)?;
+    let oracle = build_oracle(subject, 0)?;
     if oracle.size() == 0 {
-        return Ok(skipped(NAME, "the rigid model has no coordinate"));
+        return Ok(skipped_checks(NAME, "the rigid model has no coordinate"));
     }
     let mut rigid = (subject.variants)(0)?;
-    let found = nesting::check(NAME, &oracle, rigid.as_mut(), variant).map_err(text)?;
+    let found = nesting::check(NAME, &oracle, rigid.as_mut(), variant).map_err(describe_error)?;
     Ok(found.into())
 }
 
-fn skipped(name: &str, reason: &str) -> Vec<Check> {
+fn skipped_checks(name: &str, reason: &str) -> Vec<Check> {
     [
         ("mass", MASS_TOLERANCE),
         ("bias", ROW_TOLERANCE),

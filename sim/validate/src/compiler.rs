@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-const LIMIT: Duration = Duration::from_secs(240);
-const INTERVAL: Duration = Duration::from_millis(5);
+const TIME_LIMIT: Duration = Duration::from_secs(240);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// Rust compiler that accepts edition 2024.
 #[derive(Clone, Debug)]
@@ -40,11 +40,11 @@ impl Compiler {
     /// Finds the compiler, `RUSTC` of the environment or `rustc`, and tests it in `folder`.
     pub fn find(folder: &Path) -> Result<Self, String> {
         let program = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-        Self::named(program, folder)
+        Self::from_program(program, folder)
     }
 
     /// Tests the compiler `program` in `folder`.
-    pub fn named(program: std::ffi::OsString, folder: &Path) -> Result<Self, String> {
+    pub fn from_program(program: std::ffi::OsString, folder: &Path) -> Result<Self, String> {
         let compiler = Self { program };
         let probe = folder.join("probe.rs");
         write(&probe, "//! A probe.\n")?;
@@ -155,11 +155,11 @@ fn wait(child: &mut Child, name: &OsStr) -> Result<bool, String> {
     loop {
         match child.try_wait() {
             Ok(Some(status)) => return Ok(status.success()),
-            Ok(None) if start.elapsed() < LIMIT => std::thread::sleep(INTERVAL),
+            Ok(None) if start.elapsed() < TIME_LIMIT => std::thread::sleep(POLL_INTERVAL),
             Ok(None) => {
                 drop(child.kill());
                 drop(child.wait());
-                let seconds = LIMIT.as_secs();
+                let seconds = TIME_LIMIT.as_secs();
                 return Err(format!(
                     "{} did not finish within {seconds} s",
                     name.display()

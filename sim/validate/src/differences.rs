@@ -26,7 +26,7 @@ pub(super) struct Direction {
 }
 
 impl Direction {
-    pub fn still(states: usize, inputs: usize, parameters: usize) -> Self {
+    pub fn zero(states: usize, inputs: usize, parameters: usize) -> Self {
         Self {
             state: vec![0.0; states],
             inputs: vec![0.0; inputs],
@@ -34,7 +34,7 @@ impl Direction {
         }
     }
 
-    fn moves_parameters(&self) -> bool {
+    fn changes_parameters(&self) -> bool {
         self.parameters.iter().any(|entry| *entry != 0.0)
     }
 }
@@ -61,7 +61,7 @@ pub(super) fn slopes(
     Some(found)
 }
 
-pub(super) struct Surroundings<'s> {
+pub(super) struct DifferencePoint<'s> {
     pub oracle: &'s Oracle,
     pub model: &'s Model,
     pub order: usize,
@@ -72,23 +72,23 @@ pub(super) struct Surroundings<'s> {
     pub unknowns: Vec<f64>,
 }
 
-impl Surroundings<'_> {
+impl DifferencePoint<'_> {
     /// Returns the derivatives of all rows, then of all observables, along `direction`. Returns
     /// `None` if the regime or the domain of a function ends within four steps.
     pub fn slopes(&self, direction: &Direction, step: f64) -> Option<Vec<Slope>> {
         let here = sides(self.oracle, self.sample)?;
         slopes(step, |length| {
-            let sample = self.moved(direction, length);
-            if !direction.moves_parameters() {
+            let sample = self.displace_sample(direction, length);
+            if !direction.changes_parameters() {
                 return self.quantities(self.oracle, &sample, &here);
             }
-            let parameters = self.moved_parameters(direction, length)?;
+            let parameters = self.displace_parameters(direction, length)?;
             let oracle = Oracle::new(self.model, self.order, &parameters).ok()?;
             self.quantities(&oracle, &sample, &here)
         })
     }
 
-    fn moved(&self, direction: &Direction, length: f64) -> Sample {
+    fn displace_sample(&self, direction: &Direction, length: f64) -> Sample {
         let moved = |from: &[f64], direction: &[f64]| -> Vec<f64> {
             let entries = from.iter().zip(direction);
             entries.map(|(from, by)| from + length * by).collect()
@@ -100,7 +100,7 @@ impl Surroundings<'_> {
         }
     }
 
-    fn moved_parameters(&self, direction: &Direction, length: f64) -> Option<Vec<f64>> {
+    fn displace_parameters(&self, direction: &Direction, length: f64) -> Option<Vec<f64>> {
         let mut model = self.model.clone();
         let known = self.parameters.iter().zip(&direction.parameters);
         for (parameter, (value, by)) in model.parameters.iter_mut().zip(known) {

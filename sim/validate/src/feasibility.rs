@@ -4,9 +4,9 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Residual below which inequalities contradict each other, for rows of length 1.
-const CONTRADICTION: f64 = 1e-12;
+const MAX_INFEASIBLE_RESIDUAL: f64 = 1e-12;
 /// Maximum number of corrections per unknown.
-const ROUNDS: usize = 10;
+const MAX_CORRECTIONS_PER_UNKNOWN: usize = 10;
 /// Scaling rounds. Each round halves the remaining differences of the logarithms.
 const SCALING_ROUNDS: usize = 20;
 const SVD_ITERATIONS: usize = 10_000;
@@ -14,7 +14,7 @@ const SVD_ITERATIONS: usize = 10_000;
 /// Returns true if no point z has a positive product with every row. By Gordan's theorem, a
 /// combination of rows with nonnegative weights is then 0. Rows of zeros are ignored.
 pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
-    let rows: Vec<DVector<f64>> = equilibrated(rows)
+    let rows: Vec<DVector<f64>> = equilibrate_rows(rows)
         .into_iter()
         .filter_map(|row| {
             let row = DVector::from_vec(row);
@@ -25,28 +25,28 @@ pub(crate) fn cone_is_empty(rows: &[Vec<f64>]) -> bool {
     let Some(residual) = residual(&rows) else {
         return false;
     };
-    residual.norm() <= CONTRADICTION
+    residual.norm() <= MAX_INFEASIBLE_RESIDUAL
 }
 
 /// Divides rows and columns by the geometric mean of their largest and smallest entries. Otherwise
 /// a constant that is much smaller than another one would be treated as rounding error.
-fn equilibrated(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn equilibrate_rows(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     let columns = rows.first().map_or(0, Vec::len);
     for _ in 0..SCALING_ROUNDS {
         for column in 0..columns {
-            let size = middle_size(rows.iter().map(|row| row[column]));
+            let size = geometric_mean_of_extremes(rows.iter().map(|row| row[column]));
             rows.iter_mut().for_each(|row| row[column] /= size);
         }
         for row in &mut rows {
-            let size = middle_size(row.iter().copied());
+            let size = geometric_mean_of_extremes(row.iter().copied());
             row.iter_mut().for_each(|entry| *entry /= size);
         }
     }
     rows
 }
 
-fn middle_size(entries: impl Iterator<Item = f64>) -> f64 {
+fn geometric_mean_of_extremes(entries: impl Iterator<Item = f64>) -> f64 {
     let sizes = entries
         .map(f64::abs)
         .filter(|size| *size > 0.0 && size.is_finite());
@@ -85,7 +85,7 @@ pub(crate) fn nearest_point(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
         &matrix * nonnegative_least_squares(&matrix, &target) - target
     };
     let last = residual[size];
-    if residual.norm() <= CONTRADICTION {
+    if residual.norm() <= MAX_INFEASIBLE_RESIDUAL {
         return None;
     }
     Some(
@@ -112,7 +112,7 @@ fn nonnegative_least_squares(matrix: &DMatrix<f64>, target: &DVector<f64>) -> DV
     let count = matrix.ncols();
     let mut solution = DVector::zeros(count);
     let mut active: Vec<usize> = Vec::new();
-    for _ in 0..ROUNDS * count {
+    for _ in 0..MAX_CORRECTIONS_PER_UNKNOWN * count {
         let gradient = matrix.tr_mul(&(target - matrix * &solution));
         let candidates = (0..count).filter(|place| !active.contains(place));
         let steepest = candidates.max_by(|a, b| gradient[*a].total_cmp(&gradient[*b]));

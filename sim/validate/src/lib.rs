@@ -32,14 +32,14 @@ pub mod derived;
 pub mod derived_outputs;
 mod differences;
 mod feasibility;
-pub mod of_model;
+pub mod model_certificate;
 pub mod oracle;
 pub mod outputs;
 pub mod random;
+mod regime_search;
 mod regimes;
 mod sample;
 pub mod sampler;
-mod seek;
 mod sizes;
 pub mod variant;
 

@@ -14,7 +14,7 @@ pub struct Regime {
 
 impl Regime {
     /// Returns the regime of a state.
-    pub fn of(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
+    pub fn from_state(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
         let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs)?;
         let sides = values.iter().map(SwitchValue::side).collect();
         Ok(Self { sides })
@@ -32,7 +32,7 @@ impl Regime {
     }
 }
 
-pub(super) fn combinations(oracle: &Oracle) -> u64 {
+pub(super) fn count_combinations(oracle: &Oracle) -> u64 {
     let sides = oracle.switches().iter().map(|switch| switch.sides().len());
     sides.fold(1, |count: u64, sides| count.saturating_mul(sides as u64))
 }

@@ -8,25 +8,25 @@
 
 use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
+use super::regime_search::{Sizes, move_into_regime};
 pub use super::regimes::Regime;
-use super::regimes::{combinations, possible_regimes};
+use super::regimes::{count_combinations, possible_regimes};
 pub use super::sample::Sample;
-use super::seek::{Sizes, seek};
 use super::sizes;
 
 /// Maximum number of regimes to visit if a model has too many regimes to list.
-const DRAWN_REGIMES: usize = 81;
+const MAX_VISITED_REGIMES: usize = 81;
 /// Draws after which a regime is treated as unreachable.
-const ATTEMPTS: usize = 60;
-const SWEEPS: usize = 6;
+const MAX_DRAWS_PER_REGIME: usize = 60;
+const MAX_CORRECTIONS_PER_DRAW: usize = 6;
 /// Consecutive states outside the domain after which states are drawn nearer to the initial state.
-const MISSES: usize = 8;
+const MAX_CONSECUTIVE_MISSES: usize = 8;
 /// Largest ratio of an entry to its size after a move into a regime.
-const LARGEST: f64 = 1e6;
+const MAX_RELATIVE_ENTRY: f64 = 1e6;
 
 /// State in the model's domain with the equations of motion at that state.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub struct SampledState {
     /// Sampled state.
     pub sample: Sample,
     /// Equations of the oracle.
@@ -52,11 +52,11 @@ pub struct Sampler<'o> {
     sizes: Vec<f64>,
     input_sizes: Vec<f64>,
     /// Last regime that changes of single entries did not reach.
-    remote: Option<Regime>,
+    last_unreachable: Option<Regime>,
     /// Fraction of the distance from the initial state to a drawn state, initially 1.
-    reach: f64,
-    missed: usize,
-    redrawn: usize,
+    draw_fraction: f64,
+    consecutive_misses: usize,
+    redrawn_count: usize,
 }
 
 impl<'o> Sampler<'o> {
@@ -65,18 +65,18 @@ impl<'o> Sampler<'o> {
         Ok(Self {
             oracle,
             random: Random::new(seed),
-            sizes: sizes::of_state(oracle)?,
-            input_sizes: sizes::of_inputs(oracle),
-            remote: None,
-            reach: 1.0,
-            missed: 0,
-            redrawn: 0,
+            sizes: sizes::state_sizes(oracle)?,
+            input_sizes: sizes::input_sizes(oracle),
+            last_unreachable: None,
+            draw_fraction: 1.0,
+            consecutive_misses: 0,
+            redrawn_count: 0,
         })
     }
 
     /// Returns the number of states that were drawn again because they are outside the domain.
-    pub fn redrawn(&self) -> usize {
-        self.redrawn
+    pub fn redrawn_count(&self) -> usize {
+        self.redrawn_count
     }
 
     /// Returns the typical size of each entry of the state, in SI.
@@ -95,8 +95,8 @@ impl<'o> Sampler<'o> {
     }
 
     /// Returns the regimes to visit.
-    pub fn regimes(&mut self) -> Result<Regimes, OracleError> {
-        let combinations = combinations(self.oracle);
+    pub fn visit_regimes(&mut self) -> Result<Regimes, OracleError> {
+        let combinations = count_combinations(self.oracle);
         if let Some(visited) = possible_regimes(self.oracle, &self.sizes, &self.input_sizes) {
             return Ok(Regimes {
                 unreachable: combinations.saturating_sub(visited.len() as u64),
@@ -105,10 +105,10 @@ impl<'o> Sampler<'o> {
             });
         }
         let mut visited = Vec::new();
-        for _ in 0..2 * DRAWN_REGIMES {
+        for _ in 0..2 * MAX_VISITED_REGIMES {
             let sample = self.draw();
-            let regime = Regime::of(self.oracle, &sample)?;
-            if visited.len() < DRAWN_REGIMES && !visited.contains(&regime) {
+            let regime = Regime::from_state(self.oracle, &sample)?;
+            if visited.len() < MAX_VISITED_REGIMES && !visited.contains(&regime) {
                 visited.push(regime);
             }
         }
@@ -121,7 +121,7 @@ impl<'o> Sampler<'o> {
 
     /// Draws a state in any regime, inside or outside the domain.
     pub fn draw(&mut self) -> Sample {
-        let (random, reach, ranges) = (&mut self.random, self.reach, self.oracle.ranges());
+        let (random, reach, ranges) = (&mut self.random, self.draw_fraction, self.oracle.ranges());
         let time = random.unit();
         let entries = self.sizes.iter().zip(self.oracle.initial()).enumerate();
         let state = entries.map(|(row, (size, initial))| {
@@ -148,10 +148,10 @@ impl<'o> Sampler<'o> {
     }
 
     /// Draws a state of the domain in any regime; `None` if the search failed.
-    pub fn draw_inside(&mut self) -> Result<Option<Drawn>, OracleError> {
-        for _ in 0..ATTEMPTS * MISSES {
+    pub fn draw_inside(&mut self) -> Result<Option<SampledState>, OracleError> {
+        for _ in 0..MAX_DRAWS_PER_REGIME * MAX_CONSECUTIVE_MISSES {
             let sample = self.draw();
-            if let Some(drawn) = self.admit(sample)? {
+            if let Some(drawn) = self.accept_in_domain(sample)? {
                 return Ok(Some(drawn));
             }
         }
@@ -159,37 +159,37 @@ impl<'o> Sampler<'o> {
     }
 
     /// Draws a state in `regime`; `None` if the search failed or the sides are contradictory.
-    pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
-        let reach = self.reach;
-        if self.remote.as_ref() != Some(regime)
+    pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<SampledState>, OracleError> {
+        let reach = self.draw_fraction;
+        if self.last_unreachable.as_ref() != Some(regime)
             && let Some(drawn) = self.draw_near(regime)?
         {
             return Ok(Some(drawn));
         }
-        for _ in 0..ATTEMPTS {
+        for _ in 0..MAX_DRAWS_PER_REGIME {
             let mut sample = self.draw();
             let sizes = Sizes {
                 state: &self.sizes,
                 inputs: &self.input_sizes,
             };
-            if seek(self.oracle, &mut sample, regime, &sizes, &mut self.random)?
-                && let Some(drawn) = self.admit(sample)?
+            if move_into_regime(self.oracle, &mut sample, regime, &sizes, &mut self.random)?
+                && let Some(drawn) = self.accept_in_domain(sample)?
             {
-                self.remote = Some(regime.clone());
+                self.last_unreachable = Some(regime.clone());
                 return Ok(Some(drawn));
             }
         }
         // The reach found for one regime does not apply to the others.
-        self.reach = reach;
+        self.draw_fraction = reach;
         Ok(None)
     }
 
-    fn draw_near(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
-        for _ in 0..ATTEMPTS {
+    fn draw_near(&mut self, regime: &Regime) -> Result<Option<SampledState>, OracleError> {
+        for _ in 0..MAX_DRAWS_PER_REGIME {
             let mut sample = self.draw();
-            for _ in 0..SWEEPS {
+            for _ in 0..MAX_CORRECTIONS_PER_DRAW {
                 if self.correct(&mut sample, regime)? {
-                    match self.admit(sample)? {
+                    match self.accept_in_domain(sample)? {
                         Some(drawn) => return Ok(Some(drawn)),
                         None => break,
                     }
@@ -199,21 +199,21 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    fn admit(&mut self, sample: Sample) -> Result<Option<Drawn>, OracleError> {
+    fn accept_in_domain(&mut self, sample: Sample) -> Result<Option<SampledState>, OracleError> {
         if !self.is_within(&sample) {
             return Ok(None);
         }
         let (state, inputs) = (&sample.state, &sample.inputs);
         let equations = self.oracle.equations_inside(sample.time, state, inputs)?;
         if let Some(equations) = equations {
-            self.missed = 0;
-            return Ok(Some(Drawn { sample, equations }));
+            self.consecutive_misses = 0;
+            return Ok(Some(SampledState { sample, equations }));
         }
-        self.redrawn += 1;
-        self.missed += 1;
-        if self.missed == MISSES {
-            self.missed = 0;
-            self.reach *= 0.5;
+        self.redrawn_count += 1;
+        self.consecutive_misses += 1;
+        if self.consecutive_misses == MAX_CONSECUTIVE_MISSES {
+            self.consecutive_misses = 0;
+            self.draw_fraction *= 0.5;
         }
         Ok(None)
     }
@@ -227,7 +227,7 @@ impl<'o> Sampler<'o> {
             .chain(inputs)
             .all(|(range, entry)| range.is_none_or(|(low, high)| (low..=high).contains(entry)));
         let entries = sample.state.iter().zip(&self.sizes);
-        let mut sized = entries.map(|(entry, size)| entry.abs() <= LARGEST * size);
+        let mut sized = entries.map(|(entry, size)| entry.abs() <= MAX_RELATIVE_ENTRY * size);
         ranged && sized.all(|sized| sized)
     }
 
@@ -256,7 +256,7 @@ impl<'o> Sampler<'o> {
                 continue;
             }
             right = false;
-            let target = self.target(value, *side);
+            let target = self.choose_target(value, *side);
             let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;
             let movable: Vec<(usize, f64)> = slopes
                 .into_iter()
@@ -273,7 +273,7 @@ impl<'o> Sampler<'o> {
         Ok(right)
     }
 
-    fn target(&mut self, value: &SwitchValue, side: Side) -> f64 {
+    fn choose_target(&mut self, value: &SwitchValue, side: Side) -> f64 {
         let (width, distance) = (value.half_width, value.quantity.abs());
         match side {
             Side::Free => width * self.random.symmetric(),

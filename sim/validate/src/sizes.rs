@@ -11,9 +11,9 @@
 
 use super::oracle::{Oracle, OracleError};
 
-pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
+pub(super) fn state_sizes(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let inputs = oracle.typical_inputs().to_vec();
-    let mut sizes = of_coordinates(oracle, &inputs)?;
+    let mut sizes = coordinate_sizes(oracle, &inputs)?;
     let mut state = sizes.clone();
     state.resize(oracle.state_length(), 0.0);
     // If the state of all sizes is outside the model's domain, use the initial state.
@@ -23,7 +23,7 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let stiffness = oracle.stiffness_diagonal(0.0, &state, &inputs)?;
     let mass = oracle.equations(0.0, &state, &inputs)?.mass;
     for (modes, length) in oracle.modes().zip(oracle.lengths()) {
-        let shares = shares(stiffness.get(modes.clone()).unwrap_or_default());
+        let shares = mode_amplitudes(stiffness.get(modes.clone()).unwrap_or_default());
         for (entry, share) in sizes.iter_mut().skip(modes.start).zip(shares) {
             *entry = 0.05 * length.abs() * share;
         }
@@ -31,16 +31,16 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let rates: Vec<f64> = sizes
         .iter()
         .zip(stiffness.iter().zip(mass.diagonal().iter()))
-        .map(|(size, (stiffness, mass))| size * frequency(stiffness / mass))
+        .map(|(size, (stiffness, mass))| size * uncoupled_frequency(stiffness / mass))
         .collect();
     sizes.extend(rates);
-    let first_order = of_states(oracle, &sizes, &inputs)?;
+    let first_order = first_order_sizes(oracle, &sizes, &inputs)?;
     sizes.extend(first_order);
     Ok(sizes)
 }
 
 /// Returns the inputs' sizes: half the range, the mean of parameters of equal dimension, or 1.
-pub(super) fn of_inputs(oracle: &Oracle) -> Vec<f64> {
+pub(super) fn input_sizes(oracle: &Oracle) -> Vec<f64> {
     let ranges = oracle.ranges();
     let inputs = ranges.inputs.iter().zip(&ranges.input_scales);
     inputs
@@ -69,7 +69,11 @@ fn geometric_mean(sizes: impl Iterator<Item = f64>) -> f64 {
 ///   rates have their sizes;
 /// - the geometric mean of the initial value and of the parameters of the same dimension;
 /// - 1 in SI.
-fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
+fn first_order_sizes(
+    oracle: &Oracle,
+    sizes: &[f64],
+    inputs: &[f64],
+) -> Result<Vec<f64>, OracleError> {
     let mut state = sizes.to_vec();
     state.resize(oracle.state_length(), 0.0);
     let equations = oracle.equations(0.0, &state, inputs)?;
@@ -97,7 +101,7 @@ fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>,
 }
 
 /// Returns the coordinates' sizes, 0 for modes, in dead zones that depend on no other one.
-fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
+fn coordinate_sizes(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
     let mut sizes = vec![1.0; oracle.size()];
     for row in oracle.modes().flatten() {
         if let Some(entry) = sizes.get_mut(row) {
@@ -128,7 +132,7 @@ fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleErr
 }
 
 /// Returns amplitudes of modes relative to the first one; the stiffness is proportional to beta^4.
-fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
+fn mode_amplitudes(stiffness: &[f64]) -> impl Iterator<Item = f64> {
     let first = stiffness.first().copied().unwrap_or(0.0);
     stiffness.iter().map(move |stiffness| {
         let ratio = first / stiffness;
@@ -140,7 +144,7 @@ fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
-fn frequency(square: f64) -> f64 {
+fn uncoupled_frequency(square: f64) -> f64 {
     if square.is_finite() {
         square.abs().sqrt().max(1.0)
     } else {

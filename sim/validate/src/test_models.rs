@@ -3,7 +3,7 @@
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-pub(super) fn model(text: &str) -> Model {
+pub(super) fn parse_model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
         Err(diagnostics) => panic!("{}", diagnostics.render(false)),
@@ -200,7 +200,7 @@ well = "-e*ln(x/L) + e*x/L"
 "#;
 
 /// Mass on a spring with a term linear in its rate, far from most sampled states.
-pub(super) const FAR: &str = r#"
+pub(super) const FAR_TERM_TEXT: &str = r#"
 [model]
 name = "far"
 

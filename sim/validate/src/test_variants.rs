@@ -1,6 +1,6 @@
 //! Variants for the tests of the certificate: textbook equations with optional faults.
 
-use super::certify::Sized;
+use super::certify::ScaledRates;
 use super::oracle::Oracle;
 use super::variant::Variant;
 use nalgebra::{DMatrix, DVector};
@@ -16,7 +16,7 @@ pub(super) enum Fault {
     Power,
     Guard,
     NotANumber,
-    Shifted,
+    WrongRate,
     Refusal,
 }
 
@@ -75,7 +75,7 @@ impl Variant for DoublePendulum {
         rates[3] = (m_11 * f_2 - m_21 * f_1) / determinant;
         match self.0 {
             Fault::NotANumber => rates[3] = f64::NAN,
-            Fault::Shifted => rates[0] = state[3],
+            Fault::WrongRate => rates[0] = state[3],
             Fault::Refusal => return Err("a pivot is not positive".into()),
             _ => {}
         }
@@ -202,7 +202,7 @@ impl Variant for Spring {
     }
 }
 
-pub(super) struct Single {
+pub(super) struct SingleCoordinate {
     pub name: &'static str,
     pub mass: fn(f64, f64, f64) -> f64,
     pub acceleration: fn(f64, f64, f64) -> f64,
@@ -211,7 +211,7 @@ pub(super) struct Single {
 }
 
 /// Rotor of 2 kg at a radius of 0.5 m.
-pub(super) const FREE_ROTOR: Single = Single {
+pub(super) const FREE_ROTOR: SingleCoordinate = SingleCoordinate {
     name: "theta",
     mass: |_, _, _| 0.5,
     acceleration: |_, _, _| 0.0,
@@ -220,7 +220,7 @@ pub(super) const FREE_ROTOR: Single = Single {
 };
 
 /// Tank with a mass of 2 kg (2 + sin t) on a spring of 30 N/m.
-pub(super) const TIMED_TANK: Single = Single {
+pub(super) const TIMED_TANK: SingleCoordinate = SingleCoordinate {
     name: "x",
     mass: |t, _, _| 2.0 * (2.0 + t.sin()),
     acceleration: |t, x, rate| -(30.0 * x + 2.0 * t.cos() * rate) / (2.0 * (2.0 + t.sin())),
@@ -229,7 +229,7 @@ pub(super) const TIMED_TANK: Single = Single {
 };
 
 /// Mass of 2 kg in a logarithmic potential of 3 J.
-pub(super) const LOGARITHMIC: Single = Single {
+pub(super) const LOGARITHMIC: SingleCoordinate = SingleCoordinate {
     name: "x",
     mass: |_, _, _| 2.0,
     acceleration: |_, x, _| (3.0 / x - 3.0) / 2.0,
@@ -238,7 +238,7 @@ pub(super) const LOGARITHMIC: Single = Single {
 };
 
 /// Mass of 2 kg on a spring of 30 N/m, with a term beyond 3 m.
-pub(super) const FAR_TERM: Single = Single {
+pub(super) const FAR_TERM: SingleCoordinate = SingleCoordinate {
     name: "x",
     mass: |_, _, _| 2.0,
     acceleration: |_, x, _| -15.0 * x,
@@ -249,7 +249,7 @@ pub(super) const FAR_TERM: Single = Single {
     },
 };
 
-impl Variant for Single {
+impl Variant for SingleCoordinate {
     fn coordinate_names(&self) -> Vec<String> {
         vec![self.name.into()]
     }
@@ -313,7 +313,7 @@ impl Preload {
     }
 
     /// Returns the derivative of a solver; with `faulty` it treats zero as negative.
-    pub fn derivative(faulty: bool) -> impl Fn(f64, &[f64], &[f64]) -> Result<Sized, String> {
+    pub fn derivative(faulty: bool) -> impl Fn(f64, &[f64], &[f64]) -> Result<ScaledRates, String> {
         move |_, state: &[f64], _: &[f64]| {
             let inside = state[0].abs() <= 0.01;
             let force = if faulty && inside {
@@ -321,9 +321,9 @@ impl Preload {
             } else {
                 Self::force(state[0])
             };
-            Ok(Sized {
+            Ok(ScaledRates {
                 rates: vec![state[1], force / 2.0],
-                sizes: vec![state[1].abs(), 3.5 + 150.0 * (state[0].abs() + 0.01)],
+                magnitudes: vec![state[1].abs(), 3.5 + 150.0 * (state[0].abs() + 0.01)],
             })
         }
     }

@@ -10,7 +10,7 @@ use eomgen_paper::reference_equations::reference_equations;
 use eomgen_sim::piecewise_linear::PiecewiseLinear;
 use eomgen_tests::models::{load, project, shipped, variant};
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::of_model::certificate;
+use eomgen_validate::model_certificate::certificate;
 
 /// Certifies `source` and compares the model with its hand-written equations.
 fn certify_with_references(

@@ -8,7 +8,7 @@ use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{samples, variant};
 use eomgen_validate::certify::ReferenceEquations;
-use eomgen_validate::of_model::certificate;
+use eomgen_validate::model_certificate::certificate;
 use eomgen_validate::sampler::Sample;
 
 /// Declares one test per file and a test that every file is listed.

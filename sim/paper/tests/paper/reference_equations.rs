@@ -29,7 +29,7 @@ fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
     let found = reference_equations(&model, order, &values);
     let names = found.references.into_iter().map(|known| known.name);
     let absent = found
-        .absent
+        .not_applicable
         .into_iter()
         .map(|line| (line.name, line.detail));
     (names.collect(), absent.collect())

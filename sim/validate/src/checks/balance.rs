@@ -10,57 +10,57 @@ use super::{ROW_TOLERANCE, unknowns};
 
 const NAME: &str = "power_balance";
 /// Number of steps to check, on all trajectories together.
-const STEPS: usize = 200;
+const CHECKED_STEPS: usize = 200;
 /// Maximum number of trajectories. One ends where the motion leaves the domain or comes to rest.
 const TRAJECTORIES: usize = 20;
 /// Maximum number of halvings of a step. A jump of the rates would never be accepted.
-const HALVINGS: usize = 10;
+const MAX_STEP_HALVINGS: usize = 10;
 /// Largest difference between two half steps and one step, relative to the state and its size.
-const ACCURACY: f64 = 1e-3;
+const MAX_STEP_DIFFERENCE: f64 = 1e-3;
 /// Magnitude in W below which products of terms are subnormal, with a larger relative error.
-const REST: f64 = 1e-280;
+const MIN_POWER_W: f64 = 1e-280;
 const SEED: u64 = 0xba1a_4ce5;
 
 /// Checks the power balance along trajectories from random states. Classical Runge-Kutta steps are
 /// at most a twelfth of the shortest period, uncoupled or coupled.
 pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
-    let mut motion = Motion {
+    let mut motion = BalanceCheck {
         sizes: sampler.sizes().to_vec(),
-        longest: 0.5 / sampler.highest_frequency(),
-        looked: 0,
+        max_step_s: 0.5 / sampler.highest_frequency(),
+        checked_steps: 0,
         worst: Worst::default(),
     };
     for _ in 0..TRAJECTORIES {
-        if motion.looked >= STEPS {
+        if motion.checked_steps >= CHECKED_STEPS {
             break;
         }
         let Some(drawn) = sampler.draw_inside()? else {
             break;
         };
-        motion.follow(oracle, variant, drawn.sample)?;
+        motion.check_trajectory(oracle, variant, drawn.sample)?;
     }
-    let worst = motion.worst.among(motion.looked, "steps");
-    Ok(Check::made(NAME, worst, ROW_TOLERANCE))
+    let worst = motion.worst.with_count(motion.checked_steps, "steps");
+    Ok(Check::from_deviation(NAME, worst, ROW_TOLERANCE))
 }
 
-struct Motion {
+struct BalanceCheck {
     sizes: Vec<f64>,
     /// Largest step size, in s.
-    longest: f64,
-    looked: usize,
+    max_step_s: f64,
+    checked_steps: usize,
     worst: Worst,
 }
 
-impl Motion {
-    fn follow(
+impl BalanceCheck {
+    fn check_trajectory(
         &mut self,
         oracle: &Oracle,
         variant: &mut dyn Variant,
         mut sample: Sample,
     ) -> Result<(), OracleError> {
-        let mut step = self.longest;
-        while self.looked < STEPS {
+        let mut step = self.max_step_s;
+        while self.checked_steps < CHECKED_STEPS {
             let Sample {
                 time,
                 state,
@@ -69,23 +69,24 @@ impl Motion {
             let Some(equations) = oracle.equations_inside(*time, state, inputs)? else {
                 return Ok(());
             };
-            let place = format!("step {}", self.looked + 1);
-            let balance = imbalance(oracle, &equations, variant, &sample)?;
-            if matches!(&balance, Ok((value, size)) if *value > 0.0 && *size < REST) {
+            let place = format!("step {}", self.checked_steps + 1);
+            let balance = power_imbalance(oracle, &equations, variant, &sample)?;
+            if matches!(&balance, Ok((value, size)) if *value > 0.0 && *size < MIN_POWER_W) {
                 return Ok(());
             }
-            self.looked += 1;
+            self.checked_steps += 1;
             let next = match balance {
                 Ok((deviation, _)) => {
-                    self.worst.include(Worst::of(deviation, place));
-                    self.advance(variant, &sample, &mut step)
+                    self.worst.include(Worst::from_deviation(deviation, place));
+                    self.take_checked_step(variant, &sample, &mut step)
                 }
                 Err(message) => Err(message),
             };
             match next {
                 Ok(next) => sample = next,
                 Err(message) => {
-                    self.worst.include(Worst::of(f64::INFINITY, message));
+                    self.worst
+                        .include(Worst::from_deviation(f64::INFINITY, message));
                     return Ok(());
                 }
             }
@@ -94,30 +95,30 @@ impl Motion {
     }
 
     /// Takes a step, halved until two half steps agree with it, and doubles it for the next one.
-    fn advance(
+    fn take_checked_step(
         &self,
         variant: &mut dyn Variant,
         sample: &Sample,
         step: &mut f64,
     ) -> Result<Sample, String> {
-        for _ in 0..HALVINGS {
-            let whole = moved(variant, sample, *step)?;
-            let half = moved(variant, sample, 0.5 * *step)?;
-            let halves = moved(variant, &half, 0.5 * *step)?;
+        for _ in 0..MAX_STEP_HALVINGS {
+            let whole = take_step(variant, sample, *step)?;
+            let half = take_step(variant, sample, 0.5 * *step)?;
+            let halves = take_step(variant, &half, 0.5 * *step)?;
             if self.is_near(&whole, &halves) {
-                *step = (2.0 * *step).min(self.longest);
+                *step = (2.0 * *step).min(self.max_step_s);
                 return Ok(halves);
             }
             *step *= 0.5;
         }
-        moved(variant, sample, *step)
+        take_step(variant, sample, *step)
     }
 
     fn is_near(&self, first: &Sample, second: &Sample) -> bool {
         let states = first.state.iter().zip(&second.state);
         let mut entries = states.zip(&self.sizes);
         entries.all(|((first, second), size)| {
-            (first - second).abs() <= ACCURACY * (size + second.abs())
+            (first - second).abs() <= MAX_STEP_DIFFERENCE * (size + second.abs())
         })
     }
 }
@@ -127,7 +128,7 @@ impl Motion {
 /// The difference is the power of the residuals at the variant's accelerations. A residual is only
 /// small relative to the largest term of its row, and inertias of other coordinates can cancel in
 /// the row. The scale therefore includes each row's term times the row's rate.
-fn imbalance(
+fn power_imbalance(
     oracle: &Oracle,
     equations: &Equations,
     variant: &mut dyn Variant,
@@ -160,12 +161,12 @@ fn imbalance(
     Ok(Ok((rate.deviation(power), rate.magnitude)))
 }
 
-fn moved(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample, String> {
+fn take_step(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample, String> {
     let start = &sample.state;
     let mut slope = vec![0.0; start.len()];
     let mut sum = vec![0.0; start.len()];
     for (share, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-        let stage = shifted(start, &slope, share * step);
+        let stage = add_scaled(start, &slope, share * step);
         let time = sample.time + share * step;
         variant.rates(time, &stage, &sample.inputs, &mut slope)?;
         for (sum, slope) in sum.iter_mut().zip(&slope) {
@@ -174,12 +175,12 @@ fn moved(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample
     }
     Ok(Sample {
         time: sample.time + step,
-        state: shifted(start, &sum, step / 6.0),
+        state: add_scaled(start, &sum, step / 6.0),
         inputs: sample.inputs.clone(),
     })
 }
 
-fn shifted(state: &[f64], slope: &[f64], step: f64) -> Vec<f64> {
+fn add_scaled(state: &[f64], slope: &[f64], step: f64) -> Vec<f64> {
     let entries = state.iter().zip(slope);
     entries.map(|(entry, slope)| entry + step * slope).collect()
 }

@@ -6,8 +6,10 @@ use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
-use super::kinds::{self, BorrowedOutputs};
-use super::linked::{Emitted, EmittedFunction, differences, line, run};
+use super::linked_program::{
+    Emitted, EmittedFunction, count_differences, format_bits, run_program,
+};
+use super::number_types::{self, BorrowedOutputs};
 use std::fmt::Write as _;
 
 const NAME: &str = "emitted_rust";
@@ -30,7 +32,7 @@ pub fn check(
     }
     if samples.is_empty() {
         let reason = "no state in the model's domain was found";
-        return Ok(skipped(
+        return Ok(skipped_checks(
             emitted.outputs.as_deref(),
             SkipKind::NotRun,
             reason,
@@ -45,12 +47,12 @@ pub fn check(
         Ok(found) => found,
         Err(reason) => {
             let outputs = emitted.outputs.as_deref();
-            return Ok(skipped(outputs, SkipKind::NotRun, &reason));
+            return Ok(skipped_checks(outputs, SkipKind::NotRun, &reason));
         }
     };
     let folder = folder.path();
-    let calls = calls(&emitted.functions);
-    let found = run(
+    let calls = call_statements(&emitted.functions);
+    let found = run_program(
         &compiler,
         folder,
         (emitted, &calls),
@@ -59,23 +61,27 @@ pub fn check(
     );
     let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
         Ok(worst) => worst,
-        Err(message) => Worst::of(f64::INFINITY, message),
+        Err(message) => Worst::from_deviation(f64::INFINITY, message),
     };
-    let mut checks = vec![Check::made(NAME, worst, 0.0)];
+    let mut checks = vec![Check::from_deviation(NAME, worst, 0.0)];
     let judged = (variant, functions);
-    checks.extend(kinds::check(&compiler, folder, emitted, judged, &samples));
+    checks.extend(number_types::check(
+        &compiler, folder, emitted, judged, &samples,
+    ));
     Ok(checks)
 }
 
 /// Returns the checks of emitted source with `outputs` as skipped.
-pub fn skipped(outputs: Option<&[String]>, kind: SkipKind, reason: &str) -> Vec<Check> {
-    let check = Check::skipped(NAME.to_owned(), 0.0, kind, reason.to_owned());
+pub fn skipped_checks(outputs: Option<&[String]>, kind: SkipKind, reason: &str) -> Vec<Check> {
+    let check = Check::with_skip(NAME.to_owned(), 0.0, kind, reason.to_owned());
     let mut checks = vec![check];
-    checks.extend(outputs.map_or_else(Vec::new, |names| kinds::skipped(names, kind, reason)));
+    checks.extend(outputs.map_or_else(Vec::new, |names| {
+        number_types::skipped_checks(names, kind, reason)
+    }));
     checks
 }
 
-fn calls(functions: &[EmittedFunction]) -> String {
+fn call_statements(functions: &[EmittedFunction]) -> String {
     let mut calls = String::new();
     for function in functions {
         let name = function.name();
@@ -99,12 +105,12 @@ fn compare(
     for (count, sample) in samples.iter().enumerate() {
         for function in &emitted.functions {
             let numbers = function.expected(variant, sample)?;
-            let expected = line(&numbers);
+            let expected = format_bits(&numbers);
             let found = lines
                 .next()
                 .ok_or("the compiled model printed fewer lines than expected")?;
             compared += numbers.len();
-            let wrong = differences(found, &expected);
+            let wrong = count_differences(found, &expected);
             differing.extend(std::iter::repeat_n((function.name(), count), wrong));
         }
     }
@@ -112,5 +118,5 @@ fn compare(
         None => format!("{compared} numbers at {} states", samples.len()),
         Some((name, count)) => format!("first in {name} at state {}", count + 1),
     };
-    Ok(Worst::of(differing.len() as f64, detail))
+    Ok(Worst::from_deviation(differing.len() as f64, detail))
 }

@@ -15,11 +15,11 @@
 pub mod balance;
 pub mod emitted;
 pub mod exact;
-mod inside;
-mod kinds;
-pub mod linked;
+pub mod linked_program;
 pub mod nesting;
+mod number_types;
 pub mod outputs;
+mod regime_interiors;
 pub mod regimes;
 pub mod states;
 pub mod zeros;

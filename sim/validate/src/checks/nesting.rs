@@ -4,7 +4,7 @@
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError, Residual};
-use super::super::sampler::{Drawn, Sample, Sampler};
+use super::super::sampler::{Sample, SampledState, Sampler};
 use super::super::variant::Variant;
 use super::{MASS_TOLERANCE, ROW_TOLERANCE, mass_matrix, matrix_distance, unknowns};
 use nalgebra::DMatrix;
@@ -31,16 +31,16 @@ pub fn check(
         let deviations = compare(&drawn, small, large, &kept);
         for (index, worst) in worst.iter_mut().enumerate() {
             worst.include(match &deviations {
-                Ok(deviations) => Worst::of(deviations[index], place.clone()),
-                Err(message) => Worst::of(f64::INFINITY, message.clone()),
+                Ok(deviations) => Worst::from_deviation(deviations[index], place.clone()),
+                Err(message) => Worst::from_deviation(f64::INFINITY, message.clone()),
             });
         }
     }
     let [mass, bias, forces] = worst;
     Ok([
-        Check::made(format!("{name}_mass"), mass, MASS_TOLERANCE),
-        Check::made(format!("{name}_bias"), bias, ROW_TOLERANCE),
-        Check::made(format!("{name}_forces"), forces, ROW_TOLERANCE),
+        Check::from_deviation(format!("{name}_mass"), mass, MASS_TOLERANCE),
+        Check::from_deviation(format!("{name}_bias"), bias, ROW_TOLERANCE),
+        Check::from_deviation(format!("{name}_forces"), forces, ROW_TOLERANCE),
     ])
 }
 
@@ -50,7 +50,7 @@ fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
 }
 
 fn compare(
-    Drawn { sample, equations }: &Drawn,
+    SampledState { sample, equations }: &SampledState,
     small: &mut dyn Variant,
     large: &mut dyn Variant,
     kept: &[Option<usize>],
@@ -58,11 +58,11 @@ fn compare(
     let kept: Option<Vec<usize>> = kept.iter().copied().collect();
     let kept = kept.ok_or("a coordinate of the smaller order is missing in the larger order")?;
     let embedded = Sample {
-        state: embed(&sample.state, &kept, large.coordinate_names().len()),
+        state: embed_state(&sample.state, &kept, large.coordinate_names().len()),
         ..sample.clone()
     };
-    let own = sides(small, sample)?;
-    let other = sides(large, &embedded)?.restricted(&kept);
+    let own = evaluate_sides(small, sample)?;
+    let other = evaluate_sides(large, &embedded)?.select_rows(&kept);
     let found = unknowns(small, sample.time, &sample.state, &sample.inputs)?;
     let scales = equations.residuals(&found);
     let rows = |own: &[f64], other: &[f64]| {
@@ -80,7 +80,7 @@ fn compare(
     ])
 }
 
-fn embed(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
+fn embed_state(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
     let mut embedded = vec![0.0; 2 * size];
     let (positions, rest) = state.split_at(kept.len());
     let (rates, first_order) = rest.split_at(kept.len());
@@ -100,7 +100,7 @@ struct Sides {
 }
 
 impl Sides {
-    fn restricted(&self, kept: &[usize]) -> Self {
+    fn select_rows(&self, kept: &[usize]) -> Self {
         let rows = |all: &[f64]| kept.iter().map(|row| all[*row]).collect();
         Self {
             mass: DMatrix::from_fn(kept.len(), kept.len(), |row, column| {
@@ -112,7 +112,7 @@ impl Sides {
     }
 }
 
-fn sides(variant: &mut dyn Variant, sample: &Sample) -> Result<Sides, String> {
+fn evaluate_sides(variant: &mut dyn Variant, sample: &Sample) -> Result<Sides, String> {
     let Sample {
         time,
         state,

@@ -5,16 +5,16 @@ use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
-use super::inside::samples;
-use super::linked::{Emitted, differing_numbers, run};
+use super::linked_program::{Emitted, count_differing_numbers, run_program};
+use super::regime_interiors::interior_samples;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 const NAME: &str = "regime_kernels";
 const STATES_PER_REGIME: usize = 10;
-const MOST_KERNELS: usize = 100;
+const MAX_KERNELS: usize = 100;
 /// Maximum number of switching surfaces in the number of a regime.
-const SURFACES: usize = u32::BITS as usize;
+const MAX_SURFACES: usize = u32::BITS as usize;
 const SEED: u64 = 0x2e61_3e5a;
 
 /// Compiles the kernels in `emitted` and counts the numbers that differ from `variant`.
@@ -23,7 +23,7 @@ pub fn check(
     variant: &mut dyn Variant,
     emitted: &Emitted,
 ) -> Result<Check, OracleError> {
-    let samples = samples(oracle, variant, STATES_PER_REGIME, SEED)?;
+    let samples = interior_samples(oracle, variant, STATES_PER_REGIME, SEED)?;
     let folder = match tempfile::tempdir() {
         Ok(folder) => folder,
         Err(error) => {
@@ -36,9 +36,9 @@ pub fn check(
         Err(reason) => return Ok(Check::not_run(NAME, 0.0, reason)),
     };
     let found = samples.and_then(|samples| {
-        let (samples, numbers) = in_regimes(variant, samples)?;
-        let calls = calls(&numbers);
-        let lines = run(
+        let (samples, numbers) = samples_in_kernels(variant, samples)?;
+        let calls = kernel_calls(&numbers);
+        let lines = run_program(
             &compiler,
             folder.path(),
             (emitted, &calls),
@@ -47,16 +47,16 @@ pub fn check(
         )?;
         compare(variant, &samples, &lines, numbers.len())
     });
-    let worst = found.unwrap_or_else(|message| Worst::of(f64::INFINITY, message));
-    Ok(Check::made(NAME, worst, 0.0))
+    let worst = found.unwrap_or_else(|message| Worst::from_deviation(f64::INFINITY, message));
+    Ok(Check::from_deviation(NAME, worst, 0.0))
 }
 
 /// Returns the check as not applicable, for variants without kernels or regimes.
-pub fn skipped(reason: impl Into<String>) -> Check {
+pub fn skipped_check(reason: impl Into<String>) -> Check {
     Check::not_applicable(NAME, 0.0, reason)
 }
 
-fn in_regimes(
+fn samples_in_kernels(
     variant: &mut dyn Variant,
     samples: Vec<Sample>,
 ) -> Result<(Vec<Sample>, BTreeSet<u32>), String> {
@@ -64,11 +64,11 @@ fn in_regimes(
     let mut kept = Vec::new();
     for sample in samples {
         let guards = variant.guards(sample.time, &sample.state, &sample.inputs)?;
-        let bits = guards.iter().take(SURFACES).enumerate();
+        let bits = guards.iter().take(MAX_SURFACES).enumerate();
         let number = bits.fold(0, |bits, (place, guard)| {
             bits | u32::from(*guard > 0.0) << place
         });
-        if numbers.len() < MOST_KERNELS || numbers.contains(&number) {
+        if numbers.len() < MAX_KERNELS || numbers.contains(&number) {
             numbers.insert(number);
             kept.push(sample);
         }
@@ -76,7 +76,7 @@ fn in_regimes(
     Ok((kept, numbers))
 }
 
-fn calls(numbers: &BTreeSet<u32>) -> String {
+fn kernel_calls(numbers: &BTreeSet<u32>) -> String {
     let arguments = "(t, &state, &inputs, &coefficients";
     let mut text = "        let mut rates = [f64::NAN; model::STATES];\n".to_owned();
     let _ = writeln!(text, "        match model::regime{arguments}) {{");
@@ -104,14 +104,14 @@ fn compare(
         let found = lines
             .next()
             .ok_or("the compiled kernels printed fewer lines than expected")?;
-        let wrong = differing_numbers(found, &expected);
+        let wrong = count_differing_numbers(found, &expected);
         if wrong > 0 && first.is_none() {
             first = Some(format!("first at state {}", count + 1));
         }
         differing += wrong;
     }
     let all = format!("{regimes} regimes, {} states", samples.len());
-    Ok(Worst::of(
+    Ok(Worst::from_deviation(
         differing as f64,
         first.map_or(all.clone(), |first| format!("{all}, {first}")),
     ))

@@ -3,7 +3,7 @@
 
 use super::super::certificate::{Check, Coverage, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
-use super::super::sampler::{Drawn, Regime, Sample, Sampler};
+use super::super::sampler::{Regime, Sample, SampledState, Sampler};
 use super::super::variant::Variant;
 use super::{
     MASS_TOLERANCE, ROW_TOLERANCE, SYMMETRY_TOLERANCE, mass_matrix, matrix_distance, unknowns,
@@ -14,9 +14,9 @@ use std::collections::HashMap;
 const STATES_PER_REGIME: usize = 200;
 const STATES: usize = 81 * STATES_PER_REGIME;
 /// Minimum number of states for a regime to count as sampled.
-const FEWEST: usize = 20;
+const MIN_STATES_PER_REGIME: usize = 20;
 /// Failed draws after which the search in a regime ends.
-const FRUITLESS: usize = 5;
+const MAX_FAILED_DRAWS: usize = 5;
 const SEED: u64 = 0x0dd5_eed5;
 
 /// Hand-written equations to compare accelerations with.
@@ -42,9 +42,9 @@ struct Findings<'f> {
     guards: Guards,
     /// True if no energy depends explicitly on time.
     scleronomic: bool,
-    examined: usize,
+    compared_states: usize,
     /// Regimes with enough states.
-    sampled: u64,
+    sampled_regimes: u64,
     per_regime: usize,
 }
 
@@ -55,11 +55,11 @@ pub fn check(
     references: &[Reference],
 ) -> Result<(Vec<Check>, Coverage), OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
-    let regimes = sampler.regimes()?;
+    let regimes = sampler.visit_regimes()?;
     let mut findings = Findings {
         oracle,
         references,
-        checks: vec![names(oracle, variant)],
+        checks: vec![check_names(oracle, variant)],
         dense: Worst::default(),
         mass: Worst::default(),
         symmetry: Worst::default(),
@@ -69,42 +69,43 @@ pub fn check(
         by_reference: vec![Worst::default(); references.len()],
         guards: Guards::default(),
         scleronomic: is_scleronomic(oracle)?,
-        examined: 0,
-        sampled: 0,
-        per_regime: (STATES / regimes.visited.len().max(1)).clamp(FEWEST, STATES_PER_REGIME),
+        compared_states: 0,
+        sampled_regimes: 0,
+        per_regime: (STATES / regimes.visited.len().max(1))
+            .clamp(MIN_STATES_PER_REGIME, STATES_PER_REGIME),
     };
     for regime in &regimes.visited {
-        findings.visit(&mut sampler, Some(regime), variant)?;
+        findings.compare_in_regime(&mut sampler, Some(regime), variant)?;
     }
     let coverage = Coverage {
         regimes: regimes.combinations.saturating_sub(regimes.unreachable),
-        sampled: findings.sampled,
+        sampled: findings.sampled_regimes,
         unreachable: regimes.unreachable,
     };
-    if findings.examined == 0 && !oracle.switches().is_empty() {
-        findings.visit(&mut sampler, None, variant)?;
+    if findings.compared_states == 0 && !oracle.switches().is_empty() {
+        findings.compare_in_regime(&mut sampler, None, variant)?;
     }
-    if findings.examined == 0 {
-        let redrawn = sampler.redrawn();
+    if findings.compared_states == 0 {
+        let redrawn = sampler.redrawn_count();
         let message = format!(
             "no state in the model's domain was found: at {redrawn} states a term is NaN or the mass \
              matrix is not positive definite; give coordinates, states and inputs a `range`"
         );
-        let worst = Worst::of(f64::INFINITY, message);
+        let worst = Worst::from_deviation(f64::INFINITY, message);
         findings
             .checks
-            .push(Check::made("domain", worst, ROW_TOLERANCE));
+            .push(Check::from_deviation("domain", worst, ROW_TOLERANCE));
     }
     if !oracle.switches().is_empty() {
-        findings.checks.push(every_regime(&coverage));
+        findings.checks.push(check_coverage(&coverage));
     }
     Ok((findings.into_checks(), coverage))
 }
 
-fn every_regime(coverage: &Coverage) -> Check {
+fn check_coverage(coverage: &Coverage) -> Check {
     const NAME: &str = "coverage";
     if coverage.sampled >= coverage.regimes {
-        return Check::made(NAME, Worst::of(0.0, coverage.sentence()), 0.0);
+        return Check::from_deviation(NAME, Worst::from_deviation(0.0, coverage.sentence()), 0.0);
     }
     let reason = format!(
         "{}; give coordinates, states and inputs a `range` that includes or excludes the other regimes",
@@ -116,7 +117,7 @@ fn every_regime(coverage: &Coverage) -> Check {
 /// Returns true if T + V does not depend explicitly on time at several states.
 fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
-    for _ in 0..FEWEST {
+    for _ in 0..MIN_STATES_PER_REGIME {
         let Some(drawn) = sampler.draw_inside()? else {
             break;
         };
@@ -132,7 +133,7 @@ fn is_scleronomic(oracle: &Oracle) -> Result<bool, OracleError> {
     Ok(true)
 }
 
-fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
+fn check_names(oracle: &Oracle, variant: &dyn Variant) -> Check {
     let found = variant.coordinate_names();
     let same = found == oracle.names();
     let detail = if same {
@@ -140,13 +141,13 @@ fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
     } else {
         format!("found {found:?}, expected {:?}", oracle.names())
     };
-    let worst = Worst::of(if same { 0.0 } else { 1.0 }, detail);
-    Check::made("coordinate_names", worst, 0.0)
+    let worst = Worst::from_deviation(if same { 0.0 } else { 1.0 }, detail);
+    Check::from_deviation("coordinate_names", worst, 0.0)
 }
 
 impl Findings<'_> {
     /// Compares at states of one regime, or of any regime if `regime` is `None`.
-    fn visit(
+    fn compare_in_regime(
         &mut self,
         sampler: &mut Sampler<'_>,
         regime: Option<&Regime>,
@@ -161,7 +162,7 @@ impl Findings<'_> {
         };
         let mut worst = Worst::default();
         let (mut examined, mut fruitless) = (0, 0);
-        let before = sampler.redrawn();
+        let before = sampler.redrawn_count();
         for count in 1..=self.per_regime {
             let drawn = match regime {
                 Some(regime) => sampler.draw_in(regime)?,
@@ -169,7 +170,7 @@ impl Findings<'_> {
             };
             let Some(drawn) = drawn else {
                 fruitless += 1;
-                if examined == 0 || fruitless == FRUITLESS {
+                if examined == 0 || fruitless == MAX_FAILED_DRAWS {
                     break;
                 }
                 continue;
@@ -179,29 +180,29 @@ impl Findings<'_> {
             examined += 1;
             self.guards.record(oracle, variant, &drawn)?;
             match self.compare(variant, &drawn, place)? {
-                Ok(deviation) => worst.include(Worst::of(deviation, place)),
-                Err(message) => worst.include(Worst::of(f64::INFINITY, message)),
+                Ok(deviation) => worst.include(Worst::from_deviation(deviation, place)),
+                Err(message) => worst.include(Worst::from_deviation(f64::INFINITY, message)),
             }
         }
-        self.examined += examined;
-        self.sampled += u64::from(regime.is_some() && examined >= FEWEST);
-        let redrawn = sampler.redrawn() - before;
+        self.compared_states += examined;
+        self.sampled_regimes += u64::from(regime.is_some() && examined >= MIN_STATES_PER_REGIME);
+        let redrawn = sampler.redrawn_count() - before;
         self.checks.push(match (examined, redrawn) {
             (0, 0) => Check::not_run(name, ROW_TOLERANCE, "no state was found in this regime"),
             (0, _) => {
                 let reason = "no state in this regime was in the model's domain";
                 Check::not_run(name, ROW_TOLERANCE, reason)
             }
-            (1..FEWEST, _) if worst.value() <= ROW_TOLERANCE => {
+            (1..MIN_STATES_PER_REGIME, _) if worst.value() <= ROW_TOLERANCE => {
                 let reason = format!(
-                    "only {examined} of at least {FEWEST} states were found in this regime"
+                    "only {examined} of at least {MIN_STATES_PER_REGIME} states were found in this regime"
                 );
                 Check::not_run(name, ROW_TOLERANCE, reason)
             }
-            (_, 0) => Check::made(name, worst.among(examined, "states"), ROW_TOLERANCE),
+            (_, 0) => Check::from_deviation(name, worst.with_count(examined, "states"), ROW_TOLERANCE),
             _ => {
                 let what = format!("states ({redrawn} drawn again, outside the model's domain)");
-                Check::made(name, worst.among(examined, &what), ROW_TOLERANCE)
+                Check::from_deviation(name, worst.with_count(examined, &what), ROW_TOLERANCE)
             }
         });
         Ok(())
@@ -210,7 +211,7 @@ impl Findings<'_> {
     fn compare(
         &mut self,
         variant: &mut dyn Variant,
-        Drawn { sample, equations }: &Drawn,
+        SampledState { sample, equations }: &SampledState,
         place: &str,
     ) -> Result<Result<f64, String>, OracleError> {
         let Sample {
@@ -224,14 +225,14 @@ impl Findings<'_> {
             self.compare_mass(&mass, equations, place);
             let found = variant.energy(*time, state, inputs)?;
             self.energy
-                .include(Worst::of(energy.deviation(found), place));
+                .include(Worst::from_deviation(energy.deviation(found), place));
             let power = variant.power(*time, state, inputs)?;
             let found = unknowns(variant, *time, state, inputs)?;
             let expected = self
                 .power(sample, &found[..equations.size()])
                 .map_err(|e| e.to_string())?;
             self.power
-                .include(Worst::of(expected.deviation(power), place));
+                .include(Worst::from_deviation(expected.deviation(power), place));
             self.compare_accelerations(&found, equations, sample, place);
             Ok(equations.worst_residual(&found))
         })())
@@ -254,12 +255,14 @@ impl Findings<'_> {
     fn compare_mass(&mut self, mass: &DMatrix<f64>, equations: &Equations, place: &str) {
         let distance = |other| matrix_distance(mass, other, equations);
         self.mass
-            .include(Worst::of(distance(&equations.mass), place));
+            .include(Worst::from_deviation(distance(&equations.mass), place));
         self.symmetry
-            .include(Worst::of(distance(&mass.transpose()), place));
-        let definite = Cholesky::new(scaled(mass)).is_some();
-        self.definite
-            .include(Worst::of(if definite { 0.0 } else { 1.0 }, place));
+            .include(Worst::from_deviation(distance(&mass.transpose()), place));
+        let definite = Cholesky::new(scale_to_unit_diagonal(mass)).is_some();
+        self.definite.include(Worst::from_deviation(
+            if definite { 0.0 } else { 1.0 },
+            place,
+        ));
     }
 
     fn compare_accelerations(
@@ -272,35 +275,35 @@ impl Findings<'_> {
         let distance = equations
             .unknowns()
             .map_or(f64::INFINITY, |dense| equations.distance(&dense, found));
-        self.dense.include(Worst::of(distance, place));
+        self.dense.include(Worst::from_deviation(distance, place));
         for (reference, worst) in self.references.iter().zip(&mut self.by_reference) {
             let deviation =
                 (reference.deviation)(sample.time, &sample.state, &sample.inputs, found);
-            worst.include(Worst::of(deviation, place));
+            worst.include(Worst::from_deviation(deviation, place));
         }
     }
 
     fn into_checks(self) -> Vec<Check> {
         let mut checks = self.checks;
         checks.extend([
-            Check::made("dense_solve", self.dense, ROW_TOLERANCE),
-            Check::made("mass_matrix", self.mass, MASS_TOLERANCE),
-            Check::made("mass_matrix_symmetric", self.symmetry, SYMMETRY_TOLERANCE),
-            Check::made("mass_matrix_positive_definite", self.definite, 0.0),
-            Check::made("energy", self.energy, ROW_TOLERANCE),
-            Check::made("power", self.power, ROW_TOLERANCE),
+            Check::from_deviation("dense_solve", self.dense, ROW_TOLERANCE),
+            Check::from_deviation("mass_matrix", self.mass, MASS_TOLERANCE),
+            Check::from_deviation("mass_matrix_symmetric", self.symmetry, SYMMETRY_TOLERANCE),
+            Check::from_deviation("mass_matrix_positive_definite", self.definite, 0.0),
+            Check::from_deviation("energy", self.energy, ROW_TOLERANCE),
+            Check::from_deviation("power", self.power, ROW_TOLERANCE),
             self.guards.into_check(self.oracle),
         ]);
         for (reference, worst) in self.references.iter().zip(self.by_reference) {
             let name = format!("reference {}", reference.name);
-            checks.push(Check::made(name, worst, ROW_TOLERANCE));
+            checks.push(Check::from_deviation(name, worst, ROW_TOLERANCE));
         }
         checks
     }
 }
 
 /// Scales rows and columns to a unit diagonal, so that the result does not depend on units.
-fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
+fn scale_to_unit_diagonal(mass: &DMatrix<f64>) -> DMatrix<f64> {
     let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
     DMatrix::from_fn(mass.nrows(), mass.ncols(), |row, column| {
         scale[row] * mass[(row, column)] * scale[column]
@@ -320,25 +323,26 @@ impl Guards {
         &mut self,
         oracle: &Oracle,
         variant: &mut dyn Variant,
-        drawn: &Drawn,
+        drawn: &SampledState,
     ) -> Result<(), OracleError> {
         let sample = &drawn.sample;
-        let regime = Regime::of(oracle, sample)?;
+        let regime = Regime::from_state(oracle, sample)?;
         let values = match variant.guards(sample.time, &sample.state, &sample.inputs) {
             Ok(values) => values,
             Err(message) => {
-                self.worst.include(Worst::of(f64::INFINITY, message));
+                self.worst
+                    .include(Worst::from_deviation(f64::INFINITY, message));
                 return Ok(());
             }
         };
         let signs = values.iter().map(|value| *value > 0.0).collect();
         let known = self.regimes.entry(signs).or_insert_with(|| regime.clone());
-        let told = *known == regime || is_same(oracle, drawn, known)?;
+        let told = *known == regime || is_same_regime(oracle, drawn, known)?;
         self.worst.include(if told {
-            Worst::of(0.0, "the signs of the guards identify the regime")
+            Worst::from_deviation(0.0, "the signs of the guards identify the regime")
         } else {
             let (known, label) = (known.label(oracle), regime.label(oracle));
-            Worst::of(
+            Worst::from_deviation(
                 1.0,
                 format!("the guards have the same signs in {known} and {label}"),
             )
@@ -350,12 +354,16 @@ impl Guards {
         if oracle.switches().is_empty() {
             return Check::not_applicable("guards", 0.0, "the model has no piecewise function");
         }
-        Check::made("guards", self.worst, 0.0)
+        Check::from_deviation("guards", self.worst, 0.0)
     }
 }
 
-fn is_same(oracle: &Oracle, drawn: &Drawn, regime: &Regime) -> Result<bool, OracleError> {
-    let Drawn { sample, equations } = drawn;
+fn is_same_regime(
+    oracle: &Oracle,
+    drawn: &SampledState,
+    regime: &Regime,
+) -> Result<bool, OracleError> {
+    let SampledState { sample, equations } = drawn;
     let (state, inputs) = (&sample.state, &sample.inputs);
     let other = oracle.equations_on(&regime.sides, sample.time, state, inputs)?;
     let Some(unknowns) = equations.unknowns() else {

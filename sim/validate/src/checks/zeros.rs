@@ -14,13 +14,13 @@ const SEED: u64 = 0x2e20_0f0f;
 const STEPS: [f64; 2] = [1e-3, 1e-5];
 
 /// Largest ratio of the deviations from linearity at the two steps if a derivative exists.
-const FALL: f64 = 0.2;
+const MAX_DEVIATION_RATIO: f64 = 0.2;
 
 /// Largest deviation from linearity, relative to the largest slope, that counts as rounding.
-const ROUNDING: f64 = 1e-6;
+const MAX_ROUNDING_DEVIATION: f64 = 1e-6;
 
 const RATES: &str = "rates_at_zeros";
-const JACOBIANS_THERE: &str = "jacobians_at_zeros";
+const JACOBIANS_AT_ZEROS: &str = "jacobians_at_zeros";
 
 /// Checks that rates and Jacobians are finite, except where the oracle's are not.
 pub fn check(
@@ -31,7 +31,7 @@ pub fn check(
     let mut sampler = Sampler::new(oracle, SEED)?;
     let Some(drawn) = sampler.draw_inside()? else {
         let reason = "no state in the model's domain was found";
-        let jacobians = outputs.is_some().then_some(JACOBIANS_THERE);
+        let jacobians = outputs.is_some().then_some(JACOBIANS_AT_ZEROS);
         let names = [RATES].into_iter().chain(jacobians);
         return Ok(names
             .map(|name| Check::not_run(name, 0.0, reason))
@@ -39,14 +39,14 @@ pub fn check(
     };
     let sizes = sampler.sizes().to_vec();
     let (mut rates, mut jacobians) = (Findings::default(), Findings::default());
-    for (place, sample) in zeros(oracle, &drawn.sample) {
-        let Some(accelerations) = accelerations(oracle, &sample)? else {
-            rates.explained(format!("the oracle is not finite at {place}"));
+    for (place, sample) in states_with_zero(oracle, &drawn.sample) {
+        let Some(accelerations) = solve_accelerations(oracle, &sample)? else {
+            rates.record_exclusion(format!("the oracle is not finite at {place}"));
             continue;
         };
         let found = unknowns(variant, sample.time, &sample.state, &sample.inputs);
         let is_finite = found.is_ok_and(|found| found.iter().all(|rate| rate.is_finite()));
-        rates.examined(is_finite, &place);
+        rates.record_result(is_finite, &place);
         let Some(outputs) = outputs.as_deref_mut() else {
             continue;
         };
@@ -59,15 +59,15 @@ pub fn check(
             // The oracle provides only accelerations, so only this Jacobian can be excluded.
             let is_judged = name == "rates_by_state";
             if is_finite || is_judged && has_derivative(oracle, &sample, &accelerations, &sizes)? {
-                jacobians.examined(is_finite, &place);
+                jacobians.record_result(is_finite, &place);
             } else {
-                jacobians.explained(format!("no derivative for {place}"));
+                jacobians.record_exclusion(format!("no derivative for {place}"));
             }
         }
     }
     let mut checks = vec![rates.into_check(RATES)];
     if jacobians.states > 0 || !jacobians.reasons.is_empty() {
-        checks.push(jacobians.into_check(JACOBIANS_THERE));
+        checks.push(jacobians.into_check(JACOBIANS_AT_ZEROS));
     }
     Ok(checks)
 }
@@ -80,15 +80,15 @@ struct Findings {
 }
 
 impl Findings {
-    fn examined(&mut self, is_finite: bool, place: &str) {
+    fn record_result(&mut self, is_finite: bool, place: &str) {
         self.states += 1;
         self.worst.include(match is_finite {
-            true => Worst::of(0.0, "all numbers are finite"),
-            false => Worst::of(f64::INFINITY, format!("infinite or NaN at {place}")),
+            true => Worst::from_deviation(0.0, "all numbers are finite"),
+            false => Worst::from_deviation(f64::INFINITY, format!("infinite or NaN at {place}")),
         });
     }
 
-    fn explained(&mut self, reason: String) {
+    fn record_exclusion(&mut self, reason: String) {
         self.reasons.push(reason);
     }
 
@@ -103,14 +103,14 @@ impl Findings {
         }
         let worst = self
             .worst
-            .among(self.states, &format!("states with zeros{left}"));
-        Check::made(name, worst, 0.0)
+            .with_count(self.states, &format!("states with zeros{left}"));
+        Check::from_deviation(name, worst, 0.0)
     }
 }
 
 /// Returns copies of a sample: with each entry set to 0, with all rates set to 0 and with all
 /// entries set to 0. Entries with a range that excludes 0 do not change.
-fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
+fn states_with_zero(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
     let size = oracle.size();
     let names = oracle.names();
     let name = |entry: usize| match entry {
@@ -144,7 +144,7 @@ fn zeros(oracle: &Oracle, sample: &Sample) -> Vec<(String, Sample)> {
 }
 
 /// Returns accelerations and rates of first-order states; `None` if one is not finite.
-fn accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, OracleError> {
+fn solve_accelerations(oracle: &Oracle, sample: &Sample) -> Result<Option<Vec<f64>>, OracleError> {
     let Sample {
         time,
         state,
@@ -176,7 +176,7 @@ fn has_derivative(
             for (entry, (a, b)) in moved.state.iter_mut().zip(pairs) {
                 *entry += first * a + second * b;
             }
-            accelerations(oracle, &moved)
+            solve_accelerations(oracle, &moved)
         };
         let all = [
             at(step, 0.0)?,
@@ -203,5 +203,5 @@ fn has_derivative(
         }
     }
     let [long, short] = deviations;
-    Ok(short <= FALL * long || short <= ROUNDING * largest)
+    Ok(short <= MAX_DEVIATION_RATIO * long || short <= MAX_ROUNDING_DEVIATION * largest)
 }

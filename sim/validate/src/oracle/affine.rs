@@ -3,7 +3,7 @@
 
 use super::Oracle;
 use super::functions;
-use super::switches::Imposed;
+use super::switches::PrescribedSides;
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::interval::Interval;
@@ -26,7 +26,7 @@ pub(super) struct Affine {
 }
 
 /// Relative size below which a coefficient after cancellation is rounding error.
-const CANCELLED: f64 = 1e-14;
+const MAX_CANCELLATION_RATIO: f64 = 1e-14;
 
 impl Affine {
     fn constant(constant: f64) -> Self {
@@ -43,12 +43,12 @@ impl Affine {
         }
     }
 
-    pub fn plus(mut self, factor: f64, other: &Self) -> Self {
-        self.constant = sum(self.constant, factor * other.constant);
+    pub fn add_scaled(mut self, factor: f64, other: &Self) -> Self {
+        self.constant = sum_or_zero(self.constant, factor * other.constant);
         for (variable, coefficient) in &other.terms {
             let added = factor * coefficient;
             match self.terms.iter_mut().find(|(known, _)| known == variable) {
-                Some((_, known)) => *known = sum(*known, added),
+                Some((_, known)) => *known = sum_or_zero(*known, added),
                 None => self.terms.push((*variable, added)),
             }
         }
@@ -61,37 +61,37 @@ impl Affine {
         variables.any(|variable| matches!(variable, Variable::Atom(_)))
     }
 
-    fn times(&self, factor: f64) -> Self {
-        Self::default().plus(factor, self)
+    fn scale_by(&self, factor: f64) -> Self {
+        Self::default().add_scaled(factor, self)
     }
 }
 
 /// Returns the sum of two numbers; 0 if only rounding error remains.
-fn sum(first: f64, second: f64) -> f64 {
+fn sum_or_zero(first: f64, second: f64) -> f64 {
     let sum = first + second;
-    if sum.abs() <= CANCELLED * first.abs().max(second.abs()) {
+    if sum.abs() <= MAX_CANCELLATION_RATIO * first.abs().max(second.abs()) {
         0.0
     } else {
         sum
     }
 }
 
-pub(super) struct Forms<'o> {
+pub(super) struct AffineForms<'o> {
     oracle: &'o Oracle,
-    imposed: Imposed<'o>,
+    prescribed_sides: PrescribedSides<'o>,
     pub atoms: Vec<(Tree, Interval)>,
 }
 
-impl<'o> Forms<'o> {
-    pub fn new(oracle: &'o Oracle, imposed: Imposed<'o>) -> Self {
+impl<'o> AffineForms<'o> {
+    pub fn new(oracle: &'o Oracle, imposed: PrescribedSides<'o>) -> Self {
         Self {
             oracle,
-            imposed,
+            prescribed_sides: imposed,
             atoms: Vec::new(),
         }
     }
 
-    pub fn of(&mut self, tree: &Tree) -> Affine {
+    pub fn affine_form(&mut self, tree: &Tree) -> Affine {
         match tree {
             Tree::Constant(value) => Affine::constant(*value),
             Tree::Time => Affine::variable(Variable::Time),
@@ -100,86 +100,89 @@ impl<'o> Forms<'o> {
             Tree::Input(index) | Tree::PrescribedInput { input: index, .. } => {
                 Affine::variable(Variable::Input(*index))
             }
-            Tree::StateRate(index) => self.state_rate(*index),
+            Tree::StateRate(index) => self.state_rate_form(*index),
             Tree::Definition(index) => match self.oracle.system.definitions.get(*index) {
-                Some(definition) => self.of(definition),
-                None => self.atom(tree),
+                Some(definition) => self.affine_form(definition),
+                None => self.add_atom(tree),
             },
-            Tree::Dot(operand) => self.rate(tree, operand),
-            Tree::Negate(operand) => self.of(operand).times(-1.0),
-            Tree::Binary(operator, left, right) => self.binary(tree, *operator, left, right),
+            Tree::Dot(operand) => self.rate_form(tree, operand),
+            Tree::Negate(operand) => self.affine_form(operand).scale_by(-1.0),
+            Tree::Binary(operator, left, right) => self.binary_form(tree, *operator, left, right),
             Tree::Power(base, exponent) => {
-                let base = self.of(base);
+                let base = self.affine_form(base);
                 match base.terms.is_empty() {
                     true => Affine::constant(functions::constant_power(base.constant, *exponent)),
-                    false => self.atom(tree),
+                    false => self.add_atom(tree),
                 }
             }
             Tree::Call(function, arguments) => {
-                let side = self.imposed.side(*function, arguments);
-                let branch = side.and_then(|side| self.branch(*function, side, arguments));
-                branch.unwrap_or_else(|| self.atom(tree))
+                let side = self.prescribed_sides.side(*function, arguments);
+                let branch = side.and_then(|side| self.branch_form(*function, side, arguments));
+                branch.unwrap_or_else(|| self.add_atom(tree))
             }
-            _ => self.atom(tree),
+            _ => self.add_atom(tree),
         }
     }
 
-    fn binary(
+    fn binary_form(
         &mut self,
         tree: &Tree,
         operator: BinaryOperator,
         left: &Tree,
         right: &Tree,
     ) -> Affine {
-        let (first, second) = (self.of(left), self.of(right));
+        let (first, second) = (self.affine_form(left), self.affine_form(right));
         let (still, fixed) = (first.terms.is_empty(), second.terms.is_empty());
         match operator {
-            BinaryOperator::Add => first.plus(1.0, &second),
-            BinaryOperator::Subtract => first.plus(-1.0, &second),
-            BinaryOperator::Multiply if fixed => first.times(second.constant),
-            BinaryOperator::Multiply if still => second.times(first.constant),
-            BinaryOperator::Divide if fixed => first.times(1.0 / second.constant),
-            _ => self.atom(tree),
+            BinaryOperator::Add => first.add_scaled(1.0, &second),
+            BinaryOperator::Subtract => first.add_scaled(-1.0, &second),
+            BinaryOperator::Multiply if fixed => first.scale_by(second.constant),
+            BinaryOperator::Multiply if still => second.scale_by(first.constant),
+            BinaryOperator::Divide if fixed => first.scale_by(1.0 / second.constant),
+            _ => self.add_atom(tree),
         }
     }
 
     /// Returns the affine form of a piecewise function on a side, if it is linear in one argument.
-    fn branch(
+    fn branch_form(
         &mut self,
         function: eomgen_model_spec::model::Function,
         side: super::Side,
         arguments: &[Tree],
     ) -> Option<Affine> {
-        let arguments: Vec<Affine> = arguments.iter().map(|tree| self.of(tree)).collect();
+        let arguments: Vec<Affine> = arguments
+            .iter()
+            .map(|tree| self.affine_form(tree))
+            .collect();
         // The value on a side is linear, so values at unit arguments are coefficients.
-        let at = |numbers: &[f64]| functions::on_side(function, side, numbers);
+        let at = |numbers: &[f64]| functions::evaluate_on_side(function, side, numbers);
         let constant = at(&vec![0.0; arguments.len()])?;
         let mut form = Affine::constant(constant);
         for (place, argument) in arguments.iter().enumerate() {
             let mut unit = vec![0.0; arguments.len()];
             *unit.get_mut(place)? = 1.0;
-            form = form.plus(at(&unit)? - constant, argument);
+            form = form.add_scaled(at(&unit)? - constant, argument);
         }
         Some(form)
     }
 
-    fn state_rate(&mut self, index: usize) -> Affine {
+    fn state_rate_form(&mut self, index: usize) -> Affine {
         let oracle = self.oracle;
         let addends = oracle.system.state_rates.get(index).into_iter().flatten();
         addends.fold(Affine::default(), |form, addend| {
-            let addend = self.of(addend);
-            form.plus(1.0, &addend)
+            let addend = self.affine_form(addend);
+            form.add_scaled(1.0, &addend)
         })
     }
 
-    fn rate(&mut self, tree: &Tree, operand: &Tree) -> Affine {
-        let form = self.of(operand);
+    fn rate_form(&mut self, tree: &Tree, operand: &Tree) -> Affine {
+        let form = self.affine_form(operand);
         let mut rate = Affine::default();
         for (variable, coefficient) in &form.terms {
             let Some(moved) = self.variable_rate(*variable) else {
-                return self.atom(tree);
+                return self.add_atom(tree);
             };
-            rate = rate.plus(*coefficient, &moved);
+            rate = rate.add_scaled(*coefficient, &moved);
         }
         rate
     }
@@ -191,7 +194,7 @@ impl<'o> Forms<'o> {
             Variable::Entry(entry) if entry < size => {
                 Some(Affine::variable(Variable::Entry(size + entry)))
             }
-            Variable::Entry(entry) => Some(self.state_rate(entry.checked_sub(2 * size)?)),
+            Variable::Entry(entry) => Some(self.state_rate_form(entry.checked_sub(2 * size)?)),
             Variable::Input(input) => {
                 let rate = self.oracle.input_rates.get(input).copied().flatten();
                 let variable = |rate| Affine::variable(Variable::Input(rate));
@@ -201,10 +204,10 @@ impl<'o> Forms<'o> {
         }
     }
 
-    fn atom(&mut self, tree: &Tree) -> Affine {
+    fn add_atom(&mut self, tree: &Tree) -> Affine {
         let known = self.atoms.iter().position(|(known, _)| known == tree);
         let place = known.unwrap_or_else(|| {
-            let bounds = self.oracle.bounds(tree, self.imposed);
+            let bounds = self.oracle.bounds(tree, self.prescribed_sides);
             self.atoms.push((tree.clone(), bounds));
             self.atoms.len() - 1
         });

@@ -1,6 +1,6 @@
 //! Interval bounds of expressions over all states within their ranges, in one regime.
 
-use super::switches::{Imposed, Side};
+use super::switches::{PrescribedSides, Side};
 use super::tree::Tree;
 use super::{Oracle, functions};
 use eomgen_model_spec::ast::BinaryOperator;
@@ -8,7 +8,7 @@ use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
 impl Oracle {
-    pub(super) fn bounds(&self, tree: &Tree, imposed: Imposed<'_>) -> Interval {
+    pub(super) fn bounds(&self, tree: &Tree, imposed: PrescribedSides<'_>) -> Interval {
         let of = |tree: &Tree| self.bounds(tree, imposed);
         let within = |range: Option<(f64, f64)>| {
             range.map_or(Interval::ALL, |(low, high)| Interval::between(low, high))
@@ -29,19 +29,19 @@ impl Oracle {
             Tree::Binary(BinaryOperator::Multiply, left, right) if left == right => {
                 of(left).power(2.0)
             }
-            Tree::Binary(operator, left, right) => combined(*operator, of(left), of(right)),
+            Tree::Binary(operator, left, right) => combine_bounds(*operator, of(left), of(right)),
             Tree::Power(base, exponent) => of(base).power(*exponent),
             Tree::Call(function, arguments) => {
                 let bounds: Vec<Interval> = arguments.iter().map(of).collect();
                 let side = imposed.side(*function, arguments);
-                called(*function, &bounds, side)
+                bound_call(*function, &bounds, side)
             }
             _ => Interval::ALL,
         }
     }
 }
 
-fn combined(operator: BinaryOperator, left: Interval, right: Interval) -> Interval {
+fn combine_bounds(operator: BinaryOperator, left: Interval, right: Interval) -> Interval {
     match operator {
         BinaryOperator::Add => left.plus(right),
         BinaryOperator::Subtract => left.plus(right.negated()),
@@ -51,14 +51,14 @@ fn combined(operator: BinaryOperator, left: Interval, right: Interval) -> Interv
     }
 }
 
-fn called(function: Function, bounds: &[Interval], side: Option<Side>) -> Interval {
+fn bound_call(function: Function, bounds: &[Interval], side: Option<Side>) -> Interval {
     match (bounds, side) {
         ([x, y], Some(side)) if matches!(function, Function::Min | Function::Max) => {
             let first = (function == Function::Min) == (side == Side::Minus);
             *(if first { x } else { y })
         }
         (_, Some(side)) if has_levels(function, side) => {
-            let value = functions::on_side(function, side, &vec![0.0; bounds.len()]);
+            let value = functions::evaluate_on_side(function, side, &vec![0.0; bounds.len()]);
             value.map_or(Interval::ALL, |value| Interval::between(value, value))
         }
         _ => Interval::of_function(function, bounds),

@@ -50,36 +50,36 @@ impl Conditioned {
         }
     }
 
-    fn mapped(self, value: f64, slope: f64) -> Self {
+    fn map_value(self, value: f64, slope: f64) -> Self {
         Self::new(value, slope.abs() * self.magnitude)
     }
 
-    fn joined(self, other: Self, value: f64, slopes: (f64, f64)) -> Self {
+    fn join_values(self, other: Self, value: f64, slopes: (f64, f64)) -> Self {
         let own = slopes.0.abs() * self.magnitude;
         Self::new(value, own.max(slopes.1.abs() * other.magnitude))
     }
 
-    fn plus(self, other: Self) -> Self {
-        self.joined(other, self.value + other.value, (1.0, 1.0))
+    fn sum_with(self, other: Self) -> Self {
+        self.join_values(other, self.value + other.value, (1.0, 1.0))
     }
 
-    fn minus(self, other: Self) -> Self {
-        self.joined(other, self.value - other.value, (1.0, 1.0))
+    fn difference_with(self, other: Self) -> Self {
+        self.join_values(other, self.value - other.value, (1.0, 1.0))
     }
 
-    fn times(self, other: Self) -> Self {
+    fn product_with(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
-        self.joined(other, x * y, (y, x))
+        self.join_values(other, x * y, (y, x))
     }
 
-    fn over(self, other: Self) -> Self {
+    fn quotient_with(self, other: Self) -> Self {
         let (quotient, y) = (self.value / other.value, other.value);
-        self.joined(other, quotient, (y.recip(), quotient / y))
+        self.join_values(other, quotient, (y.recip(), quotient / y))
     }
 
-    fn modulo(self, other: Self) -> Self {
+    fn remainder_with(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
-        self.joined(other, x % y, (1.0, (x / y).trunc()))
+        self.join_values(other, x % y, (1.0, (x / y).trunc()))
     }
 }
 
@@ -116,11 +116,11 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, AddAssign, add_assign, plus);
-operator!(Sub, sub, SubAssign, sub_assign, minus);
-operator!(Mul, mul, MulAssign, mul_assign, times);
-operator!(Div, div, DivAssign, div_assign, over);
-operator!(Rem, rem, RemAssign, rem_assign, modulo);
+operator!(Add, add, AddAssign, add_assign, sum_with);
+operator!(Sub, sub, SubAssign, sub_assign, difference_with);
+operator!(Mul, mul, MulAssign, mul_assign, product_with);
+operator!(Div, div, DivAssign, div_assign, quotient_with);
+operator!(Rem, rem, RemAssign, rem_assign, remainder_with);
 
 impl Neg for Conditioned {
     type Output = Self;
@@ -193,13 +193,13 @@ impl Inv for Conditioned {
 
 impl Sum for Conditioned {
     fn sum<I: Iterator<Item = Self>>(addends: I) -> Self {
-        addends.fold(Self::zero(), Self::plus)
+        addends.fold(Self::zero(), Self::sum_with)
     }
 }
 
 impl Product for Conditioned {
     fn product<I: Iterator<Item = Self>>(factors: I) -> Self {
-        factors.fold(Self::one(), Self::times)
+        factors.fold(Self::one(), Self::product_with)
     }
 }
 
@@ -235,7 +235,7 @@ impl Signed for Conditioned {
 
     fn abs_sub(&self, other: &Self) -> Self {
         if self.value > other.value {
-            self.minus(*other)
+            self.difference_with(*other)
         } else {
             Self::zero()
         }
@@ -290,69 +290,69 @@ impl DualNum for Conditioned {
 
     fn recip(&self) -> Self {
         let value = self.value.recip();
-        self.mapped(value, value * value)
+        self.map_value(value, value * value)
     }
 
     fn powi(&self, n: i32) -> Self {
         let slope = f64::from(n) * self.value.powi(n.saturating_sub(1));
-        self.mapped(self.value.powi(n), if n == 0 { 0.0 } else { slope })
+        self.map_value(self.value.powi(n), if n == 0 { 0.0 } else { slope })
     }
 
     fn powf(&self, n: f64) -> Self {
         let slope = n * self.value.powf(n - 1.0);
-        self.mapped(self.value.powf(n), if n == 0.0 { 0.0 } else { slope })
+        self.map_value(self.value.powf(n), if n == 0.0 { 0.0 } else { slope })
     }
 
     fn powd(&self, exponent: Self) -> Self {
         let (x, n) = (self.value, exponent.value);
         let value = x.powf(n);
-        self.joined(exponent, value, (n * x.powf(n - 1.0), value * x.ln()))
+        self.join_values(exponent, value, (n * x.powf(n - 1.0), value * x.ln()))
     }
 
     fn sqrt(&self) -> Self {
         let value = self.value.sqrt();
-        self.mapped(value, 0.5 / value)
+        self.map_value(value, 0.5 / value)
     }
 
     fn cbrt(&self) -> Self {
         let value = self.value.cbrt();
-        self.mapped(value, value / (3.0 * self.value))
+        self.map_value(value, value / (3.0 * self.value))
     }
 
     fn exp(&self) -> Self {
         let value = self.value.exp();
-        self.mapped(value, value)
+        self.map_value(value, value)
     }
 
     fn exp2(&self) -> Self {
         let value = self.value.exp2();
-        self.mapped(value, value * std::f64::consts::LN_2)
+        self.map_value(value, value * std::f64::consts::LN_2)
     }
 
     fn exp_m1(&self) -> Self {
-        self.mapped(self.value.exp_m1(), self.value.exp())
+        self.map_value(self.value.exp_m1(), self.value.exp())
     }
 
     fn ln(&self) -> Self {
-        self.mapped(self.value.ln(), self.value.recip())
+        self.map_value(self.value.ln(), self.value.recip())
     }
 
     fn log(&self, base: f64) -> Self {
-        self.mapped(self.value.log(base), (self.value * base.ln()).recip())
+        self.map_value(self.value.log(base), (self.value * base.ln()).recip())
     }
 
     fn log2(&self) -> Self {
         let slope = (self.value * std::f64::consts::LN_2).recip();
-        self.mapped(self.value.log2(), slope)
+        self.map_value(self.value.log2(), slope)
     }
 
     fn log10(&self) -> Self {
         let slope = (self.value * std::f64::consts::LN_10).recip();
-        self.mapped(self.value.log10(), slope)
+        self.map_value(self.value.log10(), slope)
     }
 
     fn ln_1p(&self) -> Self {
-        self.mapped(self.value.ln_1p(), (1.0 + self.value).recip())
+        self.map_value(self.value.ln_1p(), (1.0 + self.value).recip())
     }
 
     fn sin(&self) -> Self {
@@ -365,61 +365,61 @@ impl DualNum for Conditioned {
 
     fn tan(&self) -> Self {
         let value = self.value.tan();
-        self.mapped(value, 1.0 + value * value)
+        self.map_value(value, 1.0 + value * value)
     }
 
     fn sin_cos(&self) -> (Self, Self) {
         let (sine, cosine) = self.value.sin_cos();
-        (self.mapped(sine, cosine), self.mapped(cosine, sine))
+        (self.map_value(sine, cosine), self.map_value(cosine, sine))
     }
 
     fn asin(&self) -> Self {
         let slope = (1.0 - self.value * self.value).sqrt().recip();
-        self.mapped(self.value.asin(), slope)
+        self.map_value(self.value.asin(), slope)
     }
 
     fn acos(&self) -> Self {
         let slope = (1.0 - self.value * self.value).sqrt().recip();
-        self.mapped(self.value.acos(), slope)
+        self.map_value(self.value.acos(), slope)
     }
 
     fn atan(&self) -> Self {
         let slope = (1.0 + self.value * self.value).recip();
-        self.mapped(self.value.atan(), slope)
+        self.map_value(self.value.atan(), slope)
     }
 
     fn atan2(&self, other: Self) -> Self {
         let (y, x) = (self.value, other.value);
         let square = x * x + y * y;
-        self.joined(other, y.atan2(x), (x / square, y / square))
+        self.join_values(other, y.atan2(x), (x / square, y / square))
     }
 
     fn sinh(&self) -> Self {
-        self.mapped(self.value.sinh(), self.value.cosh())
+        self.map_value(self.value.sinh(), self.value.cosh())
     }
 
     fn cosh(&self) -> Self {
-        self.mapped(self.value.cosh(), self.value.sinh())
+        self.map_value(self.value.cosh(), self.value.sinh())
     }
 
     fn tanh(&self) -> Self {
         let value = self.value.tanh();
-        self.mapped(value, 1.0 - value * value)
+        self.map_value(value, 1.0 - value * value)
     }
 
     fn asinh(&self) -> Self {
         let slope = (self.value * self.value + 1.0).sqrt().recip();
-        self.mapped(self.value.asinh(), slope)
+        self.map_value(self.value.asinh(), slope)
     }
 
     fn acosh(&self) -> Self {
         let slope = (self.value * self.value - 1.0).sqrt().recip();
-        self.mapped(self.value.acosh(), slope)
+        self.map_value(self.value.acosh(), slope)
     }
 
     fn atanh(&self) -> Self {
         let slope = (1.0 - self.value * self.value).recip();
-        self.mapped(self.value.atanh(), slope)
+        self.map_value(self.value.atanh(), slope)
     }
 
     fn sph_j0(&self) -> Self {

@@ -24,7 +24,7 @@ pub(super) fn lower_constraints(
 ) -> Result<Vec<LoweredConstraint>, OracleError> {
     let mut constraints = Vec::with_capacity(model.constraints.len());
     for constraint in &model.constraints {
-        let zero = lowering.term(&constraint.name, &constraint.zero)?;
+        let zero = lowering.lower_term(&constraint.name, &constraint.zero)?;
         lowering.system.residuals.push(zero.clone());
         constraints.push(LoweredConstraint {
             dependence: lowering.system.dependence(&zero),
@@ -46,17 +46,17 @@ pub(super) fn stabilisation_rate(model: &Model, parameters: &[f64]) -> f64 {
 impl LoweredConstraint {
     pub(super) fn row(&self, scene: &Scene<'_>, stabilisation_rate: f64) -> ConstraintRow {
         let entry = |row: usize| {
-            if !scene.system.concerns(&self.dependence, row) {
+            if !scene.system.depends_on_row(&self.dependence, row) {
                 return Conditioned::default();
             }
             let direction = match self.is_nonholonomic {
                 true => Direction::Rate(row),
                 false => Direction::Position(row),
             };
-            let pass = Pass::new(scene, Direction::Still, direction);
+            let pass = Pass::new(scene, Direction::Zero, direction);
             pass.value(&self.zero).eps2
         };
-        let along = Pass::new(scene, Direction::Time, Direction::Still);
+        let along = Pass::new(scene, Direction::Time, Direction::Zero);
         let zero = along.value(&self.zero);
         let w = stabilisation_rate;
         let right = match self.is_nonholonomic {
@@ -68,7 +68,7 @@ impl LoweredConstraint {
         };
         ConstraintRow {
             gradient: (0..scene.system.size).map(entry).collect(),
-            right,
+            right_side: right,
         }
     }
 }
@@ -79,7 +79,7 @@ impl Oracle {
             return Vec::new();
         }
         let unknown = || vec![Conditioned::from(f64::NAN); self.constraints.len()];
-        self.equations_of(scene)
+        self.evaluate_equations(scene)
             .multipliers()
             .unwrap_or_else(unknown)
     }

@@ -1,8 +1,8 @@
 //! Proofs that no state has a given combination of sides. In an empty regime the affine forms of
 //! the switches, the ranges and the bounds of atoms contradict each other.
 
-use super::affine::{Affine, Forms, Variable};
-use super::switches::{Imposed, Side, is_piecewise_function};
+use super::affine::{Affine, AffineForms, Variable};
+use super::switches::{PrescribedSides, Side, is_piecewise_function};
 use super::tree::Tree;
 use super::{Oracle, Switch};
 use crate::feasibility::cone_is_empty;
@@ -10,7 +10,7 @@ use eomgen_model_spec::interval::Interval;
 use eomgen_model_spec::model::Function;
 
 /// Relative widening of bounds, so that a range as narrow as rounding is no contradiction.
-const SLACK: f64 = 1e-9;
+const RELATIVE_SLACK: f64 = 1e-9;
 
 /// Relative rounding error of an affine form at the end of a range.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -34,14 +34,14 @@ impl Oracle {
     /// of a function's domain are ignored.
     pub fn is_empty(&self, sides: &[Side], sizes: &[f64], input_sizes: &[f64]) -> bool {
         let switches = self.switches.get(..sides.len()).unwrap_or_default();
-        let imposed = Imposed { switches, sides };
-        let mut forms = Forms::new(self, imposed);
+        let imposed = PrescribedSides { switches, sides };
+        let mut forms = AffineForms::new(self, imposed);
         let mut rows = Vec::new();
         for (switch, side) in switches.iter().zip(sides) {
             rows.extend(side_rows(&mut forms, switch, *side));
         }
         for argument in self.domain_arguments() {
-            rows.push((forms.of(argument), Relation::PositiveInside));
+            rows.push((forms.affine_form(argument), Relation::PositiveInside));
         }
         let is_false = |(form, relation): &(Affine, Relation)| {
             let (most, rounding) = self.largest_value(form, &forms);
@@ -57,11 +57,11 @@ impl Oracle {
         }
         let rows = rows.into_iter().map(|(form, _)| form);
         let rows: Vec<Affine> = rows.filter(|form| !form.terms.is_empty()).collect();
-        cone_is_empty(&self.homogeneous(&rows, &forms, sizes, input_sizes))
+        cone_is_empty(&self.homogeneous_system(&rows, &forms, sizes, input_sizes))
     }
 
     /// Returns the largest value of a form within the closed ranges of its variables, and its rounding error.
-    fn largest_value(&self, form: &Affine, forms: &Forms<'_>) -> (f64, f64) {
+    fn largest_value(&self, form: &Affine, forms: &AffineForms<'_>) -> (f64, f64) {
         let (mut most, mut size) = (form.constant, form.constant.abs());
         for (variable, coefficient) in &form.terms {
             let bounds = self.variable_bounds(*variable, forms);
@@ -79,10 +79,10 @@ impl Oracle {
     }
 
     /// Returns rows and bounds as a homogeneous system of scaled variables; the last one is 1.
-    fn homogeneous(
+    fn homogeneous_system(
         &self,
         rows: &[Affine],
-        forms: &Forms<'_>,
+        forms: &AffineForms<'_>,
         sizes: &[f64],
         input_sizes: &[f64],
     ) -> Vec<Vec<f64>> {
@@ -96,7 +96,10 @@ impl Oracle {
             Variable::Time => 1.0,
             Variable::Entry(entry) => sizes.get(*entry).copied().unwrap_or(1.0),
             Variable::Input(input) => input_sizes.get(*input).copied().unwrap_or(1.0),
-            Variable::Atom(atom) => forms.atoms.get(*atom).map_or(1.0, |(_, b)| extent(*b)),
+            Variable::Atom(atom) => forms
+                .atoms
+                .get(*atom)
+                .map_or(1.0, |(_, b)| magnitude_bound(*b)),
         };
         let scales: Vec<f64> = variables.iter().map(size).collect();
         let last = variables.len();
@@ -117,7 +120,7 @@ impl Oracle {
                 if end.is_finite() {
                     let mut line = vec![0.0; last + 1];
                     line[place] = sign;
-                    line[last] = SLACK * (1.0 + (end / scale).abs()) - sign * end / scale;
+                    line[last] = RELATIVE_SLACK * (1.0 + (end / scale).abs()) - sign * end / scale;
                     matrix.push(line);
                 }
             }
@@ -128,7 +131,7 @@ impl Oracle {
         matrix
     }
 
-    fn variable_bounds(&self, variable: Variable, forms: &Forms<'_>) -> Interval {
+    fn variable_bounds(&self, variable: Variable, forms: &AffineForms<'_>) -> Interval {
         let range = match variable {
             Variable::Time => None,
             Variable::Entry(entry) => self.ranges.state.get(entry).copied().flatten(),
@@ -186,13 +189,18 @@ impl Oracle {
     }
 }
 
-fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine, Relation)> {
-    let quantity = forms.of(switch.quantity());
-    let width = switch.half_width().map(|width| forms.of(width));
-    let signed = |sign: f64| Affine::default().plus(sign, &quantity);
+fn side_rows(forms: &mut AffineForms<'_>, switch: &Switch, side: Side) -> Vec<(Affine, Relation)> {
+    let quantity = forms.affine_form(switch.quantity());
+    let width = switch.half_width().map(|width| forms.affine_form(width));
+    let signed = |sign: f64| Affine::default().add_scaled(sign, &quantity);
     match (side, width) {
         (Side::Free, Some(width)) => [1.0, -1.0]
-            .map(|sign| (signed(sign).plus(1.0, &width), Relation::PositiveInside))
+            .map(|sign| {
+                (
+                    signed(sign).add_scaled(1.0, &width),
+                    Relation::PositiveInside,
+                )
+            })
             .into(),
         // It is unknown if an atom is at rest at 0.
         (Side::Free, None) if quantity.has_atoms() => Vec::new(),
@@ -201,13 +209,16 @@ fn side_rows(forms: &mut Forms<'_>, switch: &Switch, side: Side) -> Vec<(Affine,
             .map(|sign| (signed(sign), Relation::NotNegative))
             .into(),
         (side, Some(width)) => {
-            vec![(signed(side.sign()).plus(-1.0, &width), Relation::Positive)]
+            vec![(
+                signed(side.sign()).add_scaled(-1.0, &width),
+                Relation::Positive,
+            )]
         }
         (side, None) => vec![(signed(side.sign()), Relation::Positive)],
     }
 }
 
-fn extent(bounds: Interval) -> f64 {
+fn magnitude_bound(bounds: Interval) -> f64 {
     let ends = [bounds.low, bounds.high];
     let sizes = ends.into_iter().map(f64::abs);
     let largest = sizes.filter(|end| end.is_finite()).fold(0.0, f64::max);

@@ -15,7 +15,7 @@ impl Oracle {
         inputs: &[f64],
     ) -> Result<Conditioned, OracleError> {
         let scene = self.scene(time, state, None, inputs)?;
-        let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+        let pass = Pass::new(&scene, Direction::Zero, Direction::Zero);
         let terms = self.kinetic.iter().chain(&self.potential);
         Ok(terms.map(|term| pass.value(&term.tree).re).sum())
     }
@@ -30,7 +30,7 @@ impl Oracle {
     ) -> Result<Conditioned, OracleError> {
         expect_length("accelerations", self.size(), accelerations.len())?;
         let scene = self.scene(time, state, Some(accelerations), inputs)?;
-        let along = Pass::new(&scene, Direction::Time, Direction::Still);
+        let along = Pass::new(&scene, Direction::Time, Direction::Zero);
         let terms = self.kinetic.iter().chain(&self.potential);
         Ok(terms.map(|term| along.value(&term.tree).eps1).sum())
     }
@@ -72,12 +72,12 @@ impl Oracle {
         let mut defect = Conditioned::default();
         for term in self.kinetic.iter().chain(&self.potential) {
             let dependence = &term.dependence;
-            if dependence.time || dependence.input || dependence.prescribed {
+            if dependence.has_time || dependence.has_input || dependence.has_prescribed_input {
                 return Ok(false);
             }
         }
         for term in &self.kinetic {
-            let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+            let pass = Pass::new(&scene, Direction::Zero, Direction::Zero);
             defect += pass.value(&term.tree).re * -2.0;
             for row in 0..self.size() {
                 let rate = state.get(self.size() + row).copied().unwrap_or(f64::NAN);

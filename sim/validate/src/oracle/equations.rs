@@ -72,7 +72,7 @@ pub enum RowTermKind {
 pub struct ConstraintRow {
     /// Derivatives of the constraint by every coordinate, or by every rate.
     pub gradient: Vec<Conditioned>,
-    pub right: Conditioned,
+    pub right_side: Conditioned,
 }
 
 /// Residual of one row with the row's scale.
@@ -110,7 +110,7 @@ impl Equations {
             .flat_map(|t| t.rows.iter().chain(&t.magnitudes));
         let mass = self.mass.iter().chain(&self.mass_magnitude);
         let constraints = self.constraints.iter();
-        let mut entries = constraints.flat_map(|row| row.gradient.iter().chain([&row.right]));
+        let mut entries = constraints.flat_map(|row| row.gradient.iter().chain([&row.right_side]));
         let mut rates = self.state_rates.iter().flatten();
         entries.all(|entry| entry.value.is_finite() && entry.magnitude.is_finite())
             && terms.chain(mass).all(|number| number.is_finite())
@@ -120,7 +120,8 @@ impl Equations {
     /// Returns true if mass is positive definite and constraints independent, beyond rounding.
     pub fn is_definite(&self) -> bool {
         has_pivots(&self.scaled_mass().1)
-            && (self.compliance()).is_some_and(|compliance| has_pivots(&scaled(&compliance).1))
+            && (self.constraint_compliance())
+                .is_some_and(|compliance| has_pivots(&scale_to_unit_diagonal(&compliance).1))
     }
 
     fn gradients(&self) -> DMatrix<f64> {
@@ -130,7 +131,7 @@ impl Equations {
     }
 
     /// Returns A M^-1 A^T.
-    fn compliance(&self) -> Option<DMatrix<f64>> {
+    fn constraint_compliance(&self) -> Option<DMatrix<f64>> {
         let gradients = self.gradients();
         let (scale, mass) = self.scaled_mass();
         let mut solved = gradients.transpose();
@@ -150,7 +151,7 @@ impl Equations {
         if self.constraints.is_empty() {
             return Some(Vec::new());
         }
-        let (scale, compliance) = scaled(&self.compliance()?);
+        let (scale, compliance) = scale_to_unit_diagonal(&self.constraint_compliance()?);
         let inverse = Cholesky::new(compliance)?.inverse();
         let (free, sizes) = self.free_accelerations()?;
         let gaps: Vec<Conditioned> = self
@@ -161,7 +162,7 @@ impl Equations {
                 let moved = moved.map(|(entry, (a, size))| {
                     Conditioned::new(-entry.value * a, entry.magnitude * size)
                 });
-                moved.chain([row.right]).sum()
+                moved.chain([row.right_side]).sum()
             })
             .collect();
         let row = |row: usize| {
@@ -192,7 +193,7 @@ impl Equations {
         Some((free, sizes))
     }
 
-    fn reactions(&self) -> Vec<Vec<Conditioned>> {
+    fn constraint_reactions(&self) -> Vec<Vec<Conditioned>> {
         let unknown = || vec![Conditioned::from(f64::NAN); self.constraints.len()];
         let multipliers = self.multipliers().unwrap_or_else(unknown);
         let row = |row: usize| {
@@ -211,7 +212,7 @@ impl Equations {
 
     /// Scales rows and columns of the mass matrix to a unit diagonal; returns the factors too.
     fn scaled_mass(&self) -> (DVector<f64>, DMatrix<f64>) {
-        scaled(&self.mass)
+        scale_to_unit_diagonal(&self.mass)
     }
 
     /// Returns the scale of a mass entry: the geometric mean of two diagonals, or its magnitude.
@@ -251,7 +252,7 @@ impl Equations {
     pub fn unknowns(&self) -> Option<Vec<f64>> {
         let mut unknowns = self.accelerations()?.as_slice().to_vec();
         let rates = self.state_rates.iter();
-        unknowns.extend(rates.map(|addends| residual(addends.iter().copied()).value));
+        unknowns.extend(rates.map(|addends| sum_residual(addends.iter().copied()).value));
         Some(unknowns)
     }
 
@@ -266,19 +267,19 @@ impl Equations {
         let rates = rates.iter().copied().chain(std::iter::repeat(0.0));
         let of_states = self.state_rates.iter().zip(rates).map(|(addends, rate)| {
             let addends = addends.iter().map(|addend| *addend * -1.0);
-            residual(addends.chain([Conditioned::new(rate, rate.abs())]))
+            sum_residual(addends.chain([Conditioned::new(rate, rate.abs())]))
         });
-        let rows = self.rows_of_degrees(unknowns, &self.reactions());
+        let rows = self.degree_residuals(unknowns, &self.constraint_reactions());
         rows.into_iter().chain(of_states).collect()
     }
 
     /// Returns the residual of every row for given accelerations, without constraint forces. These
     /// are the forces that the accelerations require in addition to those of the specification.
     pub fn missing_forces(&self, accelerations: &[f64]) -> Vec<Residual> {
-        self.rows_of_degrees(accelerations, &vec![Vec::new(); self.size()])
+        self.degree_residuals(accelerations, &vec![Vec::new(); self.size()])
     }
 
-    fn rows_of_constraints(&self, accelerations: &[f64]) -> Vec<Residual> {
+    fn constraint_residuals(&self, accelerations: &[f64]) -> Vec<Residual> {
         let sizes = self
             .free_accelerations()
             .map_or_else(Vec::new, |free| free.1);
@@ -290,12 +291,12 @@ impl Equations {
                 let addends = entries.map(|((entry, a), size)| {
                     Conditioned::new(entry.value * a, entry.magnitude * size.max(a.abs()))
                 });
-                residual(addends.chain([row.right * -1.0]))
+                sum_residual(addends.chain([row.right_side * -1.0]))
             })
             .collect()
     }
 
-    fn rows_of_degrees(
+    fn degree_residuals(
         &self,
         accelerations: &[f64],
         reactions: &[Vec<Conditioned>],
@@ -310,7 +311,7 @@ impl Equations {
                 });
                 let terms = self.terms.iter();
                 let terms = terms.map(|t| Conditioned::new(t.rows[row], t.magnitudes[row]));
-                residual(inertia.chain(terms).chain(reactions[row].iter().copied()))
+                sum_residual(inertia.chain(terms).chain(reactions[row].iter().copied()))
             })
             .collect()
     }
@@ -322,7 +323,7 @@ impl Equations {
         }
         self.residuals(unknowns)
             .iter()
-            .chain(&self.rows_of_constraints(unknowns))
+            .chain(&self.constraint_residuals(unknowns))
             .map(Residual::relative)
             .fold(0.0, f64::max)
     }
@@ -359,7 +360,7 @@ impl Equations {
 }
 
 /// Scales a positive definite matrix to a unit diagonal; returns the factors too.
-fn scaled(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+fn scale_to_unit_diagonal(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let scale = matrix.diagonal().map(|entry| entry.sqrt().recip());
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
         scale[row] * matrix[(row, column)] * scale[column]
@@ -376,7 +377,7 @@ fn has_pivots(scaled: &DMatrix<f64>) -> bool {
 }
 
 /// Returns a row's sum, compensated (Neumaier) against rounding, and its largest magnitude.
-fn residual(addends: impl Iterator<Item = Conditioned>) -> Residual {
+fn sum_residual(addends: impl Iterator<Item = Conditioned>) -> Residual {
     let (mut sum, mut rest, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
     for Conditioned {
         value: addend,

@@ -10,11 +10,11 @@ pub enum OracleError {
     /// Time derivative of an input without given rates, or kinetic energy that depends on one.
     InputRate(String),
     /// Field, position, mode or shape outside of `at`, `integral` or `sum`.
-    Misplaced(String),
+    MisplacedField(String),
     /// Parameter, domain or position that is not finite.
-    NotFinite(String),
+    NonFiniteConstant(String),
     /// Number of parameters, states or inputs that does not match the model.
-    Length {
+    WrongLength {
         /// Name of the counted items, in the plural.
         what: &'static str,
         /// Expected number.
@@ -32,12 +32,12 @@ impl fmt::Display for OracleError {
                 formatter,
                 "{place} needs the rate of an input; set `rates` of the input"
             ),
-            Self::Misplaced(place) => write!(
+            Self::MisplacedField(place) => write!(
                 formatter,
                 "{place} uses a field, a position or a mode outside of `at`, `integral` or `sum`"
             ),
-            Self::NotFinite(place) => write!(formatter, "{place} is not a finite number"),
-            Self::Length {
+            Self::NonFiniteConstant(place) => write!(formatter, "{place} is not a finite number"),
+            Self::WrongLength {
                 what,
                 expected,
                 found,

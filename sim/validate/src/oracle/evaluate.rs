@@ -14,19 +14,22 @@ use std::cell::Cell;
 pub(super) type Number = HyperDual<Conditioned>;
 
 /// Number with derivatives in two directions, optionally also with its time derivative.
-pub(super) trait Level: DualNum<Primitive = f64> + Copy {
-    fn of(motion: Motion) -> Self;
+pub(super) trait EvaluationNumber: DualNum<Primitive = f64> + Copy {
+    fn from_motion(motion: Motion) -> Self;
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
     fn state(pass: &Pass<'_>, index: usize) -> Self;
-    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
+    fn definition_cache<'p>(
+        pass: &'p Pass<'_>,
+        definition: usize,
+    ) -> Option<&'p Cell<Option<Self>>>;
     /// Returns integral `index` with the derivatives that are cached for all rows, if they are.
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
     /// Returns true if the value and all its derivatives are 0.
     fn is_constant_zero(&self) -> bool;
 }
 
-impl Level for Number {
-    fn of(motion: Motion) -> Self {
+impl EvaluationNumber for Number {
+    fn from_motion(motion: Motion) -> Self {
         motion.value
     }
 
@@ -36,13 +39,16 @@ impl Level for Number {
 
     fn state(pass: &Pass<'_>, index: usize) -> Self {
         let along = pass.directions.contains(&Direction::Time);
-        let still = || Pass::new(pass.scene, Direction::Still, Direction::Still);
+        let still = || Pass::new(pass.scene, Direction::Zero, Direction::Zero);
         let rate = along.then(|| still().state_rate::<Self>(index, &Frame::Outside).re.value);
         pass.scene
             .state(index, rate.unwrap_or(0.0), pass.directions)
     }
 
-    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
+    fn definition_cache<'p>(
+        pass: &'p Pass<'_>,
+        definition: usize,
+    ) -> Option<&'p Cell<Option<Self>>> {
         Some(&pass.definitions.get(definition)?.0)
     }
 
@@ -56,8 +62,8 @@ impl Level for Number {
     }
 }
 
-impl Level for Dual<Number> {
-    fn of(motion: Motion) -> Self {
+impl EvaluationNumber for Dual<Number> {
+    fn from_motion(motion: Motion) -> Self {
         Dual::new(motion.value, motion.rate)
     }
 
@@ -70,7 +76,10 @@ impl Level for Dual<Number> {
         Dual::new(Number::state(pass, index), rate)
     }
 
-    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
+    fn definition_cache<'p>(
+        pass: &'p Pass<'_>,
+        definition: usize,
+    ) -> Option<&'p Cell<Option<Self>>> {
         Some(&pass.definitions.get(definition)?.1)
     }
 
@@ -87,7 +96,7 @@ impl Level for Dual<Number> {
 pub(super) enum Frame<'f> {
     Outside,
     /// At a position of the enclosing place set.
-    At {
+    Place {
         node: usize,
         outer: &'f Frame<'f>,
     },
@@ -102,7 +111,7 @@ impl Frame<'_> {
     fn node(&self) -> usize {
         match self {
             Self::Outside => usize::MAX,
-            Self::At { node, .. } => *node,
+            Self::Place { node, .. } => *node,
             Self::Mode { outer, .. } => outer.node(),
         }
     }
@@ -110,20 +119,20 @@ impl Frame<'_> {
     fn mode(&self, wanted: usize) -> usize {
         match self {
             Self::Outside => usize::MAX,
-            Self::At { outer, .. } => outer.mode(wanted),
+            Self::Place { outer, .. } => outer.mode(wanted),
             Self::Mode { field, mode, .. } if *field == wanted => *mode,
             Self::Mode { outer, .. } => outer.mode(wanted),
         }
     }
 }
 
-type KeptDefinition = (Cell<Option<Number>>, Cell<Option<Dual<Number>>>);
+type DefinitionCache = (Cell<Option<Number>>, Cell<Option<Dual<Number>>>);
 
 #[derive(Debug)]
 pub(super) struct Pass<'s> {
     scene: &'s Scene<'s>,
     directions: [Direction; 2],
-    definitions: Vec<KeptDefinition>,
+    definitions: Vec<DefinitionCache>,
 }
 
 impl<'s> Pass<'s> {
@@ -131,7 +140,7 @@ impl<'s> Pass<'s> {
         Self {
             scene,
             directions: [first, second],
-            definitions: vec![KeptDefinition::default(); scene.system.definitions.len()],
+            definitions: vec![DefinitionCache::default(); scene.system.definitions.len()],
         }
     }
 
@@ -148,7 +157,7 @@ impl<'s> Pass<'s> {
         self.evaluate::<Number>(tree, &frame).re.value
     }
 
-    pub fn evaluate<N: Level>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
+    pub fn evaluate<N: EvaluationNumber>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
         match tree {
             Tree::Definition(index) => self.definition(*index),
             Tree::Dot(operand) => N::dot(self, operand, frame),
@@ -158,15 +167,15 @@ impl<'s> Pass<'s> {
                 integral,
             } => integral
                 .and_then(|index| N::integral(self, index))
-                .unwrap_or_else(|| self.over_places(*set, body, frame)),
-            Tree::Sum { field, body } => self.over_modes(*field, body, frame),
+                .unwrap_or_else(|| self.sum_over_places(*set, body, frame)),
+            Tree::Sum { field, body } => self.sum_over_modes(*field, body, frame),
             Tree::Negate(operand) => -self.evaluate::<N>(operand, frame),
             Tree::Binary(operator, left, right) => {
                 let [first, second] = [left, right].map(|side| self.evaluate::<N>(side, frame));
                 let is_power = *operator == BinaryOperator::Power;
                 match is_power && self.has_zero_power((left, &first), second.re(), frame) {
                     true => N::from(0.0),
-                    false => combine(*operator, first, second),
+                    false => combine_operands(*operator, first, second),
                 }
             }
             Tree::Power(base, exponent) => {
@@ -183,36 +192,40 @@ impl<'s> Pass<'s> {
                     false => value.sqrt(),
                 }
             }
-            Tree::Call(function, arguments) => self.call(*function, arguments, frame),
-            Tree::Time => N::of(self.time()),
-            Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
+            Tree::Call(function, arguments) => self.evaluate_call(*function, arguments, frame),
+            Tree::Time => N::from_motion(self.time()),
+            Tree::Coordinate(index) => {
+                N::from_motion(self.scene.coordinate(*index, self.directions))
+            }
             Tree::PrescribedInput {
                 input,
                 rate,
                 second,
             } => {
                 let rates = (*rate, *second);
-                N::of(self.scene.prescribed(*input, rates, self.directions))
+                N::from_motion(self.scene.prescribed_input(*input, rates, self.directions))
             }
-            Tree::Input(index) => N::of(self.scene.held(*index, self.directions)),
+            Tree::Input(index) => {
+                N::from_motion(self.scene.constant_input(*index, self.directions))
+            }
             Tree::Multiplier(index) => {
                 let known = self.scene.multipliers.get(*index).copied();
-                N::of(Motion::still(known.unwrap_or_else(|| f64::NAN.into())))
+                N::from_motion(Motion::constant(known.unwrap_or_else(|| f64::NAN.into())))
             }
             Tree::State(index) => N::state(self, *index),
             Tree::StateRate(index) => self.state_rate(*index, frame),
             Tree::Field { leaf, set } => {
-                N::of(self.scene.field(*leaf, *set, frame.node(), self.directions))
+                N::from_motion(self.scene.field(*leaf, *set, frame.node(), self.directions))
             }
-            Tree::Mode { field } => N::of(self.mode(*field, frame)),
-            still => N::from(self.still(still, frame)),
+            Tree::Mode { field } => N::from_motion(self.mode(*field, frame)),
+            still => N::from(self.constant_value(still, frame)),
         }
     }
 
     /// Returns true if a power of a base that is 0 with all its derivatives is 0 with all its derivatives. The
     /// chain rule gives infinity times 0 there. An exponent above 1 is enough. For another exponent the base has to
     /// be 0 because of a switch: it is constant then, unlike x^4.
-    fn has_zero_power<N: Level>(
+    fn has_zero_power<N: EvaluationNumber>(
         &self,
         (base, value): (&Tree, &N),
         exponent: f64,
@@ -249,7 +262,7 @@ impl<'s> Pass<'s> {
         is_beside || children.any(|child| self.is_beside_switch(child, frame))
     }
 
-    fn state_rate<N: Level>(&self, index: usize, frame: &Frame<'_>) -> N {
+    fn state_rate<N: EvaluationNumber>(&self, index: usize, frame: &Frame<'_>) -> N {
         let mut sum = N::from(0.0);
         for addend in self
             .scene
@@ -265,7 +278,7 @@ impl<'s> Pass<'s> {
     }
 
     /// Returns a value that does not depend on state or time.
-    fn still(&self, tree: &Tree, frame: &Frame<'_>) -> f64 {
+    fn constant_value(&self, tree: &Tree, frame: &Frame<'_>) -> f64 {
         let number = match tree {
             Tree::Constant(value) => Some(*value),
             Tree::PerMode { field, values } => values.get(frame.mode(*field)).copied(),
@@ -295,8 +308,8 @@ impl<'s> Pass<'s> {
     }
 
     /// Returns the value of a definition, one per pass because it contains no free place or index.
-    fn definition<N: Level>(&self, index: usize) -> N {
-        let kept = N::kept(self, index);
+    fn definition<N: EvaluationNumber>(&self, index: usize) -> N {
+        let kept = N::definition_cache(self, index);
         if let Some(value) = kept.and_then(Cell::get) {
             return value;
         }
@@ -310,18 +323,28 @@ impl<'s> Pass<'s> {
         value
     }
 
-    fn over_places<N: Level>(&self, set: usize, body: &Tree, outer: &Frame<'_>) -> N {
+    fn sum_over_places<N: EvaluationNumber>(
+        &self,
+        set: usize,
+        body: &Tree,
+        outer: &Frame<'_>,
+    ) -> N {
         let Some(places) = self.scene.system.places.get(set) else {
             return N::from(f64::NAN);
         };
         let mut sum = N::from(0.0);
         for (node, weight) in places.weights.iter().enumerate() {
-            sum += self.evaluate::<N>(body, &Frame::At { node, outer }) * *weight;
+            sum += self.evaluate::<N>(body, &Frame::Place { node, outer }) * *weight;
         }
         sum
     }
 
-    fn over_modes<N: Level>(&self, field: usize, body: &Tree, outer: &Frame<'_>) -> N {
+    fn sum_over_modes<N: EvaluationNumber>(
+        &self,
+        field: usize,
+        body: &Tree,
+        outer: &Frame<'_>,
+    ) -> N {
         let mut sum = N::from(0.0);
         for mode in 0..self.scene.system.modes(field).len() {
             sum += self.evaluate::<N>(body, &Frame::Mode { field, mode, outer });
@@ -329,14 +352,19 @@ impl<'s> Pass<'s> {
         sum
     }
 
-    fn call<N: Level>(&self, function: Function, arguments: &[Tree], frame: &Frame<'_>) -> N {
+    fn evaluate_call<N: EvaluationNumber>(
+        &self,
+        function: Function,
+        arguments: &[Tree],
+        frame: &Frame<'_>,
+    ) -> N {
         let side = self
             .scene
-            .imposed
+            .prescribed_sides
             .and_then(|imposed| imposed.side(function, arguments));
         let value = |values: &[N]| {
-            side.and_then(|side| functions::on_side(function, side, values))
-                .unwrap_or_else(|| functions::apply(function, values))
+            side.and_then(|side| functions::evaluate_on_side(function, side, values))
+                .unwrap_or_else(|| functions::evaluate_function(function, values))
         };
         match arguments {
             [only] => value(&[self.evaluate::<N>(only, frame)]),
@@ -349,7 +377,7 @@ impl<'s> Pass<'s> {
     }
 }
 
-fn combine<N: Level>(operator: BinaryOperator, left: N, right: N) -> N {
+fn combine_operands<N: EvaluationNumber>(operator: BinaryOperator, left: N, right: N) -> N {
     match operator {
         BinaryOperator::Add => left + right,
         BinaryOperator::Subtract => left - right,

@@ -4,14 +4,14 @@ use super::functions;
 use super::tree::Tree;
 use eomgen_model_spec::ast::BinaryOperator;
 
-pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
+pub(super) fn binary_tree(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
     match (operator, &right) {
         (BinaryOperator::Power, Tree::Constant(exponent)) => Tree::Power(left.into(), *exponent),
         _ => Tree::Binary(operator, left.into(), right.into()),
     }
 }
 
-pub(super) fn folded(tree: Tree) -> Tree {
+pub(super) fn fold_constants(tree: Tree) -> Tree {
     let numbers: Option<Vec<f64>> = tree
         .children()
         .into_iter()
@@ -29,7 +29,7 @@ pub(super) fn folded(tree: Tree) -> Tree {
             Tree::Constant(arithmetic(*operator, *left, *right))
         }
         (Tree::Call(function, _), Some(values)) => {
-            Tree::Constant(functions::apply(*function, values))
+            Tree::Constant(functions::evaluate_function(*function, values))
         }
         _ => tree,
     }

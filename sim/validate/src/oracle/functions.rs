@@ -7,7 +7,7 @@ use eomgen_model_spec::model::Function;
 use num_dual::DualNum;
 
 /// Returns the value of a function; NaN if an argument is missing, which a checked model excludes.
-pub(super) fn apply<N>(function: Function, arguments: &[N]) -> N
+pub(super) fn evaluate_function<N>(function: Function, arguments: &[N]) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
 {
@@ -19,7 +19,7 @@ where
 }
 
 /// Returns a piecewise function on a given side of its switch; `None` for a smooth one.
-pub(super) fn on_side<N>(function: Function, side: Side, arguments: &[N]) -> Option<N>
+pub(super) fn evaluate_on_side<N>(function: Function, side: Side, arguments: &[N]) -> Option<N>
 where
     N: DualNum<Primitive = f64> + Copy,
 {
@@ -134,8 +134,8 @@ fn tanh<N>(x: N) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
 {
-    const SATURATED: f64 = 60.0;
-    if x.re().abs() > SATURATED {
+    const TANH_SATURATION: f64 = 60.0;
+    if x.re().abs() > TANH_SATURATION {
         N::from(sign(x.re()))
     } else {
         x.tanh()

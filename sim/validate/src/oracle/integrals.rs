@@ -45,7 +45,7 @@ impl Entries {
         }
     }
 
-    fn part(addends: &[Number], part: impl Fn(&Number) -> Conditioned) -> Self {
+    fn from_addends(addends: &[Number], part: impl Fn(&Number) -> Conditioned) -> Self {
         let parts: Vec<Conditioned> = addends.iter().map(part).collect();
         let entries = |entry: fn(&Conditioned) -> f64| {
             DVector::from_iterator(parts.len(), parts.iter().map(entry))
@@ -61,7 +61,7 @@ impl Entries {
         Some(Conditioned::new(*value, *self.magnitude.get(row)?))
     }
 
-    fn total(&self) -> Conditioned {
+    fn sum_entries(&self) -> Conditioned {
         Conditioned::new(self.value.sum(), self.magnitude.max())
     }
 
@@ -128,14 +128,14 @@ impl Scene<'_> {
         let integral = self.system.integrals.get(index)?;
         let table = self.integrals.get(index)?;
         let [first, second] = directions;
-        let (lesser, greater) = if rank(first) <= rank(second) {
+        let (lesser, greater) = if direction_rank(first) <= direction_rank(second) {
             (first, second)
         } else {
             (second, first)
         };
         let mixed = match (lesser, greater) {
             // Cached integrals do not depend on first-order states.
-            (Direction::Still | Direction::State(_), _) => Conditioned::default(),
+            (Direction::Zero | Direction::State(_), _) => Conditioned::default(),
             (Direction::Time, Direction::Position(row)) => self
                 .by_position(table, integral)
                 .along_motion_by_row
@@ -149,28 +149,28 @@ impl Scene<'_> {
             _ => return None,
         };
         Some(Number::new(
-            *table.value.get_or_init(|| self.plain(integral)),
-            self.first(table, integral, first)?,
-            self.first(table, integral, second)?,
+            *table.value.get_or_init(|| self.integral_value(integral)),
+            self.first_derivative(table, integral, first)?,
+            self.first_derivative(table, integral, second)?,
             mixed,
         ))
     }
 
-    fn first(
+    fn first_derivative(
         &self,
         table: &IntegralTable,
         integral: &Integral,
         direction: Direction,
     ) -> Option<Conditioned> {
         match direction {
-            Direction::Still | Direction::State(_) => Some(Conditioned::default()),
+            Direction::Zero | Direction::State(_) => Some(Conditioned::default()),
             Direction::Time => Some(self.by_rate(table, integral).along_motion),
             Direction::Position(row) => self.by_position(table, integral).by_row.get(row),
             Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row),
             Direction::LeafPosition(_)
             | Direction::LeafRate(_)
             | Direction::Input(_)
-            | Direction::Clock => None,
+            | Direction::ExplicitTime => None,
         }
     }
 
@@ -190,8 +190,8 @@ impl Scene<'_> {
         table.by_two_rates.get_or_init(|| self.hessian(integral))
     }
 
-    fn plain(&self, integral: &Integral) -> Conditioned {
-        let pass = Pass::new(self, Direction::Still, Direction::Still);
+    fn integral_value(&self, integral: &Integral) -> Conditioned {
+        let pass = Pass::new(self, Direction::Zero, Direction::Zero);
         let addends = self.addends(integral, &pass);
         addends.iter().map(|addend| addend.re).sum()
     }
@@ -207,14 +207,14 @@ impl Scene<'_> {
             .iter()
             .enumerate()
             .map(|(node, weight)| {
-                let frame = Frame::At { node, outer };
+                let frame = Frame::Place { node, outer };
                 pass.evaluate::<Number>(&integral.body, &frame) * *weight
             })
             .collect()
     }
 
     fn rows(&self, integral: &Integral, direction: fn(Channel) -> Direction) -> Rows {
-        let still = Pass::new(self, Direction::Time, Direction::Still);
+        let still = Pass::new(self, Direction::Time, Direction::Zero);
         let addends = self.addends(integral, &still);
         let mut rows = Rows {
             along_motion: addends.iter().map(|addend| addend.eps1).sum(),
@@ -224,16 +224,16 @@ impl Scene<'_> {
         for channel in integral.channels() {
             let pass = Pass::new(self, Direction::Time, direction(channel));
             let addends = self.addends(integral, &pass);
-            let first = Entries::part(&addends, |addend| addend.eps2);
-            let mixed = Entries::part(&addends, |addend| addend.eps1eps2);
-            self.spread(integral, channel, &first, &mut rows.by_row);
-            self.spread(integral, channel, &mixed, &mut rows.along_motion_by_row);
+            let first = Entries::from_addends(&addends, |addend| addend.eps2);
+            let mixed = Entries::from_addends(&addends, |addend| addend.eps1eps2);
+            self.add_first_derivatives(integral, channel, &first, &mut rows.by_row);
+            self.add_first_derivatives(integral, channel, &mixed, &mut rows.along_motion_by_row);
         }
         rows
     }
 
     /// Adds the derivatives by `channel` at every place to the derivatives by every row.
-    fn spread(
+    fn add_first_derivatives(
         &self,
         integral: &Integral,
         channel: Channel,
@@ -241,7 +241,7 @@ impl Scene<'_> {
         rows: &mut Entries,
     ) {
         match channel {
-            Channel::Coordinate(row) => rows.add(row, by_place.total()),
+            Channel::Coordinate(row) => rows.add(row, by_place.sum_entries()),
             Channel::Leaf(leaf) => {
                 if let Some(shapes) = self.shapes(integral, leaf) {
                     let start = self.system.modes(leaf.field).start;
@@ -272,8 +272,8 @@ impl Scene<'_> {
             for (number, column) in channels.iter().enumerate().skip(index) {
                 let pass = Pass::new(self, row.rate(), column.rate());
                 let by_place =
-                    Entries::part(&self.addends(integral, &pass), |addend| addend.eps1eps2);
-                let block = self.block(integral, [*row, *column], &by_place);
+                    Entries::from_addends(&self.addends(integral, &pass), |addend| addend.eps1eps2);
+                let block = self.second_derivatives(integral, [*row, *column], &by_place);
                 if number > index {
                     hessian.add(&block.value.transpose(), &block.magnitude.transpose());
                 }
@@ -283,7 +283,7 @@ impl Scene<'_> {
         hessian
     }
 
-    fn block(
+    fn second_derivatives(
         &self,
         integral: &Integral,
         [row, column]: [Channel; 2],
@@ -310,7 +310,7 @@ impl Scene<'_> {
             }
             (Channel::Coordinate(index), other) | (other, Channel::Coordinate(index)) => {
                 let mut rows = Entries::zeros(size);
-                self.spread(integral, other, by_place, &mut rows);
+                self.add_first_derivatives(integral, other, by_place, &mut rows);
                 if index < size {
                     block.value.set_column(index, &rows.value);
                     block.magnitude.set_column(index, &rows.magnitude);
@@ -328,9 +328,9 @@ impl Integral {
     }
 }
 
-fn rank(direction: Direction) -> u8 {
+fn direction_rank(direction: Direction) -> u8 {
     match direction {
-        Direction::Still | Direction::State(_) | Direction::Input(_) | Direction::Clock => 0,
+        Direction::Zero | Direction::State(_) | Direction::Input(_) | Direction::ExplicitTime => 0,
         Direction::Time => 1,
         Direction::Position(_) | Direction::LeafPosition(_) => 2,
         Direction::Rate(_) | Direction::LeafRate(_) => 3,

@@ -3,8 +3,8 @@
 
 use super::OracleError;
 use super::evaluate::Pass;
-use super::fold::{binary, folded};
-use super::places::{Domain, PlaceSet};
+use super::fold::{binary_tree, fold_constants};
+use super::places::{FieldDomain, PlaceSet};
 use super::scene::{Direction, Scene};
 use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
@@ -28,14 +28,14 @@ impl<'m> Lowering<'m> {
                 ..System::default()
             },
             parameters,
-            input_rates: input_rates(model),
+            input_rates: input_rate_indices(model),
             quadratures: Vec::new(),
             subject: subject.to_owned(),
         }
     }
 
     /// Creates the converter with domains, definitions and first-order states of `model`.
-    pub fn of_model(
+    pub fn from_model(
         model: &Model,
         order: usize,
         parameters: &'m [f64],
@@ -54,7 +54,7 @@ impl<'m> Lowering<'m> {
             let Some(definition) = model.definitions.get(index) else {
                 continue;
             };
-            let tree = lowering.term(&definition.name, &definition.value)?;
+            let tree = lowering.lower_term(&definition.name, &definition.value)?;
             let dependence = lowering.system.dependence(&tree);
             if let Some(entry) = lowering.system.definitions.get_mut(index) {
                 *entry = tree;
@@ -64,88 +64,100 @@ impl<'m> Lowering<'m> {
             }
         }
         for state in &model.states {
-            let addends = lowering.term(&state.name, &state.rate)?.addends();
+            let addends = lowering
+                .lower_term(&state.name, &state.rate)?
+                .into_addends();
             lowering.system.state_rates.push(addends);
         }
         Ok(lowering)
     }
 
-    pub fn term(&mut self, name: &str, expression: &Expr) -> Result<Tree, OracleError> {
+    pub fn lower_term(&mut self, name: &str, expression: &Expr) -> Result<Tree, OracleError> {
         name.clone_into(&mut self.subject);
         let tree = self.lower(expression, None)?;
         let dependence = self.system.dependence(&tree);
-        if dependence.position || !dependence.leaves.is_empty() || !dependence.indices.is_empty() {
-            return Err(self.misplaced());
+        if dependence.has_position
+            || !dependence.leaves.is_empty()
+            || !dependence.indices.is_empty()
+        {
+            return Err(self.misplaced_error());
         }
         Ok(tree)
     }
 
     fn add_field(&mut self, field: &Field, order: usize) -> Result<(), OracleError> {
         field.name.clone_into(&mut self.subject);
-        let (from, to) = (self.constant(&field.from)?, self.constant(&field.to)?);
+        let (from, to) = (
+            self.evaluate_constant(&field.from)?,
+            self.evaluate_constant(&field.to)?,
+        );
         if !(to - from).is_finite() || to == from {
-            return Err(OracleError::NotFinite(format!(
+            return Err(OracleError::NonFiniteConstant(format!(
                 "the length of {}",
                 field.name
             )));
         }
-        let domain = Domain::new(from, to, &field.basis, self.system.size, order);
+        let domain = FieldDomain::new(from, to, &field.basis, self.system.size, order);
         let number = self.system.domains.len();
         self.quadratures.push(self.system.places.len());
         self.system
             .places
-            .push(PlaceSet::quadrature(number, &domain));
+            .push(PlaceSet::from_quadrature(number, &domain));
         self.system.size += order;
         self.system.domains.push(domain);
         Ok(())
     }
 
-    fn constant(&mut self, expression: &Expr) -> Result<f64, OracleError> {
+    fn evaluate_constant(&mut self, expression: &Expr) -> Result<f64, OracleError> {
         match self.lower(expression, None)? {
             Tree::Constant(value) if value.is_finite() => Ok(value),
-            _ => Err(OracleError::NotFinite(self.subject.clone())),
+            _ => Err(OracleError::NonFiniteConstant(self.subject.clone())),
         }
     }
 
-    fn misplaced(&self) -> OracleError {
-        OracleError::Misplaced(self.subject.clone())
+    fn misplaced_error(&self) -> OracleError {
+        OracleError::MisplacedField(self.subject.clone())
     }
 
     /// Converts an expression; `set` is the enclosing place set.
     fn lower(&mut self, expression: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match &expression.kind {
-            ExprKind::Dot(operand) => self.dot(operand, set)?,
-            ExprKind::Diff(operand, times) => self.diff(operand, *times, set)?,
+            ExprKind::Dot(operand) => self.lower_dot(operand, set)?,
+            ExprKind::Diff(operand, times) => self.lower_diff(operand, *times, set)?,
             ExprKind::At {
                 field,
                 value,
                 position,
-            } => self.at(field.index(), value, position)?,
-            ExprKind::Integral { field, integrand } => self.integral(field.index(), integrand)?,
-            ExprKind::Sum { field, summand } => self.sum(field.index(), summand, set)?,
-            ExprKind::Negate(operand) => folded(Tree::Negate(self.lower(operand, set)?.into())),
+            } => self.lower_at(field.index(), value, position)?,
+            ExprKind::Integral { field, integrand } => {
+                self.lower_integral(field.index(), integrand)?
+            }
+            ExprKind::Sum { field, summand } => self.lower_sum(field.index(), summand, set)?,
+            ExprKind::Negate(operand) => {
+                fold_constants(Tree::Negate(self.lower(operand, set)?.into()))
+            }
             ExprKind::Binary(operator, left, right) => {
                 let (left, right) = (self.lower(left, set)?, self.lower(right, set)?);
-                folded(binary(*operator, left, right))
+                fold_constants(binary_tree(*operator, left, right))
             }
             ExprKind::Call(function, arguments) => {
                 let arguments: Result<_, _> = arguments
                     .iter()
                     .map(|argument| self.lower(argument, set))
                     .collect();
-                folded(Tree::Call(*function, arguments?))
+                fold_constants(Tree::Call(*function, arguments?))
             }
-            name => self.name(name, set)?,
+            name => self.lower_name(name, set)?,
         })
     }
 
-    fn name(&mut self, kind: &ExprKind, set: Option<usize>) -> Result<Tree, OracleError> {
+    fn lower_name(&mut self, kind: &ExprKind, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match kind {
             ExprKind::Number(number) => Tree::Constant(*number),
             ExprKind::Pi => Tree::Constant(std::f64::consts::PI),
             ExprKind::Time => Tree::Time,
             ExprKind::Position(field) => Tree::Position {
-                set: self.set_of(field.index(), set)?,
+                set: self.enclosing_set(field.index(), set)?,
             },
             ExprKind::Parameter(index) => Tree::Constant(
                 self.parameters
@@ -154,27 +166,27 @@ impl<'m> Lowering<'m> {
                     .unwrap_or(f64::NAN),
             ),
             ExprKind::Coordinate(index) => Tree::Coordinate(index.index()),
-            ExprKind::Input(index) => self.input(index.index()),
+            ExprKind::Input(index) => self.lower_input(index.index()),
             ExprKind::State(index) => Tree::State(index.index()),
             ExprKind::Multiplier(index) => Tree::Multiplier(index.index()),
             ExprKind::Residual(index) => {
                 let known = self.system.residuals.get(index.index()).cloned();
-                known.ok_or_else(|| self.misplaced())?
+                known.ok_or_else(|| self.misplaced_error())?
             }
             ExprKind::Definition(index) => match self.system.definitions.get(index.index()) {
                 Some(Tree::Constant(value)) => Tree::Constant(*value),
                 _ => Tree::Definition(index.index()),
             },
-            ExprKind::Field(field) => self.leaf(field.index(), 0, set)?,
+            ExprKind::Field(field) => self.lower_leaf(field.index(), 0, set)?,
             ExprKind::ModeCoordinate(field) => Tree::Mode {
                 field: field.index(),
             },
-            ExprKind::ModeShape(field) => self.shape(field.index(), 0, set)?,
-            _ => return Err(self.misplaced()),
+            ExprKind::ModeShape(field) => self.lower_shape(field.index(), 0, set)?,
+            _ => return Err(self.misplaced_error()),
         })
     }
 
-    fn input(&self, input: usize) -> Tree {
+    fn lower_input(&self, input: usize) -> Tree {
         let rate_of = |input: usize| self.input_rates.get(input).copied().flatten();
         match rate_of(input) {
             None => Tree::Input(input),
@@ -187,54 +199,54 @@ impl<'m> Lowering<'m> {
     }
 
     /// Returns the enclosing place set if it belongs to `field`.
-    fn set_of(&self, field: usize, set: Option<usize>) -> Result<usize, OracleError> {
+    fn enclosing_set(&self, field: usize, set: Option<usize>) -> Result<usize, OracleError> {
         set.filter(|set| {
             self.system
                 .places
                 .get(*set)
                 .is_some_and(|places| places.field == field)
         })
-        .ok_or_else(|| self.misplaced())
+        .ok_or_else(|| self.misplaced_error())
     }
 
-    fn require(&mut self, leaf: Leaf, set: Option<usize>) -> Result<usize, OracleError> {
-        let set = self.set_of(leaf.field, set)?;
+    fn require_leaf(&mut self, leaf: Leaf, set: Option<usize>) -> Result<usize, OracleError> {
+        let set = self.enclosing_set(leaf.field, set)?;
         let places = self.system.places.get_mut(set);
         if let Some((places, domain)) = places.zip(self.system.domains.get(leaf.field)) {
-            places.require(leaf.derivative, domain);
+            places.compute_shapes(leaf.derivative, domain);
         }
         Ok(set)
     }
 
-    fn leaf(
+    fn lower_leaf(
         &mut self,
         field: usize,
         derivative: u8,
         set: Option<usize>,
     ) -> Result<Tree, OracleError> {
         let leaf = Leaf { field, derivative };
-        let set = self.require(leaf, set)?;
+        let set = self.require_leaf(leaf, set)?;
         Ok(Tree::Field { leaf, set })
     }
 
-    fn shape(
+    fn lower_shape(
         &mut self,
         field: usize,
         derivative: u8,
         set: Option<usize>,
     ) -> Result<Tree, OracleError> {
         let leaf = Leaf { field, derivative };
-        let set = self.require(leaf, set)?;
+        let set = self.require_leaf(leaf, set)?;
         Ok(Tree::Shape { leaf, set })
     }
 
-    fn dot(&mut self, operand: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
+    fn lower_dot(&mut self, operand: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
         let operand = self.lower(operand, set)?;
         let dependence = self.system.dependence(&operand);
-        if dependence.dot {
+        if dependence.has_dot {
             return Err(OracleError::Acceleration(self.subject.clone()));
         }
-        if dependence.input {
+        if dependence.has_input {
             return Err(OracleError::InputRate(self.subject.clone()));
         }
         Ok(match operand {
@@ -245,41 +257,51 @@ impl<'m> Lowering<'m> {
     }
 
     /// Converts derivatives by the position of a field, its rate, a shape, or such a derivative.
-    fn diff(&mut self, operand: &Expr, times: u8, set: Option<usize>) -> Result<Tree, OracleError> {
+    fn lower_diff(
+        &mut self,
+        operand: &Expr,
+        times: u8,
+        set: Option<usize>,
+    ) -> Result<Tree, OracleError> {
         match &operand.kind {
-            ExprKind::Field(field) => self.leaf(field.index(), times, set),
-            ExprKind::ModeShape(field) => self.shape(field.index(), times, set),
-            ExprKind::Dot(inner) => Ok(Tree::Dot(self.diff(inner, times, set)?.into())),
-            ExprKind::Diff(inner, more) => self.diff(inner, times.saturating_add(*more), set),
-            _ => Err(self.misplaced()),
+            ExprKind::Field(field) => self.lower_leaf(field.index(), times, set),
+            ExprKind::ModeShape(field) => self.lower_shape(field.index(), times, set),
+            ExprKind::Dot(inner) => Ok(Tree::Dot(self.lower_diff(inner, times, set)?.into())),
+            ExprKind::Diff(inner, more) => self.lower_diff(inner, times.saturating_add(*more), set),
+            _ => Err(self.misplaced_error()),
         }
     }
 
-    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Result<Tree, OracleError> {
-        let position = self.constant(position)?;
+    fn lower_at(
+        &mut self,
+        field: usize,
+        value: &Expr,
+        position: &Expr,
+    ) -> Result<Tree, OracleError> {
+        let position = self.evaluate_constant(position)?;
         let domain = self
             .system
             .domains
             .get(field)
-            .ok_or_else(|| self.misplaced())?;
+            .ok_or_else(|| self.misplaced_error())?;
         let set = self.system.places.len();
-        let places = PlaceSet::single(field, domain, position);
+        let places = PlaceSet::from_position(field, domain, position);
         self.system.places.push(places);
         let body = self.lower(value, Some(set))?;
-        Ok(self.placed(set, body, false))
+        Ok(self.sum_over_places(set, body, false))
     }
 
-    fn integral(&mut self, field: usize, integrand: &Expr) -> Result<Tree, OracleError> {
+    fn lower_integral(&mut self, field: usize, integrand: &Expr) -> Result<Tree, OracleError> {
         let set = *self
             .quadratures
             .get(field)
-            .ok_or_else(|| self.misplaced())?;
+            .ok_or_else(|| self.misplaced_error())?;
         let body = self.lower(integrand, Some(set))?;
-        Ok(self.placed(set, body, true))
+        Ok(self.sum_over_places(set, body, true))
     }
 
     /// Creates a sum over places; a number, or one number per mode, if it is constant.
-    fn placed(&mut self, set: usize, body: Tree, keep: bool) -> Tree {
+    fn sum_over_places(&mut self, set: usize, body: Tree, keep: bool) -> Tree {
         let dependence = self.system.dependence(&body);
         let mut tree = Tree::Places {
             set,
@@ -290,10 +312,14 @@ impl<'m> Lowering<'m> {
         if dependence.is_constant() {
             match indices.as_slice() {
                 [] => tree = Tree::Constant(self.evaluate(&tree)),
-                [field] => tree = self.per_mode(*field, tree),
+                [field] => tree = self.evaluate_per_mode(*field, tree),
                 _ => {}
             }
-        } else if keep && indices.is_empty() && !dependence.nested && dependence.states.is_empty() {
+        } else if keep
+            && indices.is_empty()
+            && !dependence.has_nested_operator
+            && dependence.states.is_empty()
+        {
             tree = Tree::Places {
                 set,
                 body: body.clone().into(),
@@ -309,7 +335,7 @@ impl<'m> Lowering<'m> {
         tree
     }
 
-    fn sum(
+    fn lower_sum(
         &mut self,
         field: usize,
         summand: &Expr,
@@ -322,13 +348,13 @@ impl<'m> Lowering<'m> {
             field,
             body: body.into(),
         };
-        if dependence.is_constant() && closed && !dependence.position {
+        if dependence.is_constant() && closed && !dependence.has_position {
             return Ok(Tree::Constant(self.evaluate(&tree)));
         }
         Ok(tree)
     }
 
-    fn per_mode(&self, field: usize, tree: Tree) -> Tree {
+    fn evaluate_per_mode(&self, field: usize, tree: Tree) -> Tree {
         let modes = self.system.modes(field).len();
         let values = (0..modes).map(|mode| self.evaluate_at_mode(&tree, field, mode));
         Tree::PerMode {
@@ -339,7 +365,7 @@ impl<'m> Lowering<'m> {
 
     fn evaluate(&self, tree: &Tree) -> f64 {
         let scene = Scene::new(&self.system, 0.0, &[], None, &[]);
-        Pass::new(&scene, Direction::Still, Direction::Still)
+        Pass::new(&scene, Direction::Zero, Direction::Zero)
             .value(tree)
             .re
             .value
@@ -347,12 +373,12 @@ impl<'m> Lowering<'m> {
 
     fn evaluate_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {
         let scene = Scene::new(&self.system, 0.0, &[], None, &[]);
-        Pass::new(&scene, Direction::Still, Direction::Still).value_at_mode(tree, field, mode)
+        Pass::new(&scene, Direction::Zero, Direction::Zero).value_at_mode(tree, field, mode)
     }
 }
 
 /// Returns the index of each input's rate among the inputs, if given.
-pub(super) fn input_rates(model: &Model) -> Vec<Option<usize>> {
+pub(super) fn input_rate_indices(model: &Model) -> Vec<Option<usize>> {
     let rates = model.inputs.iter().map(|input| input.rate);
     rates.map(|rate| rate.map(|rate| rate.index())).collect()
 }

@@ -100,7 +100,7 @@ impl Oracle {
     /// [`OracleError`] if the model is not supported.
     pub fn new(model: &Model, order: usize, parameters: &[f64]) -> Result<Self, OracleError> {
         expect_length("parameters", model.parameters.len(), parameters.len())?;
-        let mut lowering = Lowering::of_model(model, order, parameters)?;
+        let mut lowering = Lowering::from_model(model, order, parameters)?;
         let kinetic = lower_terms(&mut lowering, &model.kinetic)?;
         let potential = lower_terms(&mut lowering, &model.potential)?;
         let dissipation = lower_terms(&mut lowering, &model.dissipation)?;
@@ -110,19 +110,19 @@ impl Oracle {
         }
         let constraints = lower_constraints(&mut lowering, model)?;
         let observables = lower_observables(&mut lowering, model);
-        if let Some(term) = kinetic.iter().find(|term| term.dependence.input) {
+        if let Some(term) = kinetic.iter().find(|term| term.dependence.has_input) {
             return Err(OracleError::InputRate(term.name.clone()));
         }
         let mut oracle = Self {
             system: lowering.system,
             names: coordinate_names(model, order),
-            input_rates: lower::input_rates(model),
+            input_rates: lower::input_rate_indices(model),
             typical_inputs: model
                 .typical_inputs(1.0)
                 .unwrap_or_else(|_| vec![0.0; model.inputs.len()]),
             states: model.states.len(),
             initial: initial_state(model, order, parameters),
-            ranges: Ranges::of(model, order, parameters),
+            ranges: Ranges::from_model(model, order, parameters),
             kinetic,
             potential,
             dissipation,
@@ -132,7 +132,7 @@ impl Oracle {
             constraints,
             stabilisation_rate: stabilisation_rate(model, parameters),
         };
-        oracle.switches = switches::find(&oracle, model);
+        oracle.switches = switches::find_switches(&oracle, model);
         Ok(oracle)
     }
 
@@ -245,7 +245,7 @@ fn expect_length(what: &'static str, expected: usize, found: usize) -> Result<()
     if expected == found {
         Ok(())
     } else {
-        Err(OracleError::Length {
+        Err(OracleError::WrongLength {
             what,
             expected,
             found,

@@ -12,7 +12,7 @@ use eomgen_model_spec::model::Model;
 pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> Vec<Option<Tree>> {
     let observables = model.observables.iter();
     observables
-        .map(|known| lowering.term(&known.name, &known.value).ok())
+        .map(|known| lowering.lower_term(&known.name, &known.value).ok())
         .collect()
 }
 
@@ -26,7 +26,7 @@ impl Oracle {
     ) -> Result<Vec<Conditioned>, OracleError> {
         let mut scene = self.scene(time, state, None, inputs)?;
         scene.multipliers = self.multipliers(&scene);
-        let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+        let pass = Pass::new(&scene, Direction::Zero, Direction::Zero);
         let value = |tree: &Option<Tree>| match tree {
             Some(tree) => pass.value(tree).re,
             None => Conditioned::new(0.0, f64::INFINITY),

@@ -14,10 +14,10 @@ use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 
 /// Number of derivative orders of a mode shape, from 0.
-const DERIVATIVES: usize = 5;
+const DERIVATIVE_ORDERS: usize = 5;
 
 #[derive(Clone, Debug)]
-pub(super) struct Domain {
+pub(super) struct FieldDomain {
     pub from: f64,
     pub length: f64,
     /// Index of the field's first mode among the generalised coordinates.
@@ -33,13 +33,13 @@ enum Shapes {
     Splines(Vec<SplineShape>, Vec<(DoubleDouble, f64)>),
 }
 
-impl Domain {
+impl FieldDomain {
     pub fn new(from: f64, to: f64, basis: &Basis, offset: usize, order: usize) -> Self {
         let numbers = 1..=order;
         let shapes = match basis {
             Basis::Table { table, .. } => Shapes::Splines(
                 numbers.map(|r| SplineShape::new(table, r)).collect(),
-                splines::rule(table, order),
+                splines::quadrature_rule(table, order),
             ),
             Basis::Beam { .. } | Basis::ClampedFreePrinted => {
                 Shapes::Modes(numbers.map(|r| Shape::new(basis, r)).collect())
@@ -54,7 +54,7 @@ impl Domain {
         }
     }
 
-    fn rule(&self) -> Vec<(DoubleDouble, f64)> {
+    fn quadrature_rule(&self) -> Vec<(DoubleDouble, f64)> {
         match &self.shapes {
             Shapes::Splines(_, rule) => rule.clone(),
             Shapes::Modes(_) => unit_rule(4 * self.order + 40)
@@ -82,14 +82,14 @@ pub(super) struct PlaceSet {
     pub positions: Vec<f64>,
     /// Weights: dx of the rule, or 1 for a single position.
     pub weights: Vec<f64>,
-    relative: Vec<DoubleDouble>,
+    relative_positions: Vec<DoubleDouble>,
     /// Shapes by order of the derivative, modes by positions; `None` before the first use.
-    shapes: [Option<DMatrix<f64>>; DERIVATIVES],
+    shapes: [Option<DMatrix<f64>>; DERIVATIVE_ORDERS],
 }
 
 impl PlaceSet {
-    pub fn quadrature(field: usize, domain: &Domain) -> Self {
-        let rule = domain.rule();
+    pub fn from_quadrature(field: usize, domain: &FieldDomain) -> Self {
+        let rule = domain.quadrature_rule();
         Self {
             field,
             positions: rule
@@ -100,24 +100,24 @@ impl PlaceSet {
                 .iter()
                 .map(|(_, weight)| domain.length * weight)
                 .collect(),
-            relative: rule.iter().map(|(position, _)| *position).collect(),
+            relative_positions: rule.iter().map(|(position, _)| *position).collect(),
             shapes: Default::default(),
         }
     }
 
-    pub fn single(field: usize, domain: &Domain, x: f64) -> Self {
+    pub fn from_position(field: usize, domain: &FieldDomain, x: f64) -> Self {
         Self {
             field,
             positions: vec![x],
             weights: vec![1.0],
-            relative: vec![DoubleDouble::new((x - domain.from) / domain.length)],
+            relative_positions: vec![DoubleDouble::new((x - domain.from) / domain.length)],
             shapes: Default::default(),
         }
     }
 
-    pub fn require(&mut self, derivative: u8, domain: &Domain) {
+    pub fn compute_shapes(&mut self, derivative: u8, domain: &FieldDomain) {
         let scale = domain.length.powi(-i32::from(derivative));
-        let relative = &self.relative;
+        let relative = &self.relative_positions;
         if let Some(entry) = self.shapes.get_mut(usize::from(derivative))
             && entry.is_none()
         {
@@ -139,6 +139,6 @@ impl PlaceSet {
     }
 
     pub fn derivatives(&self) -> impl Iterator<Item = u8> {
-        (0..DERIVATIVES as u8).filter(|derivative| self.shapes(*derivative).is_some())
+        (0..DERIVATIVE_ORDERS as u8).filter(|derivative| self.shapes(*derivative).is_some())
     }
 }

@@ -17,7 +17,7 @@ pub struct Ranges {
 }
 
 impl Ranges {
-    pub(super) fn of(model: &Model, order: usize, parameters: &[f64]) -> Self {
+    pub(super) fn from_model(model: &Model, order: usize, parameters: &[f64]) -> Self {
         let ends = |range: &Option<Range>| range.as_ref().map(|range| range.ends(parameters));
         let scale = |dimension| parameter_sizes(model, parameters, dimension);
         let mut state: Vec<_> = model.coordinates.iter().map(|c| ends(&c.range)).collect();

@@ -5,7 +5,7 @@ use super::equations::{Equations, RowTermKind};
 use super::error::OracleError;
 use super::evaluate::Pass;
 use super::scene::{Direction, Scene};
-use super::switches::{Imposed, Side};
+use super::switches::{PrescribedSides, Side};
 use super::tree::Tree;
 use super::{Oracle, expect_length};
 use nalgebra::DMatrix;
@@ -18,7 +18,7 @@ impl Oracle {
         state: &[f64],
         inputs: &[f64],
     ) -> Result<Equations, OracleError> {
-        Ok(self.equations_of(&self.scene(time, state, None, inputs)?))
+        Ok(self.evaluate_equations(&self.scene(time, state, None, inputs)?))
     }
 
     /// Returns the equations of motion with every piecewise function on the given side of its
@@ -32,11 +32,11 @@ impl Oracle {
     ) -> Result<Equations, OracleError> {
         expect_length("sides", self.switches.len(), sides.len())?;
         let mut scene = self.scene(time, state, None, inputs)?;
-        scene.imposed = Some(Imposed {
+        scene.prescribed_sides = Some(PrescribedSides {
             switches: &self.switches,
             sides,
         });
-        Ok(self.equations_of(&scene))
+        Ok(self.evaluate_equations(&scene))
     }
 
     /// Returns the equations of motion if the state is in the model's domain: every term and both
@@ -56,7 +56,7 @@ impl Oracle {
         Ok((finite && equations.is_definite()).then_some(equations))
     }
 
-    pub(super) fn equations_of(&self, scene: &Scene<'_>) -> Equations {
+    pub(super) fn evaluate_equations(&self, scene: &Scene<'_>) -> Equations {
         let mut terms = Vec::new();
         for term in &self.kinetic {
             terms.push(term.rows(scene, RowTermKind::Momentum));
@@ -71,7 +71,7 @@ impl Oracle {
         for force in &self.forces {
             terms.push(force.rows(scene));
         }
-        let (mass, mass_magnitude) = self.mass(scene);
+        let (mass, mass_magnitude) = self.evaluate_mass(scene);
         Equations {
             mass,
             mass_magnitude,
@@ -84,7 +84,7 @@ impl Oracle {
     }
 
     fn state_rates(&self, scene: &Scene<'_>) -> Vec<Vec<Conditioned>> {
-        let pass = Pass::new(scene, Direction::Still, Direction::Still);
+        let pass = Pass::new(scene, Direction::Zero, Direction::Zero);
         let rates = self.system.state_rates.iter();
         rates
             .map(|addends| addends.iter().map(|tree| pass.value(tree).re).collect())
@@ -100,7 +100,7 @@ impl Oracle {
     ) -> Result<Vec<f64>, OracleError> {
         let scene = self.scene(time, state, None, inputs)?;
         let decay = |index: usize| {
-            let pass = Pass::new(&scene, Direction::Still, Direction::State(index));
+            let pass = Pass::new(&scene, Direction::Zero, Direction::State(index));
             pass.value(&Tree::StateRate(index)).eps2.value
         };
         Ok((0..self.states).map(decay).collect())
@@ -118,7 +118,7 @@ impl Oracle {
             let pass = Pass::new(&scene, Direction::Position(row), Direction::Position(row));
             let terms = self.potential.iter();
             terms
-                .filter(|term| self.system.concerns(&term.dependence, row))
+                .filter(|term| self.system.depends_on_row(&term.dependence, row))
                 .map(|term| pass.value(&term.tree).eps1eps2.value)
                 .sum()
         };
@@ -126,7 +126,7 @@ impl Oracle {
     }
 
     /// Returns M_jk = d^2 T/dq_j' dq_k' and magnitudes of the entries; the lower half is mirrored.
-    fn mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
+    fn evaluate_mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
         let size = self.size();
         let mut mass = DMatrix::zeros(size, size);
         let mut magnitude = DMatrix::zeros(size, size);
@@ -136,8 +136,8 @@ impl Oracle {
                     .kinetic
                     .iter()
                     .filter(|term| {
-                        self.system.concerns(&term.dependence, row)
-                            && self.system.concerns(&term.dependence, column)
+                        self.system.depends_on_row(&term.dependence, row)
+                            && self.system.depends_on_row(&term.dependence, column)
                     })
                     .peekable();
                 if terms.peek().is_none() {

@@ -4,7 +4,7 @@
 use super::conditioned::Conditioned;
 use super::evaluate::Number;
 use super::integrals::IntegralTable;
-use super::switches::Imposed;
+use super::switches::PrescribedSides;
 use super::system::System;
 use super::tree::Leaf;
 use nalgebra::{DVector, DVectorView};
@@ -12,7 +12,7 @@ use nalgebra::{DVector, DVectorView};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Direction {
     /// No direction: the derivative part is 0.
-    Still,
+    Zero,
     /// Along the motion: coordinates change with the rates, rates with the accelerations.
     Time,
     Position(usize),
@@ -20,7 +20,7 @@ pub(super) enum Direction {
     State(usize),
     Input(usize),
     /// Explicit time.
-    Clock,
+    ExplicitTime,
     /// Field value at the current place, with constant rate.
     LeafPosition(Leaf),
     LeafRate(Leaf),
@@ -34,7 +34,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    pub fn still(value: Conditioned) -> Self {
+    pub fn constant(value: Conditioned) -> Self {
         let zero = Conditioned::default();
         Self {
             value: Number::new(value, zero, zero, zero),
@@ -54,7 +54,7 @@ impl Motion {
 }
 
 #[derive(Clone, Debug)]
-struct Values {
+struct FieldValues {
     derivative: u8,
     value: DVector<f64>,
     rate: DVector<f64>,
@@ -73,12 +73,12 @@ pub(super) struct Scene<'s> {
     /// Multipliers of the constraints, if an expression needs them.
     pub multipliers: Vec<Conditioned>,
     /// Prescribed sides of piecewise functions, if any.
-    pub imposed: Option<Imposed<'s>>,
+    pub prescribed_sides: Option<PrescribedSides<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
     first_order: &'s [f64],
     acceleration: Option<&'s [f64]>,
-    values: Vec<Vec<Values>>,
+    values: Vec<Vec<FieldValues>>,
 }
 
 impl<'s> Scene<'s> {
@@ -98,7 +98,7 @@ impl<'s> Scene<'s> {
             inputs,
             integrals: Vec::new(),
             multipliers: Vec::new(),
-            imposed: None,
+            prescribed_sides: None,
             position,
             rate,
             first_order,
@@ -106,7 +106,7 @@ impl<'s> Scene<'s> {
             values: Vec::new(),
         };
         scene.values = (0..system.places.len())
-            .map(|set| scene.sample(set))
+            .map(|set| scene.sample_fields(set))
             .collect();
         scene
             .integrals
@@ -114,7 +114,7 @@ impl<'s> Scene<'s> {
         scene
     }
 
-    fn sample(&self, set: usize) -> Vec<Values> {
+    fn sample_fields(&self, set: usize) -> Vec<FieldValues> {
         let Some(places) = self.system.places.get(set) else {
             return Vec::new();
         };
@@ -130,7 +130,7 @@ impl<'s> Scene<'s> {
         };
         places
             .derivatives()
-            .map(|derivative| Values {
+            .map(|derivative| FieldValues {
                 derivative,
                 value: project(derivative, Some(self.position)),
                 rate: project(derivative, Some(self.rate)),
@@ -140,12 +140,12 @@ impl<'s> Scene<'s> {
     }
 
     pub fn coordinate(&self, index: usize, directions: [Direction; 2]) -> Motion {
-        let [first, second] = directions.map(|direction| self.seed(index, direction));
+        let [first, second] = directions.map(|direction| self.coordinate_seed(index, direction));
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         Motion::new((at(self.position), at(self.rate)), [first, second])
     }
 
-    fn seed(&self, index: usize, direction: Direction) -> (f64, f64) {
+    fn coordinate_seed(&self, index: usize, direction: Direction) -> (f64, f64) {
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         match direction {
             Direction::Time => (at(self.rate), self.acceleration.map_or(0.0, at)),
@@ -156,7 +156,7 @@ impl<'s> Scene<'s> {
     }
 
     /// Returns an input with given rates in two directions.
-    pub fn prescribed(
+    pub fn prescribed_input(
         &self,
         input: usize,
         (rate_input, second): (usize, Option<usize>),
@@ -177,7 +177,7 @@ impl<'s> Scene<'s> {
         Motion::new((value, rate), seeds)
     }
 
-    pub fn held(&self, input: usize, directions: [Direction; 2]) -> Motion {
+    pub fn constant_input(&self, input: usize, directions: [Direction; 2]) -> Motion {
         let value = self.inputs.get(input).copied().unwrap_or(f64::NAN);
         let seeds = directions.map(|direction| match direction {
             Direction::Input(moved) if moved == input => (1.0, 0.0),
@@ -246,7 +246,7 @@ impl<'s> Scene<'s> {
     }
 
     pub fn time_seed(direction: Direction) -> f64 {
-        if matches!(direction, Direction::Time | Direction::Clock) {
+        if matches!(direction, Direction::Time | Direction::ExplicitTime) {
             1.0
         } else {
             0.0

@@ -16,7 +16,7 @@ use nalgebra::{Matrix4, SVD, Vector4};
 use std::f64::consts::PI;
 
 /// Maximum number of iterations of a singular value decomposition; about ten are usual.
-const ITERATIONS: usize = 1000;
+const MAX_SVD_ITERATIONS: usize = 1000;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
@@ -33,14 +33,14 @@ impl Shape {
     /// Returns mode `r`, from 1, of a `basis` with a formula.
     pub fn new(basis: &Basis, r: usize) -> Self {
         match basis {
-            Basis::Beam { from, to } => Self::of_beam(*from, *to, r),
-            _ => Self::printed(r),
+            Basis::Beam { from, to } => Self::from_boundary_conditions(*from, *to, r),
+            _ => Self::from_printed_equations(r),
         }
     }
 
     /// Returns mode `r` of a beam. For short waves each end adds a constant phase, which determines
     /// the nearest quarter of pi. The roots differ from it by less than 1/2.
-    fn of_beam(from: End, to: End, r: usize) -> Self {
+    fn from_boundary_conditions(from: End, to: End, r: usize) -> Self {
         let phase = |end| match end {
             End::Clamped => 0.25,
             End::Pinned => 0.0,
@@ -79,7 +79,7 @@ impl Shape {
 
     /// Returns Eq. (18): z = (r - 1/2) pi, so cos z = 0 and sin z = (-1)^(r+1). Eq. (19) has its
     /// printed sign, so (1 + xi)/2 tends to 1 and exp(u) remains.
-    fn printed(r: usize) -> Self {
+    fn from_printed_equations(r: usize) -> Self {
         let half_waves = r as f64 - 0.5;
         let sign = if r.is_multiple_of(2) { -1.0 } else { 1.0 };
         let root = half_waves * PI;
@@ -148,7 +148,7 @@ fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2])
 
 /// Returns the right singular vector of the smallest singular value.
 fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
-    let decomposed = SVD::try_new(matrix, false, true, 5.0 * f64::EPSILON, ITERATIONS);
+    let decomposed = SVD::try_new(matrix, false, true, 5.0 * f64::EPSILON, MAX_SVD_ITERATIONS);
     let Some(decomposition) = decomposed else {
         return Vector4::zeros();
     };

@@ -14,7 +14,7 @@ use eomgen_model_spec::shape_table::ShapeTable;
 
 /// Minimum number of Gauss-Legendre nodes per piece. A product of two shapes has degree 6, of four
 /// degree 12. The surplus covers coefficients that vary along the field.
-const NODES: usize = 8;
+const MIN_NODES_PER_PIECE: usize = 8;
 
 #[derive(Clone, Debug)]
 pub(super) struct SplineShape {
@@ -25,7 +25,7 @@ pub(super) struct SplineShape {
 
 impl SplineShape {
     pub fn new(table: &ShapeTable, r: usize) -> Self {
-        let knots = relative(table);
+        let knots = relative_positions(table);
         let values = table.shapes.get(r - 1).cloned().unwrap_or_default();
         let curvatures = curvatures(&knots, &values);
         Self {
@@ -59,10 +59,10 @@ impl SplineShape {
 }
 
 /// Returns nodes and weights of a rule on [0, 1] that is exact for polynomials between knots.
-pub(super) fn rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)> {
+pub(super) fn quadrature_rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)> {
     let pieces = table.positions.len().max(2) - 1;
-    let rule = unit_rule((4 * order + 40).div_ceil(pieces).max(NODES));
-    relative(table)
+    let rule = unit_rule((4 * order + 40).div_ceil(pieces).max(MIN_NODES_PER_PIECE));
+    relative_positions(table)
         .windows(2)
         .flat_map(|ends| {
             let (left, h) = (ends[0], ends[1] - ends[0]);
@@ -74,7 +74,7 @@ pub(super) fn rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)>
         .collect()
 }
 
-fn relative(table: &ShapeTable) -> Vec<f64> {
+fn relative_positions(table: &ShapeTable) -> Vec<f64> {
     let first = table.positions.first().copied().unwrap_or(0.0);
     let length = table.positions.last().copied().unwrap_or(1.0) - first;
     table

@@ -15,7 +15,7 @@ pub struct Switch {
     quantity: Tree,
     half_width: Option<Tree>,
     /// True if the quantity contains a piecewise function: it can be zero in a whole region.
-    rests: bool,
+    rests_at_zero: bool,
 }
 
 /// Side of a switch.
@@ -71,12 +71,12 @@ impl Switch {
 
     /// Returns true if the middle side is a region in which the quantity is at rest at zero.
     pub fn rests_at_zero(&self) -> bool {
-        self.half_width.is_none() && self.rests
+        self.half_width.is_none() && self.rests_at_zero
     }
 
     /// Returns the possible sides of this switch.
     pub fn sides(&self) -> &'static [Side] {
-        if self.half_width.is_some() || self.rests {
+        if self.half_width.is_some() || self.rests_at_zero {
             &[Side::Minus, Side::Free, Side::Plus]
         } else {
             &[Side::Minus, Side::Plus]
@@ -86,15 +86,15 @@ impl Switch {
 
 /// Prescribed sides of piecewise functions, independent of the state.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Imposed<'s> {
+pub(super) struct PrescribedSides<'s> {
     pub switches: &'s [Switch],
     pub sides: &'s [Side],
 }
 
-impl Imposed<'_> {
+impl PrescribedSides<'_> {
     /// Returns the prescribed side of a function with these arguments, if it is a switch.
     pub fn side(&self, function: Function, arguments: &[Tree]) -> Option<Side> {
-        let (quantity, half_width) = switched_by(function, arguments)?;
+        let (quantity, half_width) = switching_quantity(function, arguments)?;
         let known =
             |switch: &Switch| switch.quantity == quantity && switch.half_width == half_width;
         let index = self.switches.iter().position(known)?;
@@ -103,13 +103,13 @@ impl Imposed<'_> {
 }
 
 /// Returns quantity and half-width (if any) of a piecewise function; `None` for a smooth one.
-fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
+fn switching_quantity(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
     match (function, arguments) {
         (Function::Abs | Function::Sign | Function::Above, [argument]) => {
             Some((argument.clone(), None))
         }
         (Function::Deadzone | Function::Contact, [p, b]) => Some((p.clone(), Some(b.clone()))),
-        (Function::Min | Function::Max, [left, right]) => Some((difference(left, right), None)),
+        (Function::Min | Function::Max, [left, right]) => Some((subtract_trees(left, right), None)),
         _ => None,
     }
 }
@@ -123,7 +123,7 @@ impl Oracle {
         inputs: &[f64],
     ) -> Result<Vec<SwitchValue>, OracleError> {
         let scene = self.scene(time, state, None, inputs)?;
-        let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+        let pass = Pass::new(&scene, Direction::Zero, Direction::Zero);
         let value = |switch: &Switch| SwitchValue {
             quantity: pass.value(&switch.quantity).re.value,
             half_width: switch
@@ -149,7 +149,7 @@ impl Oracle {
         Ok(self
             .state_directions()
             .map(|direction| {
-                let pass = Pass::new(&scene, Direction::Still, direction);
+                let pass = Pass::new(&scene, Direction::Zero, direction);
                 pass.value(&switch.quantity).eps2.value
             })
             .collect())
@@ -169,12 +169,12 @@ impl Oracle {
         let directions: Vec<Direction> = self
             .state_directions()
             .chain((0..self.input_count()).map(Direction::Input))
-            .chain([Direction::Clock])
+            .chain([Direction::ExplicitTime])
             .collect();
         let switch = self.switches.get(index);
         let along = |tree: Option<&Tree>| {
             let slope = |direction: &Direction| {
-                let pass = Pass::new(&scene, Direction::Still, *direction);
+                let pass = Pass::new(&scene, Direction::Zero, *direction);
                 tree.map_or(0.0, |tree| pass.value(tree).eps2.value)
             };
             directions.iter().map(slope).collect()
@@ -194,8 +194,8 @@ impl Oracle {
     }
 }
 
-pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
-    let mut search = Search {
+pub(super) fn find_switches(oracle: &Oracle, model: &Model) -> Vec<Switch> {
+    let mut search = SwitchSearch {
         oracle,
         model,
         visited: vec![false; oracle.system.definitions.len()],
@@ -203,27 +203,27 @@ pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
     };
     let energies = oracle.kinetic.iter().chain(&oracle.potential);
     for term in energies.chain(&oracle.dissipation) {
-        search.walk(&term.tree);
+        search.search_tree(&term.tree);
     }
     for force in &oracle.forces {
-        search.walk(&force.on);
-        search.walk(&force.value);
+        search.search_tree(&force.coordinate_tree);
+        search.search_tree(&force.value);
     }
     for addend in oracle.system.state_rates.iter().flatten() {
-        search.walk(addend);
+        search.search_tree(addend);
     }
     search.found
 }
 
-struct Search<'s> {
+struct SwitchSearch<'s> {
     oracle: &'s Oracle,
     model: &'s Model,
     visited: Vec<bool>,
     found: Vec<Switch>,
 }
 
-impl Search<'_> {
-    fn walk(&mut self, tree: &Tree) {
+impl SwitchSearch<'_> {
+    fn search_tree(&mut self, tree: &Tree) {
         if let Tree::Call(function, arguments) = tree {
             self.add(*function, arguments);
         }
@@ -233,21 +233,22 @@ impl Search<'_> {
                 && !std::mem::replace(visited, true)
                 && let Some(definition) = oracle.system.definitions.get(*index)
             {
-                self.walk(definition);
+                self.search_tree(definition);
             }
         }
         for child in tree.children() {
-            self.walk(child);
+            self.search_tree(child);
         }
     }
 
     fn add(&mut self, function: Function, arguments: &[Tree]) {
-        let Some((quantity, half_width)) = switched_by(function, arguments) else {
+        let Some((quantity, half_width)) = switching_quantity(function, arguments) else {
             return;
         };
         let dependence = self.oracle.system.dependence(&quantity);
-        let inside =
-            dependence.position || !dependence.leaves.is_empty() || !dependence.indices.is_empty();
+        let inside = dependence.has_position
+            || !dependence.leaves.is_empty()
+            || !dependence.indices.is_empty();
         let known = self
             .found
             .iter()
@@ -258,7 +259,7 @@ impl Search<'_> {
                 .unwrap_or_else(|| format!("switch_{}", self.found.len() + 1));
             self.found.push(Switch {
                 name,
-                rests: self.is_piecewise(&quantity),
+                rests_at_zero: self.is_piecewise(&quantity),
                 quantity,
                 half_width,
             });
@@ -305,7 +306,7 @@ pub(super) fn is_piecewise_function(function: Function) -> bool {
     )
 }
 
-fn difference(left: &Tree, right: &Tree) -> Tree {
+fn subtract_trees(left: &Tree, right: &Tree) -> Tree {
     let operator = eomgen_model_spec::ast::BinaryOperator::Subtract;
     Tree::Binary(operator, left.clone().into(), right.clone().into())
 }

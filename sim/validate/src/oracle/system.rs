@@ -1,14 +1,14 @@
 //! Data that all expressions of one variant share: layout of the state, fields with their places,
 //! definitions. `lower` creates it; `scene` and `evaluate` read it.
 
-use super::places::{Domain, PlaceSet};
+use super::places::{FieldDomain, PlaceSet};
 use super::tree::{Dependence, Leaf, Tree};
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
     /// Number of generalised coordinates, with modes.
     pub size: usize,
-    pub domains: Vec<Domain>,
+    pub domains: Vec<FieldDomain>,
     pub places: Vec<PlaceSet>,
     pub definitions: Vec<Tree>,
     /// Addends of first-order states' rates, in the order of the model.
@@ -39,7 +39,7 @@ impl System {
     }
 
     /// Returns true if such an expression can depend on generalised coordinate `row` or its rate.
-    pub fn concerns(&self, dependence: &Dependence, row: usize) -> bool {
+    pub fn depends_on_row(&self, dependence: &Dependence, row: usize) -> bool {
         dependence.coordinates.contains(&row)
             || dependence
                 .fields

@@ -19,7 +19,7 @@ pub(super) struct Lowered {
 #[derive(Debug)]
 pub(super) struct LoweredForce {
     pub name: String,
-    pub on: Tree,
+    pub coordinate_tree: Tree,
     pub dependence: Dependence,
     pub value: Tree,
 }
@@ -28,7 +28,7 @@ impl Lowered {
     pub fn rows(&self, scene: &Scene<'_>, kind: RowTermKind) -> RowTerm {
         let entry = |row: usize| match kind {
             RowTermKind::Momentum => {
-                self.part(scene, row, Direction::Time, Direction::Rate(row), |value| {
+                self.row_derivative(scene, row, Direction::Time, Direction::Rate(row), |value| {
                     value.eps1eps2
                 })
             }
@@ -43,10 +43,10 @@ impl Lowered {
     }
 
     pub fn derivative(&self, scene: &Scene<'_>, row: usize, direction: Direction) -> Conditioned {
-        self.part(scene, row, Direction::Still, direction, |value| value.eps2)
+        self.row_derivative(scene, row, Direction::Zero, direction, |value| value.eps2)
     }
 
-    fn part(
+    fn row_derivative(
         &self,
         scene: &Scene<'_>,
         row: usize,
@@ -54,7 +54,7 @@ impl Lowered {
         second: Direction,
         part: impl Fn(Number) -> Conditioned,
     ) -> Conditioned {
-        if scene.system.concerns(&self.dependence, row) {
+        if scene.system.depends_on_row(&self.dependence, row) {
             part(Pass::new(scene, first, second).value(&self.tree))
         } else {
             Conditioned::default()
@@ -64,13 +64,13 @@ impl Lowered {
 
 impl LoweredForce {
     pub fn rows(&self, scene: &Scene<'_>) -> RowTerm {
-        let value = Pass::new(scene, Direction::Still, Direction::Still)
+        let value = Pass::new(scene, Direction::Zero, Direction::Zero)
             .value(&self.value)
             .re;
         let entry = |row: usize| {
-            if scene.system.concerns(&self.dependence, row) {
-                let pass = Pass::new(scene, Direction::Still, Direction::Position(row));
-                -value * pass.value(&self.on).eps2
+            if scene.system.depends_on_row(&self.dependence, row) {
+                let pass = Pass::new(scene, Direction::Zero, Direction::Position(row));
+                -value * pass.value(&self.coordinate_tree).eps2
             } else {
                 Conditioned::default()
             }
@@ -87,8 +87,8 @@ pub(super) fn lower_terms(
 ) -> Result<Vec<Lowered>, OracleError> {
     let mut lowered = Vec::new();
     for term in terms {
-        let tree = lowering.term(&term.name, &term.value)?;
-        lowered.extend(tree.addends().into_iter().map(|tree| Lowered {
+        let tree = lowering.lower_term(&term.name, &term.value)?;
+        lowered.extend(tree.into_addends().into_iter().map(|tree| Lowered {
             name: term.name.clone(),
             dependence: lowering.system.dependence(&tree),
             tree,
@@ -101,12 +101,14 @@ pub(super) fn lower_force(
     lowering: &mut Lowering<'_>,
     force: &Force,
 ) -> Result<Vec<LoweredForce>, OracleError> {
-    let on = lowering.term(&force.name, &force.on)?;
+    let on = lowering.lower_term(&force.name, &force.on)?;
     let dependence = lowering.system.dependence(&on);
-    let values = lowering.term(&force.name, &force.value)?.addends();
+    let values = lowering
+        .lower_term(&force.name, &force.value)?
+        .into_addends();
     let addend = |value| LoweredForce {
         name: force.name.clone(),
-        on: on.clone(),
+        coordinate_tree: on.clone(),
         dependence: dependence.clone(),
         value,
     };

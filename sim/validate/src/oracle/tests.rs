@@ -1,14 +1,14 @@
 //! Tests of the oracle against textbook equations, and against equivalent specifications.
 
 use super::super::sampler::Sampler;
-use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
+use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, parse_model};
 use super::{Equations, Oracle, OracleError, Side};
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
 use eomgen_model_spec::model::{Expr, ExprKind};
 use eomgen_model_spec::span::Span;
 
 fn oracle(text: &str, order: usize) -> Oracle {
-    let model = model(text);
+    let model = parse_model(text);
     let parameters = model.parameter_values().unwrap();
     Oracle::new(&model, order, &parameters).unwrap()
 }
@@ -253,7 +253,7 @@ fn order_zero_gives_rigid_beam() {
 #[test]
 fn unsupported_expressions_are_rejected() {
     let refuse = |expression: &Expr| {
-        let mut model = model(SPRING);
+        let mut model = parse_model(SPRING);
         model.kinetic[0].value = expression.clone();
         let parameters = model.parameter_values().unwrap();
         Oracle::new(&model, 0, &parameters).map(drop).unwrap_err()
@@ -275,18 +275,18 @@ fn unsupported_expressions_are_rejected() {
         OracleError::Acceleration("mass".into())
     );
     let field = of(ExprKind::Field(FieldId::new(0)));
-    assert_eq!(refuse(&field), OracleError::Misplaced("mass".into()));
+    assert_eq!(refuse(&field), OracleError::MisplacedField("mass".into()));
 }
 
 #[test]
 fn wrong_lengths_are_rejected() {
-    let model = model(SPRING);
+    let model = parse_model(SPRING);
     let short = Oracle::new(&model, 0, &[1.0]);
-    assert!(matches!(short, Err(OracleError::Length { .. })));
+    assert!(matches!(short, Err(OracleError::WrongLength { .. })));
     let oracle = oracle(SPRING, 0);
     for (state, inputs) in [(&[0.0][..], &[0.0][..]), (&[0.0; 2], &[])] {
         let found = oracle.equations(0.0, state, inputs);
-        assert!(matches!(found, Err(OracleError::Length { .. })));
+        assert!(matches!(found, Err(OracleError::WrongLength { .. })));
     }
 }
 

@@ -81,33 +81,33 @@ pub(super) struct Dependence {
     /// Fields with a free sum index.
     pub indices: BTreeSet<usize>,
     /// True for the position of the enclosing place.
-    pub position: bool,
-    pub time: bool,
-    pub input: bool,
+    pub has_position: bool,
+    pub has_time: bool,
+    pub has_input: bool,
     /// True for an input with a given rate, or such a rate.
-    pub prescribed: bool,
-    pub dot: bool,
-    pub nested: bool,
+    pub has_prescribed_input: bool,
+    pub has_dot: bool,
+    pub has_nested_operator: bool,
 }
 
 impl Dependence {
     pub fn is_constant(&self) -> bool {
         let sets = self.coordinates.is_empty() && self.fields.is_empty() && self.states.is_empty();
-        sets && !self.time && !self.input && !self.prescribed
+        sets && !self.has_time && !self.has_input && !self.has_prescribed_input
     }
 
-    fn absorb(&mut self, other: &Self) {
+    fn include(&mut self, other: &Self) {
         self.coordinates.extend(&other.coordinates);
         self.fields.extend(&other.fields);
         self.states.extend(&other.states);
         self.leaves.extend(&other.leaves);
         self.indices.extend(&other.indices);
-        self.position |= other.position;
-        self.time |= other.time;
-        self.input |= other.input;
-        self.prescribed |= other.prescribed;
-        self.dot |= other.dot;
-        self.nested |= other.nested;
+        self.has_position |= other.has_position;
+        self.has_time |= other.has_time;
+        self.has_input |= other.has_input;
+        self.has_prescribed_input |= other.has_prescribed_input;
+        self.has_dot |= other.has_dot;
+        self.has_nested_operator |= other.has_nested_operator;
     }
 }
 
@@ -116,26 +116,26 @@ impl Tree {
     pub fn dependence(&self, definitions: &[Dependence]) -> Dependence {
         let mut found = Dependence::default();
         for child in self.children() {
-            found.absorb(&child.dependence(definitions));
+            found.include(&child.dependence(definitions));
         }
-        self.amend(&mut found, definitions);
+        self.complete_dependence(&mut found, definitions);
         found
     }
 
     /// Completes the dependence of the operands to that of the whole expression.
-    fn amend(&self, found: &mut Dependence, definitions: &[Dependence]) {
+    fn complete_dependence(&self, found: &mut Dependence, definitions: &[Dependence]) {
         match self {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
             // A multiplier depends on all of the motion.
-            Self::Time | Self::Multiplier(_) => found.time = true,
-            Self::Input(_) => found.input = true,
-            Self::PrescribedInput { .. } => found.prescribed = true,
-            Self::Position { .. } => found.position = true,
+            Self::Time | Self::Multiplier(_) => found.has_time = true,
+            Self::Input(_) => found.has_input = true,
+            Self::PrescribedInput { .. } => found.has_prescribed_input = true,
+            Self::Position { .. } => found.has_position = true,
             Self::Coordinate(index) => drop(found.coordinates.insert(*index)),
             Self::State(index) | Self::StateRate(index) => drop(found.states.insert(*index)),
             Self::Definition(index) => {
                 if let Some(definition) = definitions.get(*index) {
-                    found.absorb(definition);
+                    found.include(definition);
                 }
             }
             Self::Field { leaf, .. } => {
@@ -148,33 +148,33 @@ impl Tree {
             }
             Self::Shape { leaf, .. } => {
                 found.indices.insert(leaf.field);
-                found.position = true;
+                found.has_position = true;
             }
-            Self::Dot(_) => found.dot = true,
+            Self::Dot(_) => found.has_dot = true,
             Self::Places { .. } => {
-                found.position = false;
+                found.has_position = false;
                 found.leaves.clear();
-                found.nested = true;
+                found.has_nested_operator = true;
             }
             Self::Sum { field, .. } => {
                 found.indices.remove(field);
-                found.nested = true;
+                found.has_nested_operator = true;
             }
             _ => {}
         }
     }
 
     /// Splits a sum into its addends; other expressions are their only addend.
-    pub fn addends(self) -> Vec<Tree> {
+    pub fn into_addends(self) -> Vec<Tree> {
         match self {
             Self::Binary(BinaryOperator::Add, left, right) => {
-                [left.addends(), right.addends()].concat()
+                [left.into_addends(), right.into_addends()].concat()
             }
             Self::Binary(BinaryOperator::Subtract, left, right) => {
-                [left.addends(), Self::Negate(right).addends()].concat()
+                [left.into_addends(), Self::Negate(right).into_addends()].concat()
             }
             Self::Negate(operand) => {
-                let addends = operand.addends().into_iter();
+                let addends = operand.into_addends().into_iter();
                 addends.map(|addend| Self::Negate(addend.into())).collect()
             }
             other => vec![other],

@@ -1,9 +1,11 @@
 //! Comparison of Jacobians and their products with directional differences of the oracle's rows.
 
-use super::directions::Moved;
-use super::judged::Judged;
-use super::rows::{DIFFERENCE_TOLERANCE, Rows, STEPS, relative, worst};
-use crate::differences::{Direction, Slope, Surroundings};
+use super::check_context::CheckContext;
+use super::directions::VariableKind;
+use super::rows::{
+    DIFFERENCE_TOLERANCE, OutputFindings, STEPS, relative_deviation, worst_deviation,
+};
+use crate::differences::{DifferencePoint, Direction, Slope};
 use crate::oracle::Equations;
 use crate::outputs::{JACOBIANS, Outputs};
 use crate::random::Random;
@@ -11,22 +13,22 @@ use crate::sampler::Sample;
 use eomgen_model_spec::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-pub(super) struct Known {
+pub(super) struct OutputValues {
     mass: DMatrix<f64>,
     jacobians: Vec<(&'static str, DMatrix<f64>)>,
     /// Multipliers mu, one per row of the equations.
     multipliers: DVector<f64>,
     /// Weights of the rates that correspond to the multipliers.
     weights: Vec<f64>,
-    by_state_and_inputs: Option<(Vec<f64>, Vec<f64>)>,
-    by_parameters: Option<Vec<f64>>,
+    weighted_by_state_and_inputs: Option<(Vec<f64>, Vec<f64>)>,
+    weighted_by_parameters: Option<Vec<f64>>,
     /// Indices of the independent parameters among all.
-    independent: Vec<usize>,
+    independent_parameters: Vec<usize>,
 }
 
-impl Known {
+impl OutputValues {
     pub fn new(
-        judged: &Judged<'_>,
+        judged: &CheckContext<'_>,
         equations: &Equations,
         outputs: &mut dyn Outputs,
         sample: &Sample,
@@ -55,9 +57,9 @@ impl Known {
         });
         Self {
             jacobians: jacobians.collect(),
-            by_state_and_inputs: outputs.vector_jacobian_product(sample, &weights),
-            by_parameters: outputs.vector_jacobian_product_by_parameters(sample, &weights),
-            independent: places(judged.model, &outputs.parameter_names()),
+            weighted_by_state_and_inputs: outputs.vector_jacobian_product(sample, &weights),
+            weighted_by_parameters: outputs.vector_jacobian_product_by_parameters(sample, &weights),
+            independent_parameters: parameter_indices(judged.model, &outputs.parameter_names()),
             mass,
             multipliers,
             weights,
@@ -65,7 +67,7 @@ impl Known {
     }
 }
 
-pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
+pub(super) fn parameter_indices(model: &Model, names: &[String]) -> Vec<usize> {
     let place = |name: &String| {
         model
             .parameters
@@ -76,17 +78,17 @@ pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
 }
 
 /// Compares all values along one direction. Of several step sizes the smallest deviation counts.
-pub(super) fn along(
-    rows: &mut Rows,
-    surroundings: &Surroundings<'_>,
-    known: &Known,
+pub(super) fn compare_along(
+    rows: &mut OutputFindings,
+    surroundings: &DifferencePoint<'_>,
+    known: &OutputValues,
     outputs: &mut dyn Outputs,
-    (moved, direction): &(Moved, Direction),
+    (moved, direction): &(VariableKind, Direction),
     place: &str,
 ) {
     let Direction { state, inputs, .. } = direction;
     let product = match moved {
-        Moved::Parameters => None,
+        VariableKind::Parameters => None,
         _ => outputs.jacobian_vector_product(surroundings.sample, state, inputs),
     };
     let mut best: Vec<(&str, Vec<f64>)> = Vec::new();
@@ -113,69 +115,80 @@ pub(super) fn along(
         }
     }
     for (name, deviations) in best {
-        rows.include(name, DIFFERENCE_TOLERANCE, worst(deviations), place);
+        rows.include(
+            name,
+            DIFFERENCE_TOLERANCE,
+            worst_deviation(deviations),
+            place,
+        );
     }
 }
 
-impl Known {
+impl OutputValues {
     fn deviations(
         &self,
-        moved: Moved,
+        moved: VariableKind,
         direction: &Direction,
         product: Option<&[f64]>,
         slopes: &[Slope],
     ) -> Vec<(&'static str, Vec<f64>)> {
         let by = match moved {
-            Moved::State => ("_by_state", &direction.state),
-            Moved::Inputs => ("_by_inputs", &direction.inputs),
-            Moved::Parameters => ("_by_parameters", &self.of_independent(direction)),
+            VariableKind::State => ("_by_state", &direction.state),
+            VariableKind::Inputs => ("_by_inputs", &direction.inputs),
+            VariableKind::Parameters => ("_by_parameters", &self.independent_entries(direction)),
         };
         let mut found = Vec::new();
         for (name, jacobian) in &self.jacobians {
             if !name.ends_with(by.0) {
                 continue;
             }
-            let change = times(jacobian, by.1);
+            let change = multiply(jacobian, by.1);
             found.push((
                 *name,
                 if name.starts_with("rates") {
-                    self.of_rates(&change, direction, slopes)
+                    self.rate_deviations(&change, direction, slopes)
                 } else {
-                    of_observables(&change, &slopes[self.multipliers.len()..])
+                    observable_deviations(&change, &slopes[self.multipliers.len()..])
                 },
             ));
         }
         if let Some(product) = product {
             found.push((
                 "jacobian_vector_product",
-                self.of_rates(product, direction, slopes),
+                self.rate_deviations(product, direction, slopes),
             ));
         }
         let weighted = match moved {
-            Moved::State => self.by_state_and_inputs.as_ref().map(|found| &found.0),
-            Moved::Inputs => self.by_state_and_inputs.as_ref().map(|found| &found.1),
-            Moved::Parameters => self.by_parameters.as_ref(),
+            VariableKind::State => self
+                .weighted_by_state_and_inputs
+                .as_ref()
+                .map(|found| &found.0),
+            VariableKind::Inputs => self
+                .weighted_by_state_and_inputs
+                .as_ref()
+                .map(|found| &found.1),
+            VariableKind::Parameters => self.weighted_by_parameters.as_ref(),
         };
         if let Some(weighted) = weighted {
             let name = match moved {
-                Moved::Parameters => "vector_jacobian_product_by_parameters",
+                VariableKind::Parameters => "vector_jacobian_product_by_parameters",
                 _ => "vector_jacobian_product",
             };
             found.push((
                 name,
-                vec![self.of_weights(weighted, by.1, direction, slopes)],
+                vec![self.weighted_deviation(weighted, by.1, direction, slopes)],
             ));
         }
         found
     }
 
-    fn of_independent(&self, direction: &Direction) -> Vec<f64> {
-        let places = self.independent.iter();
+    fn independent_entries(&self, direction: &Direction) -> Vec<f64> {
+        let places = self.independent_parameters.iter();
         places.map(|place| direction.parameters[*place]).collect()
     }
 
     /// Returns the deviations of the rates: accelerations and rows must change equally.
-    fn of_rates(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
+    fn rate_deviations(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
         let size = self.mass.nrows();
         let count = size + self.multipliers.len();
         if change.len() != count {
@@ -184,23 +197,31 @@ impl Known {
         let (velocities, rest) = change.split_at(size);
         let (accelerations, first_order) = rest.split_at(size);
         let same = velocities.iter().zip(&direction.state[size..]);
-        let mut found: Vec<f64> = same.map(|(found, by)| relative(found - by, *by)).collect();
+        let mut found: Vec<f64> = same
+            .map(|(found, by)| relative_deviation(found - by, *by))
+            .collect();
         for (row, slope) in slopes.iter().take(size).enumerate() {
             let masses = self.mass.row(row);
             let addends = masses.iter().zip(accelerations).map(|(mass, a)| mass * a);
             let scale = addends
                 .clone()
                 .fold(slope.scale, |scale, a| scale.max(a.abs()));
-            found.push(relative(addends.sum::<f64>() + slope.value, scale));
+            found.push(relative_deviation(
+                addends.sum::<f64>() + slope.value,
+                scale,
+            ));
         }
         for (rate, slope) in first_order.iter().zip(&slopes[size..]) {
-            found.push(relative(rate + slope.value, slope.scale.max(rate.abs())));
+            found.push(relative_deviation(
+                rate + slope.value,
+                slope.scale.max(rate.abs()),
+            ));
         }
         found
     }
 
     /// Returns the deviation between the changes of the weighted rates and of the weighted rows.
-    fn of_weights(
+    fn weighted_deviation(
         &self,
         weighted: &[f64],
         by: &[f64],
@@ -224,12 +245,12 @@ impl Known {
             found += multiplier * slope.value;
             scale = scale.max(multiplier.abs() * slope.scale);
         }
-        relative(found, scale)
+        relative_deviation(found, scale)
     }
 }
 
 /// Returns the product of a matrix and a vector; NaN in every row if the sizes do not match.
-pub(super) fn times(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
+pub(super) fn multiply(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
     if matrix.ncols() != vector.len() {
         return vec![f64::NAN; matrix.nrows()];
     }
@@ -237,12 +258,12 @@ pub(super) fn times(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
     product.as_slice().to_vec()
 }
 
-pub(super) fn of_observables(change: &[f64], slopes: &[Slope]) -> Vec<f64> {
+pub(super) fn observable_deviations(change: &[f64], slopes: &[Slope]) -> Vec<f64> {
     if change.len() != slopes.len() {
         return vec![f64::INFINITY; slopes.len()];
     }
     let pairs = change.iter().zip(slopes);
     pairs
-        .map(|(found, slope)| relative(found - slope.value, slope.scale.max(found.abs())))
+        .map(|(found, slope)| relative_deviation(found - slope.value, slope.scale.max(found.abs())))
         .collect()
 }

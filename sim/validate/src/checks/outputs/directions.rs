@@ -1,6 +1,6 @@
 //! Directions of differentiation: by state, inputs and parameters.
 
-use super::judged::Judged;
+use super::check_context::CheckContext;
 use crate::differences::Direction;
 use crate::oracle::OracleError;
 use crate::random::Random;
@@ -10,10 +10,10 @@ use eomgen_model_spec::model::ParameterValue;
 /// Maximum number of directions at a state. With more variables, random directions are used.
 const DIRECTIONS: usize = 40;
 /// Maximum number of coordinates to vary each variable, and of directions for larger models.
-const SMALL: (usize, usize) = (12, 8);
+const SMALL_MODEL_LIMITS: (usize, usize) = (12, 8);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Moved {
+pub(super) enum VariableKind {
     State,
     Inputs,
     Parameters,
@@ -21,49 +21,49 @@ pub(super) enum Moved {
 
 /// Returns directions in one kind of variable each: every variable, or some and sums of all.
 pub(super) fn directions(
-    judged: &Judged<'_>,
+    judged: &CheckContext<'_>,
     names: &[String],
     parameters_too: bool,
     random: &mut Random,
-) -> Result<Vec<(Moved, Direction)>, OracleError> {
+) -> Result<Vec<(VariableKind, Direction)>, OracleError> {
     let wanted = ["jacobians", "linearisation", "products"];
     if !names.iter().any(|name| wanted.contains(&name.as_str())) {
         return Ok(Vec::new());
     }
     let oracle = judged.oracle;
     let (states, inputs) = (oracle.state_length(), oracle.input_count());
-    let still = Direction::still(states, inputs, judged.parameters.len());
-    let small = oracle.size() <= SMALL.0;
+    let still = Direction::zero(states, inputs, judged.parameters.len());
+    let small = oracle.size() <= SMALL_MODEL_LIMITS.0;
     let mut found = Vec::new();
-    for entries in drawn(&sizes::of_state(oracle)?, small, random) {
+    for entries in draw_directions(&sizes::state_sizes(oracle)?, small, random) {
         let direction = Direction {
             state: entries,
             ..still.clone()
         };
-        found.push((Moved::State, direction));
+        found.push((VariableKind::State, direction));
     }
-    for entries in drawn(&vec![1.0; inputs], small, random) {
+    for entries in draw_directions(&vec![1.0; inputs], small, random) {
         let direction = Direction {
             inputs: entries,
             ..still.clone()
         };
-        found.push((Moved::Inputs, direction));
+        found.push((VariableKind::Inputs, direction));
     }
-    let independent = independent(judged);
-    for entries in drawn(&independent, small, random) {
+    let independent = independent_sizes(judged);
+    for entries in draw_directions(&independent, small, random) {
         let direction = Direction {
             parameters: entries,
             ..still.clone()
         };
         if small || parameters_too {
-            found.push((Moved::Parameters, direction));
+            found.push((VariableKind::Parameters, direction));
         }
     }
     Ok(found)
 }
 
 /// Returns the sizes of independent parameters; 0 for derived parameters and for zeros.
-pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
+pub(super) fn independent_sizes(judged: &CheckContext<'_>) -> Vec<f64> {
     let parameters = judged.model.parameters.iter().zip(judged.parameters);
     parameters
         .map(|(parameter, value)| match parameter.value {
@@ -74,7 +74,7 @@ pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
 }
 
 /// Returns vectors of these sizes, with one nonzero entry each if there are few entries.
-pub(super) fn drawn(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<f64>> {
+pub(super) fn draw_directions(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<f64>> {
     let alone = |index: usize| {
         let entries = sizes.iter().enumerate();
         let entry = |(other, size): (usize, &f64)| if other == index { *size } else { 0.0 };
@@ -86,7 +86,7 @@ pub(super) fn drawn(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<
     if small && moving.len() <= DIRECTIONS {
         return moving.into_iter().map(alone).collect();
     }
-    let mut found: Vec<Vec<f64>> = (2..SMALL.1)
+    let mut found: Vec<Vec<f64>> = (2..SMALL_MODEL_LIMITS.1)
         .filter_map(|_| random.pick(&moving).map(|index| alone(*index)))
         .collect();
     for _ in 0..2 {

@@ -1,14 +1,14 @@
 //! Comparison of bias forces and inverse dynamics with the oracle's mass matrix and forces.
 
-use super::rows::{Rows, relative, worst};
+use super::rows::{OutputFindings, relative_deviation, worst_deviation};
 use crate::checks::ROW_TOLERANCE;
 use crate::oracle::Equations;
 use crate::outputs::Outputs;
 use crate::random::Random;
 use crate::sampler::Sample;
 
-pub(super) fn forces(
-    rows: &mut Rows,
+pub(super) fn check_forces(
+    rows: &mut OutputFindings,
     equations: &Equations,
     outputs: &mut dyn Outputs,
     sample: &Sample,
@@ -21,9 +21,9 @@ pub(super) fn forces(
         let rows_of_forces = expected.iter();
         let deviations = rows_of_forces.enumerate().map(|(row, expected)| {
             let found = found.get(row).copied().unwrap_or(f64::NAN);
-            relative(found - expected.value, expected.scale)
+            relative_deviation(found - expected.value, expected.scale)
         });
-        rows.include(name, ROW_TOLERANCE, worst(deviations), place);
+        rows.include(name, ROW_TOLERANCE, worst_deviation(deviations), place);
     };
     let still = vec![0.0; equations.size()];
     compare("bias_forces", &still, outputs.bias_forces(sample));

@@ -1,6 +1,8 @@
 //! Comparison of guard rates with differences of the guards along the oracle's motion.
 
-use super::rows::{DIFFERENCE_TOLERANCE, Rows, STEPS, relative, worst};
+use super::rows::{
+    DIFFERENCE_TOLERANCE, OutputFindings, STEPS, relative_deviation, worst_deviation,
+};
 use crate::differences::{Slope, slopes};
 use crate::oracle::{Oracle, OracleError};
 use crate::outputs::Outputs;
@@ -8,8 +10,8 @@ use crate::sampler::Sample;
 use crate::sizes;
 use crate::variant::Variant;
 
-pub(super) fn guard_rates(
-    rows: &mut Rows,
+pub(super) fn check_guard_rates(
+    rows: &mut OutputFindings,
     oracle: &Oracle,
     variant: &mut dyn Variant,
     outputs: &mut dyn Outputs,
@@ -29,7 +31,7 @@ pub(super) fn guard_rates(
     let velocities = &sample.state[oracle.size()..2 * oracle.size()];
     let rates = [velocities, &unknowns].concat();
     let input_rates = oracle.input_rates(&sample.inputs);
-    let sizes = sizes::of_state(oracle)?;
+    let sizes = sizes::state_sizes(oracle)?;
     let fastest = rates
         .iter()
         .zip(&sizes)
@@ -57,9 +59,14 @@ pub(super) fn guard_rates(
         for (best, (found, expected)) in best.iter_mut().zip(found.iter().zip(expected)) {
             let change = found * time;
             let scale = expected.scale.max(change.abs());
-            *best = best.min(relative(change - expected.value, scale));
+            *best = best.min(relative_deviation(change - expected.value, scale));
         }
     }
-    rows.include("guard_rates", DIFFERENCE_TOLERANCE, worst(best), place);
+    rows.include(
+        "guard_rates",
+        DIFFERENCE_TOLERANCE,
+        worst_deviation(best),
+        place,
+    );
     Ok(())
 }

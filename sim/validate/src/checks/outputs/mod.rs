@@ -4,53 +4,53 @@
 //! - Jacobians and their products: by directional differences of its rows;
 //! - guard rates: by differences of the guards along its motion.
 
+mod check_context;
 mod derivatives;
 mod directions;
 mod forces;
 mod guard_rates;
-mod judged;
 mod rows;
 
 use crate::certificate::Check;
-use crate::differences::Surroundings;
+use crate::differences::DifferencePoint;
 use crate::oracle::{Oracle, OracleError};
 use crate::outputs::Outputs;
 use crate::random::Random;
 use crate::sampler::{Sample, Sampler};
 use crate::variant::Variant;
 
-use derivatives::{Known, along};
+pub(crate) use check_context::CheckContext;
+use derivatives::{OutputValues, compare_along};
 use directions::directions;
-use forces::forces;
-use guard_rates::guard_rates;
-pub(crate) use judged::Judged;
+use forces::check_forces;
+use guard_rates::check_guard_rates;
 pub use rows::DIFFERENCE_TOLERANCE;
-use rows::Rows;
+use rows::OutputFindings;
 
 /// Maximum and minimum number of states, each in another regime if there are enough.
 const STATES: (usize, usize) = (9, 4);
 const SEED: u64 = 0x4e0b_1a75;
 
 pub(crate) fn check(
-    judged: &Judged<'_>,
+    judged: &CheckContext<'_>,
     variant: &mut dyn Variant,
     outputs: &mut dyn Outputs,
 ) -> Result<Vec<Check>, OracleError> {
     let names = outputs.names();
-    let mut rows = Rows::default();
+    let mut rows = OutputFindings::default();
     let mut random = Random::new(SEED);
-    let samples = samples(judged.oracle)?;
+    let samples = draw_samples(judged.oracle)?;
     for (count, sample) in (1..).zip(&samples) {
         let place = format!("state {count}");
         let equations = judged
             .oracle
             .equations(sample.time, &sample.state, &sample.inputs)?;
-        forces(&mut rows, &equations, outputs, sample, &mut random, &place);
-        guard_rates(&mut rows, judged.oracle, variant, outputs, sample, &place)?;
+        check_forces(&mut rows, &equations, outputs, sample, &mut random, &place);
+        check_guard_rates(&mut rows, judged.oracle, variant, outputs, sample, &place)?;
         let Some(unknowns) = equations.unknowns() else {
             continue;
         };
-        let surroundings = Surroundings {
+        let surroundings = DifferencePoint {
             oracle: judged.oracle,
             model: judged.model,
             order: judged.order,
@@ -58,9 +58,9 @@ pub(crate) fn check(
             sample,
             unknowns,
         };
-        let known = Known::new(judged, &equations, outputs, sample, &mut random);
+        let known = OutputValues::new(judged, &equations, outputs, sample, &mut random);
         for direction in directions(judged, &names, count <= 2, &mut random)? {
-            along(
+            compare_along(
                 &mut rows,
                 &surroundings,
                 &known,
@@ -73,11 +73,11 @@ pub(crate) fn check(
     Ok(rows.into_checks(judged, &names, samples.len()))
 }
 
-fn samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
+fn draw_samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let (most, fewest) = STATES;
     let mut samples = Vec::new();
-    let regimes = sampler.regimes()?.visited;
+    let regimes = sampler.visit_regimes()?.visited;
     for regime in regimes
         .iter()
         .cycle()

@@ -1,6 +1,6 @@
 //! Deviations of rows and the checks that report them.
 
-use super::judged::Judged;
+use super::check_context::CheckContext;
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::outputs::JACOBIANS;
 
@@ -18,7 +18,7 @@ pub(super) const STEPS: [f64; 5] = [
 ];
 
 /// Returns |difference|/scale; 0 for no difference, infinity for NaN.
-pub(super) fn relative(difference: f64, scale: f64) -> f64 {
+pub(super) fn relative_deviation(difference: f64, scale: f64) -> f64 {
     let ratio = (difference / scale).abs();
     if difference == 0.0 {
         0.0
@@ -29,35 +29,49 @@ pub(super) fn relative(difference: f64, scale: f64) -> f64 {
     }
 }
 
-pub(super) fn worst(deviations: impl IntoIterator<Item = f64>) -> f64 {
+pub(super) fn worst_deviation(deviations: impl IntoIterator<Item = f64>) -> f64 {
     deviations.into_iter().fold(0.0, f64::max)
 }
 
 #[derive(Default)]
-pub(super) struct Rows {
-    found: Vec<(&'static str, f64, Worst)>,
+pub(super) struct OutputFindings {
+    worst_by_check: Vec<(&'static str, f64, Worst)>,
 }
 
-impl Rows {
+impl OutputFindings {
     pub fn include(&mut self, name: &'static str, tolerance: f64, deviation: f64, place: &str) {
-        let worst = Worst::of(deviation, place);
-        match self.found.iter_mut().find(|(known, ..)| *known == name) {
+        let worst = Worst::from_deviation(deviation, place);
+        match self
+            .worst_by_check
+            .iter_mut()
+            .find(|(known, ..)| *known == name)
+        {
             Some((_, _, known)) => known.include(worst),
-            None => self.found.push((name, tolerance, worst)),
+            None => self.worst_by_check.push((name, tolerance, worst)),
         }
     }
 
-    pub fn into_checks(self, judged: &Judged<'_>, names: &[String], states: usize) -> Vec<Check> {
+    pub fn into_checks(
+        self,
+        judged: &CheckContext<'_>,
+        names: &[String],
+        states: usize,
+    ) -> Vec<Check> {
         let mut checks = Vec::new();
-        for name in expected(names) {
-            let found = self.found.iter().find(|(known, ..)| *known == name);
+        for name in expected_checks(names) {
+            let found = self
+                .worst_by_check
+                .iter()
+                .find(|(known, ..)| *known == name);
             checks.push(match found {
-                Some((_, tolerance, worst)) => {
-                    Check::made(name, worst.clone().among(states, "states"), *tolerance)
-                }
+                Some((_, tolerance, worst)) => Check::from_deviation(
+                    name,
+                    worst.clone().with_count(states, "states"),
+                    *tolerance,
+                ),
                 None => {
-                    let (kind, reason) = reason(judged, name);
-                    Check::skipped(
+                    let (kind, reason) = skip_reason(judged, name);
+                    Check::with_skip(
                         name.to_owned(),
                         DIFFERENCE_TOLERANCE,
                         kind,
@@ -70,7 +84,7 @@ impl Rows {
     }
 }
 
-pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
+pub(super) fn expected_checks(names: &[String]) -> Vec<&'static str> {
     let has = |name: &str| names.iter().any(|known| known == name);
     let mut found = Vec::new();
     for name in ["bias_forces", "inverse_dynamics", "guard_rates"] {
@@ -91,7 +105,7 @@ pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
     found
 }
 
-pub(super) fn reason(judged: &Judged<'_>, name: &str) -> (SkipKind, &'static str) {
+pub(super) fn skip_reason(judged: &CheckContext<'_>, name: &str) -> (SkipKind, &'static str) {
     if name.ends_with("_by_inputs") && judged.oracle.input_count() == 0 {
         (SkipKind::NotApplicable, "the model has no input")
     } else if name == "guard_rates" && judged.oracle.switches().is_empty() {

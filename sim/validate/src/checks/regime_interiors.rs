@@ -5,10 +5,10 @@ use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 
 /// Displacement for the test of a guard at rest, relative to the sizes of the entries.
-const NEARBY: f64 = 1e-6;
+const REST_DISPLACEMENT: f64 = 1e-6;
 
 /// Draws up to `per_regime` states in every regime and as many in any regime.
-pub fn samples(
+pub fn interior_samples(
     oracle: &Oracle,
     variant: &mut dyn Variant,
     per_regime: usize,
@@ -22,7 +22,7 @@ pub fn samples(
         };
         drawn.push(found.sample);
     }
-    for regime in sampler.regimes()?.visited {
+    for regime in sampler.visit_regimes()?.visited {
         for _ in 0..per_regime {
             let Some(found) = sampler.draw_in(&regime)? else {
                 break;
@@ -32,7 +32,7 @@ pub fn samples(
     }
     let mut inside = Vec::new();
     for sample in drawn {
-        let nearby = nearby(&sample, &sampler.draw());
+        let nearby = displace_sample(&sample, &sampler.draw());
         match is_inside(variant, &sample, &nearby) {
             Ok(true) => inside.push(sample),
             Ok(false) => {}
@@ -48,10 +48,12 @@ pub fn samples(
     Ok(Ok(inside))
 }
 
-fn nearby(sample: &Sample, other: &Sample) -> Sample {
+fn displace_sample(sample: &Sample, other: &Sample) -> Sample {
     let pairs = sample.state.iter().zip(&other.state);
     Sample {
-        state: pairs.map(|(here, other)| here + NEARBY * other).collect(),
+        state: pairs
+            .map(|(here, other)| here + REST_DISPLACEMENT * other)
+            .collect(),
         ..sample.clone()
     }
 }

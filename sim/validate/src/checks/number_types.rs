@@ -10,7 +10,7 @@ use super::super::outputs::{JACOBIANS, Outputs};
 use super::super::random::Random;
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
-use super::linked::{Emitted, differences, line, run_linked};
+use super::linked_program::{Emitted, count_differences, format_bits, run_linked};
 use std::path::Path;
 
 /// Tolerance in error bounds; rounding in double precision adds much less than 1e-6.
@@ -31,7 +31,7 @@ struct Arguments {
 }
 
 impl Arguments {
-    fn drawn(sample: &Sample, degrees: usize, random: &mut Random) -> Self {
+    fn draw(sample: &Sample, degrees: usize, random: &mut Random) -> Self {
         let mut draw = |count: usize| (0..count).map(|_| random.away_from_zero()).collect();
         Self {
             accelerations: draw(degrees),
@@ -42,7 +42,7 @@ impl Arguments {
         }
     }
 
-    fn line(&self) -> String {
+    fn format_line(&self) -> String {
         let Sample {
             time,
             state,
@@ -54,14 +54,14 @@ impl Arguments {
             &self.input_direction,
             &self.weights,
         ];
-        line(&[&[*time][..], state, inputs, a, d, u, w].concat())
+        format_bits(&[&[*time][..], state, inputs, a, d, u, w].concat())
     }
 }
 
 fn names(outputs: &[String]) -> Vec<&'static str> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let mut found = Vec::new();
-    if calls(outputs)
+    if harness_calls(outputs)
         .iter()
         .any(|call| call.row == "emitted_requests")
     {
@@ -76,14 +76,21 @@ fn names(outputs: &[String]) -> Vec<&'static str> {
     found
 }
 
-fn tolerance(name: &str) -> f64 {
+fn check_tolerance(name: &str) -> f64 {
     if name == "f32" { SINGLE_TOLERANCE } else { 0.0 }
 }
 
-pub fn skipped(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
+pub fn skipped_checks(outputs: &[String], kind: SkipKind, reason: &str) -> Vec<Check> {
     let names = names(outputs).into_iter();
     names
-        .map(|name| Check::skipped(name.to_owned(), tolerance(name), kind, reason.to_owned()))
+        .map(|name| {
+            Check::with_skip(
+                name.to_owned(),
+                check_tolerance(name),
+                kind,
+                reason.to_owned(),
+            )
+        })
         .collect()
 }
 
@@ -102,10 +109,10 @@ pub fn check(
     let arguments: Vec<Arguments> = samples
         .iter()
         .take(STATES)
-        .map(|sample| Arguments::drawn(sample, degrees, &mut random))
+        .map(|sample| Arguments::draw(sample, degrees, &mut random))
         .collect();
-    let calls = calls(outputs);
-    let text: Vec<String> = arguments.iter().map(Arguments::line).collect();
+    let calls = harness_calls(outputs);
+    let text: Vec<String> = arguments.iter().map(Arguments::format_line).collect();
     let source = harness_source(emitted, &calls, outputs);
     let found = run_linked(
         compiler,
@@ -115,20 +122,20 @@ pub fn check(
         &(text.join("\n") + "\n"),
     )
     .and_then(|lines| {
-        let mut reading = Reading {
+        let mut reading = OutputReader {
             lines: lines.lines(),
             variant,
             functions,
         };
-        reading.worst(outputs, &calls, &arguments)
+        reading.worst_deviations(outputs, &calls, &arguments)
     });
     match found {
         Ok(checks) => checks,
         Err(message) => names(outputs)
             .into_iter()
             .map(|name| {
-                let worst = Worst::of(f64::INFINITY, message.clone());
-                Check::made(name, worst, tolerance(name))
+                let worst = Worst::from_deviation(f64::INFINITY, message.clone());
+                Check::from_deviation(name, worst, check_tolerance(name))
             })
             .collect(),
     }
@@ -140,7 +147,7 @@ struct Call {
     text: String,
 }
 
-fn calls(outputs: &[String]) -> Vec<Call> {
+fn harness_calls(outputs: &[String]) -> Vec<Call> {
     let has = |name: &str| outputs.iter().any(|known| known == name);
     let at = "t, &state, &inputs, &coefficients";
     let mut calls = Vec::new();
@@ -160,7 +167,7 @@ fn calls(outputs: &[String]) -> Vec<Call> {
     }
     if has("jacobians") || has("linearisation") {
         for name in JACOBIANS {
-            let (rows, columns) = extents(name);
+            let (rows, columns) = jacobian_extents(name);
             let pattern = name.to_uppercase();
             let text = format!(
                 "let dense: [[f64; model::{columns}]; model::{rows}] = \
@@ -196,7 +203,7 @@ fn calls(outputs: &[String]) -> Vec<Call> {
     calls
 }
 
-fn extents(name: &str) -> (&'static str, &'static str) {
+fn jacobian_extents(name: &str) -> (&'static str, &'static str) {
     let rows = if name.starts_with("rates") {
         "STATES"
     } else {
@@ -220,7 +227,7 @@ fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> Stri
     let statements: String = calls.iter().map(statement).collect();
     let mut source = include_str!("harness/kinds.rs")
         .replace("        //CALLS\n", &statements)
-        .replace("//INPUTS\n", &inputs_of(&emitted.input_fields));
+        .replace("//INPUTS\n", &input_constructor(&emitted.input_fields));
     // `Coefficients` without fields is not generic, so it needs no cast.
     let has_coefficients = emitted.source.contains("pub struct Coefficients<");
     for kind in ["f32", "Rounded"] {
@@ -234,12 +241,12 @@ fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> Stri
     if outputs.iter().any(|name| name == "lanes") {
         source = source
             .replace("//LANES\n", include_str!("harness/lanes.rs"))
-            .replace("        //GROUPS\n", GROUPS);
+            .replace("        //GROUPS\n", COMPARE_GROUP);
     }
     source
 }
 
-const GROUPS: &str = "        if group.len() == 8 {
+const COMPARE_GROUP: &str = "        if group.len() == 8 {
             let found = compare_lanes(&group, &coefficients);
             lanes = [lanes[0] + found[0], lanes[1] + found[1]];
             group.clear();
@@ -247,7 +254,7 @@ const GROUPS: &str = "        if group.len() == 8 {
 ";
 
 /// Returns the constant `INPUTS` and a function that creates the inputs from an array.
-fn inputs_of(fields: &[String]) -> String {
+fn input_constructor(fields: &[String]) -> String {
     let count = format!("const INPUTS: usize = {};\n\n", fields.len());
     if fields.is_empty() {
         let none = "fn inputs_of<T>(_: [T; INPUTS]) -> model::Inputs {\n    model::Inputs {}\n}\n";
@@ -262,21 +269,21 @@ fn inputs_of(fields: &[String]) -> String {
     format!("{count}{head}\n    model::Inputs {{ {given} }}\n}}\n")
 }
 
-struct Reading<'l, 'r> {
+struct OutputReader<'l, 'r> {
     lines: std::str::Lines<'l>,
     variant: &'r mut dyn Variant,
     functions: Option<BorrowedOutputs<'r>>,
 }
 
-impl Reading<'_, '_> {
-    fn next(&mut self) -> Result<String, String> {
+impl OutputReader<'_, '_> {
+    fn next_line(&mut self) -> Result<String, String> {
         let line = self.lines.next();
         Ok(line
             .ok_or("the compiled model printed fewer lines than expected")?
             .to_owned())
     }
 
-    fn worst(
+    fn worst_deviations(
         &mut self,
         outputs: &[String],
         calls: &[Call],
@@ -289,7 +296,7 @@ impl Reading<'_, '_> {
         for (count, arguments) in (1..).zip(arguments) {
             for call in calls {
                 for expected in self.expected(call.name, arguments)? {
-                    let wrong = differences(&self.next()?, &line(&expected));
+                    let wrong = count_differences(&self.next_line()?, &format_bits(&expected));
                     let row = rows.iter_mut().find(|row| row.0 == call.row);
                     let Some((_, compared, differing, first)) = row else {
                         continue;
@@ -302,22 +309,28 @@ impl Reading<'_, '_> {
                 }
             }
         }
-        let (single, lanes) = (numbers(&self.next()?)?, numbers(&self.next()?)?);
+        let (single, lanes) = (
+            parse_numbers(&self.next_line()?)?,
+            parse_numbers(&self.next_line()?)?,
+        );
         let mut checks = Vec::new();
         for name in names(outputs) {
             let worst = match name {
-                "f32" => of_single(&single),
+                "f32" => single_deviation(&single),
                 "lanes" => {
-                    let detail = format!("{} numbers in groups of {LANES} states", at(&lanes, 1));
-                    Worst::of(at(&lanes, 0), detail)
+                    let detail = format!(
+                        "{} numbers in groups of {LANES} states",
+                        number_at(&lanes, 1)
+                    );
+                    Worst::from_deviation(number_at(&lanes, 0), detail)
                 }
-                _ => of_bits(&rows, name),
+                _ => bit_deviation(&rows, name),
             };
-            checks.push(if name == "f32" && at(&single, 1) == 0.0 {
+            checks.push(if name == "f32" && number_at(&single, 1) == 0.0 {
                 let reason = "no result is in the range of single precision";
                 Check::not_applicable(name, SINGLE_TOLERANCE, reason)
             } else {
-                Check::made(name, worst, tolerance(name))
+                Check::from_deviation(name, worst, check_tolerance(name))
             });
         }
         Ok(checks)
@@ -343,13 +356,13 @@ impl Reading<'_, '_> {
             "vector_jacobian_product_by_parameters" => functions
                 .vector_jacobian_product_by_parameters(sample, &at.weights)
                 .map(|rows| vec![rows]),
-            "linearise" => return self.linearised(sample),
-            name => row_by_row(functions, name, sample).map(|rows| vec![rows]),
+            "linearise" => return self.expected_linearisation(sample),
+            name => jacobian_by_rows(functions, name, sample).map(|rows| vec![rows]),
         };
         found.ok_or_else(missing)
     }
 
-    fn linearised(&mut self, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
+    fn expected_linearisation(&mut self, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
         let Sample {
             time,
             state,
@@ -366,44 +379,44 @@ impl Reading<'_, '_> {
             "observables_by_inputs",
         ] {
             let functions = self.functions.as_deref_mut();
-            let rows = functions.and_then(|functions| row_by_row(functions, name, sample));
+            let rows = functions.and_then(|functions| jacobian_by_rows(functions, name, sample));
             found.push(rows.ok_or_else(|| format!("the variant has no function {name}"))?);
         }
         Ok(found)
     }
 }
 
-fn row_by_row(functions: &mut dyn Outputs, name: &str, sample: &Sample) -> Option<Vec<f64>> {
+fn jacobian_by_rows(functions: &mut dyn Outputs, name: &str, sample: &Sample) -> Option<Vec<f64>> {
     let jacobian = functions.jacobian(name, sample)?;
     Some(jacobian.transpose().as_slice().to_vec())
 }
 
 type BitRow = (&'static str, usize, usize, Option<String>);
 
-fn of_bits(rows: &[BitRow], name: &str) -> Worst {
+fn bit_deviation(rows: &[BitRow], name: &str) -> Worst {
     match rows.iter().find(|row| row.0 == name) {
         Some((_, compared, differing, first)) => {
             let all = || format!("{compared} numbers");
-            Worst::of(*differing as f64, first.clone().unwrap_or_else(all))
+            Worst::from_deviation(*differing as f64, first.clone().unwrap_or_else(all))
         }
         None => Worst::default(),
     }
 }
 
-fn of_single(found: &[f64]) -> Worst {
+fn single_deviation(found: &[f64]) -> Worst {
     let detail = format!(
         "as a fraction of the rounding bound; {} numbers, {} of them with a bound below 1 %",
-        at(found, 1),
-        at(found, 2)
+        number_at(found, 1),
+        number_at(found, 2)
     );
-    Worst::of(at(found, 0), detail)
+    Worst::from_deviation(number_at(found, 0), detail)
 }
 
-fn at(numbers: &[f64], place: usize) -> f64 {
+fn number_at(numbers: &[f64], place: usize) -> f64 {
     numbers.get(place).copied().unwrap_or(f64::NAN)
 }
 
-fn numbers(line: &str) -> Result<Vec<f64>, String> {
+fn parse_numbers(line: &str) -> Result<Vec<f64>, String> {
     let words = line.split(' ');
     let number = |word: &str| u64::from_str_radix(word, 16).map(f64::from_bits);
     words
@@ -428,7 +441,7 @@ mod tests {
             functions: Vec::new(),
             outputs: Some(outputs.clone()),
         };
-        harness_source(&emitted, &calls(&outputs), &outputs)
+        harness_source(&emitted, &harness_calls(&outputs), &outputs)
     }
 
     #[test]

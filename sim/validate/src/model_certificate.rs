@@ -14,7 +14,7 @@ use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
 use crate::certify::{
-    Emitted, EmittedFunction, ReferenceEquations, Sized, Subject, about, certify,
+    Emitted, EmittedFunction, ReferenceEquations, ScaledRates, Subject, certificate_header, certify,
 };
 use crate::derived::Derived;
 use crate::derived_outputs::DerivedOutputs;
@@ -35,23 +35,23 @@ pub fn certificate(
     reference_equations: &ReferenceEquations,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
-    let variants = |order: usize| variant(model, order, &parameters);
-    let output_functions = || output_functions(model, order, &parameters, outputs);
-    let propagator = exact(model, order).map(RefCell::new);
+    let variants = |order: usize| build_variant(model, order, &parameters);
+    let output_functions = || build_outputs(model, order, &parameters, outputs);
+    let propagator = build_propagator(model, order).map(RefCell::new);
     let derivative = |time: f64, state: &[f64], inputs: &[f64]| match &propagator {
-        Ok(propagator) => rates(&mut propagator.borrow_mut(), time, state, inputs),
+        Ok(propagator) => scaled_rates(&mut propagator.borrow_mut(), time, state, inputs),
         Err(reason) => Err(reason.clone()),
     };
-    let emitted = source(model, outputs, emitted);
+    let emitted = emitted_source(model, outputs, emitted);
     Ok(certify(&Subject {
         model,
         order,
         parameters: &parameters,
         variants: &variants,
         references: &reference_equations.references,
-        absent: &reference_equations.absent,
+        not_applicable: &reference_equations.not_applicable,
         outputs: (!outputs.is_empty()).then_some(&output_functions),
-        regimes: kernels(model, order, &parameters, &emitted.input_fields),
+        regimes: generate_kernels(model, order, &parameters, &emitted.input_fields),
         emitted: Ok(emitted),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
@@ -61,19 +61,19 @@ pub fn certificate(
 }
 
 /// Returns the certificate without running its checks. Its verdict is "failed".
-pub fn unchecked(
+pub fn unchecked_certificate(
     model: &Model,
     order: usize,
     outputs: &[Output],
     emitted: String,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
-    let emitted = source(model, outputs, emitted);
-    let about = about(model, order, &parameters, Some(&emitted));
+    let emitted = emitted_source(model, outputs, emitted);
+    let about = certificate_header(model, order, &parameters, Some(&emitted));
     Ok(Certificate::new(about, None, Vec::new()))
 }
 
-fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
+fn emitted_source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     let inputs = model.inputs.iter();
     let names = outputs.iter().map(|output| output.name().to_owned());
     Emitted {
@@ -91,13 +91,13 @@ fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     }
 }
 
-fn kernels(
+fn generate_kernels(
     model: &Model,
     order: usize,
     parameters: &[f64],
     input_fields: &[String],
 ) -> Result<Emitted, String> {
-    let program = program(model, order, parameters, &[Output::Regimes])?;
+    let program = build_program(model, order, parameters, &[Output::Regimes])?;
     if program.guards.is_empty() {
         return Err("the model has no piecewise function".to_owned());
     }
@@ -110,7 +110,7 @@ fn kernels(
     })
 }
 
-fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
+fn build_propagator(model: &Model, order: usize) -> Result<Propagator, String> {
     let orders = vec![order; model.fields.len()];
     let compiled = CompiledModel::derive_unjudged(model.clone(), Orders::Each(&orders));
     let compiled = compiled.map_err(|error| error.to_string())?;
@@ -118,36 +118,40 @@ fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
     instance.propagator().map_err(|error| error.to_string())
 }
 
-fn rates(
+fn scaled_rates(
     propagator: &mut Propagator,
     time: f64,
     state: &[f64],
     inputs: &[f64],
-) -> Result<Sized, String> {
+) -> Result<ScaledRates, String> {
     let found = propagator.rates(time, state, inputs);
     let found = found.map_err(|error| error.to_string())?;
-    Ok(Sized {
+    Ok(ScaledRates {
         rates: found.values,
-        sizes: found.sizes,
+        magnitudes: found.sizes,
     })
 }
 
-fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
-    let evaluator = Evaluator::new(program(model, order, parameters, &[])?);
+fn build_variant(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+) -> Result<Box<dyn Variant>, String> {
+    let evaluator = Evaluator::new(build_program(model, order, parameters, &[])?);
     Ok(Box::new(Derived::new(evaluator)))
 }
 
-fn output_functions(
+fn build_outputs(
     model: &Model,
     order: usize,
     parameters: &[f64],
     outputs: &[Output],
 ) -> Result<Box<dyn Outputs>, String> {
-    let evaluator = Evaluator::new(program(model, order, parameters, outputs)?);
+    let evaluator = Evaluator::new(build_program(model, order, parameters, outputs)?);
     Ok(Box::new(DerivedOutputs::new(evaluator)))
 }
 
-fn program(
+fn build_program(
     model: &Model,
     order: usize,
     parameters: &[f64],

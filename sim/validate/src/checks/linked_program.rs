@@ -77,7 +77,7 @@ impl EmittedFunction {
     }
 }
 
-fn build(
+fn build_program(
     compiler: &Compiler,
     folder: &Path,
     emitted: &Emitted,
@@ -88,20 +88,26 @@ fn build(
     let kind = ["--crate-type", "rlib", "--crate-name", "model"];
     let object = folder.join("libmodel.rlib");
     let output = compiler.compile(&library, &object, optimization, &kind)?;
-    succeed("the emitted source", output).map(drop)
+    require_success("the emitted source", output).map(drop)
 }
 
 /// Compiles the source, calls it with `calls` at every sample and returns the printed lines.
-pub fn run(
+pub fn run_program(
     compiler: &Compiler,
     folder: &Path,
     (emitted, calls): (&Emitted, &str),
     optimization: Optimization,
     samples: &[Sample],
 ) -> Result<String, String> {
-    build(compiler, folder, emitted, optimization)?;
+    build_program(compiler, folder, emitted, optimization)?;
     let harness = ("harness", &*harness_source(emitted, calls));
-    run_linked(compiler, folder, harness, optimization, &table(samples))
+    run_linked(
+        compiler,
+        folder,
+        harness,
+        optimization,
+        &format_samples(samples),
+    )
 }
 
 /// Compiles a program that calls the library in `folder` and returns its output for `input`.
@@ -116,12 +122,12 @@ pub fn run_linked(
     compiler::write(&harness, source)?;
     let link = format!("model={}", folder.join("libmodel.rlib").display());
     let linked = compiler.compile(&harness, &program, optimization, &["--extern", &link])?;
-    succeed("the harness", linked)?;
+    require_success("the harness", linked)?;
     let output = compiler::execute(&program, input)?;
-    succeed("the compiled model", output)
+    require_success("the compiled model", output)
 }
 
-fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
+fn require_success(what: &str, output: compiler::Output) -> Result<String, String> {
     if output.success {
         Ok(output.stdout)
     } else {
@@ -132,18 +138,18 @@ fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
     }
 }
 
-fn table(samples: &[Sample]) -> String {
+fn format_samples(samples: &[Sample]) -> String {
     let mut table = String::new();
     for sample in samples {
         let numbers = [&[sample.time][..], &sample.state, &sample.inputs].concat();
-        table += &line(&numbers);
+        table += &format_bits(&numbers);
         table.push('\n');
     }
     table
 }
 
 /// Returns numbers as hexadecimal bits, separated by spaces.
-pub fn line(numbers: &[f64]) -> String {
+pub fn format_bits(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers
         .iter()
         .map(|number| format!("{:016x}", number.to_bits()))
@@ -206,7 +212,7 @@ fn main() {
 "#;
 
 /// Counts the numbers of a line of bits that differ from `expected`; 0 equals -0.
-pub fn differing_numbers(line: &str, expected: &[f64]) -> usize {
+pub fn count_differing_numbers(line: &str, expected: &[f64]) -> usize {
     let number = |word: &str| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
     let mut words = line.split(' ').map(number);
     let differs = |expected: &&f64| words.next().flatten() != Some(**expected);
@@ -214,7 +220,7 @@ pub fn differing_numbers(line: &str, expected: &[f64]) -> usize {
 }
 
 /// Counts the words that differ between two lines, missing ones included. All NaNs are equal.
-pub fn differences(found: &str, expected: &str) -> usize {
+pub fn count_differences(found: &str, expected: &str) -> usize {
     let (found, expected): (Vec<_>, Vec<_>) =
         (found.split(' ').collect(), expected.split(' ').collect());
     let same = found

@@ -3,7 +3,7 @@
 use crate::oracle::Oracle;
 use eomgen_model_spec::model::Model;
 
-pub(crate) struct Judged<'j> {
+pub(crate) struct CheckContext<'j> {
     pub oracle: &'j Oracle,
     pub model: &'j Model,
     pub order: usize,

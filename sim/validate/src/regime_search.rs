@@ -8,7 +8,7 @@ use super::sample::Sample;
 
 /// Maximum number of corrections of one state. Each correction halves the required distance from
 /// the switching surfaces, so that narrow regimes are reached too.
-const CORRECTIONS: i32 = 24;
+const MAX_CORRECTIONS: i32 = 24;
 
 pub(super) struct Sizes<'s> {
     pub state: &'s [f64],
@@ -18,22 +18,22 @@ pub(super) struct Sizes<'s> {
 /// Inequality `row * change >= bound`; the change is in units of the sizes.
 type Inequality = (Vec<f64>, f64);
 
-pub(super) fn seek(
+pub(super) fn move_into_regime(
     oracle: &Oracle,
     sample: &mut Sample,
     regime: &Regime,
     sizes: &Sizes<'_>,
     random: &mut Random,
 ) -> Result<bool, OracleError> {
-    for correction in 0..CORRECTIONS {
+    for correction in 0..MAX_CORRECTIONS {
         if is_inside(oracle, sample, regime)? {
             return Ok(true);
         }
         let margin = 0.5_f64.powi(correction) * random.unit();
-        let rows = inequalities(oracle, sample, regime, sizes, margin)?;
+        let rows = regime_inequalities(oracle, sample, regime, sizes, margin)?;
         // A margin that is too large makes the inequalities infeasible. The next one is smaller.
         if let Some(change) = nearest_point(&rows) {
-            shift(sample, &change, sizes);
+            shift_sample(sample, &change, sizes);
         }
     }
     is_inside(oracle, sample, regime)
@@ -41,7 +41,7 @@ pub(super) fn seek(
 
 /// Returns true if a state is in `regime` and every quantity at rest has no slope.
 fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, OracleError> {
-    if Regime::of(oracle, sample)? != *regime {
+    if Regime::from_state(oracle, sample)? != *regime {
         return Ok(false);
     }
     let sides = oracle.switches().iter().zip(&regime.sides);
@@ -58,7 +58,7 @@ fn is_inside(oracle: &Oracle, sample: &Sample, regime: &Regime) -> Result<bool, 
 }
 
 /// Returns the sides of `regime` and the ranges as linear inequalities of a change of the sample.
-fn inequalities(
+fn regime_inequalities(
     oracle: &Oracle,
     sample: &Sample,
     regime: &Regime,
@@ -146,7 +146,7 @@ fn side_inequalities(
     }
 }
 
-fn shift(sample: &mut Sample, change: &[f64], sizes: &Sizes<'_>) {
+fn shift_sample(sample: &mut Sample, change: &[f64], sizes: &Sizes<'_>) {
     let entries = sample.state.iter_mut().zip(sizes.state);
     let entries = entries.chain(sample.inputs.iter_mut().zip(sizes.inputs));
     for ((entry, size), change) in entries.zip(change) {
