@@ -131,7 +131,7 @@ pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     for (name, _) in &given {
         if !matches!(run.model().setting(name)?, Setting::State(_)) {
             return Err(Error::input(format!(
-                "--state {name}: expected a coordinate, a mode, a rate or another state; inputs are set with --input"
+                "--state {name}: expected a coordinate, a mode, a rate or another state"
             )));
         }
     }

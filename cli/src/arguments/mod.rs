@@ -133,7 +133,7 @@ pub enum Command {
     Paper(Paper),
     /// Write an interactive simulation of a model as one self-contained HTML file.
     #[command(
-        after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml --out double_pendulum.html"
+        after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml --state theta_1=\"120 deg\" --out double_pendulum.html"
     )]
     Page(Page),
     /// Run all steps on the paper's arm, from check to discover, and write one HTML page about them.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use eomgen_codegen::mechanics::outputs::{Output, UnknownOutput};
 
-use super::shared::{Json, ModelFile, Order};
+use super::shared::{Json, ModelFile, Order, ParameterValues, StateValues};
 
 /// Options of `check`.
 #[derive(Args)]
@@ -145,6 +145,10 @@ pub struct Validate {
 pub struct Page {
     #[command(flatten)]
     pub model: ModelFile,
+    #[command(flatten)]
+    pub parameters: ParameterValues,
+    #[command(flatten)]
+    pub initial: StateValues,
     /// Output file (HTML), `-` for stdout.
     #[arg(long)]
     pub out: PathBuf,

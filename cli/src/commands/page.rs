@@ -7,18 +7,20 @@ use crate::document::SCHEMA;
 use crate::emission::without_impacts;
 use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
+use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::page::interactive_page;
-use crate::settings::with_stabilisation;
+use crate::settings::{with_settings, with_stabilisation};
 
 pub fn run(options: &Page) -> Result {
     let destination = Destination::for_output(&options.out, options.output.json)?;
-    let model = load(&options.model.spec)?.model;
+    let model = with_settings(load(&options.model.spec)?.model, &options.parameters.set)?;
     without_impacts(&model, "a page")?;
     let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    let page = interactive_page(&compiled)?;
+    let initial = initial_state(&compiled.at_declared()?, &options.initial.state)?;
+    let page = interactive_page(&compiled, &initial)?;
     destination.write(page.as_bytes())?;
     if options.output.json {
         let document = json!({

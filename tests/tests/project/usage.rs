@@ -195,6 +195,16 @@ fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
 }
 
 #[test]
+fn page_starts_at_given_parameters_and_state() {
+    let pendulum = spec("pendulum");
+    let page = |more: &[&str]| accepted(&[&["page", &pendulum, "--out", "-"], more].concat());
+    assert!(!page(&[]).contains("\"initial\":0.7"));
+    let given = page(&["--state", "theta=0.7", "--set", "l=0.375"]);
+    assert!(given.contains("\"initial\":0.7"));
+    assert!(given.contains("0.375"));
+}
+
+#[test]
 fn generate_check_without_all_is_rejected() {
     for more in [
         &["--check"][..],

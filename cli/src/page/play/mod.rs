@@ -27,17 +27,17 @@ const SCRIPT: [&str; 3] = [
     include_str!("controls.js"),
 ];
 
-/// Renders the page of a model.
+/// Renders the page of a model with an initial state.
 ///
 /// # Errors
 /// Declared parameters without a motion, or a module that cannot be emitted.
-pub fn interactive_page(compiled: &CompiledModel) -> Result<String> {
+pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<String> {
     let instance = compiled.at_declared()?;
     let module = module(compiled.program())?;
-    let quantities = Quantities::new(compiled, instance.initial())?;
+    let quantities = Quantities::new(compiled, initial)?;
     let evaluator = instance.evaluator()?;
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
-    let data = data::json(compiled, &quantities, instance.initial(), &module)?;
+    let data = data::json(compiled, &quantities, initial, &module)?;
     Ok(scripted_document(&ScriptedDocument {
         title: &compiled.model().title,
         style: &[play::STYLE, STYLE].concat(),
