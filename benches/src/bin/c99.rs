@@ -136,7 +136,8 @@ macro_rules! order {
         let folder = tempfile::tempdir()?;
         emit($model, $order, folder.path())?;
         let states = states::<{ arm::STATES }>();
-        let prepared_numbers = EliminatedArm::<$order>::new(&PlanetaryArmParameters::default()).prepared();
+        let prepared =
+            EliminatedArm::<$order>::new(&PlanetaryArmParameters::default()).prepared_numbers();
         let numbers = prepared.iter().chain(states.iter().flatten());
         let bytes: Vec<u8> = numbers.flat_map(|number| number.to_ne_bytes()).collect();
         std::fs::write(folder.path().join("states"), bytes)?;
