@@ -59,10 +59,10 @@ pub struct FailedWindows {
 impl FailedWindows {
     /// Summarises failed windows; `None` if there are none.
     pub fn from_windows(windows: &Windows<'_>, unfollowed: &[WindowId]) -> Option<Self> {
-        let window = &windows.list[*unfollowed.first()?];
+        let window = &windows.windows[*unfollowed.first()?];
         Some(Self {
             count: unfollowed.len(),
-            total: windows.list.len(),
+            total: windows.windows.len(),
             first_start: window.times[0],
             record: windows.records[window.record].name.clone(),
         })

@@ -13,7 +13,8 @@ use crate::output::write_file;
 pub fn run(options: &Dataset) -> Result {
     let model = load(&options.spec)?.model;
     let name = name(options)?;
-    let text = eomgen_records::proposed(&options.record, &name, &model).map_err(Error::records)?;
+    let text =
+        eomgen_records::propose_dataset(&options.record, &name, &model).map_err(Error::records)?;
     if let Some(out) = &options.out {
         write_file(out, text.as_bytes())?;
         // Guesses may be wrong: report the errors that `compare` would report.

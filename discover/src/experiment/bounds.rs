@@ -1,7 +1,7 @@
 //! Bounds of an experiment: those of the dataset file, and otherwise those of the recorded motion.
 
 use eomgen_analysis::spectrum::periodogram;
-use eomgen_records::samples::{FEWEST_SAMPLES, typical_step};
+use eomgen_records::samples::{MIN_SAMPLES, typical_step};
 
 use crate::ids::ChannelId;
 use crate::interval::Interval;
@@ -61,7 +61,12 @@ impl Bounds {
         let mut from_records: Vec<String> = Vec::new();
         let mut input_bounds = Vec::new();
         for (place, name) in inputs.iter().enumerate() {
-            if dataset.played.inputs.get(place).is_none_or(Option::is_none) {
+            if dataset
+                .experiment_units
+                .inputs
+                .get(place)
+                .is_none_or(Option::is_none)
+            {
                 continue;
             }
             let of = said.inputs.get(place).copied().unwrap_or_default();
@@ -127,7 +132,7 @@ impl Bounds {
     /// Returns the reason why the experiment is too short for a record: less than half a window or
     /// too few samples; `None` if it is long enough.
     pub fn explain_too_short(&self, window: Option<f64>) -> Option<String> {
-        let least = (0.5 * window.unwrap_or(0.0)).max(FEWEST_SAMPLES as f64 * self.sample_time);
+        let least = (0.5 * window.unwrap_or(0.0)).max(MIN_SAMPLES as f64 * self.sample_time);
         (self.duration < least).then(|| {
             format!(
                 "an experiment of {} s is too short for a record, which needs {least:.3} s; expected a longer \

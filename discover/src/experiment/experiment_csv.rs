@@ -1,7 +1,7 @@
 //! CSV file of an experiment for a test rig: columns `t` and the driven inputs, in the units of the
 //! dataset.
 
-use eomgen_records::experiment::Played;
+use eomgen_records::experiment::ExperimentUnits;
 
 use crate::experiment::bounds::Bounds;
 use crate::experiment::proposal::{Proposal, rest_value};
@@ -11,7 +11,7 @@ pub(super) fn write_experiment_csv(
     (bounds, times): (&Bounds, &[f64]),
     proposal: &Proposal,
     names: &[String],
-    played: &Played,
+    played: &ExperimentUnits,
 ) -> String {
     let driven: Vec<usize> = (0..names.len())
         .filter(|place| played.inputs.get(*place).is_some_and(Option::is_some))

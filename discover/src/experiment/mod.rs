@@ -220,7 +220,7 @@ impl Plan<'_> {
             (&self.bounds, &self.times),
             proposal,
             &self.inputs,
-            &self.context.problem.dataset.played,
+            &self.context.problem.dataset.experiment_units,
         );
         if let Some(known) = files.iter().position(|file| file.text == text) {
             return known;

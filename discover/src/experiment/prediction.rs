@@ -62,7 +62,7 @@ impl<'a> Predictor<'a> {
         let initial = match problem.dataset.initial {
             // Where a record began says nothing of where a rig can begin anew.
             Initial::Estimate => model.initial_state(),
-            Initial::Rest | Initial::Given(_) => {
+            Initial::Rest | Initial::Values(_) => {
                 problem.estimate_first_state(model, &problem.dataset.train[0])
             }
         };

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use eomgen_records::windows::{Windows, judged};
+use eomgen_records::windows::{Windows, compared_samples};
 
 use crate::experiment::prediction::Prediction;
 use crate::fit::bounded_least_squares::solve_least_squares;
@@ -112,12 +112,12 @@ impl<'f> Rival<'f> {
         prediction: &Prediction,
         of: impl FnOnce(&Shooting<'_>, &Beginning, &Estimate) -> Option<f64>,
     ) -> Option<f64> {
-        let windows = Windows::cut(&prediction.records, problem.dataset.window);
+        let windows = Windows::split_records(&prediction.records, problem.dataset.window);
         let begin = self.begin(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
         let theta = self.theta().to_vec();
         let present = evaluate_cost(&shooting, &begin.prior, theta, begin.states.clone());
-        let left = of(&shooting, &begin, &present)? / windows.numbers().sqrt();
+        let left = of(&shooting, &begin, &present)? / windows.measurement_count().sqrt();
         left.is_finite().then_some(left)
     }
 
@@ -129,7 +129,7 @@ impl<'f> Rival<'f> {
         truth: &EstimationModel,
         prediction: &Prediction,
     ) -> Option<Separation> {
-        let windows = Windows::cut(&prediction.records, problem.dataset.window);
+        let windows = Windows::split_records(&prediction.records, problem.dataset.window);
         let begin = self.begin(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
         let fitted = self.fitted(&shooting, &begin)?;
@@ -138,8 +138,8 @@ impl<'f> Rival<'f> {
         let (channel, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let channels = problem.noise.len();
         let mut seen = vec![vec![f64::NAN; prediction.states.len()]; channels];
-        for (window, residual) in windows.list.iter().zip(&residuals.window_residuals) {
-            for sample in judged(window.times.len()) {
+        for (window, residual) in windows.windows.iter().zip(&residuals.window_residuals) {
+            for sample in compared_samples(window.times.len()) {
                 for (channel, noise) in problem.noise.iter().enumerate() {
                     let number = sample * channels + channel;
                     seen[channel][window.first + sample] =
@@ -178,7 +178,7 @@ impl<'f> Rival<'f> {
         windows: &Windows<'_>,
     ) -> Beginning {
         let model = &self.fit.model;
-        let states: Vec<Vec<f64>> = (windows.list.iter())
+        let states: Vec<Vec<f64>> = (windows.windows.iter())
             .map(|window| {
                 model.clamp_state(model.map_state(truth, &prediction.states[window.first]))
             })

@@ -113,7 +113,7 @@ impl<'a> Continuation<'a> {
 
     /// The root mean square of the residuals, in standard deviations.
     fn residual_rms(&self, present: &Estimate) -> f64 {
-        let count = self.shooting.fraction * self.shooting.windows.numbers();
+        let count = self.shooting.fraction * self.shooting.windows.measurement_count();
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 

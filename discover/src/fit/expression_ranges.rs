@@ -34,11 +34,11 @@ pub fn compute_ranges(
     let nothing = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut found = vec![nothing; shown.len()];
     let mut observables = vec![0.0; model.program().observables.len()];
-    let all = problem.train.list.len();
+    let all = problem.train.windows.len();
     let count = all.min(thresholds::MAX_SCREENING_WINDOWS);
     for window in (0..count).map(|k| WindowId::new(k * all / count)) {
         let initial = &fit.train.estimate.initial_states[window];
-        let window = &problem.train.list[window];
+        let window = &problem.train.windows[window];
         let inputs = problem.train.inputs(window);
         let states = simulation.simulate_states(initial, &window.times, inputs);
         for (t, state) in window.times.iter().zip(states.unwrap_or_default()) {

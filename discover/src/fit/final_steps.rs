@@ -48,8 +48,8 @@ pub(crate) fn compute_whitening(
         .create_simulation(&shooting.parameter_values(&estimate.theta))
         .ok()?;
     let mut states = Vec::new();
-    for window in WindowId::first(shooting.windows.list.len()) {
-        let samples = &shooting.windows.list[window];
+    for window in WindowId::first(shooting.windows.windows.len()) {
+        let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
         let motion =
             simulation.simulate_states(&estimate.initial_states[window], &samples.times, inputs);

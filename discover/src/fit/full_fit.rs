@@ -124,7 +124,7 @@ pub fn complete_fit(
     let test = Residuals::compute(&held_out, test);
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = train.variance_inflation();
-    let numbers = problem.train.numbers();
+    let numbers = problem.train.measurement_count();
     let sd = |wider: f64| {
         let sds = known.iter().map(|known| known.combine(wider));
         sds.map(|sd| sd * inflation.sqrt()).collect()
@@ -171,7 +171,7 @@ fn near(
             is_far: near.estimate.cost
                 > thresholds::MAX_RMS_TO_CONTINUE
                     * thresholds::MAX_RMS_TO_CONTINUE
-                    * problem.train.numbers(),
+                    * problem.train.measurement_count(),
             prior: near.prior,
             estimate: near.estimate,
             is_followed: true,
@@ -188,7 +188,7 @@ fn near(
             && estimate.cost
                 > thresholds::MAX_RMS_TO_CONTINUE
                     * thresholds::MAX_RMS_TO_CONTINUE
-                    * problem.train.numbers(),
+                    * problem.train.measurement_count(),
         prior,
         estimate,
         is_followed: false,
@@ -267,7 +267,7 @@ fn continued_unknowns(
     let near = thresholds::MAX_FLOOR_RATIO_AT_FLOOR
         * thresholds::MAX_FLOOR_RATIO_AT_FLOOR
         * first.fraction
-        * problem.train.numbers();
+        * problem.train.measurement_count();
     if preliminary.is_converged && preliminary.cost < near {
         return theta;
     }

@@ -60,8 +60,8 @@ pub fn run_damped_gauss_newton(
 pub fn residual_level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let finite = estimate.squares.iter().filter(|s| s.is_finite());
     let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
-    let samples: usize = shooting.windows.list.iter().map(|w| w.times.len()).sum();
-    let per_window = samples as f64 / shooting.windows.list.len().max(1) as f64;
+    let samples: usize = shooting.windows.windows.iter().map(|w| w.times.len()).sum();
+    let per_window = samples as f64 / shooting.windows.windows.len().max(1) as f64;
     let numbers = per_window * shooting.channel_count() as f64 * f64::from(count.max(1));
     (sum / numbers).sqrt().max(1.0)
 }

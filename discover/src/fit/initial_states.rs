@@ -29,7 +29,7 @@ pub fn estimate_at_unknowns(
     if !problem.estimates_initial_states() {
         let states = match problem.dataset.gives_motion() {
             // The motion is not the model's.
-            true => vec![shooting.model.initial_state(); shooting.windows.list.len()],
+            true => vec![shooting.model.initial_state(); shooting.windows.windows.len()],
             false => read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels)?,
         };
         return Ok(InitialStates {
@@ -86,7 +86,7 @@ pub fn estimate_best(
     let found = found
         .into_iter()
         .collect::<Result<Vec<Estimate>, DiscoverError>>()?;
-    let windows = WindowId::first(shooting.windows.list.len());
+    let windows = WindowId::first(shooting.windows.windows.len());
     let best = windows.map(|window| {
         let order = |a: &&Estimate, b: &&Estimate| a.squares[window].total_cmp(&b.squares[window]);
         let best = found.iter().min_by(order);
@@ -146,7 +146,7 @@ fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorS
             (None, false) => PriorSource::FirstSamples,
         }
     };
-    windows.list.iter().map(of).collect()
+    windows.windows.iter().map(of).collect()
 }
 
 /// What is known of windows' initial states beforehand.
@@ -170,7 +170,7 @@ fn followed(
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
 ) -> InitialStates {
-    let count = shooting.windows.list.len();
+    let count = shooting.windows.windows.len();
     let chains = before
         .map_or(1, |_| thresholds::PARALLEL_CHAINS)
         .min(count)
@@ -213,7 +213,7 @@ pub fn propagate_to_next_windows(
     theta: &[f64],
     initial_states: &[Vec<f64>],
 ) -> Vec<Option<Vec<f64>>> {
-    let list = &shooting.windows.list;
+    let list = &shooting.windows.windows;
     shooting.map_windows_in_parallel(|windows| {
         let mut sensitivities = SensitivityEvaluator::with_fixed_unknowns(shooting, theta, 1.0);
         let mut of = |window: WindowId| {
@@ -261,7 +261,7 @@ impl Chain<'_> {
             };
             return windows.map(unknown).collect();
         };
-        let list = &shooting.windows.list;
+        let list = &shooting.windows.windows;
         let mut prior = InitialStatePrior {
             mean: vec![Vec::new(); list.len()],
             sd: self.known.sd.to_vec(),
@@ -308,7 +308,7 @@ fn read_smoothed(
     let sources = coordinates
         .chain(first_order)
         .collect::<Result<Vec<usize>, _>>()?;
-    let mut initial_states = vec![Vec::new(); windows.list.len()];
+    let mut initial_states = vec![Vec::new(); windows.windows.len()];
     for (number, record) in windows.records.iter().enumerate() {
         let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
             .iter()
@@ -318,7 +318,7 @@ fn read_smoothed(
                 (values, slopes)
             })
             .collect();
-        for (window, start) in windows.list.iter().zip(&mut initial_states) {
+        for (window, start) in windows.windows.iter().zip(&mut initial_states) {
             if window.record == number {
                 let (coordinates, first_order) = smooth.split_at(degrees);
                 let values = coordinates.iter().map(|(values, _)| values[window.first]);

@@ -50,7 +50,7 @@ impl LinearisedFit {
             fraction: part,
             ..whole
         };
-        let all = problem.train.list.len();
+        let all = problem.train.windows.len();
         let count = all.min(thresholds::MAX_SCREENING_WINDOWS);
         let windows: Vec<WindowId> = (0..count).map(|k| WindowId::new(k * all / count)).collect();
         let level = residual_level(&shooting, &estimate) / part.sqrt();

@@ -33,7 +33,7 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
     let Some(records) = replicas(problem, fit, seed) else {
         return noise_alone;
     };
-    let windows = Windows::cut(&records, problem.dataset.window);
+    let windows = Windows::split_records(&records, problem.dataset.window);
     let shooting = Shooting::new(problem, &fit.model, &windows, &fit.unknowns, &fit.ranges);
     let theta = fit.train.estimate.theta.clone();
     let Ok(initial_states) = initial_states::estimate_best(problem, &shooting, &theta, &fit.ranges)

@@ -8,7 +8,7 @@ use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 use eomgen_records::samples::typical_step;
-use eomgen_records::windows::{Window, judged};
+use eomgen_records::windows::{Window, compared_samples};
 
 /// The fewest samples of a window that has a spectrum.
 const FEWEST: usize = 16;
@@ -41,7 +41,7 @@ pub fn find_training_peak(
 ) -> Option<SpectralPeak> {
     let windows: Vec<(&Window, &[f64])> = problem
         .train
-        .list
+        .windows
         .iter()
         .zip(fit.train.window_residuals.iter().map(Vec::as_slice))
         .collect();
@@ -63,7 +63,7 @@ pub fn compute_residual_spectrum(
         .filter(|(_, residual)| !residual.is_empty())
         .map(|(window, residual)| {
             let column = channel_residuals(window, residual, (channel, channels));
-            bridged(&column[judged(column.len())])
+            bridged(&column[compared_samples(column.len())])
         })
         .collect();
     let length = columns

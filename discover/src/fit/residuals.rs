@@ -5,7 +5,7 @@ use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
 use crate::ids::WindowId;
 use crate::thresholds;
-use eomgen_records::windows::{Window, judged};
+use eomgen_records::windows::{Window, compared_samples};
 
 /// Residuals of a set of records.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +62,7 @@ impl Residuals {
             .map(|r| r.map(|r| r.values).unwrap_or_default())
             .collect();
         let mut sums = vec![(0.0, 0.0); channels];
-        for (window, residual) in shooting.windows.list.iter().zip(&residuals) {
+        for (window, residual) in shooting.windows.windows.iter().zip(&residuals) {
             for (number, value) in residual.iter().enumerate() {
                 if window.measured[number].is_finite() {
                     let sum = &mut sums[number % channels];
@@ -98,7 +98,7 @@ pub(crate) fn channel_residuals(
     (channel, channels): (usize, usize),
 ) -> Vec<f64> {
     let samples = window.times.len();
-    let inside = judged(samples);
+    let inside = compared_samples(samples);
     let value = |sample: usize| {
         let number = sample * channels + channel;
         let is_compared = inside.contains(&sample) && window.measured[number].is_finite();

@@ -125,7 +125,7 @@ impl<'a> SensitivityEvaluator<'a> {
 
     /// Returns the state of the motion of a window at a time, s.
     pub fn propagate(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
-        let samples = &self.shooting.windows.list[window];
+        let samples = &self.shooting.windows.windows[window];
         let inputs = self.shooting.windows.inputs(samples);
         // Steps end where inputs change.
         let before = samples.times.iter().filter(|t| **t < until);
@@ -156,7 +156,7 @@ impl<'a> SensitivityEvaluator<'a> {
     /// The same with neighbouring motions that come along.
     fn by_tangents(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
-        let samples = &shooting.windows.list[window];
+        let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
         let count = self.neighbours.iter().flatten().count();
@@ -230,7 +230,7 @@ impl<'a> SensitivityEvaluator<'a> {
         driven: NeighbourDrives<'_>,
     ) -> Option<DMatrix<f64>> {
         let shooting = self.shooting;
-        let samples = &shooting.windows.list[window];
+        let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
         let count = driven.count;
@@ -243,7 +243,7 @@ impl<'a> SensitivityEvaluator<'a> {
     /// The same by difference quotients.
     fn by_quotients(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
-        let samples = &shooting.windows.list[window];
+        let samples = &shooting.windows.windows[window];
         let inputs = shooting.windows.inputs(samples);
         let times = &shooting.output_times(samples);
         let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())

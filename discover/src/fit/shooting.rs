@@ -9,7 +9,9 @@ use crate::model::output_times::{OutputRate, OutputTimes, lagrange_weight};
 use crate::model::problem::EstimationProblem;
 use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, UnknownKind, expected_input_delay};
-use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD, Window, Windows, judged};
+use eomgen_records::windows::{
+    MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES, Window, Windows, compared_samples,
+};
 
 /// Unknowns of the sensors.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +133,7 @@ impl<'a> Shooting<'a> {
             // What acts late is seen late by all, as far as windows leave room for it.
             let times = self
                 .windows
-                .list
+                .windows
                 .first()
                 .map_or(&[][..], |window| &window.times);
             let step = match times {
@@ -140,7 +142,7 @@ impl<'a> Shooting<'a> {
             };
             for delay in &mut sensors.delay {
                 let late = *delay + input_delay;
-                *delay = late.clamp(-LONGEST_LEAD * step, LONGEST_DELAY * step);
+                *delay = late.clamp(-MAX_LEAD_SAMPLES * step, MAX_DELAY_SAMPLES * step);
             }
         }
         sensors
@@ -175,7 +177,7 @@ impl<'a> Shooting<'a> {
         window: WindowId,
         start: &[f64],
     ) -> Option<Residual> {
-        let window = &self.windows.list[window];
+        let window = &self.windows.windows[window];
         let inputs = self.windows.inputs(window);
         let times = self.output_times(window);
         let outputs = simulation
@@ -243,7 +245,7 @@ impl<'a> Shooting<'a> {
     ) -> Vec<f64> {
         let channels = self.channel_count();
         let samples = seen.len() / channels;
-        let inside = judged(samples);
+        let inside = compared_samples(samples);
         let pairs = seen.iter().zip(&window.measured).enumerate();
         pairs
             .map(|(number, (seen, measured))| {
@@ -261,7 +263,7 @@ impl<'a> Shooting<'a> {
         &self,
         work: impl Fn(WindowRange) -> Vec<T> + Send + Sync,
     ) -> Vec<T> {
-        let count = self.windows.list.len();
+        let count = self.windows.windows.len();
         let threads = rayon::current_num_threads().max(1);
         // The parts do not depend on the number of threads' speed, only on their number; what
         // is computed for a window does not depend on its part.

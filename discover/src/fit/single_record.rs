@@ -127,7 +127,7 @@ pub fn largest_record_rms(problem: &EstimationProblem<'_>, fit: &Fit) -> f64 {
 /// The root mean square that a fit leaves of one record, in standard deviations.
 fn left_of(windows: &Windows<'_>, residuals: &Residuals, record: usize) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
-    for (window, values) in windows.list.iter().zip(&residuals.window_residuals) {
+    for (window, values) in windows.windows.iter().zip(&residuals.window_residuals) {
         if window.record == record {
             sum += values.iter().map(|r| r * r).sum::<f64>();
             count += values.len() as f64;

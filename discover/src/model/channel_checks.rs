@@ -63,7 +63,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
         let measured = &record.channels[own_index][..samples];
         let own = Correspondence::of(times, &expected[own_index], measured, channel.noise);
         let refuse = |message: String| {
-            Err(Refusal::file(
+            Err(Refusal::file_error(
                 &record.path,
                 format!("channel `{}`: {message}", channel.name),
             ))

@@ -22,7 +22,7 @@ pub fn estimate_first_state(
         // What is known of the beginning does not hold later.
         _ if record.is_continued => measured(model, record, channels, state),
         Initial::Rest => state,
-        Initial::Given(values) => {
+        Initial::Values(values) => {
             for (name, value) in values {
                 let known = model.states.iter().position(|state| state == name);
                 if let Some(index) = known {

@@ -7,7 +7,7 @@
 use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue};
 use eomgen_model_spec::model::Input;
 use eomgen_model_spec::source::Source;
-use eomgen_records::dataset::{Expected, InputPriors};
+use eomgen_records::dataset::{InputPriors, PriorInSi};
 
 use crate::model::input_occurrences::replace_input;
 
@@ -79,7 +79,7 @@ impl InputFault {
         }
     }
 
-    fn prior(self, priors: &InputPriors) -> Option<Expected> {
+    fn prior(self, priors: &InputPriors) -> Option<PriorInSi> {
         match self {
             Self::Gain => priors.gain,
             Self::Bias => priors.bias,
@@ -91,7 +91,7 @@ impl InputFault {
 pub fn find_declared<'p>(
     inputs: &'p [InputPriors],
     parameter: &str,
-) -> Option<(&'p str, InputFault, Expected)> {
+) -> Option<(&'p str, InputFault, PriorInSi)> {
     let all = inputs.iter().flat_map(|input| {
         let faults = InputFault::ALL.into_iter();
         faults.filter_map(move |fault| Some((input.name.as_str(), fault, fault.prior(input)?)))
@@ -101,7 +101,7 @@ pub fn find_declared<'p>(
 }
 
 /// Returns the input with a declared delay and the prior of the delay.
-pub fn find_delayed_input(inputs: &[InputPriors]) -> Option<(&str, Expected)> {
+pub fn find_delayed_input(inputs: &[InputPriors]) -> Option<(&str, PriorInSi)> {
     let mut delayed = inputs.iter();
     delayed.find_map(|input| Some((input.name.as_str(), input.delay?)))
 }

@@ -11,7 +11,7 @@ use crate::model::first_state;
 use crate::model::output_times::OutputRate;
 use crate::model::stop::StopRequest;
 use crate::thresholds;
-use eomgen_records::dataset::{Dataset, Start};
+use eomgen_records::dataset::{Dataset, StartSource};
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
 
@@ -80,8 +80,8 @@ impl<'d> EstimationProblem<'d> {
                 .map(|channel| channel.noise)
                 .collect(),
             output_rate: OutputRate::of(dataset),
-            train: Windows::cut(&dataset.train, dataset.window),
-            test: Windows::cut(&dataset.test, dataset.window),
+            train: Windows::split_records(&dataset.train, dataset.window),
+            test: Windows::split_records(&dataset.test, dataset.window),
             order,
             path: path.to_owned(),
             stop: StopRequest::default(),
@@ -106,7 +106,7 @@ impl<'d> EstimationProblem<'d> {
         model.stop = self.stop.clone();
         let record = &self.dataset.train[0];
         let first = self.estimate_first_state(&model, record);
-        let numbers = self.train.numbers();
+        let numbers = self.train.measurement_count();
         model.choose_steps(record, &first, &self.noise, numbers, self.output_rate);
         Ok(model)
     }
@@ -124,7 +124,7 @@ impl<'d> EstimationProblem<'d> {
     /// Returns true if initial states are fitted. They are not if they are read from the record or
     /// if the motion is given.
     pub fn estimates_initial_states(&self) -> bool {
-        self.dataset.start == Start::Fitted && !self.dataset.gives_motion()
+        self.dataset.start == StartSource::Estimate && !self.dataset.gives_motion()
     }
 
     /// Returns the range of each state in the training records. The range of a coordinate that a

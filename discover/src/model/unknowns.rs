@@ -7,10 +7,10 @@ use eomgen_model_spec::model::{Model, Parameter};
 
 use crate::model::input_faults::{InputFault, find_declared, find_delayed_input};
 use crate::thresholds;
-use eomgen_records::dataset::{Channel, Dataset, Expected, InputPriors};
+use eomgen_records::dataset::{Channel, Dataset, InputPriors, PriorInSi};
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
-use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
+use eomgen_records::windows::{MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES};
 
 /// Kind of an unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,7 +179,7 @@ pub fn list_null_unknowns(
 fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown> {
     let (input, expected) = find_delayed_input(&dataset.inputs)?;
     let mean = expected_input_delay(&dataset.inputs, model);
-    let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
+    let late = Interval::new(-MAX_LEAD_SAMPLES * step, MAX_DELAY_SAMPLES * step);
     let what = (
         UnknownKind::InputDelay,
         format!("the delay of the input `{input}`"),
@@ -225,7 +225,7 @@ pub fn list_sensor_unknowns(
     step: f64,
 ) -> Vec<Unknown> {
     let expected = ExpectedSensor::from_channel(channel, model);
-    let sd = |said: Option<Expected>, usual: f64| said.map_or(usual, |said| said.sd);
+    let sd = |said: Option<PriorInSi>, usual: f64| said.map_or(usual, |said| said.sd);
     let gain = sd(channel.priors.gain, thresholds::GAIN_PRIOR_SD);
     let bias = sd(
         channel.priors.bias,
@@ -233,7 +233,7 @@ pub fn list_sensor_unknowns(
     );
     let delay = sd(channel.priors.delay, thresholds::DELAY_PRIOR_SAMPLES * step);
     let free = Interval::ALL;
-    let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
+    let late = Interval::new(-MAX_LEAD_SAMPLES * step, MAX_DELAY_SAMPLES * step);
     let prior = |mean: f64, sd: f64| NormalPrior { mean, sd };
     let called =
         |what: UnknownKind, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
@@ -279,7 +279,7 @@ impl ExpectedSensor {
     /// specification.
     pub fn from_channel(channel: &Channel, model: &Model) -> Self {
         let written = model.sensors.iter().find(|s| s.channel == channel.name);
-        let said = |prior: Option<Expected>| prior.and_then(|prior| prior.mean);
+        let said = |prior: Option<PriorInSi>| prior.and_then(|prior| prior.mean);
         match written {
             Some(sensor) => Self {
                 gain: sensor.gain,

@@ -13,7 +13,7 @@ pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String,
     let record = &dataset.train[0];
     let mut rates = BTreeMap::new();
     for (place, coordinate) in dataset.motion.iter().enumerate() {
-        let slopes = record.given_rate(place, dataset.motion.len(), model.inputs.len());
+        let slopes = record.given_motion_rate(place, dataset.motion.len(), model.inputs.len());
         rates.insert(coordinate.clone(), root_mean_square(&slopes));
     }
     let channels = dataset.channels.iter().zip(&record.channels);

@@ -43,7 +43,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         channel.name, fit.train.channel_rms[worst], channel.unit, normalised_rms[worst]
     );
     if let Some(worst) = find_worst_window(problem, fit) {
-        let window = &problem.train.list[worst];
+        let window = &problem.train.windows[worst];
         text += &format!(
             " It is largest from {:.3} s to {:.3} s of {}.",
             window.times[0],
@@ -69,7 +69,7 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
 /// Returns the training window with the largest residuals; `None` if there is only one window.
 pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<WindowId> {
     let squares = &fit.train.estimate.squares;
-    let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;
+    let per_sample = |id: WindowId| squares[id] / problem.train.windows[id].times.len() as f64;
     let windows = WindowId::first(squares.len()).filter(|_| squares.len() > 1);
     windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
 }
@@ -78,7 +78,12 @@ pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> O
 fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();
-    for (window, residual) in problem.train.list.iter().zip(&fit.train.window_residuals) {
+    for (window, residual) in problem
+        .train
+        .windows
+        .iter()
+        .zip(&fit.train.window_residuals)
+    {
         let values: Vec<f64> = window
             .measured
             .iter()

@@ -14,7 +14,7 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
     let channels = ChannelId::first(problem.noise.len()).zip(channels);
     let inputs = channels.filter(|(_, channel)| matches!(channel.quantity, Quantity::Input(_)));
     let note = |(id, channel): (ChannelId, &eomgen_records::dataset::Channel)| {
-        let found = noise::estimated(&computed(problem, fit, id))?;
+        let found = noise::estimate_noise(&computed(problem, fit, id))?;
         (found > channel.noise).then(|| {
             format!(
                 "noise of the motion causes noise of {found:.1e} {unit} in the computed `{}`, and its declared \
@@ -31,7 +31,11 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
 /// What a channel is computed to show along the first training record, NaN where nothing is compared, SI.
 fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
     let count = problem.noise.len();
-    let windows = problem.train.list.iter().zip(&fit.train.window_residuals);
+    let windows = problem
+        .train
+        .windows
+        .iter()
+        .zip(&fit.train.window_residuals);
     let first = windows.filter(|(window, _)| window.record == 0);
     let values = first.flat_map(|(window, residuals)| {
         let pairs = window.measured.iter().zip(residuals);

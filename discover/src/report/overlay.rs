@@ -33,9 +33,9 @@ pub(crate) fn draw_overlays(
     let train = fits(before, after, |fit| &fit.train);
     // The window that the sentence on the page names.
     let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
-    let record = problem.train.list[worst].record;
+    let record = problem.train.windows[worst].record;
     let trained = Seen::of(problem, (&problem.train, record), &train);
-    let stretch = trained.stretch(&problem.train.list[worst]);
+    let stretch = trained.stretch(&problem.train.windows[worst]);
     let title = format!(
         "Largest residual of the original model, {}",
         problem.train.records[record].name
@@ -83,7 +83,7 @@ impl Seen {
         fits: &[(&'static str, &Residuals)],
     ) -> Self {
         let windows = || {
-            let all = set.list.iter().enumerate();
+            let all = set.windows.iter().enumerate();
             all.filter(|(_, window)| window.record == record)
         };
         let count = problem.noise.len();

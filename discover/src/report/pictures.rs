@@ -54,7 +54,7 @@ pub(crate) fn draw_residuals(
     let count = problem.noise.len();
     let times: Vec<f64> = problem
         .test
-        .list
+        .windows
         .iter()
         .filter(|w| w.record == 0)
         .flat_map(|w| w.times.iter().copied())
@@ -144,7 +144,7 @@ fn windows_of_first_record<'a>(
     problem: &'a EstimationProblem<'_>,
     fit: &'a Fit,
 ) -> impl Iterator<Item = (&'a Window, &'a [f64])> {
-    let windows = problem.test.list.iter().zip(&fit.test.window_residuals);
+    let windows = problem.test.windows.iter().zip(&fit.test.window_residuals);
     let first = windows.filter(|(window, _)| window.record == 0);
     first.map(|(window, residual)| (window, residual.as_slice()))
 }

@@ -82,7 +82,7 @@ impl<'s> SteppedWindow<'s> {
         let own = self.own_motion(start)?;
         let squares = self.squares_of_rates(&own);
         let forces = self.forces(&own, driven);
-        let window = &self.shooting.windows.list[self.window];
+        let window = &self.shooting.windows.windows[self.window];
         let samples = self.shooting.output_times(window).samples();
         let mut matrix = DMatrix::zeros(samples * self.shooting.channel_count(), count);
         let wanted = thresholds::FORCE_OUTPUT_CHANGE * level;
@@ -117,7 +117,7 @@ impl<'s> SteppedWindow<'s> {
     fn squares_of_rates(&mut self, own: &Visited) -> Vec<f64> {
         let first = self.evaluator.program().degrees_of_freedom();
         let windows = self.shooting.windows;
-        let inputs = windows.inputs(&windows.list[self.window]);
+        let inputs = windows.inputs(&windows.windows[self.window]);
         let mut rates = vec![0.0; self.evaluator.program().states()];
         let mut squares = vec![0.0; rates.len() - first];
         for step in &own.steps {
@@ -137,7 +137,7 @@ impl<'s> SteppedWindow<'s> {
         let program = self.evaluator.program();
         let forced = program.states() - program.degrees_of_freedom();
         let windows = self.shooting.windows;
-        let window = &windows.list[self.window];
+        let window = &windows.windows[self.window];
         let inputs = windows.inputs(window);
         let mut found = vec![Force::default(); driven.count];
         let mut all = vec![0.0; driven.count * forced];
@@ -174,7 +174,7 @@ impl<'s> SteppedWindow<'s> {
         let changes: Vec<f64> = (moved.iter().zip(own))
             .map(|(a, b)| (a - b) / size)
             .collect();
-        let window = &self.shooting.windows.list[self.window];
+        let window = &self.shooting.windows.windows[self.window];
         let times = self.shooting.output_times(window);
         let seen = self.shooting.apply_sensors(&times, &self.sensors, &changes);
         Some(self.shooting.map_differences(window, &seen, |seen, _| seen))
@@ -197,7 +197,7 @@ impl<'s> SteppedWindow<'s> {
         let degrees = self.evaluator.program().degrees_of_freedom();
         let forced = start.len() - degrees;
         let windows = self.shooting.windows;
-        let window = &windows.list[self.window];
+        let window = &windows.windows[self.window];
         let inputs = windows.inputs(window);
         let times = self.shooting.output_times(window).times;
         let mut state = start.to_vec();

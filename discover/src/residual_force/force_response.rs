@@ -114,7 +114,7 @@ pub fn compute_force_responses(
                 at.projections[number].as_ref()?;
                 let window = at.windows[number];
                 let start = &at.estimate.initial_states[window];
-                forces.begin = problem.train.list[window].times[0];
+                forces.begin = problem.train.windows[window].times[0];
                 let driven = NeighbourDrives {
                     count,
                     drives: &mut forces,
@@ -152,7 +152,7 @@ pub fn compute_operating_points(
     };
     let mut evaluator = equations.create_evaluator();
     let windows = at.windows.iter().map(|id| {
-        let window = &problem.train.list[*id];
+        let window = &problem.train.windows[*id];
         let times = &window.times[..count_samples(window, at.fraction)];
         let inputs = problem.train.inputs(window);
         let states = simulation.simulate_states(&at.estimate.initial_states[*id], times, inputs);

@@ -48,13 +48,13 @@ impl Along {
         );
         let records = problem.train.records.iter();
         let motions = records.map(|record| {
-            let rates = record.given_rate(place, count, inputs);
-            (record.given(place, inputs), rates)
+            let rates = record.given_motion_rate(place, count, inputs);
+            (record.given_motion(place, inputs), rates)
         });
         let motions: Vec<(Vec<f64>, Vec<f64>)> = motions.collect();
         let (mut angles, mut squares, mut samples) = (Vec::new(), 0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for window in &problem.train.list {
+        for window in &problem.train.windows {
             let own = window.first..window.first + window.times.len();
             let (all, rates) = &motions[window.record];
             for (angle, rate) in all[own.clone()].iter().zip(&rates[own.clone()]) {

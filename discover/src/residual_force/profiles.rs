@@ -95,7 +95,7 @@ impl ProfileInputs<'_> {
             .fit_per_window(regressed.column_range(family), level);
         profile.part = found.explained_fraction;
         for (id, sizes) in self.linearisation.point.windows.iter().zip(&found.windows) {
-            let window = &self.linearisation.problem.train.list[*id];
+            let window = &self.linearisation.problem.train.windows[*id];
             let (Some(sizes), 0) = (sizes, window.record) else {
                 continue;
             };

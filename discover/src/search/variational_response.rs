@@ -134,7 +134,7 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         squares: vec![0.0; fit.model.state_count() - first],
     };
     for id in [0, windows.len() / 2, windows.len() - 1].map(|k| windows[k]) {
-        let window = &problem.train.list[id];
+        let window = &problem.train.windows[id];
         let inputs = problem.train.inputs(window);
         let Ok(states) =
             simulation.simulate_states(&estimate.initial_states[id], &window.times, inputs)

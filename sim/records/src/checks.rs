@@ -3,63 +3,63 @@
 
 use crate::description::Description;
 
-use crate::coverage::{self, STILL};
+use crate::coverage::{self, MIN_VARIATION_OVER_NOISE};
 use crate::dataset::Dataset;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::{JITTER, span, typical_step};
-use crate::windows::{LONGEST_DELAY, LONGEST_LEAD};
+use crate::samples::{MAX_JITTER_FRACTION, span, typical_step};
+use crate::windows::{MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Input;
 
-const MOST_MISSING: f64 = 0.5;
+const MAX_MISSING_FRACTION: f64 = 0.5;
 
 /// Range in standard deviations beyond any sensor's resolution: the unit or noise is wrong.
-const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
+const MAX_RANGE_OVER_NOISE: f64 = 1e10;
 
 /// Largest magnitude of an input, SI; its fourth power does not overflow.
 const LARGEST_INPUT: f64 = 1e75;
 
 /// Fraction of samples at an extreme, with equal neighbours, beyond which a channel is clipped.
-const CLIPPED: f64 = 0.02;
+const MAX_CLIPPED_FRACTION: f64 = 0.02;
 
 /// RMS difference of two records, in standard deviations of the noise, below which they are the
 /// same record. Two measurements of the same motion differ by the square root of two.
-const SAME: f64 = 0.3;
+const MAX_RMS_OVER_NOISE: f64 = 0.3;
 
 /// Minimum range of a channel, in standard deviations, to compare records.
-const MOVES: f64 = 20.0;
+const MIN_RANGE_OVER_NOISE: f64 = 20.0;
 
 /// Number of samples to compare first when one record is shifted along another.
-const PROBES: usize = 16;
+const PROBE_COUNT: usize = 16;
 
 /// Checks all records and returns notes, or the first problem.
-pub fn examine(
+pub fn check_records(
     dataset: &Dataset,
     description: &Description,
     inputs: &[Input],
 ) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
-        notes.extend(timing(record));
-        notes.extend(held_inputs(record));
+        notes.extend(timing_note(record));
+        notes.extend(held_inputs_note(record));
         input_sizes(record, inputs)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
-            notes.extend(values(record, &channel.name, channel.noise, column)?);
+            notes.extend(check_values(record, &channel.name, channel.noise, column)?);
         }
-        different_channels(dataset, record)?;
+        check_channels_differ(dataset, record)?;
     }
-    delays(dataset, description)?;
-    notes.extend(coverage::check(dataset, description)?);
+    check_delays(dataset, description)?;
+    notes.extend(coverage::check_coverage(dataset, description)?);
     for test in &dataset.test {
         for train in &dataset.train {
-            different_records(dataset, train, test)?;
+            check_records_differ(dataset, train, test)?;
         }
     }
     Ok(notes)
 }
 
-fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
+fn check_delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     let step = typical_step(&dataset.train[0].times);
     let channels = description.channels.iter().map(|channel| channel.delay);
     let inputs = description.inputs.iter().map(|input| input.delay);
@@ -68,14 +68,17 @@ fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
             continue;
         };
         let samples = mean.value / step;
-        if !(-LONGEST_LEAD..=LONGEST_DELAY).contains(&samples) {
+        if !(-MAX_LEAD_SAMPLES..=MAX_DELAY_SAMPLES).contains(&samples) {
             let wrong = Diagnostic::error(format!(
                 "a delay of {} s is {samples:.1} samples of the records",
                 mean.value
             ))
             .at(
                 mean.span,
-                format!("expected {} to {LONGEST_DELAY} samples", -LONGEST_LEAD),
+                format!(
+                    "expected {} to {MAX_DELAY_SAMPLES} samples",
+                    -MAX_LEAD_SAMPLES
+                ),
             )
             .help("shift the column in the record, or keep fewer samples with `every` in [time]");
             return Err(Diagnostics::one(description.source.clone(), wrong).into());
@@ -84,21 +87,23 @@ fn delays(dataset: &Dataset, description: &Description) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn timing(record: &Record) -> Option<String> {
+fn timing_note(record: &Record) -> Option<String> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
-    let uneven = steps.filter(|s| (s - step).abs() > JITTER * step).count();
+    let uneven = steps
+        .filter(|s| (s - step).abs() > MAX_JITTER_FRACTION * step)
+        .count();
     (uneven > 0).then(|| {
         format!(
             "{}: {uneven} of {} steps differ from {step:.6} s by more than {:.0} %",
             record.name,
             record.times.len() - 1,
-            100.0 * JITTER
+            100.0 * MAX_JITTER_FRACTION
         )
     })
 }
 
-pub(crate) fn held_inputs(record: &Record) -> Option<String> {
+pub(crate) fn held_inputs_note(record: &Record) -> Option<String> {
     let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
     let count = record.input_columns.iter().filter(missing).count();
     (count > 0).then(|| {
@@ -119,18 +124,23 @@ fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
                  about 1e308; expected values that the machine can reach",
                 input.name
             );
-            return Err(Refusal::file(&record.path, message));
+            return Err(Refusal::file_error(&record.path, message));
         }
     }
     Ok(())
 }
 
-fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
+fn check_values(
+    record: &Record,
+    name: &str,
+    noise: f64,
+    column: &[f64],
+) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let known: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
     let missing = column.len() - known.len();
-    let refuse = |message: String| Err(Refusal::file(&record.path, message));
-    if missing as f64 > MOST_MISSING * column.len() as f64 {
+    let refuse = |message: String| Err(Refusal::file_error(&record.path, message));
+    if missing as f64 > MAX_MISSING_FRACTION * column.len() as f64 {
         return refuse(format!(
             "channel `{name}`: {missing} of {} samples are missing; expected at most half of them",
             column.len()
@@ -150,13 +160,13 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
              correct `column`, or remove the channel"
         ));
     }
-    if (high - low) / noise >= MOST_STANDARD_DEVIATIONS {
+    if (high - low) / noise >= MAX_RANGE_OVER_NOISE {
         return refuse(format!(
             "channel `{name}` ranges from {low:.3e} to {high:.3e} with a noise of {noise:.1e} (SI); \
              no sensor resolves this: correct its `unit` or its `noise`"
         ));
     }
-    if high - low < STILL * noise {
+    if high - low < MIN_VARIATION_OVER_NOISE * noise {
         notes.push(format!(
             "{}: `{name}` varies by less than two standard deviations of its noise",
             record.name
@@ -167,7 +177,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
             .windows(2)
             .filter(|p| p[0] == limit && p[1] == limit)
             .count();
-        if at as f64 > CLIPPED * known.len() as f64 {
+        if at as f64 > MAX_CLIPPED_FRACTION * known.len() as f64 {
             notes.push(format!(
                 "{}: `{name}` is exactly {limit} (SI) for {at} samples: it may be clipped; remove the channel, or exclude that part with `from` and `to`",
                 record.name
@@ -177,14 +187,14 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     Ok(notes)
 }
 
-fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
+fn check_channels_differ(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
     for (a, first) in record.channels.iter().enumerate() {
         for (b, second) in record.channels.iter().enumerate().skip(a + 1) {
             for sign in [1.0, -1.0] {
                 let known = |(x, y): &(&f64, &f64)| x.is_finite() && y.is_finite();
                 let mut pairs = first.iter().zip(second).filter(known).peekable();
                 if pairs.peek().is_some() && pairs.all(|(x, y)| *x == sign * y) {
-                    return Err(Refusal::file(
+                    return Err(Refusal::file_error(
                         &record.path,
                         format!(
                             "the channels `{}` and `{}` have the same values up to the sign; give each another column",
@@ -199,12 +209,12 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
 }
 
 /// Checks that a test record does not repeat a training record, up to a time shift and the sign.
-fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
+fn check_records_differ(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
     let file = |record: &Record| record.path.canonicalize().ok();
     let ends = |record: &Record| (record.times[0], record.times[record.times.len() - 1]);
     let (a, b) = (ends(train), ends(test));
     if file(train).is_some() && file(train) == file(test) && a.0 <= b.1 && b.0 <= a.1 {
-        return Err(Refusal::file(
+        return Err(Refusal::file_error(
             &test.path,
             format!(
                 "{} and {} overlap in one file; expected another measurement, or parts that do not overlap",
@@ -219,7 +229,7 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
     else {
         return Ok(());
     };
-    if deviations(channel) < MOVES {
+    if deviations(channel) < MIN_RANGE_OVER_NOISE {
         return Ok(());
     }
     let (a, b) = (&train.channels[channel], &test.channels[channel]);
@@ -228,8 +238,8 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
     let range = (b.len() - shortest) as isize;
     for lag in -((a.len() - shortest) as isize)..=range {
         for sign in [1.0, -1.0] {
-            if is_same(a, b, lag, sign, noise) {
-                return Err(Refusal::file(
+            if is_shifted_copy(a, b, lag, sign, noise) {
+                return Err(Refusal::file_error(
                     &test.path,
                     format!(
                         "{} repeats {}{}{}; expected another measurement",
@@ -254,18 +264,18 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
 }
 
 /// Returns true if two columns are equal to less than the noise, after a shift by `lag` samples.
-fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
+fn is_shifted_copy(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
     let begin = (-lag).max(0) as usize;
     let end = a.len().min((b.len() as isize - lag).max(0) as usize);
-    if end <= begin + PROBES {
+    if end <= begin + PROBE_COUNT {
         return false;
     }
     let difference = |place: usize| a[place] - sign * b[(place as isize + lag) as usize];
-    let probe = |k: usize| difference(begin + k * (end - begin) / PROBES);
-    if (0..PROBES).any(|k| probe(k).abs() > 2.0 * noise) {
+    let probe = |k: usize| difference(begin + k * (end - begin) / PROBE_COUNT);
+    if (0..PROBE_COUNT).any(|k| probe(k).abs() > 2.0 * noise) {
         return false;
     }
-    let most = (SAME * noise).powi(2) * (end - begin) as f64;
+    let most = (MAX_RMS_OVER_NOISE * noise).powi(2) * (end - begin) as f64;
     let (mut sum, mut count) = (0.0, 0);
     for difference in (begin..end).map(difference).filter(|d| d.is_finite()) {
         sum += difference * difference;
@@ -280,20 +290,20 @@ fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
         .iter()
         .copied()
         .fold(f64::NEG_INFINITY, f64::max);
-    let moves = high - low > MOVES * noise;
-    moves && 2 * count > end - begin && sum < (SAME * noise).powi(2) * count as f64
+    let moves = high - low > MIN_RANGE_OVER_NOISE * noise;
+    moves && 2 * count > end - begin && sum < (MAX_RMS_OVER_NOISE * noise).powi(2) * count as f64
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_same;
+    use super::is_shifted_copy;
 
     #[test]
     fn shifted_and_negated_record_is_recognised() {
         let motion: Vec<f64> = (0..500).map(|i| (0.01 * f64::from(i * i)).sin()).collect();
         let later: Vec<f64> = motion[100..].iter().map(|v| -v).collect();
-        assert!(is_same(&motion, &later, -100, -1.0, 1e-3));
-        assert!(!is_same(&motion, &later, -99, -1.0, 1e-3));
-        assert!(!is_same(&motion, &later, -100, 1.0, 1e-3));
+        assert!(is_shifted_copy(&motion, &later, -100, -1.0, 1e-3));
+        assert!(!is_shifted_copy(&motion, &later, -99, -1.0, 1e-3));
+        assert!(!is_shifted_copy(&motion, &later, -100, 1.0, 1e-3));
     }
 }

@@ -9,49 +9,52 @@ use crate::dataset::Dataset;
 use crate::record::Record;
 use crate::refusal::Refusal;
 use crate::samples::{span, typical_step};
-use crate::windows::{Windows, judged};
+use crate::windows::{Windows, compared_samples};
 
-const FEWEST_IN_WINDOW: f64 = 4.0;
+const MIN_SAMPLES_PER_WINDOW: f64 = 4.0;
 
 /// Minimum number of samples of a channel in all windows of a set.
-const FEWEST_COMPARED: usize = 10;
+const MIN_COMPARED_SAMPLES: usize = 10;
 
 /// Range of a channel, in standard deviations of its noise, below which it contains only noise.
-pub(crate) const STILL: f64 = 2.0;
+pub(crate) const MIN_VARIATION_OVER_NOISE: f64 = 2.0;
 
-pub(crate) fn check(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
+pub(crate) fn check_coverage(
+    dataset: &Dataset,
+    description: &Description,
+) -> Result<Vec<String>, Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     let mut notes = Vec::new();
     for (set, records) in [("training", &dataset.train), ("test", &dataset.test)] {
         if let Some(length) = description.windows.length {
-            whole_window(length, set, records).map_err(wrong)?;
+            check_window_fits(length, set, records).map_err(wrong)?;
         }
-        notes.extend(compared(dataset, set, records)?);
-        moving(dataset, description, set, records).map_err(wrong)?;
+        notes.extend(check_compared_samples(dataset, set, records)?);
+        check_motion(dataset, description, set, records).map_err(wrong)?;
     }
     Ok(notes)
 }
 
 /// Checks that a record can be split into windows, before it is split at gaps.
-pub(crate) fn can_be_cut(record: &Record, description: &Description) -> Result<(), Refusal> {
+pub(crate) fn check_splittable(record: &Record, description: &Description) -> Result<(), Refusal> {
     let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
     match description.windows.length {
         Some(length) => {
-            long_enough(length, record).map_err(wrong)?;
-            holes(length, record)
+            check_length(length, record).map_err(wrong)?;
+            check_sample_count(length, record)
         }
         None => Ok(()),
     }
 }
 
-fn long_enough(length: Number, record: &Record) -> Result<(), Diagnostic> {
+fn check_length(length: Number, record: &Record) -> Result<(), Diagnostic> {
     let step = typical_step(&record.times);
     // The small margin prevents a decision by rounding.
-    if length.value >= (FEWEST_IN_WINDOW - 1e-6) * step {
+    if length.value >= (MIN_SAMPLES_PER_WINDOW - 1e-6) * step {
         return Ok(());
     }
     Err(Diagnostic::error(format!(
-        "a window of {} s contains fewer than {FEWEST_IN_WINDOW} samples of {}",
+        "a window of {} s contains fewer than {MIN_SAMPLES_PER_WINDOW} samples of {}",
         length.value, record.name
     ))
     .at(
@@ -61,12 +64,12 @@ fn long_enough(length: Number, record: &Record) -> Result<(), Diagnostic> {
 }
 
 /// Checks that a record has at least as many samples as windows.
-fn holes(length: Number, record: &Record) -> Result<(), Refusal> {
+fn check_sample_count(length: Number, record: &Record) -> Result<(), Refusal> {
     let (span, step) = (duration(record), typical_step(&record.times));
     if span / length.value <= record.times.len() as f64 {
         return Ok(());
     }
-    Err(Refusal::file(
+    Err(Refusal::file_error(
         &record.path,
         format!(
             "{} samples span {span:.3e} s: most of the record is missing; expected a sample every {step:.3e} s",
@@ -80,7 +83,7 @@ fn duration(record: &Record) -> f64 {
 }
 
 /// Checks that a record of a set is as long as one window, up to the sample after its last.
-fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Diagnostic> {
+fn check_window_fits(length: Number, set: &str, records: &[Record]) -> Result<(), Diagnostic> {
     // The extra half sample prevents a decision by rounding.
     let holds = |record: &Record| duration(record) + 1.5 * typical_step(&record.times);
     if records.iter().any(|record| holds(record) >= length.value) {
@@ -100,12 +103,16 @@ fn whole_window(length: Number, set: &str, records: &[Record]) -> Result<(), Dia
     )))
 }
 
-fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<String>, Refusal> {
-    let windows = Windows::cut(records, dataset.window);
+fn check_compared_samples(
+    dataset: &Dataset,
+    set: &str,
+    records: &[Record],
+) -> Result<Vec<String>, Refusal> {
+    let windows = Windows::split_records(records, dataset.window);
     let count = dataset.channels.len();
     let mut samples = vec![0; count];
-    for window in &windows.list {
-        for sample in judged(window.times.len()) {
+    for window in &windows.windows {
+        for sample in compared_samples(window.times.len()) {
             for (channel, samples) in samples.iter_mut().enumerate() {
                 let measured = window.measured[sample * count + channel];
                 *samples += usize::from(measured.is_finite());
@@ -113,17 +120,17 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
         }
     }
     for (channel, samples) in dataset.channels.iter().zip(samples) {
-        if samples < FEWEST_COMPARED {
-            return Err(Refusal::file(
+        if samples < MIN_COMPARED_SAMPLES {
+            return Err(Refusal::file_error(
                 &records[0].path,
                 format!(
-                    "channel `{}` has {samples} samples in the windows of all {set} records; expected {FEWEST_COMPARED} or more",
+                    "channel `{}` has {samples} samples in the windows of all {set} records; expected {MIN_COMPARED_SAMPLES} or more",
                     channel.name
                 ),
             ));
         }
     }
-    let is_used = |place: usize| windows.list.iter().any(|window| window.record == place);
+    let is_used = |place: usize| windows.windows.iter().any(|window| window.record == place);
     let unused = records
         .iter()
         .enumerate()
@@ -139,7 +146,7 @@ fn compared(dataset: &Dataset, set: &str, records: &[Record]) -> Result<Vec<Stri
         .collect())
 }
 
-fn moving(
+fn check_motion(
     dataset: &Dataset,
     description: &Description,
     set: &str,
@@ -153,12 +160,12 @@ fn moving(
         spans.fold(0.0, f64::max)
     };
     let most = (0..dataset.channels.len()).max_by(|a, b| deviations(*a).total_cmp(&deviations(*b)));
-    let Some(place) = most.filter(|place| deviations(*place) < STILL) else {
+    let Some(place) = most.filter(|place| deviations(*place) < MIN_VARIATION_OVER_NOISE) else {
         return Ok(());
     };
     let entry = &description.channels[place];
     Err(Diagnostic::error(format!(
-        "the {set} records contain only noise: no channel varies by {STILL} standard deviations of its noise"
+        "the {set} records contain only noise: no channel varies by {MIN_VARIATION_OVER_NOISE} standard deviations of its noise"
     ))
     .at(
         entry.noise.span,

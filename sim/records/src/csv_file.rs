@@ -8,7 +8,7 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::ColumnKey;
 use crate::description::format::{Format, Separator};
-use crate::header::{MOST_SAMPLES, Table, places, too_many};
+use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples};
 use crate::refusal::Refusal;
 
 /// Separator of cells after runs of spaces are replaced: the ASCII unit separator.
@@ -18,27 +18,27 @@ const UNIT_SEPARATOR: u8 = 0x1f;
 const UTF_16: [&[u8]; 2] = [&[0xff, 0xfe], &[0xfe, 0xff]];
 
 /// Reads columns; a missing number becomes NaN.
-pub fn read(
+pub fn read_columns(
     path: &Path,
     bytes: &[u8],
     format: &Format,
     wanted: &[&ColumnKey],
 ) -> Result<Table, Refusal> {
-    let text = behind_skipped(path, bytes, format)?;
+    let text = skip_lines(path, bytes, format)?;
     let mut file = TextFile::new(path, &text, format)?;
-    let places = places(path, file.first_line, &file.header, wanted)?;
+    let places = find_columns(path, file.first_line, &file.header, wanted)?;
     let mut table = Table {
         columns: vec![Vec::new(); wanted.len()],
         lines: Vec::new(),
     };
-    while let Some((line, record)) = file.next()? {
-        if table.lines.len() == MOST_SAMPLES {
-            return Err(too_many(path));
+    while let Some((line, record)) = file.next_record()? {
+        if table.lines.len() == MAX_SAMPLES {
+            return Err(too_many_samples(path));
         }
         table.lines.push(line);
         for (column, place) in table.columns.iter_mut().zip(&places) {
             let cell = record.get(*place).unwrap_or_default();
-            column.push(number(path, line, cell, *place, format.decimal)?);
+            column.push(read_number(path, line, cell, *place, format.decimal)?);
         }
     }
     Ok(table)
@@ -51,7 +51,7 @@ pub(crate) struct TextFile<'t> {
     pub header: Vec<String>,
     pub first_line: u64,
     pub units: Vec<String>,
-    skipped: u64,
+    skipped_lines: u64,
     record: ByteRecord,
     /// True before the first line is returned, if it contains numbers.
     is_pending: bool,
@@ -75,33 +75,33 @@ impl<'t> TextFile<'t> {
             header: Vec::new(),
             first_line: 1,
             units: Vec::new(),
-            skipped: format.skip as u64,
+            skipped_lines: format.skip as u64,
             record: ByteRecord::new(),
             is_pending: false,
         };
         let empty = "is empty; expected a line of column names and a line per sample";
         if !file.advance()? || file.is_blank() {
-            return Err(Refusal::file(path, empty));
+            return Err(Refusal::file_error(path, empty));
         }
         file.first_line = file.line();
         file.header = file.cells();
         let are_numbers = |cells: &[String]| {
-            let is_number = |cell: &String| parsed(cell, format.decimal).is_some();
+            let is_number = |cell: &String| parse_number(cell, format.decimal).is_some();
             cells.len() > 1 && cells.iter().all(is_number)
         };
-        if format.names && are_numbers(&file.header) {
-            return Err(Refusal::line(
+        if format.has_names && are_numbers(&file.header) {
+            return Err(Refusal::line_error(
                 path,
                 file.first_line,
                 "found numbers, expected the names of the columns; write names = false in [format], and give columns by number",
             ));
         }
-        if !format.names {
+        if !format.has_names {
             file.header = (1..=file.record.len()).map(|n| n.to_string()).collect();
         }
-        file.is_pending = !format.names;
-        if format.units {
-            if !format.names {
+        file.is_pending = !format.has_names;
+        if format.has_units {
+            if !format.has_names {
                 file.units = file.cells();
                 file.is_pending = false;
             } else if file.advance()? {
@@ -119,7 +119,7 @@ impl<'t> TextFile<'t> {
     }
 
     fn line(&self) -> u64 {
-        self.record.position().map_or(0, Position::line) + self.skipped
+        self.record.position().map_or(0, Position::line) + self.skipped_lines
     }
 
     fn is_blank(&self) -> bool {
@@ -129,10 +129,10 @@ impl<'t> TextFile<'t> {
 
     fn advance(&mut self) -> Result<bool, Refusal> {
         let read = self.reader.read_byte_record(&mut self.record);
-        read.map_err(|error| Refusal::file(self.path, error.to_string()))
+        read.map_err(|error| Refusal::file_error(self.path, error.to_string()))
     }
 
-    pub fn next(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
+    pub fn next_record(&mut self) -> Result<Option<(u64, &ByteRecord)>, Refusal> {
         let mut is_pending = std::mem::take(&mut self.is_pending);
         // Spreadsheets write lines of spaces or separators after the last sample.
         while !is_pending || self.is_blank() {
@@ -146,7 +146,7 @@ impl<'t> TextFile<'t> {
         // Some programs end lines of numbers, but not the line of names, with a separator.
         let is_open = cells == expected + 1 && self.record[expected].trim_ascii().is_empty();
         if cells != expected && !is_open {
-            return Err(Refusal::line(
+            return Err(Refusal::line_error(
                 self.path,
                 line,
                 format!(
@@ -159,13 +159,16 @@ impl<'t> TextFile<'t> {
 }
 
 /// Returns the text after the skipped lines, as UTF-8 with one character between cells.
-pub(crate) fn behind_skipped<'b>(
+pub(crate) fn skip_lines<'b>(
     path: &Path,
     bytes: &'b [u8],
     format: &Format,
 ) -> Result<Cow<'b, [u8]>, Refusal> {
     if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
-        return Err(Refusal::file(path, "is UTF-16; expected UTF-8 or ASCII"));
+        return Err(Refusal::file_error(
+            path,
+            "is UTF-16; expected UTF-8 or ASCII",
+        ));
     }
     let mut text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     // Without line feeds, carriage returns end the lines.
@@ -175,7 +178,7 @@ pub(crate) fn behind_skipped<'b>(
     };
     for _ in 0..format.skip {
         let Some(end) = text.iter().position(is_end) else {
-            return Err(Refusal::file(
+            return Err(Refusal::file_error(
                 path,
                 format!(
                     "has no line after the {} skipped lines; reduce skip in [format]",
@@ -203,16 +206,22 @@ pub(crate) fn behind_skipped<'b>(
     Ok(Cow::Owned(parted))
 }
 
-fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Result<f64, Refusal> {
+fn read_number(
+    path: &Path,
+    line: u64,
+    cell: &[u8],
+    place: usize,
+    decimal: u8,
+) -> Result<f64, Refusal> {
     let cell = String::from_utf8_lossy(cell.trim_ascii());
     if cell.is_empty() {
         return Ok(f64::NAN);
     }
-    if let Some(value) = parsed(&cell, decimal) {
+    if let Some(value) = parse_number(&cell, decimal) {
         return Ok(if value.is_finite() { value } else { f64::NAN });
     }
     let other = if decimal == b'.' { ',' } else { '.' };
-    let is_other = parsed(&cell, other as u8).is_some();
+    let is_other = parse_number(&cell, other as u8).is_some();
     let help = match (is_other, other) {
         (true, ',') => "; write decimal = \",\" in [format] if its decimal sign is a comma",
         (true, _) => ": [format] sets decimal = \",\", so a point is not allowed",
@@ -222,14 +231,14 @@ fn number(path: &Path, line: u64, cell: &[u8], place: usize, decimal: u8) -> Res
         (false, _) => "",
     };
     let shown: String = cell.chars().take(40).collect();
-    Err(Refusal::line(
+    Err(Refusal::line_error(
         path,
         line,
         format!("column {}: \"{shown}\" is not a number{help}", place + 1),
     ))
 }
 
-pub(crate) fn parsed(cell: &str, decimal: u8) -> Option<f64> {
+pub(crate) fn parse_number(cell: &str, decimal: u8) -> Option<f64> {
     if decimal == b'.' {
         return cell.parse().ok();
     }

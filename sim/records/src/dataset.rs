@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eomgen_model_spec::model::ObservedRate;
 
-use crate::experiment::{ExperimentBounds, Played};
+use crate::experiment::{ExperimentBounds, ExperimentUnits};
 use crate::record::Record;
 
 /// Quantity of the model that a channel measures.
@@ -47,11 +47,11 @@ pub struct Channel {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransducerPriors {
     /// Prior of the gain.
-    pub gain: Option<Expected>,
+    pub gain: Option<PriorInSi>,
     /// Prior of the bias, in SI.
-    pub bias: Option<Expected>,
+    pub bias: Option<PriorInSi>,
     /// Prior of the delay, in s.
-    pub delay: Option<Expected>,
+    pub delay: Option<PriorInSi>,
 }
 
 /// Priors of an input: gain * (recorded(t - delay) + bias) acts at time t. `None` means exact.
@@ -60,16 +60,16 @@ pub struct InputPriors {
     /// Name of the input.
     pub name: String,
     /// Prior of the gain.
-    pub gain: Option<Expected>,
+    pub gain: Option<PriorInSi>,
     /// Prior of the bias, in SI.
-    pub bias: Option<Expected>,
+    pub bias: Option<PriorInSi>,
     /// Prior of the delay, in s.
-    pub delay: Option<Expected>,
+    pub delay: Option<PriorInSi>,
 }
 
 /// Prior of a number, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expected {
+pub struct PriorInSi {
     /// Mean; `None` for the default.
     pub mean: Option<f64>,
     /// Standard deviation; 0 if the number is known.
@@ -93,16 +93,16 @@ pub enum Initial {
     /// Unknown.
     Estimate,
     /// Values of states by name, in SI.
-    Given(Vec<(String, f64)>),
+    Values(Vec<(String, f64)>),
 }
 
 /// Source of a window's initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum StartSource {
     /// Estimated inside the window.
-    Fitted,
+    Estimate,
     /// Read from the smoothed record.
-    Smoothed,
+    SmoothedRecord,
 }
 
 /// Records with their descriptions.
@@ -125,13 +125,13 @@ pub struct Dataset {
     /// Length of a window, in s; `None` for one window per record.
     pub window: Option<f64>,
     /// Source of a window's initial state.
-    pub start: Start,
+    pub start: StartSource,
     /// Parameters that may be refitted.
     pub uncertain: Vec<Uncertain>,
     /// Bounds of the next experiment.
     pub experiment: ExperimentBounds,
     /// Units of the next experiment's columns.
-    pub played: Played,
+    pub experiment_units: ExperimentUnits,
     /// All coordinates of the model if the records give the motion. Channels then measure the
     /// inputs that the motion requires. Empty if the model computes the motion.
     pub motion: Vec<String>,

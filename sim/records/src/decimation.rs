@@ -4,18 +4,18 @@
 use std::f64::consts::PI;
 
 /// Frequency with half of the amplitude, relative to the new sampling rate.
-const CUT_OFF: f64 = 0.4;
+const RELATIVE_CUT_OFF: f64 = 0.4;
 
 /// Half length of the low-pass filter, in kept samples. With a Hamming window it passes up to three
 /// fifths of the new Nyquist frequency. Above that frequency less than 1/200 remains.
-const REACH: usize = 8;
+const HALF_LENGTH_SAMPLES: usize = 8;
 
 /// Fraction of the filter weights with missing samples above which a sample is missing.
-const MOST_MISSING: f64 = 0.5;
+const MAX_MISSING_FRACTION: f64 = 0.5;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Decimation {
-    every: usize,
+    factor: usize,
     /// Weights of the low-pass filter from its middle on; `None` without a filter.
     low_pass: Option<Vec<f64>>,
 }
@@ -23,13 +23,13 @@ pub(crate) struct Decimation {
 impl Decimation {
     pub fn new(every: usize, filter: bool) -> Self {
         Self {
-            every,
-            low_pass: (filter && every > 1).then(|| low_pass(every)),
+            factor: every,
+            low_pass: (filter && every > 1).then(|| low_pass_weights(every)),
         }
     }
 
     pub fn is_idle(&self) -> bool {
-        self.every == 1
+        self.factor == 1
     }
 
     pub fn is_filtered(&self) -> bool {
@@ -37,7 +37,7 @@ impl Decimation {
     }
 
     /// Returns the factor of the standard deviation of white noise.
-    pub fn noise(&self) -> f64 {
+    pub fn noise_factor(&self) -> f64 {
         let Some(weights) = &self.low_pass else {
             return 1.0;
         };
@@ -45,50 +45,50 @@ impl Decimation {
         (2.0 * squares.sum::<f64>() - weights[0] * weights[0]).sqrt()
     }
 
-    pub fn taken<T: Copy>(&self, column: &[T]) -> Vec<T> {
-        column.iter().step_by(self.every).copied().collect()
+    pub fn pick_samples<T: Copy>(&self, column: &[T]) -> Vec<T> {
+        column.iter().step_by(self.factor).copied().collect()
     }
 
-    pub fn measured(&self, column: &[f64]) -> Vec<f64> {
+    pub fn decimate_measured(&self, column: &[f64]) -> Vec<f64> {
         match &self.low_pass {
-            None => self.taken(column),
+            None => self.pick_samples(column),
             Some(weights) => (0..column.len())
-                .step_by(self.every)
-                .map(|sample| passed(column, sample, weights))
+                .step_by(self.factor)
+                .map(|sample| filter_sample(column, sample, weights))
                 .collect(),
         }
     }
 
     /// Decimates a held column: returns the means until the next kept sample.
-    pub fn held(&self, column: &[f64]) -> Vec<f64> {
+    pub fn decimate_held(&self, column: &[f64]) -> Vec<f64> {
         if !self.is_filtered() {
-            return self.taken(column);
+            return self.pick_samples(column);
         }
         let mean = |held: &[f64]| {
             let known = held.iter().filter(|value| value.is_finite());
             let (sum, count) = known.fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0));
             sum / count
         };
-        column.chunks(self.every).map(mean).collect()
+        column.chunks(self.factor).map(mean).collect()
     }
 }
 
 /// Returns a Hamming-windowed sinc with the sum 1, from its middle on.
-fn low_pass(every: usize) -> Vec<f64> {
-    let reach = (REACH * every) as f64;
+fn low_pass_weights(every: usize) -> Vec<f64> {
+    let reach = (HALF_LENGTH_SAMPLES * every) as f64;
     let weight = |k: usize| {
         let k = k as f64;
-        let phase = 2.0 * PI * CUT_OFF / every as f64 * k;
+        let phase = 2.0 * PI * RELATIVE_CUT_OFF / every as f64 * k;
         let sinc = if k == 0.0 { 1.0 } else { phase.sin() / phase };
         sinc * (0.54 + 0.46 * (PI * k / reach).cos())
     };
-    let weights: Vec<f64> = (0..=REACH * every).map(weight).collect();
+    let weights: Vec<f64> = (0..=HALF_LENGTH_SAMPLES * every).map(weight).collect();
     let sum = 2.0 * weights.iter().sum::<f64>() - weights[0];
     weights.into_iter().map(|weight| weight / sum).collect()
 }
 
 /// Returns the filtered column at a sample; beyond its ends the column is reflected at a point.
-fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
+fn filter_sample(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
     let last = column.len() - 1;
     let at = |place: isize| match usize::try_from(place) {
         Err(_) => 2.0 * column[0] - column[place.unsigned_abs().min(last)],
@@ -106,7 +106,7 @@ fn passed(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
             known += weight;
         }
     }
-    if known < MOST_MISSING * all.min(1.0) {
+    if known < MAX_MISSING_FRACTION * all.min(1.0) {
         return f64::NAN;
     }
     sum / known
@@ -123,7 +123,7 @@ mod tests {
     }
 
     /// Returns the largest difference of two columns, without their ends.
-    fn apart(a: &[f64], b: &[f64]) -> f64 {
+    fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         let middle = a.len() / 10..a.len() - a.len() / 10;
         let pairs = a[middle.clone()].iter().zip(&b[middle]);
         pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
@@ -134,30 +134,33 @@ mod tests {
         let kept = Decimation::new(10, true);
         for frequency in [0.01, 0.1, 0.3] {
             let slow = wave(frequency);
-            let passed = apart(&kept.measured(&slow), &kept.taken(&slow));
+            let passed =
+                largest_difference(&kept.decimate_measured(&slow), &kept.pick_samples(&slow));
             assert!(passed < 5e-3, "{frequency}: {passed}");
         }
         for frequency in [0.5, 0.7, 1.1, 3.0] {
-            let fast = kept.measured(&wave(frequency));
-            let left = apart(&fast, &vec![0.0; fast.len()]);
+            let fast = kept.decimate_measured(&wave(frequency));
+            let left = largest_difference(&fast, &vec![0.0; fast.len()]);
             assert!(left < 5e-3, "{frequency}: {left}");
         }
         let plain = Decimation::new(10, false);
-        let folded = plain.measured(&wave(1.1));
-        assert!(apart(&folded, &vec![0.0; folded.len()]) > 0.9);
+        let folded = plain.decimate_measured(&wave(1.1));
+        assert!(largest_difference(&folded, &vec![0.0; folded.len()]) > 0.9);
     }
 
     #[test]
     fn low_pass_keeps_lines_and_bridges_missing_samples() {
         let mut line: Vec<f64> = (0..1000).map(|k| 3.0 + 0.5 * f64::from(k)).collect();
         let kept = Decimation::new(7, true);
-        let pairs = |column: &[f64]| apart(&kept.measured(column), &kept.taken(column));
+        let pairs = |column: &[f64]| {
+            largest_difference(&kept.decimate_measured(column), &kept.pick_samples(column))
+        };
         assert!(pairs(&line) < 1e-9);
-        let whole = kept.taken(&line);
+        let whole = kept.pick_samples(&line);
         line[350] = f64::NAN;
-        assert!(apart(&kept.measured(&line), &whole) < 1.0);
+        assert!(largest_difference(&kept.decimate_measured(&line), &whole) < 1.0);
         line[200..500].fill(f64::NAN);
-        assert!(kept.measured(&line)[50].is_nan());
+        assert!(kept.decimate_measured(&line)[50].is_nan());
     }
 
     #[test]
@@ -174,15 +177,22 @@ mod tests {
             (column.iter().map(|v| v * v).sum::<f64>() / column.len() as f64).sqrt()
         };
         let kept = Decimation::new(10, true);
-        let shrunk = rms(&kept.measured(&noise)) / rms(&noise);
-        assert!((shrunk / kept.noise() - 1.0).abs() < 0.02, "{shrunk}");
-        assert!((kept.noise() - 0.28).abs() < 0.02, "{}", kept.noise());
+        let shrunk = rms(&kept.decimate_measured(&noise)) / rms(&noise);
+        assert!(
+            (shrunk / kept.noise_factor() - 1.0).abs() < 0.02,
+            "{shrunk}"
+        );
+        assert!(
+            (kept.noise_factor() - 0.28).abs() < 0.02,
+            "{}",
+            kept.noise_factor()
+        );
     }
 
     #[test]
     fn decimated_input_keeps_its_impulse() {
         let kept = Decimation::new(4, true);
-        let held = kept.held(&[1.0, 2.0, 3.0, 6.0, 8.0, f64::NAN, 8.0, 8.0, 5.0]);
+        let held = kept.decimate_held(&[1.0, 2.0, 3.0, 6.0, 8.0, f64::NAN, 8.0, 8.0, 5.0]);
         assert_eq!(held, [3.0, 8.0, 5.0]);
     }
 }

@@ -8,7 +8,7 @@ use eomgen_model_spec::unit::Unit;
 use crate::description::Description;
 use crate::description::experiment::NumberRange;
 
-const MOST_SAMPLES: f64 = 1e6;
+const MAX_SAMPLES: f64 = 1e6;
 
 /// Bounds of the next experiment, in SI; `None` if the dataset file does not give them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,14 +36,14 @@ pub struct InputBounds {
 
 /// Units of the columns of an experiment to run.
 #[derive(Clone, Debug)]
-pub struct Played {
+pub struct ExperimentUnits {
     /// Unit of the time column.
     pub time: Unit,
     /// Unit of each input's column; `None` if the input has no column and is 0.
     pub inputs: Vec<Option<Unit>>,
 }
 
-pub(crate) fn bound(
+pub(crate) fn bind_experiment(
     description: &Description,
     model: &Model,
     (inputs, channels): (&[Option<Unit>], &[Unit]),
@@ -57,14 +57,14 @@ pub(crate) fn bound(
         limits: vec![None; description.channels.len()],
     };
     if let (Some(duration), Some(sample)) = (said.duration, said.sample)
-        && duration.value / sample.value > MOST_SAMPLES
+        && duration.value / sample.value > MAX_SAMPLES
     {
         found.push(
             Diagnostic::error(format!(
                 "an experiment of {:.0} samples is too long",
                 duration.value / sample.value
             ))
-            .at(duration.span, format!("expected at most {MOST_SAMPLES:.0}"))
+            .at(duration.span, format!("expected at most {MAX_SAMPLES:.0}"))
             .also(sample.span, "sample time"),
         );
     }
@@ -88,7 +88,7 @@ pub(crate) fn bound(
             continue;
         };
         bounds.inputs[place] = InputBounds {
-            range: input.range.map(|range| in_si(range, unit)),
+            range: input.range.map(|range| range_in_si(range, unit)),
             rate: input.rate.map(|rate| unit.to_si(rate.value)),
             band: input.band.map(|band| (band.low.value, band.high.value)),
         };
@@ -97,7 +97,7 @@ pub(crate) fn bound(
         let place = description.channels.iter();
         let place = { place }.position(|channel| channel.name.text == name.text);
         match place.and_then(|place| Some((place, channels.get(place)?))) {
-            Some((place, unit)) => bounds.limits[place] = Some(in_si(*limit, unit)),
+            Some((place, unit)) => bounds.limits[place] = Some(range_in_si(*limit, unit)),
             None => {
                 let known = description.channels.iter();
                 let known = known.map(|channel| channel.name.text.as_str());
@@ -112,6 +112,6 @@ pub(crate) fn bound(
     bounds
 }
 
-fn in_si(range: NumberRange, unit: &Unit) -> (f64, f64) {
+fn range_in_si(range: NumberRange, unit: &Unit) -> (f64, f64) {
     (unit.to_si(range.low.value), unit.to_si(range.high.value))
 }

@@ -8,7 +8,7 @@ use eomgen_model_spec::table::Written;
 use crate::description::Description;
 use crate::description::records::Stretch;
 
-pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
+pub fn find_record<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
     let none = || {
         format!(
@@ -29,7 +29,7 @@ pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d St
 }
 
 /// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.
-pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
+pub fn resolve_record_path(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
     let relative = Path::new(&file.text);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let folder = match dataset.parent() {

@@ -1,26 +1,26 @@
 //! Gaps in a record. The inputs in a gap are unknown, so the parts become separate records.
 
 use crate::record::Record;
-use crate::samples::{FEWEST_SAMPLES, LOST, typical_step};
+use crate::samples::{MIN_GAP_STEPS, MIN_SAMPLES, typical_step};
 
 /// Number of gaps above which a record has uneven steps and is not split.
-const MOST: usize = 20;
+const MAX_GAPS: usize = 20;
 
 /// Splits a record at gaps, which are added to `notes`, and drops short parts.
-pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
+pub(crate) fn split_at_gaps(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
     let step = typical_step(&record.times);
     let steps = record.times.windows(2).enumerate();
     let gaps: Vec<usize> = steps
-        .filter(|(_, pair)| pair[1] - pair[0] > LOST * step)
+        .filter(|(_, pair)| pair[1] - pair[0] > MIN_GAP_STEPS * step)
         .map(|(before, _)| before + 1)
         .collect();
-    if gaps.is_empty() || gaps.len() > MOST {
+    if gaps.is_empty() || gaps.len() > MAX_GAPS {
         return vec![record];
     }
     let ends = gaps.iter().copied().chain([record.times.len()]);
     let begins = [0].into_iter().chain(gaps.iter().copied());
     let parts: Vec<std::ops::Range<usize>> = begins.zip(ends).map(|(a, b)| a..b).collect();
-    if parts.iter().all(|part| part.len() < FEWEST_SAMPLES) {
+    if parts.iter().all(|part| part.len() < MIN_SAMPLES) {
         return vec![record];
     }
     for gap in &gaps {
@@ -35,7 +35,7 @@ pub(crate) fn unbroken(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
     let mut found = Vec::with_capacity(parts.len());
     for part in parts {
         let begin = record.times[part.start];
-        if part.len() < FEWEST_SAMPLES {
+        if part.len() < MIN_SAMPLES {
             notes.push(format!(
                 "{}: the {} samples from {begin:.6} s on are too few and are ignored",
                 record.name,

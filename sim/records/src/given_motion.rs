@@ -11,9 +11,9 @@ use crate::description::Description;
 use crate::description::columns::MotionColumn;
 use crate::description::motion::InitialState;
 use crate::motion_rates::{GivenColumn, GivenKind};
-use crate::units::unit;
+use crate::units::parse_unit;
 
-pub(crate) fn columns<'d>(
+pub(crate) fn given_columns<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
@@ -90,10 +90,10 @@ fn given_column<'d>(
     let kind_and_unit = |kind: GivenKind, unit: Unit| GivenColumn {
         name: &given.name.text,
         column: &given.column,
-        unit,
+        parse_unit,
         kind,
     };
-    if let Ok(unit) = unit(written, &of_speed) {
+    if let Ok(unit) = parse_unit(written, &of_speed) {
         if given.column.wrap.is_some() {
             return Err(
                 Diagnostic::error("`wrap` is not used: a speed does not wrap around")
@@ -104,7 +104,7 @@ fn given_column<'d>(
         let initial = given.initial.map_or(initial, |number| number.value);
         return Ok(kind_and_unit(GivenKind::Speed { initial }, unit));
     }
-    let unit = unit(written, &own.to_string())
+    let unit = parse_unit(written, &own.to_string())
         .map_err(|wrong| wrong.help(format!("a position is in {own}, a speed in {of_speed}")))?;
     match given.initial {
         Some(number) => Err(Diagnostic::error(
@@ -129,10 +129,7 @@ fn initial_position(model: &Model, coordinate: &str) -> f64 {
         .unwrap_or(0.0)
 }
 
-pub(crate) fn notes_of_speeds(
-    columns: &[GivenColumn<'_>],
-    description: &Description,
-) -> Vec<String> {
+pub(crate) fn speed_notes(columns: &[GivenColumn<'_>], description: &Description) -> Vec<String> {
     let is_stated = |name: &str| {
         let mut given = description.motion.iter();
         given.any(|given| given.name.text == name && given.initial.is_some())
@@ -150,7 +147,7 @@ pub(crate) fn notes_of_speeds(
 }
 
 /// Checks that a channel is admissible: with a given motion it measures an input or a quantity.
-pub(crate) fn admitted(
+pub(crate) fn check_channel(
     quantity: Quantity,
     gives_motion: bool,
     asked: &str,

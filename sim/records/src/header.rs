@@ -8,7 +8,7 @@ use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
 /// Maximum number of samples of a record, a hundred times more than a search handles in minutes.
-pub const MOST_SAMPLES: usize = 1_000_000;
+pub const MAX_SAMPLES: usize = 1_000_000;
 
 #[derive(Clone, Debug, Default)]
 pub struct Table {
@@ -20,7 +20,7 @@ pub struct Table {
 const COMMENT: char = '#';
 
 /// Returns the indices of the wanted columns. `line` is the line number of the names.
-pub fn places(
+pub fn find_columns(
     path: &Path,
     line: u64,
     there: &[String],
@@ -32,7 +32,7 @@ pub fn places(
             ColumnKey::Number(number, _) if *number <= there.len() => return Ok(number - 1),
             ColumnKey::Number(number, _) => {
                 let count = there.len();
-                return Err(Refusal::line(
+                return Err(Refusal::line_error(
                     path,
                     line,
                     format!("there is no column {number}; the file has {count}"),
@@ -42,7 +42,7 @@ pub fn places(
         let mut found = (there.iter().enumerate()).filter(|(_, header)| header.trim() == name);
         match (found.next(), found.next()) {
             (Some((place, _)), None) => Ok(place),
-            (Some(_), Some(_)) => Err(Refusal::line(
+            (Some(_), Some(_)) => Err(Refusal::line_error(
                 path,
                 line,
                 format!("there are two columns `{name}`; rename one, or give the column's number"),
@@ -51,7 +51,7 @@ pub fn places(
                 let list = there.join(", ");
                 let shown: String = list.chars().take(200).collect();
                 let shown = visible(&shown);
-                let parted = match parted(there) {
+                let parted = match guess_separator(there) {
                     _ if there[0].starts_with(COMMENT) => format!(
                         ": this line is a comment; write comment = \"{COMMENT}\" in [format], or set skip to the number of lines \
                          above the names"
@@ -59,7 +59,7 @@ pub fn places(
                     Some(by) => format!(": its columns are separated by {by}"),
                     None => String::new(),
                 };
-                Err(Refusal::line(
+                Err(Refusal::line_error(
                     path,
                     line,
                     format!("there is no column `{name}`; the file has {shown}{parted}"),
@@ -71,7 +71,7 @@ pub fn places(
 }
 
 /// Returns the likely separator of names that were read as one column, with a cure.
-fn parted(there: &[String]) -> Option<String> {
+fn guess_separator(there: &[String]) -> Option<String> {
     let [one] = there else { return None };
     let by = [
         (';', "semicolons", ";"),
@@ -84,11 +84,11 @@ fn parted(there: &[String]) -> Option<String> {
     Some(format!("{name}; write separator = \"{word}\" in [format]"))
 }
 
-pub fn too_many(path: &Path) -> Refusal {
-    Refusal::file(
+pub fn too_many_samples(path: &Path) -> Refusal {
+    Refusal::file_error(
         path,
         format!(
-            "has more than {MOST_SAMPLES} samples, the maximum: split the record, or reduce its sampling rate"
+            "has more than {MAX_SAMPLES} samples, the maximum: split the record, or reduce its sampling rate"
         ),
     )
 }

@@ -7,14 +7,14 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
 
-use crate::bound;
-use crate::checks::held_inputs;
+use crate::binding;
+use crate::checks::held_inputs_note;
 use crate::decimation::Decimation;
 use crate::description::Description;
-use crate::files::numbered;
-use crate::record::Columns;
+use crate::files::find_record;
+use crate::record::RecordReader;
 use crate::refusal::Refusal;
-use crate::samples::FEWEST_OF_INPUTS;
+use crate::samples::MIN_INPUT_SAMPLES;
 
 /// Reads the inputs, without channels, of a record such as `train[0]`; returns warnings too.
 pub fn read_inputs(
@@ -23,7 +23,7 @@ pub fn read_inputs(
     model: &Model,
 ) -> Result<(HeldInputs, Vec<String>), Refusal> {
     let description = Description::read(dataset)?;
-    let file = numbered(&description, record).map_err(Refusal::Record)?;
+    let file = find_record(&description, record).map_err(Refusal::Record)?;
     let mut found = Diagnostics::new(description.source.clone());
     if let Some(given) = description.motion.first() {
         found.push(
@@ -32,31 +32,31 @@ pub fn read_inputs(
                 .help("use `compare` or `discover`: they compute the forces that such a motion requires"),
         );
     }
-    let time = found.keep(bound::time_unit(&description));
-    let inputs = bound::inputs(&description, model, &mut found);
+    let time = found.keep(binding::time_unit(&description));
+    let inputs = binding::bind_inputs(&description, model, &mut found);
     let Some(time) = time.filter(|_| found.is_empty()) else {
         return Err(found.into());
     };
-    let columns = Columns {
+    let columns = RecordReader {
         description: &description,
         path: dataset,
         time: &time,
         inputs: &inputs,
         motion: &[],
         channels: &[],
-        starts: &[],
+        initial_values: &[],
         model,
         decimation: &Decimation::new(description.time.every, description.time.filter),
-        fewest: FEWEST_OF_INPUTS,
+        min_samples: MIN_INPUT_SAMPLES,
     };
-    let mut warnings = notes_of_inputs(&description, model);
-    let record = columns.record(record, file, &mut warnings)?;
-    warnings.extend(held_inputs(&record));
+    let mut warnings = input_notes(&description, model);
+    let record = columns.read_record(record, file, &mut warnings)?;
+    warnings.extend(held_inputs_note(&record));
     Ok((record.inputs, warnings))
 }
 
 /// Returns notes on input columns that the model does not have, and on inputs without a column.
-pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
+pub fn input_notes(description: &Description, model: &Model) -> Vec<String> {
     // Rates of prescribed motion are computed from the spline through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = || own().map(|input| input.name.as_str());
@@ -74,7 +74,8 @@ pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> 
     for (input, value) in model.inputs.iter().zip(undriven) {
         let name = &input.name;
         let is_fed = (description.inputs.iter()).any(|column| column.name.text == *name);
-        let is_measured = (description.channels.iter()).any(|channel| channel.measures() == name);
+        let is_measured =
+            (description.channels.iter()).any(|channel| channel.quantity_name() == name);
         if input.rate_of.is_some() || is_fed || is_measured {
             continue;
         }

@@ -49,12 +49,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod bound;
+mod binding;
 pub mod checks;
 mod columns;
 mod coverage;
 mod csv_file;
 pub mod dataset;
+mod dataset_reader;
 mod decimation;
 pub mod description;
 pub mod experiment;
@@ -67,7 +68,6 @@ mod motion_rates;
 pub mod noise;
 mod parquet_file;
 pub mod proposal;
-mod read;
 pub mod record;
 pub mod refusal;
 mod rest;
@@ -79,7 +79,7 @@ mod wrap_detection;
 mod wrap_period;
 mod wrapped_columns;
 
+pub use dataset_reader::read_dataset;
 pub use inputs::read_inputs;
-pub use proposal::proposed;
-pub use read::read_dataset;
+pub use proposal::propose_dataset;
 pub use refusal::Refusal;

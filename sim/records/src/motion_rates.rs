@@ -22,7 +22,7 @@ pub(crate) enum GivenKind {
 }
 
 /// Returns samples, rates and second rates by a cubic spline; `None` without known samples.
-pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
+pub(crate) fn differentiate_position(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
     let samples = times.iter().zip(column);
     let known = samples.filter(|(_, value)| value.is_finite());
     let (at, values) = known.map(|(t, value)| (*t, *value)).unzip();
@@ -39,8 +39,12 @@ pub(crate) fn with_rates(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]>
 /// Returns positions, rates and second rates from samples of the speed; `None` without a known
 /// sample. The speed is the cubic spline through the known samples. Its integral from `initial` at
 /// the first sample is the position, its derivative the second rate.
-pub(crate) fn integrated(times: &[f64], speeds: &[f64], initial: f64) -> Option<[Vec<f64>; 3]> {
-    let [rates, second, bends] = with_rates(times, speeds)?;
+pub(crate) fn integrate_speed(
+    times: &[f64],
+    speeds: &[f64],
+    initial: f64,
+) -> Option<[Vec<f64>; 3]> {
+    let [rates, second, bends] = differentiate_position(times, speeds)?;
     let mut position = initial;
     let mut positions = Vec::with_capacity(times.len());
     positions.push(position);
@@ -56,7 +60,7 @@ pub(crate) fn integrated(times: &[f64], speeds: &[f64], initial: f64) -> Option<
 
 #[cfg(test)]
 mod tests {
-    use super::integrated;
+    use super::integrate_speed;
 
     #[test]
     fn motion_from_speed_is_consistent() {
@@ -64,7 +68,7 @@ mod tests {
         let speed = |t: f64| 2.0 + 3.0 * (4.0 * t).cos();
         let mut speeds: Vec<f64> = times.iter().map(|t| speed(*t)).collect();
         speeds[150] = f64::NAN;
-        let [positions, rates, second] = integrated(&times, &speeds, 0.5).expect("a motion");
+        let [positions, rates, second] = integrate_speed(&times, &speeds, 0.5).expect("a motion");
         for (k, t) in times.iter().enumerate() {
             let wanted = [
                 0.5 + 2.0 * t + 0.75 * (4.0 * t).sin(),

@@ -3,20 +3,20 @@
 use crate::unwrapping::median;
 
 /// Orders of the differences. At high orders slow motion vanishes and noise remains.
-const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
+const DIFFERENCE_ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// Median absolute value of a normal distribution, in standard deviations.
-const MEDIAN: f64 = 0.674_489_750_196_081_7;
+const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Returns the standard deviation of the white noise of an evenly sampled column, at least that of
 /// its resolution; `None` for a constant column. Differences of order n of white noise have the
 /// variance binomial(2n, n). The smallest estimate of all orders applies, because motion only
 /// increases it.
-pub fn estimated(column: &[f64]) -> Option<f64> {
+pub fn estimate_noise(column: &[f64]) -> Option<f64> {
     let mut differences: Vec<f64> = column.to_vec();
     let mut least = f64::INFINITY;
     let mut variance = 1.0;
-    for order in 1..=*ORDERS.end() {
+    for order in 1..=*DIFFERENCE_ORDERS.end() {
         differences = differences
             .windows(2)
             .map(|pair| pair[1] - pair[0])
@@ -24,17 +24,17 @@ pub fn estimated(column: &[f64]) -> Option<f64> {
         // Recurrence of binomial(2n, n).
         let n = order as f64;
         variance *= 2.0 * (2.0 * n - 1.0) / n;
-        if ORDERS.contains(&order)
-            && let Some(median) = median_size(&differences)
+        if DIFFERENCE_ORDERS.contains(&order)
+            && let Some(median) = median_magnitude(&differences)
         {
-            least = least.min(median / MEDIAN / f64::sqrt(variance));
+            least = least.min(median / NORMAL_MEDIAN / f64::sqrt(variance));
         }
     }
     let found = least.max(resolution(column)? / f64::sqrt(12.0));
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
-fn median_size(differences: &[f64]) -> Option<f64> {
+fn median_magnitude(differences: &[f64]) -> Option<f64> {
     let known = differences
         .iter()
         .map(|d| d.abs())
@@ -54,7 +54,7 @@ fn resolution(column: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::estimated;
+    use super::estimate_noise;
 
     /// Returns nearly normal numbers with mean 0 and standard deviation 1.
     fn normal(count: usize) -> Vec<f64> {
@@ -78,15 +78,15 @@ mod tests {
             noise.map(|(k, n)| motion(k) + sd * n).collect()
         };
         for sd in [1e-5, 1e-3, 0.1] {
-            let found = estimated(&noisy(sd)).expect("noise");
+            let found = estimate_noise(&noisy(sd)).expect("noise");
             assert!((found / sd - 1.0).abs() < 0.1, "{sd}: {found}");
         }
         let step = 2.0 * std::f64::consts::PI / 4096.0;
         let rounded: Vec<f64> = (0..4000)
             .map(|k| (motion(k) / step).round() * step)
             .collect();
-        let found = estimated(&rounded).expect("noise");
+        let found = estimate_noise(&rounded).expect("noise");
         assert!(found > 0.9 * step / 12f64.sqrt() && found < step, "{found}");
-        assert_eq!(estimated(&[1.0; 100]), None);
+        assert_eq!(estimate_noise(&[1.0; 100]), None);
     }
 }

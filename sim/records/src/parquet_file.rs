@@ -10,18 +10,18 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
 use crate::description::columns::ColumnKey;
-use crate::header::{MOST_SAMPLES, Table, places, too_many};
+use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples};
 use crate::refusal::Refusal;
 
 /// Reads columns; a missing number becomes NaN.
-pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
+pub fn read_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     // The parquet crate panics on some damaged files.
     let said = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
-    let columns = std::panic::catch_unwind(|| decoded(path, bytes, wanted));
+    let columns = std::panic::catch_unwind(|| decode_columns(path, bytes, wanted));
     std::panic::set_hook(said);
     columns.unwrap_or_else(|_| {
-        Err(Refusal::file(
+        Err(Refusal::file_error(
             path,
             "cannot be read as Parquet: it is damaged",
         ))
@@ -29,9 +29,10 @@ pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table,
 }
 
 /// Returns names and numbers (from 1) of a file's numeric columns, in their order.
-pub(crate) fn names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
-    let reader = SerializedFileReader::new(Bytes::from(bytes))
-        .map_err(|error| Refusal::file(path, format!("cannot be read as Parquet: {error}")))?;
+pub(crate) fn column_names(path: &Path, bytes: Vec<u8>) -> Result<Vec<(usize, String)>, Refusal> {
+    let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(|error| {
+        Refusal::file_error(path, format!("cannot be read as Parquet: {error}"))
+    })?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let columns = (1..).zip(schema.columns());
     let numbers = columns.filter(|(_, column)| is_number(column.physical_type()));
@@ -47,13 +48,14 @@ fn is_number(kind: Physical) -> bool {
     )
 }
 
-fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
-    let broken =
-        |error: ParquetError| Refusal::file(path, format!("cannot be read as Parquet: {error}"));
+fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
+    let broken = |error: ParquetError| {
+        Refusal::file_error(path, format!("cannot be read as Parquet: {error}"))
+    };
     let length = bytes.len();
     let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(broken)?;
-    if !is_whole(reader.metadata(), length) {
-        return Err(Refusal::file(
+    if !has_valid_offsets(reader.metadata(), length) {
+        return Err(Refusal::file_error(
             path,
             "cannot be read as Parquet: it refers to columns outside of the file",
         ));
@@ -61,23 +63,23 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
     let metadata = reader.metadata().file_metadata();
     let schema = metadata.schema_descr_ptr();
     let columns = schema.columns();
-    if metadata.num_rows() > MOST_SAMPLES as i64 {
-        return Err(too_many(path));
+    if metadata.num_rows() > MAX_SAMPLES as i64 {
+        return Err(too_many_samples(path));
     }
     if columns.iter().any(|column| column.path().parts().len() > 1) {
-        return Err(Refusal::file(
+        return Err(Refusal::file_error(
             path,
             "has nested columns; expected one number per column and row",
         ));
     }
     let there = columns.iter().map(|column| column.name().to_owned());
     let there: Vec<String> = there.collect();
-    let places = places(path, 1, &there, wanted)?;
-    for place in &places {
+    let places = find_columns(path, 1, &there, wanted)?;
+    for place in &find_columns {
         let kind = columns[*place].physical_type();
         if !is_number(kind) {
             let name = &there[*place];
-            return Err(Refusal::file(
+            return Err(Refusal::file_error(
                 path,
                 format!("the column `{name}` contains {kind}; expected numbers"),
             ));
@@ -88,13 +90,15 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
         let row = row.map_err(broken)?;
         if values
             .first()
-            .is_some_and(|column| column.len() == MOST_SAMPLES)
+            .is_some_and(|column| column.len() == MAX_SAMPLES)
         {
-            return Err(too_many(path));
+            return Err(too_many_samples(path));
         }
         for (column, place) in values.iter_mut().zip(&places) {
             let field = row.get_column_iter().nth(*place).map(|(_, field)| field);
-            column.push(field.map_or(Ok(f64::NAN), |field| number(path, &there[*place], field))?);
+            column.push(field.map_or(Ok(f64::NAN), |field| {
+                number_from_field(path, &there[*place], field)
+            })?);
         }
     }
     let lines = (0..values.first().map_or(0, Vec::len) as u64).map(|row| row + 2);
@@ -105,7 +109,7 @@ fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<Table, 
 }
 
 /// Returns true if all offsets are inside the file. The reader does not check this.
-fn is_whole(metadata: &ParquetMetaData, length: usize) -> bool {
+fn has_valid_offsets(metadata: &ParquetMetaData, length: usize) -> bool {
     let inside = |offset: i64, size: i64| {
         let end = offset.checked_add(size);
         offset >= 0 && size >= 0 && end.is_some_and(|end| end as u64 <= length as u64)
@@ -126,7 +130,7 @@ fn is_whole(metadata: &ParquetMetaData, length: usize) -> bool {
             == i128::from(metadata.file_metadata().num_rows())
 }
 
-fn number(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {
+fn number_from_field(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {
     let value = match field {
         Field::Double(value) => *value,
         Field::Float(value) => f64::from(*value),
@@ -140,7 +144,7 @@ fn number(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {
         Field::ULong(value) => *value as f64,
         Field::Null => f64::NAN,
         _ => {
-            return Err(Refusal::file(
+            return Err(Refusal::file_error(
                 path,
                 format!("the column `{name}` contains dates or text; expected numbers"),
             ));
@@ -163,14 +167,14 @@ mod tests {
     use eomgen_model_spec::span::Span;
     use eomgen_model_spec::table::Written;
 
-    use super::{ColumnKey, read};
+    use super::{ColumnKey, read_columns};
 
-    fn named(names: [&str; 2]) -> [ColumnKey; 2] {
+    fn column_keys(names: [&str; 2]) -> [ColumnKey; 2] {
         names.map(|name| ColumnKey::Name(Written::inferred(name, Span::default())))
     }
 
     /// Returns a file with the columns `t` (double, compressed) and `n` (integers, some missing).
-    fn file(rows: i64) -> Vec<u8> {
+    fn parquet_bytes(rows: i64) -> Vec<u8> {
         let field = |name: &str, kind: Physical, repetition: Repetition| {
             let field = Type::primitive_type_builder(name, kind).with_repetition(repetition);
             Arc::new(field.build().expect("a column"))
@@ -206,8 +210,9 @@ mod tests {
 
     #[test]
     fn compressed_columns_and_missing_integers_are_read() {
-        let [n, t] = named(["n", "t"]);
-        let table = read(Path::new("a.parquet"), file(10), &[&n, &t]).expect("a record");
+        let [n, t] = column_keys(["n", "t"]);
+        let table =
+            read_columns(Path::new("a.parquet"), parquet_bytes(10), &[&n, &t]).expect("a record");
         let columns = table.columns;
         assert!(columns[0][0].is_nan() && columns[0][3].is_nan());
         assert_eq!(columns[0][1..3], [1.0, 2.0]);
@@ -219,10 +224,10 @@ mod tests {
 
     #[test]
     fn damaged_files_do_not_panic() {
-        let whole = file(40);
-        let [t, n] = named(["t", "n"]);
+        let whole = parquet_bytes(40);
+        let [t, n] = column_keys(["t", "n"]);
         for place in 0..whole.len() {
-            let answer = |bytes| read(Path::new("a.parquet"), bytes, &[&t, &n]);
+            let answer = |bytes| read_columns(Path::new("a.parquet"), bytes, &[&t, &n]);
             assert!(answer(whole[..place].to_vec()).is_err());
             for damage in [0x01, 0x80, 0xff] {
                 let mut bytes = whole.clone();

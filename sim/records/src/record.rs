@@ -14,11 +14,11 @@ use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::columns::Column;
 use crate::description::records::Stretch;
-use crate::files::beside;
+use crate::files::resolve_record_path;
 use crate::header::Table;
-use crate::motion_rates::{GivenColumn, GivenKind, integrated, with_rates};
+use crate::motion_rates::{GivenColumn, GivenKind, differentiate_position, integrate_speed};
 use crate::refusal::Refusal;
-use crate::samples::{JITTER, check_known, check_times, typical_step};
+use crate::samples::{MAX_JITTER_FRACTION, check_known, check_times, typical_step};
 use crate::wrapped_columns::{ReadColumn, unwrap_columns};
 
 /// Record in SI.
@@ -43,12 +43,17 @@ pub struct Record {
 
 impl Record {
     /// Returns the samples of a given coordinate; `inputs` is the number of the model's inputs.
-    pub fn given(&self, coordinate: usize, inputs: usize) -> Vec<f64> {
+    pub fn given_motion(&self, coordinate: usize, inputs: usize) -> Vec<f64> {
         self.column(inputs + coordinate)
     }
 
     /// Returns the rate of a given coordinate; `coordinates` is their number.
-    pub fn given_rate(&self, coordinate: usize, coordinates: usize, inputs: usize) -> Vec<f64> {
+    pub fn given_motion_rate(
+        &self,
+        coordinate: usize,
+        coordinates: usize,
+        inputs: usize,
+    ) -> Vec<f64> {
         self.column(inputs + coordinates + coordinate)
     }
 
@@ -58,7 +63,7 @@ impl Record {
     }
 }
 
-pub(crate) struct Columns<'d> {
+pub(crate) struct RecordReader<'d> {
     pub description: &'d Description,
     pub path: &'d Path,
     pub time: &'d Unit,
@@ -66,14 +71,14 @@ pub(crate) struct Columns<'d> {
     pub motion: &'d [GivenColumn<'d>],
     pub channels: &'d [Unit],
     /// Known initial value of each channel, in SI.
-    pub starts: &'d [Option<f64>],
+    pub initial_values: &'d [Option<f64>],
     pub model: &'d Model,
     pub decimation: &'d Decimation,
-    pub fewest: usize,
+    pub min_samples: usize,
 }
 
-impl Columns<'_> {
-    pub fn record(
+impl RecordReader<'_> {
+    pub fn read_record(
         &self,
         name: &str,
         stretch: &Stretch,
@@ -81,10 +86,10 @@ impl Columns<'_> {
     ) -> Result<Record, Refusal> {
         let wrong =
             |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
-        let place = beside(self.path, &stretch.file).map_err(wrong)?;
-        let mut table = self.table(&place, name, stretch, notes)?;
+        let place = resolve_record_path(self.path, &stretch.file).map_err(wrong)?;
+        let mut table = self.read_table(&place, name, stretch, notes)?;
         self.add_rates(&place, &mut table)?;
-        let is_continued = self.cut(stretch, &mut table)?;
+        let is_continued = self.cut_to_stretch(stretch, &mut table)?;
         self.decimate(&place, &mut table)?;
         let first_motion = 1 + self.inputs.iter().flatten().count();
         let channels = (table.columns).split_off(first_motion + 3 * self.motion.len());
@@ -97,13 +102,13 @@ impl Columns<'_> {
             .map(|(fed, value)| (fed.as_ref().and_then(|_| columns.next()), value))
             .map(|(column, value)| column.unwrap_or_else(|| vec![value; times.len()]))
             .collect();
-        check_times(&place, &times, &table.lines, self.fewest)?;
+        check_times(&place, &times, &table.lines, self.min_samples)?;
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
             check_known(&place, &format!("input `{}`", input.name), column)?;
         }
         Ok(Record {
             name: name.to_owned(),
-            inputs: self.driving(&times, &input_columns, motion),
+            inputs: self.build_inputs(&times, &input_columns, motion),
             path: place,
             times,
             input_columns,
@@ -112,38 +117,40 @@ impl Columns<'_> {
         })
     }
 
-    fn read(&self) -> Vec<ReadColumn<'_>> {
+    fn read_columns(&self) -> Vec<ReadColumn<'_>> {
         let fed = self.model.inputs.iter().zip(self.inputs);
         let inputs = fed.filter_map(|(input, fed)| {
             let (column, unit) = fed.as_ref()?;
-            Some(ReadColumn::of("inputs", &input.name, column, unit))
+            Some(ReadColumn::new("inputs", &input.name, column, unit))
         });
         let motion = self.motion.iter();
         let motion =
-            motion.map(|given| ReadColumn::of("motion", given.name, given.column, &given.unit));
+            motion.map(|given| ReadColumn::new("motion", given.name, given.column, &given.unit));
         let channels = self.description.channels.iter().zip(self.channels);
-        let channels = channels.zip(self.starts).map(|((channel, unit), start)| {
-            let column = ReadColumn::of("channels", &channel.name.text, &channel.column, unit);
-            column.starting_at(*start)
-        });
+        let channels = channels
+            .zip(self.initial_values)
+            .map(|((channel, unit), start)| {
+                let column = ReadColumn::new("channels", &channel.name.text, &channel.column, unit);
+                column.with_start(*start)
+            });
         inputs.chain(motion).chain(channels).collect()
     }
 
     /// Reads time, input columns, given motion and channels, in SI and unwrapped.
-    fn table(
+    fn read_table(
         &self,
         place: &Path,
         name: &str,
         stretch: &Stretch,
         notes: &mut Vec<String>,
     ) -> Result<Table, Refusal> {
-        let read = self.read();
+        let read = self.read_columns();
         let mut wanted = vec![&self.description.time.column.column];
         wanted.extend(read.iter().map(|column| &column.column.column));
         let units = [self.time]
             .into_iter()
             .chain(read.iter().map(|column| column.unit));
-        let mut table = columns::read(place, &self.description.format, &wanted)?;
+        let mut table = columns::read_columns(place, &self.description.format, &wanted)?;
         for (column, unit) in table.columns.iter_mut().zip(units) {
             for value in column.iter_mut() {
                 // A number that overflows in SI counts as missing.
@@ -153,7 +160,7 @@ impl Columns<'_> {
             }
         }
         check_times(place, &table.columns[0], &table.lines, 1)?;
-        let (from, to) = self.ends(stretch);
+        let (from, to) = self.stretch_ends(stretch);
         let gaps = unwrap_columns(&read, (place, from..to), &mut table)
             .map_err(|wrong| Diagnostics::one(self.description.source.clone(), wrong))?;
         notes.extend(gaps.into_iter().map(|gap| format!("{name}: {gap}")));
@@ -161,7 +168,7 @@ impl Columns<'_> {
     }
 
     /// Returns the first time of a part and the time after its last, in s.
-    fn ends(&self, stretch: &Stretch) -> (f64, f64) {
+    fn stretch_ends(&self, stretch: &Stretch) -> (f64, f64) {
         let end = |number: Option<Number>, open: f64| {
             number.map_or(open, |number| self.time.to_si(number.value))
         };
@@ -183,15 +190,15 @@ impl Columns<'_> {
             check_known(place, &format!("motion of `{}`", coordinate.name), column)?;
             let times = &table.columns[0];
             let motion = match coordinate.kind {
-                GivenKind::Position => with_rates(times, column),
-                GivenKind::Speed { initial } => integrated(times, column, initial),
+                GivenKind::Position => differentiate_position(times, column),
+                GivenKind::Speed { initial } => integrate_speed(times, column, initial),
             };
             let Some(found) = motion else {
                 let nothing = format!(
                     "the motion of `{}` is empty; expected numbers",
                     coordinate.name
                 );
-                return Err(Refusal::file(place, nothing));
+                return Err(Refusal::file_error(place, nothing));
             };
             for (all, column) in rates.iter_mut().zip(found) {
                 all.push(column);
@@ -202,11 +209,11 @@ impl Columns<'_> {
     }
 
     /// Keeps the samples between two times, if given. Returns true if samples before were dropped.
-    fn cut(&self, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
+    fn cut_to_stretch(&self, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
         if stretch.from.is_none() && stretch.to.is_none() {
             return Ok(false);
         }
-        let (from, to) = self.ends(stretch);
+        let (from, to) = self.stretch_ends(stretch);
         let times = &table.columns[0];
         let kept = times.partition_point(|t| *t < from)..times.partition_point(|t| *t < to);
         if kept.is_empty() {
@@ -245,9 +252,9 @@ impl Columns<'_> {
         }
         let step = typical_step(&table.columns[0]);
         let mut steps = table.columns[0].windows(2).map(|pair| pair[1] - pair[0]);
-        let uneven = steps.position(|s| (s - step).abs() > JITTER * step);
+        let uneven = steps.position(|s| (s - step).abs() > MAX_JITTER_FRACTION * step);
         if let Some(sample) = uneven.filter(|_| decimation.is_filtered()) {
-            return Err(Refusal::line(
+            return Err(Refusal::line_error(
                 place,
                 table.lines[sample + 1],
                 "the low-pass filter of `every` in [time] requires even time steps, and this one differs; \
@@ -257,14 +264,14 @@ impl Columns<'_> {
         let inputs = 1 + self.inputs.iter().flatten().count();
         for (number, column) in table.columns.iter_mut().enumerate() {
             *column = match number {
-                0 => decimation.taken(column),
+                0 => decimation.pick_samples(column),
                 number if number < inputs && !self.is_prescribed(number - 1) => {
-                    decimation.held(column)
+                    decimation.decimate_held(column)
                 }
-                _ => decimation.measured(column),
+                _ => decimation.decimate_measured(column),
             };
         }
-        table.lines = decimation.taken(&table.lines);
+        table.lines = decimation.pick_samples(&table.lines);
         Ok(())
     }
 
@@ -277,10 +284,15 @@ impl Columns<'_> {
     }
 
     /// Returns the inputs, held or splines of prescribed motion, and columns of a given motion.
-    fn driving(&self, times: &[f64], columns: &[Vec<f64>], motion: Vec<Vec<f64>>) -> HeldInputs {
+    fn build_inputs(
+        &self,
+        times: &[f64],
+        columns: &[Vec<f64>],
+        motion: Vec<Vec<f64>>,
+    ) -> HeldInputs {
         let mut inputs = match motion.is_empty() {
-            true => held(times, columns),
-            false => held(times, &[columns, &motion].concat()),
+            true => hold_inputs(times, columns),
+            false => hold_inputs(times, &[columns, &motion].concat()),
         };
         let places = self.model.inputs.iter().zip(self.inputs).enumerate();
         for (place, (input, column)) in places {
@@ -298,7 +310,7 @@ impl Columns<'_> {
     }
 }
 
-fn held(times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
+fn hold_inputs(times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
     let mut last = vec![0.0; columns.len()];
     let mut values = Vec::with_capacity(times.len() * columns.len());
     for sample in 0..times.len() {

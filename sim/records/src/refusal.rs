@@ -15,12 +15,12 @@ pub enum Refusal {
 
 impl Refusal {
     /// Creates an error of a whole record.
-    pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
+    pub fn file_error(path: &Path, message: impl std::fmt::Display) -> Self {
         Self::Record(format!("{}: {message}", path.display()))
     }
 
     /// Creates an error in a line of a record.
-    pub fn line(path: &Path, line: u64, message: impl std::fmt::Display) -> Self {
+    pub fn line_error(path: &Path, line: u64, message: impl std::fmt::Display) -> Self {
         Self::Record(format!("{}, line {line}: {message}", path.display()))
     }
 }

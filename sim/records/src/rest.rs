@@ -8,22 +8,22 @@ use crate::noise;
 use crate::record::Record;
 
 /// Rate below which a coordinate is at rest, in standard deviations of its noise.
-const AT_REST: f64 = 4.0;
+const REST_SPEED_OVER_NOISE: f64 = 4.0;
 
 /// Rate below which a coordinate is at rest, relative to the record's largest, without noise.
-const LEAST_RATE: f64 = 1e-9;
+const MIN_RELATIVE_RATE: f64 = 1e-9;
 
 /// Removes samples of inputs while their coordinate rests, where static friction is unknown.
-pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
+pub(crate) fn remove_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> {
     let mut notes = Vec::new();
     for place in 0..dataset.channels.len() {
         let Quantity::Input(input) = dataset.channels[place].quantity else {
             continue;
         };
-        let coordinates = worked_on(model, input);
+        let coordinates = driven_coordinates(model, input);
         let name = &dataset.channels[place].name;
         for record in dataset.train.iter_mut().chain(&mut dataset.test) {
-            let resting = at_rest(record, model, &coordinates);
+            let resting = samples_at_rest(record, model, &coordinates);
             let mut count = 0;
             for (value, rests) in record.channels[place].iter_mut().zip(resting) {
                 if rests && value.is_finite() {
@@ -43,10 +43,10 @@ pub(crate) fn without_rest(dataset: &mut Dataset, model: &Model) -> Vec<String> 
     notes
 }
 
-fn worked_on(model: &Model, input: usize) -> Vec<usize> {
+fn driven_coordinates(model: &Model, input: usize) -> Vec<usize> {
     let mut found = Vec::new();
     for force in &model.forces {
-        if !holds(
+        if !contains_part(
             model,
             &force.value,
             &|kind| matches!(kind, ExprKind::Input(id) if id.index() == input),
@@ -55,7 +55,7 @@ fn worked_on(model: &Model, input: usize) -> Vec<usize> {
         }
         for coordinate in 0..model.coordinates.len() {
             let is = |kind: &ExprKind| matches!(kind, ExprKind::Coordinate(id) if *id == CoordinateId::new(coordinate));
-            if !found.contains(&coordinate) && holds(model, &force.on, &is) {
+            if !found.contains(&coordinate) && contains_part(model, &force.on, &is) {
                 found.push(coordinate);
             }
         }
@@ -63,7 +63,7 @@ fn worked_on(model: &Model, input: usize) -> Vec<usize> {
     found
 }
 
-fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
+fn contains_part(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
     let mut found = false;
     let mut definitions: Vec<DefinitionId> = Vec::new();
     let mut look = |expr: &Expr, definitions: &mut Vec<DefinitionId>| {
@@ -86,16 +86,16 @@ fn holds(model: &Model, expr: &Expr, is: &dyn Fn(&ExprKind) -> bool) -> bool {
 }
 
 /// Returns true for samples where a coordinate rests or reverses, so that friction is unknown.
-fn at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
+fn samples_at_rest(record: &Record, model: &Model, coordinates: &[usize]) -> Vec<bool> {
     let (inputs, count) = (model.inputs.len(), model.coordinates.len());
     let mut resting = vec![false; record.times.len()];
     for coordinate in coordinates {
-        let rates = record.given_rate(*coordinate, count, inputs);
+        let rates = record.given_motion_rate(*coordinate, count, inputs);
         let largest = rates
             .iter()
             .fold(0.0, |most: f64, rate| most.max(rate.abs()));
-        let noise = noise::estimated(&rates).unwrap_or(0.0);
-        let least = (AT_REST * noise).max(LEAST_RATE * largest);
+        let noise = noise::estimate_noise(&rates).unwrap_or(0.0);
+        let least = (REST_SPEED_OVER_NOISE * noise).max(MIN_RELATIVE_RATE * largest);
         for (sample, rests) in resting.iter_mut().enumerate() {
             let near = sample.saturating_sub(1)..(sample + 2).min(rates.len());
             let turns = rates[near].windows(2).any(|pair| pair[0] * pair[1] <= 0.0);

@@ -5,19 +5,19 @@ use std::path::Path;
 use crate::refusal::Refusal;
 
 /// Minimum number of samples of a record.
-pub const FEWEST_SAMPLES: usize = 50;
+pub const MIN_SAMPLES: usize = 50;
 
 /// Minimum number of samples of inputs for a simulation.
-pub const FEWEST_OF_INPUTS: usize = 2;
+pub const MIN_INPUT_SAMPLES: usize = 2;
 
 /// Maximum fraction of missing samples of a held input or an interpolated given motion.
-const MOST_HELD: f64 = 0.1;
+const MAX_HELD_FRACTION: f64 = 0.1;
 
 /// Step, relative to the usual one, above which there is a gap. Smaller deviations are jitter.
-pub(crate) const LOST: f64 = 5.0;
+pub(crate) const MIN_GAP_STEPS: f64 = 5.0;
 
 /// Relative deviation of a step from the usual one that counts as jitter.
-pub(crate) const JITTER: f64 = 0.1;
+pub(crate) const MAX_JITTER_FRACTION: f64 = 0.1;
 
 /// Checks for at least `fewest` finite, increasing times; `lines` are their line numbers.
 pub fn check_times(
@@ -27,21 +27,21 @@ pub fn check_times(
     fewest: usize,
 ) -> Result<(), Refusal> {
     if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
-        return Err(Refusal::line(
+        return Err(Refusal::line_error(
             path,
             lines[sample],
             "the time is missing; expected a number",
         ));
     }
     if let Some(sample) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
-        return Err(Refusal::line(
+        return Err(Refusal::line_error(
             path,
             lines[sample + 1],
             "the time does not increase; expected samples in order, each once",
         ));
     }
     if times.len() < fewest {
-        return Err(Refusal::file(
+        return Err(Refusal::file_error(
             path,
             format!("has {} samples; expected {fewest} or more", times.len()),
         ));
@@ -52,8 +52,8 @@ pub fn check_times(
 /// Checks that an input or a given motion, named `what` in the message, has few missing samples.
 pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusal> {
     let missing = column.iter().filter(|value| !value.is_finite()).count();
-    if missing as f64 > MOST_HELD * column.len() as f64 {
-        return Err(Refusal::file(
+    if missing as f64 > MAX_HELD_FRACTION * column.len() as f64 {
+        return Err(Refusal::file_error(
             path,
             format!(
                 "{what}: {missing} of {} samples are missing; expected at most a tenth of them",

@@ -4,7 +4,7 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::table::Written;
 use eomgen_model_spec::unit::Unit;
 
-pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
+pub fn parse_unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
     let wrong = |message: String| Diagnostic::error(message);
     let text = &written.text;
     let unit = Unit::parse(text).map_err(|error| {

@@ -4,15 +4,15 @@
 use crate::samples::typical_step;
 
 /// Step, relative to the usual one, above which there is a gap.
-const GAP: f64 = 1.5;
+const MIN_GAP_STEPS: f64 = 1.5;
 
 /// Largest difference, in periods, between extrapolations over a gap from its two sides.
-const MOST_UNKNOWN: f64 = 0.25;
+const MAX_DIFFERENCE_PERIODS: f64 = 0.25;
 
 /// Number of steps whose median rate, robust against an outlier, predicts the next value.
-const RECENT: usize = 5;
+const RECENT_STEPS: usize = 5;
 
-pub(crate) struct Unwrapped {
+pub(crate) struct UnwrappedColumn {
     /// Values; NaN for a missing sample.
     pub values: Vec<f64>,
     /// Gaps with an unknown number of periods, as times of the samples before and after.
@@ -21,17 +21,17 @@ pub(crate) struct Unwrapped {
 
 /// Unwraps a column from its first sample on. Each further sample gets the number of periods that
 /// is nearest to the extrapolated motion, which may exceed half a period per sample.
-pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped {
+pub(crate) fn unwrap_values(times: &[f64], column: &[f64], period: f64) -> UnwrappedColumn {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
         .collect();
     let at: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
-    let longest = GAP * typical_step(&at);
-    let motion = Wrapped {
+    let longest = MIN_GAP_STEPS * typical_step(&at);
+    let motion = WrappedColumn {
         times: at,
         values: samples.iter().map(|sample| column[*sample]).collect(),
         period,
-        longest,
+        longest_step: longest,
     };
     let mut values = column.to_vec();
     let mut unknown = Vec::new();
@@ -45,7 +45,7 @@ pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped
             if let Some(after) = after {
                 let before = before.unwrap_or(after);
                 more = motion.turns(k, 0.5 * (before + after));
-                if (after - before).abs() * duration > MOST_UNKNOWN * period {
+                if (after - before).abs() * duration > MAX_DIFFERENCE_PERIODS * period {
                     unknown.push((motion.times[k - 1], motion.times[k]));
                 }
             }
@@ -54,17 +54,17 @@ pub(crate) fn unwrapped(times: &[f64], column: &[f64], period: f64) -> Unwrapped
         values[samples[k]] += period * turns;
         remember(&mut recent, motion.rate(k, more));
     }
-    Unwrapped { values, unknown }
+    UnwrappedColumn { values, unknown }
 }
 
-struct Wrapped {
+struct WrappedColumn {
     times: Vec<f64>,
     values: Vec<f64>,
     period: f64,
-    longest: f64,
+    longest_step: f64,
 }
 
-impl Wrapped {
+impl WrappedColumn {
     /// Returns the periods to add at a sample, relative to the one before, for a given rate.
     fn turns(&self, k: usize, rate: f64) -> f64 {
         let expected = rate * (self.times[k] - self.times[k - 1]);
@@ -79,8 +79,8 @@ impl Wrapped {
     /// Returns the rate after a sample, near `guess`, if steps without a gap follow.
     fn rate_from(&self, first: usize, guess: f64) -> Option<f64> {
         let mut rates = Vec::new();
-        for k in first + 1..self.times.len().min(first + 1 + RECENT) {
-            if self.times[k] - self.times[k - 1] > self.longest {
+        for k in first + 1..self.times.len().min(first + 1 + RECENT_STEPS) {
+            if self.times[k] - self.times[k - 1] > self.longest_step {
                 break;
             }
             let expected = median(&rates).unwrap_or(guess);
@@ -91,7 +91,7 @@ impl Wrapped {
 }
 
 fn remember(recent: &mut Vec<f64>, rate: f64) {
-    if recent.len() == RECENT {
+    if recent.len() == RECENT_STEPS {
         recent.remove(0);
     }
     recent.push(rate);
@@ -105,7 +105,7 @@ pub(crate) fn median(numbers: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::unwrapped;
+    use super::unwrap_values;
 
     const STEP: f64 = 0.01;
 
@@ -114,14 +114,14 @@ mod tests {
     }
 
     /// Returns values in 0..360, rounded to the counts of a sensor with 4096 per turn.
-    fn wrapped(motion: &[f64]) -> Vec<f64> {
+    fn wrap_values(motion: &[f64]) -> Vec<f64> {
         let counter = |v: &f64| (v.rem_euclid(360.0) / 360.0 * 4096.0).floor() / 4096.0 * 360.0;
         motion.iter().map(counter).collect()
     }
 
     /// Returns the largest error of an unwrapped motion that starts between 0 and 360.
     fn error(motion: &[f64], column: &[f64]) -> f64 {
-        let found = unwrapped(&times(motion.len()), column, 360.0);
+        let found = unwrap_values(&times(motion.len()), column, 360.0);
         assert!(found.unknown.is_empty(), "{:?}", found.unknown);
         let pairs = motion.iter().zip(&found.values);
         let known = pairs.filter(|(_, value)| value.is_finite());
@@ -135,12 +135,12 @@ mod tests {
                 let motion: Vec<f64> = (0..500)
                     .map(|k| 10.0 + sign * per_sample * f64::from(k))
                     .collect();
-                assert!(error(&motion, &wrapped(&motion)) < 0.1, "{per_sample}");
+                assert!(error(&motion, &wrap_values(&motion)) < 0.1, "{per_sample}");
             }
         }
         // From rest to 270 degrees per sample.
         let faster: Vec<f64> = (0..900).map(|k| 0.15 * f64::from(k * k)).collect();
-        assert!(error(&faster, &wrapped(&faster)) < 0.1);
+        assert!(error(&faster, &wrap_values(&faster)) < 0.1);
     }
 
     #[test]
@@ -148,9 +148,9 @@ mod tests {
         let motion: Vec<f64> = (0..600)
             .map(|k| 360.0 + 30.0 * (0.05 * f64::from(k)).sin() + 5.0 * (2.7 * f64::from(k)).sin())
             .collect();
-        let mut column = wrapped(&motion);
+        let mut column = wrap_values(&motion);
         column[300] = 170.0;
-        let found = unwrapped(&times(600), &column, 360.0);
+        let found = unwrap_values(&times(600), &column, 360.0);
         let offset = motion[0] - found.values[0];
         for k in (0..600).filter(|k| *k != 300) {
             assert!((motion[k] - found.values[k] - offset).abs() < 0.2, "{k}");
@@ -160,16 +160,16 @@ mod tests {
     #[test]
     fn turns_in_gap_follow_from_speed_or_are_unknown() {
         let motion: Vec<f64> = (0..400).map(|k| 5.0 + 100.0 * f64::from(k)).collect();
-        let mut column = wrapped(&motion);
+        let mut column = wrap_values(&motion);
         column[200..230].fill(f64::NAN);
         assert!(error(&motion, &column) < 0.1);
         // Twice as fast after the gap.
         let motion: Vec<f64> = (0..400)
             .map(|k| 50.0 * f64::from(k.min(215)) + 100.0 * f64::from((k - 215).max(0)))
             .collect();
-        let mut column = wrapped(&motion);
+        let mut column = wrap_values(&motion);
         column[200..230].fill(f64::NAN);
-        let found = unwrapped(&times(400), &column, 360.0);
+        let found = unwrap_values(&times(400), &column, 360.0);
         assert_eq!(found.unknown.len(), 1);
         let (from, to) = found.unknown[0];
         assert!((from - 1.99).abs() < 1e-9 && (to - 2.3).abs() < 1e-9);

@@ -6,22 +6,22 @@ use crate::record::Record;
 use crate::samples::typical_step;
 
 /// Samples at a window's start and end that a delayed or early sensor can read from outside.
-const MARGIN: (usize, usize) = (LONGEST_DELAY as usize, LONGEST_LEAD as usize);
+const MARGIN_SAMPLES: (usize, usize) = (MAX_DELAY_SAMPLES as usize, MAX_LEAD_SAMPLES as usize);
 
 /// Largest delay of a sensor, in samples; as many are ignored at the start of each window.
-pub const LONGEST_DELAY: f64 = 8.0;
+pub const MAX_DELAY_SAMPLES: f64 = 8.0;
 
 /// Largest lead of a sensor, in samples: four standard deviations of its prior.
-pub const LONGEST_LEAD: f64 = 2.0;
+pub const MAX_LEAD_SAMPLES: f64 = 2.0;
 
 /// Returns the samples to compare, without margins for delays unless these are most of the window.
-pub fn judged(samples: usize) -> std::ops::Range<usize> {
-    let (begin, end) = MARGIN;
+pub fn compared_samples(samples: usize) -> std::ops::Range<usize> {
+    let (begin, end) = MARGIN_SAMPLES;
     begin.min(samples / 4)..samples - end.min(samples / 4)
 }
 
 /// Minimum length of a window, relative to the requested length.
-const SHORTEST: f64 = 0.5;
+const MIN_RELATIVE_LENGTH: f64 = 0.5;
 
 /// Part of a record.
 #[derive(Clone, Debug)]
@@ -44,12 +44,12 @@ pub struct Windows<'d> {
     /// Records that are split.
     pub records: &'d [Record],
     /// Windows, by record and time.
-    pub list: Vec<Window>,
+    pub windows: Vec<Window>,
 }
 
 impl<'d> Windows<'d> {
     /// Splits records into windows of this length in s, or uses each record as one window.
-    pub fn cut(records: &'d [Record], length: Option<f64>) -> Self {
+    pub fn split_records(records: &'d [Record], length: Option<f64>) -> Self {
         let mut list: Vec<Window> = Vec::new();
         for (place, record) in records.iter().enumerate() {
             let begin = record.times[0];
@@ -75,7 +75,7 @@ impl<'d> Windows<'d> {
                 }
                 let times = record.times[samples.clone()].to_vec();
                 let duration = times[times.len() - 1] - times[0];
-                if duration < SHORTEST * wanted {
+                if duration < MIN_RELATIVE_LENGTH * wanted {
                     continue;
                 }
                 let rows = samples.clone();
@@ -90,12 +90,15 @@ impl<'d> Windows<'d> {
                 previous = Some(list.len() - 1);
             }
         }
-        Self { records, list }
+        Self {
+            records,
+            windows: list,
+        }
     }
 
     /// Returns the number of measurements in all windows, missing ones included.
-    pub fn numbers(&self) -> f64 {
-        let counts = self.list.iter().map(|window| window.measured.len());
+    pub fn measurement_count(&self) -> f64 {
+        let counts = self.windows.iter().map(|window| window.measured.len());
         counts.sum::<usize>() as f64
     }
 

@@ -3,28 +3,28 @@
 //! jumps, but rests at its levels, and rest proves nothing.
 
 use crate::noise;
-use crate::unwrapping::{median, unwrapped};
+use crate::unwrapping::{median, unwrap_values};
 use crate::wrap_period::{ColumnUnit, estimate_period};
 
-const FEWEST: usize = 10;
+const MIN_CROSSINGS: usize = 10;
 
 /// Largest relative difference between jumps, between range and period, and between two periods.
-pub(crate) const ALIKE: f64 = 0.1;
+pub(crate) const MAX_RELATIVE_DIFFERENCE: f64 = 0.1;
 
 /// Minimum motion, in standard deviations of the noise.
-const MOVES: f64 = 5.0;
+const MIN_MOTION_OVER_NOISE: f64 = 5.0;
 
 /// Number of samples within which jumps back and forth are one crossing with noise.
-const CHATTER: usize = 20;
+const MAX_CHATTER_SAMPLES: usize = 20;
 
 /// Number of samples around a crossing within which the motion must exceed its noise.
-const REACH: usize = 1000;
+const MOTION_SEARCH_SAMPLES: usize = 1000;
 
 /// Minimum fraction of crossings that continue at the same speed.
-const MOST: f64 = 0.8;
+const MIN_CONTINUED_FRACTION: f64 = 0.8;
 
 /// Number of steps around a jump that determine its speed.
-const BESIDE: usize = 5;
+const STEPS_AROUND_JUMP: usize = 5;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WrapPattern {
@@ -37,17 +37,17 @@ pub(crate) struct WrapPattern {
     pub count: usize,
     pub is_turn: bool,
     /// True if the motion travels through the whole range between jumps.
-    pub travels: bool,
+    pub has_full_travel: bool,
 }
 
 impl WrapPattern {
     /// Returns true if the column is wrapped. For an input, only jumps of a full turn prove it.
     pub fn is_wrapped(&self, is_input: bool) -> bool {
-        self.is_turn || (self.travels && !is_input)
+        self.is_turn || (self.has_full_travel && !is_input)
     }
 
     /// Returns the number for a dataset file, to one digit beyond its uncertainty if not usual.
-    pub fn written(&self, period: f64) -> String {
+    pub fn format_period(&self, period: f64) -> String {
         if self.is_turn {
             return format!("{period}");
         }
@@ -62,7 +62,7 @@ impl WrapPattern {
     }
 
     /// Returns the uncertainty of the period as a remark, unless the sensor does not resolve it.
-    pub fn doubt(&self, period: f64) -> Option<String> {
+    pub fn uncertainty_note(&self, period: f64) -> Option<String> {
         let own = self.uncertainty? / self.period * period;
         let rounded = format!("{own:.0e}").parse::<f64>().unwrap_or(own);
         Some(format!(
@@ -72,26 +72,30 @@ impl WrapPattern {
 }
 
 /// Returns the pattern of a wrapped column; `None` if no jumps look like ends of the range.
-pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> Option<WrapPattern> {
+pub(crate) fn detect_wrapping(
+    times: &[f64],
+    column: &[f64],
+    unit: ColumnUnit,
+) -> Option<WrapPattern> {
     let samples: Vec<usize> = (0..column.len())
         .filter(|sample| column[*sample].is_finite())
         .collect();
-    if samples.len() < FEWEST {
+    if samples.len() < MIN_CROSSINGS {
         return None;
     }
     let times: Vec<f64> = samples.iter().map(|sample| times[*sample]).collect();
     let values: Vec<f64> = samples.iter().map(|sample| column[*sample]).collect();
     let jumps = common_jumps(&values)?;
     let period = estimate_period(&values, &jumps, unit)?;
-    let motion = unwrapped(&times, &values, period.value).values;
+    let motion = unwrap_values(&times, &values, period.value).values;
     let crossings = crossings(&jumps, &values);
-    let threshold = MOVES * noise::estimated(&motion).unwrap_or(0.0);
+    let threshold = MIN_MOTION_OVER_NOISE * noise::estimate_noise(&motion).unwrap_or(0.0);
     let decided: Vec<bool> = crossings
         .iter()
         .filter_map(|crossing| crossing.is_continued(&motion, threshold))
         .collect();
     let continued = decided.iter().filter(|is_continued| **is_continued).count();
-    if decided.is_empty() || (continued as f64) < MOST * decided.len() as f64 {
+    if decided.is_empty() || (continued as f64) < MIN_CONTINUED_FRACTION * decided.len() as f64 {
         return None;
     }
     let mut neighbours = crossings.windows(2);
@@ -102,7 +106,7 @@ pub(crate) fn wrap_pattern(times: &[f64], column: &[f64], unit: ColumnUnit) -> O
         first: times[jumps[0] + 1],
         count: jumps.len(),
         is_turn: period.is_turn,
-        travels: neighbours.any(|pair| pair[0].direction == pair[1].direction),
+        has_full_travel: neighbours.any(|pair| pair[0].direction == pair[1].direction),
     })
 }
 
@@ -116,7 +120,8 @@ fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let is_jump = |k: &usize| step(*k).abs() > 0.5 * range;
     let jumps: Vec<usize> = (0..values.len() - 1).filter(is_jump).collect();
     let beside = |jump: usize| -> f64 {
-        let near = jump.saturating_sub(BESIDE)..(jump + BESIDE + 1).min(values.len() - 1);
+        let near = jump.saturating_sub(STEPS_AROUND_JUMP)
+            ..(jump + STEPS_AROUND_JUMP + 1).min(values.len() - 1);
         let regular: Vec<f64> = near.filter(|k| !is_jump(k)).map(step).collect();
         median(&regular).unwrap_or(0.0)
     };
@@ -127,12 +132,12 @@ fn common_jumps(values: &[f64]) -> Option<Vec<usize>> {
     let period = median(&sizes)?;
     let alike = sizes
         .iter()
-        .filter(|size| (**size - period).abs() < ALIKE * period)
+        .filter(|size| (**size - period).abs() < MAX_RELATIVE_DIFFERENCE * period)
         .count();
     let speeds: Vec<f64> = jumps.iter().map(|jump| beside(*jump).abs()).collect();
     let fastest = speeds.into_iter().fold(0.0, f64::max);
-    let fills = (period - range).abs() < fastest + ALIKE * period;
-    (fills && alike as f64 >= MOST * sizes.len() as f64).then_some(jumps)
+    let fills = (period - range).abs() < fastest + MAX_RELATIVE_DIFFERENCE * period;
+    (fills && alike as f64 >= MIN_CONTINUED_FRACTION * sizes.len() as f64).then_some(jumps)
 }
 
 /// Crossing of the range's end: one jump, or several back and forth by noise.
@@ -148,8 +153,11 @@ impl Crossing {
         let level = 0.5 * (motion[self.before] + motion[self.after]);
         let away = |value: &&f64| (**value - level).abs() > threshold;
         let before = motion[..=self.before].iter().rev();
-        let came_from = before.take(REACH).find(away)?;
-        let went_to = motion[self.after..].iter().take(REACH).find(away)?;
+        let came_from = before.take(MOTION_SEARCH_SAMPLES).find(away)?;
+        let went_to = motion[self.after..]
+            .iter()
+            .take(MOTION_SEARCH_SAMPLES)
+            .find(away)?;
         let rises = |from: f64, to: f64| (to - from) * self.direction > 0.0;
         Some(rises(*came_from, level) && rises(level, *went_to))
     }
@@ -160,7 +168,9 @@ fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
     for jump in jumps {
         let sign = -(values[jump + 1] - values[*jump]).signum();
         match found.last_mut() {
-            Some((last, sum)) if sign != last.direction && jump - last.after < CHATTER => {
+            Some((last, sum))
+                if sign != last.direction && jump - last.after < MAX_CHATTER_SAMPLES =>
+            {
                 last.after = jump + 1;
                 last.direction = sign;
                 *sum += sign;
@@ -181,7 +191,7 @@ fn crossings(jumps: &[usize], values: &[f64]) -> Vec<Crossing> {
 
 #[cfg(test)]
 mod tests {
-    use super::{WrapPattern, wrap_pattern};
+    use super::{WrapPattern, detect_wrapping};
     use crate::wrap_period::ColumnUnit;
 
     const UNIT: ColumnUnit = ColumnUnit {
@@ -198,10 +208,10 @@ mod tests {
     fn pattern(column: impl Fn(usize) -> f64) -> Option<WrapPattern> {
         let times: Vec<f64> = (0..1000).map(|k| 0.01 * k as f64).collect();
         let column: Vec<f64> = (0..1000).map(column).collect();
-        wrap_pattern(&times, &column, UNIT)
+        detect_wrapping(&times, &column, UNIT)
     }
 
-    fn between(low: f64, period: f64, value: f64) -> f64 {
+    fn wrap_between(low: f64, period: f64, value: f64) -> f64 {
         low + (value - low).rem_euclid(period)
     }
 
@@ -217,24 +227,27 @@ mod tests {
         ];
         for (name, motion, travels) in motions {
             for low in [-180.0, 0.0] {
-                let found = pattern(|k| between(low, 360.0, motion(k)));
+                let found = pattern(|k| wrap_between(low, 360.0, motion(k)));
                 if name == "swing" && low == 0.0 {
                     assert!(found.is_none(), "never at 0");
                     continue;
                 }
                 let found = found.unwrap_or_else(|| panic!("{name} from {low}"));
                 assert_eq!((found.period, found.is_turn), (360.0, true), "{name}");
-                assert!(found.travels || !travels || name == "slow", "{name}");
+                assert!(
+                    found.has_full_travel || !travels || name == "slow",
+                    "{name}"
+                );
             }
         }
     }
 
     #[test]
     fn counter_overflow_is_detected_with_its_period() {
-        let found = pattern(|k| (between(0.0, 4096.0, 61.3 * k as f64)).floor());
+        let found = pattern(|k| (wrap_between(0.0, 4096.0, 61.3 * k as f64)).floor());
         let found = found.expect("a counter");
         assert!((found.period - 4096.0).abs() < 10.0, "{}", found.period);
-        assert!(found.travels && !found.is_turn);
+        assert!(found.has_full_travel && !found.is_turn);
         assert_eq!(found.count, 14);
         assert!((found.first - 0.67).abs() < 1e-9, "{}", found.first);
     }

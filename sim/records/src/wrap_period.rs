@@ -4,25 +4,25 @@
 use crate::unwrapping::median;
 
 /// Number of steps on each side of a jump that determine the motion of one sample.
-const BESIDE: usize = 5;
+const STEPS_BESIDE_JUMP: usize = 5;
 
 /// Uncertainty of the period, in standard errors.
 const STANDARD_ERRORS: f64 = 4.0;
 
 /// Minimum uncertainty in standard deviations of one jump, because noise shifts jumps in time.
-const DEVIATIONS: f64 = 2.0;
+const MIN_UNCERTAINTY_DEVIATIONS: f64 = 2.0;
 
 /// Largest uncertainty, relative to the period, with which a usual period is proposed.
-const MOST_UNCERTAIN: f64 = 0.01;
+const MAX_RELATIVE_UNCERTAINTY: f64 = 0.01;
 
 /// Fraction of the range below which changes of the steps are rounding, not resolution.
-const ROUNDING: f64 = 1e-5;
+const MAX_ROUNDING_FRACTION: f64 = 1e-5;
 
 /// Powers of two at which counters overflow.
-const BITS: std::ops::RangeInclusive<i32> = 3..=32;
+const COUNTER_BITS: std::ops::RangeInclusive<i32> = 3..=32;
 
 /// Leading digits of usual decimal periods, for example 1000, 2500 or 3600.
-const DECIMALS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
+const DECIMAL_PERIOD_DIGITS: [f64; 6] = [1.0, 2.0, 2.5, 3.6, 4.0, 5.0];
 
 const HALF_TURN_DEG: f64 = 180.0;
 
@@ -47,9 +47,12 @@ pub(crate) struct Period {
 /// Estimates the period from the samples before the jumps, in ascending order.
 pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit) -> Option<Period> {
     let steps = Steps { values, jumps };
-    let sizes: Vec<f64> = jumps.iter().map(|jump| steps.excess(*jump).abs()).collect();
+    let sizes: Vec<f64> = jumps
+        .iter()
+        .map(|jump| steps.step_excess(*jump).abs())
+        .collect();
     let seen = median(&sizes)?;
-    let deviation = steps.deviation();
+    let deviation = steps.jump_deviation();
     let error = STANDARD_ERRORS * deviation / (jumps.len() as f64).sqrt();
     let is_whole = values
         .iter()
@@ -59,7 +62,9 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     } else {
         steps.resolution()
     };
-    let uncertainty = error.max(DEVIATIONS * deviation).max(resolution);
+    let uncertainty = error
+        .max(MIN_UNCERTAINTY_DEVIATIONS * deviation)
+        .max(resolution);
     let is_near = |usual: &f64| (usual - seen).abs() <= uncertainty;
     if let Some(turn) = unit.turn.filter(is_near) {
         return Some(Period {
@@ -74,7 +79,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
         .filter(is_near)
         .collect();
     let usual = match near[..] {
-        [usual] if uncertainty <= MOST_UNCERTAIN * seen => Some(usual),
+        [usual] if uncertainty <= MAX_RELATIVE_UNCERTAINTY * seen => Some(usual),
         _ => None,
     };
     let rounded = if is_whole {
@@ -85,7 +90,7 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
     Some(Period {
         value: usual.unwrap_or(rounded),
         uncertainty: Some(uncertainty)
-            .filter(|own| usual.is_none() || *own > DEVIATIONS * resolution),
+            .filter(|own| usual.is_none() || *own > MIN_UNCERTAINTY_DEVIATIONS * resolution),
         is_usual: usual.is_some(),
         is_turn: false,
     })
@@ -93,9 +98,9 @@ pub(crate) fn estimate_period(values: &[f64], jumps: &[usize], unit: ColumnUnit)
 
 fn usual_periods(seen: f64, unit: ColumnUnit) -> Vec<f64> {
     let order = (seen / unit.size).log10().floor() as i32;
-    let decimals =
-        (order - 1..=order + 1).flat_map(|power| DECIMALS.map(|digits| digits * 10f64.powi(power)));
-    let numbers = BITS.map(|bits| 2f64.powi(bits)).chain(decimals);
+    let decimals = (order - 1..=order + 1)
+        .flat_map(|power| DECIMAL_PERIOD_DIGITS.map(|digits| digits * 10f64.powi(power)));
+    let numbers = COUNTER_BITS.map(|bits| 2f64.powi(bits)).chain(decimals);
     let numbers = numbers.map(|number| number * unit.size);
     let half_turns = unit
         .turn
@@ -124,24 +129,30 @@ impl Steps<'_> {
         self.jumps.binary_search(&k).is_err()
     }
 
-    fn near(&self, k: usize) -> impl Iterator<Item = usize> + '_ {
-        let near = k.saturating_sub(BESIDE)..(k + BESIDE + 1).min(self.values.len() - 1);
+    fn regular_steps_near(&self, k: usize) -> impl Iterator<Item = usize> + '_ {
+        let near = k.saturating_sub(STEPS_BESIDE_JUMP)
+            ..(k + STEPS_BESIDE_JUMP + 1).min(self.values.len() - 1);
         near.filter(move |other| *other != k && self.is_regular(*other))
     }
 
     /// Returns the step at `k` minus the mean of the regular steps near it.
-    fn excess(&self, k: usize) -> f64 {
-        let (sum, count) = self.near(k).fold((0.0, 0.0), |(sum, count), other| {
-            (sum + self.step(other), count + 1.0)
-        });
+    fn step_excess(&self, k: usize) -> f64 {
+        let (sum, count) = self
+            .regular_steps_near(k)
+            .fold((0.0, 0.0), |(sum, count), other| {
+                (sum + self.step(other), count + 1.0)
+            });
         self.step(k) - sum / f64::max(count, 1.0)
     }
 
     /// Returns the standard deviation of the excess of one step, from the regular steps near jumps.
-    fn deviation(&self) -> f64 {
-        let regular = self.jumps.iter().flat_map(|jump| self.near(*jump));
+    fn jump_deviation(&self) -> f64 {
+        let regular = self
+            .jumps
+            .iter()
+            .flat_map(|jump| self.regular_steps_near(*jump));
         let (sum, count) = regular.fold((0.0, 0.0), |(sum, count), k| {
-            (sum + self.excess(k).powi(2), count + 1.0)
+            (sum + self.step_excess(k).powi(2), count + 1.0)
         });
         f64::sqrt(sum / f64::max(count, 1.0))
     }
@@ -157,7 +168,7 @@ impl Steps<'_> {
         let pairs = (0..self.values.len().saturating_sub(2))
             .filter(|k| self.is_regular(*k) && self.is_regular(k + 1));
         let changes = pairs.map(|k| (self.step(k + 1) - self.step(k)).abs());
-        let changes = changes.filter(|change| *change > ROUNDING * (high - low));
+        let changes = changes.filter(|change| *change > MAX_ROUNDING_FRACTION * (high - low));
         let least = changes.fold(f64::INFINITY, f64::min);
         if least.is_finite() { least } else { 0.0 }
     }

@@ -11,16 +11,16 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::{Column, Wrap};
 use crate::header::Table;
-use crate::samples::{LOST, span, typical_step};
-use crate::unwrapping::unwrapped;
-use crate::wrap_detection::{ALIKE, WrapPattern, wrap_pattern};
+use crate::samples::{MIN_GAP_STEPS, span, typical_step};
+use crate::unwrapping::unwrap_values;
+use crate::wrap_detection::{MAX_RELATIVE_DIFFERENCE, WrapPattern, detect_wrapping};
 use crate::wrap_period::ColumnUnit;
 
 /// Relative difference below which a period is a rounded full or half turn.
-const ROUNDED: f64 = 1e-3;
+const MAX_ROUNDING: f64 = 1e-3;
 
 /// Largest range of a wrapped column in periods, noise included.
-const MOST_PERIODS: f64 = 1.1;
+const MAX_RANGE_PERIODS: f64 = 1.1;
 
 pub(crate) struct ReadColumn<'d> {
     /// Table of the dataset file: `inputs`, `motion` or `channels`.
@@ -33,7 +33,7 @@ pub(crate) struct ReadColumn<'d> {
 }
 
 impl<'d> ReadColumn<'d> {
-    pub fn of(table: &'static str, name: &'d str, column: &'d Column, unit: &'d Unit) -> Self {
+    pub fn new(table: &'static str, name: &'d str, column: &'d Column, unit: &'d Unit) -> Self {
         Self {
             table,
             name,
@@ -43,7 +43,7 @@ impl<'d> ReadColumn<'d> {
         }
     }
 
-    pub fn starting_at(self, start: Option<f64>) -> Self {
+    pub fn with_start(self, start: Option<f64>) -> Self {
         Self { start, ..self }
     }
 
@@ -59,10 +59,10 @@ impl<'d> ReadColumn<'d> {
     }
 
     /// Returns the declared period in SI; a rounded full or half turn becomes exact.
-    fn period(&self, number: Number) -> f64 {
+    fn period_in_si(&self, number: Number) -> f64 {
         let period = self.unit.to_si(number.value);
         let turns = self.turn().into_iter().flat_map(|turn| [turn, 0.5 * turn]);
-        let mut near = turns.filter(|turn| (period - turn).abs() < ROUNDED * turn);
+        let mut near = turns.filter(|turn| (period - turn).abs() < MAX_ROUNDING * turn);
         near.next().unwrap_or(period)
     }
 }
@@ -71,7 +71,7 @@ fn full_turn(unit: &Unit) -> Option<f64> {
     (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
 }
 
-pub(crate) fn own_unit(unit: &Unit) -> ColumnUnit {
+pub(crate) fn to_column_unit(unit: &Unit) -> ColumnUnit {
     ColumnUnit {
         size: 1.0,
         turn: full_turn(unit),
@@ -95,7 +95,7 @@ pub(crate) fn unwrap_columns(
     };
     for (column, values) in read.iter().zip(columns) {
         let pattern = match can_wrap(column.unit) {
-            true => wrap_pattern(times, values, column.column_unit()),
+            true => detect_wrapping(times, values, column.column_unit()),
             false => None,
         };
         match (column.column.wrap, pattern) {
@@ -116,30 +116,30 @@ fn check_period(
     values: &[f64],
     pattern: Option<WrapPattern>,
 ) -> Result<(), Diagnostic> {
-    let (name, unit, period) = (column.name, column.unit, column.period(number));
+    let (name, unit, period) = (column.name, column.unit, column.period_in_si(number));
     let wrong = |message: String, help: String| {
         let wrong = Diagnostic::error(message).at(number.span, "not the period of the column");
         Err(wrong.help(help))
     };
     let spanned = span(values);
-    if spanned > MOST_PERIODS * period {
+    if spanned > MAX_RANGE_PERIODS * period {
         let spanned = unit.from_si(spanned);
         return wrong(
             format!(
                 "the column of `{name}` spans {}, more than one period",
-                with_unit(spanned, unit)
+                format_with_unit(spanned, unit)
             ),
             "write the range of the sensor, or remove `wrap` if the values do not wrap around"
                 .to_owned(),
         );
     }
     match pattern {
-        Some(pattern) if (pattern.period - period).abs() > ALIKE * period => {
+        Some(pattern) if (pattern.period - period).abs() > MAX_RELATIVE_DIFFERENCE * period => {
             let seen = unit.from_si(pattern.period);
             wrong(
                 format!(
                     "the column of `{name}` jumps by about {}",
-                    with_unit(seen, unit)
+                    format_with_unit(seen, unit)
                 ),
                 proposed_key(&pattern, seen, ""),
             )
@@ -148,7 +148,7 @@ fn check_period(
     }
 }
 
-fn with_unit(size: f64, unit: &Unit) -> String {
+fn format_with_unit(size: f64, unit: &Unit) -> String {
     match unit.to_string().as_str() {
         "1" => format!("{size:.4}"),
         unit => format!("{size:.4} {unit}"),
@@ -156,8 +156,8 @@ fn with_unit(size: f64, unit: &Unit) -> String {
 }
 
 fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
-    let key = format!("write wrap = {}{place}", pattern.written(period));
-    match pattern.doubt(period) {
+    let key = format!("write wrap = {}{place}", pattern.format_period(period));
+    match pattern.uncertainty_note(period) {
         Some(doubt) => format!("{key} ({doubt})"),
         None => key,
     }
@@ -169,9 +169,9 @@ fn unwrap_column(
     range: &Range<f64>,
     (times, values): (&[f64], &mut Vec<f64>),
 ) -> Result<Vec<String>, Diagnostic> {
-    let (name, period) = (column.name, column.period(number));
-    let found = unwrapped(times, values, period);
-    let lost = LOST * typical_step(times);
+    let (name, period) = (column.name, column.period_in_si(number));
+    let found = unwrap_values(times, values, period);
+    let lost = MIN_GAP_STEPS * typical_step(times);
     let mut notes = Vec::new();
     for (from, to) in found.unknown {
         let place = format!("from {from:.6} s to {to:.6} s");
@@ -211,7 +211,7 @@ fn refuse_wrapped(
     let jumps = format!(
         "{}: `{name}` jumps {count} by about {}, first at {:.6} s",
         file.display(),
-        with_unit(size, unit),
+        format_with_unit(size, unit),
         pattern.first
     );
     let cure = proposed_key(pattern, size, &format!(" in [{table}.{name}]"));

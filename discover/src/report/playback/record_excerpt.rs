@@ -1,6 +1,6 @@
 //! Part of the test record on a page: windows from its beginning, limited by the file size.
 
-use eomgen_records::windows::judged;
+use eomgen_records::windows::compared_samples;
 
 use crate::fit::fit_result::Fit;
 use crate::model::problem::EstimationProblem;
@@ -59,7 +59,7 @@ impl RecordExcerpt {
         };
         let mut sums = vec![[0.0; 2]; channels];
         let mut counts = vec![0.0; channels];
-        let all = problem.test.list.iter().enumerate();
+        let all = problem.test.windows.iter().enumerate();
         for (place, window) in all.filter(|(_, window)| window.record == 0) {
             let whole = window.times.len();
             let samples = whole.min(most - stretch.times.len());
@@ -72,7 +72,7 @@ impl RecordExcerpt {
             if fitted.is_empty() {
                 return None;
             }
-            let judged = judged(whole);
+            let judged = compared_samples(whole);
             let judged = judged.start..judged.end.min(samples);
             let null = null.test.window_residuals.get(place)?;
             for sample in 0..samples {

@@ -5,9 +5,9 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
 
 use super::keys;
-use super::required::required;
+use super::required_entry::require_entry;
 
-const EVERY: std::ops::RangeInclusive<i64> = 1..=1_000_000;
+const DECIMATION_RANGE: std::ops::RangeInclusive<i64> = 1..=1_000_000;
 
 /// Identification of a column.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ pub struct ChannelColumn {
 
 impl ChannelColumn {
     /// Returns the name of the measured quantity.
-    pub fn measures(&self) -> &str {
+    pub fn quantity_name(&self) -> &str {
         let observable = self.observable.as_ref();
         observable.map_or(&self.name.text, |written| &written.text)
     }
@@ -121,12 +121,12 @@ pub struct Prior {
     pub sd: Number,
 }
 
-fn column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
-    let column = required(record, "column", "\"its name in the records\"", found).cloned();
-    let unit = required(record, "unit", "\"m\"", found).cloned();
-    let column = column.and_then(|entry| key(&entry, found));
+fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
+    let column = require_entry(record, "column", "\"its name in the records\"", found).cloned();
+    let unit = require_entry(record, "unit", "\"m\"", found).cloned();
+    let column = column.and_then(|entry| read_key(&entry, found));
     let unit = unit.and_then(|entry| found.keep(entry.written()));
-    let wrap = wrap(record, found);
+    let wrap = read_wrap(record, found);
     Some(Column {
         column: column?,
         unit: unit?,
@@ -134,7 +134,7 @@ fn column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     })
 }
 
-fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
+fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     let Some(entry) = record.get("wrap") else {
         return Some(None);
     };
@@ -155,7 +155,7 @@ fn wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
     Some(Some(Wrap::Period(period)))
 }
 
-fn key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
+fn read_key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
     let Ok((number, span)) = entry.whole() else {
         return found.keep(entry.written()).map(ColumnKey::Name);
     };
@@ -171,12 +171,12 @@ fn key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
     }
 }
 
-pub(super) fn time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
+pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
     let record = entry.record(&keys::TIME, "{ column = \"t\", unit = \"s\" }", found)?;
     let every = match record.get("every") {
         Some(every) => {
             let (count, span) = found.keep(every.whole())?;
-            if !EVERY.contains(&count) {
+            if !DECIMATION_RANGE.contains(&count) {
                 found.push(Diagnostic::error(format!("`every` cannot be {count}")).at(
                     span,
                     "expected the number of samples that become one, from 1 on",
@@ -191,48 +191,48 @@ pub(super) fn time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
         None => true,
     };
     Some(Time {
-        column: column(&record, found)?,
+        column: read_column(&record, found)?,
         every,
         filter,
     })
 }
 
-pub(super) fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputColumn> {
+pub(super) fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputColumn> {
     let example = "{ column = \"u\", unit = \"N\" }";
     let record = entry.record(&keys::INPUT, example, found)?;
     if let Some(hold) = record.get("hold") {
         found.keep(hold.word(&[("zero-order", ())]));
     }
-    let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| prior(&record, key, found));
+    let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(InputColumn {
         name: entry.name.clone(),
-        column: column(&record, found)?,
+        column: read_column(&record, found)?,
         gain: gain?,
         bias: bias?,
         delay: delay?,
     })
 }
 
-pub(super) fn motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
+pub(super) fn read_motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
     let record = entry.record(&keys::MOTION, "{ column = \"q\", unit = \"rad\" }", found)?;
     let initial = record.number("initial", found);
     Some(MotionColumn {
         name: entry.name.clone(),
-        column: column(&record, found)?,
+        column: read_column(&record, found)?,
         initial,
     })
 }
 
-pub(super) fn channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ChannelColumn> {
+pub(super) fn read_channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ChannelColumn> {
     let example = "{ column = \"x\", unit = \"m\", noise = 1e-6 }";
     let record = entry.record(&keys::CHANNEL, example, found)?;
-    let noise = required(&record, "noise", "1e-6, one standard deviation", found).cloned();
+    let noise = require_entry(&record, "noise", "1e-6, one standard deviation", found).cloned();
     let noise = noise.and_then(|noise| found.keep(noise.number()));
     let observable = record.written("observable", found);
-    let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| prior(&record, key, found));
+    let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(ChannelColumn {
         name: entry.name.clone(),
-        column: column(&record, found)?,
+        column: read_column(&record, found)?,
         noise: noise?,
         observable,
         gain: gain?,
@@ -241,7 +241,7 @@ pub(super) fn channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Chan
     })
 }
 
-fn prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Option<Prior>> {
+fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Option<Prior>> {
     let Some(entry) = record.get(key) else {
         return Some(None);
     };
@@ -250,7 +250,7 @@ fn prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Opti
         Some(mean) => Some(found.keep(mean.number())?),
         None => None,
     };
-    let sd = required(
+    let sd = require_entry(
         &record,
         "sd",
         "0.02, one standard deviation, or 0 if it is known",

@@ -40,33 +40,33 @@ pub struct NumberRange {
     pub high: Number,
 }
 
-pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experiment> {
+pub(super) fn read_experiment(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experiment> {
     let record = entry.record(&keys::EXPERIMENT, "{ duration = 10 }", found)?;
     let mut experiment = Experiment {
-        duration: positive(record.number("duration", found), "duration", found),
-        sample: positive(record.number("sample", found), "sample", found),
+        duration: require_positive(record.number("duration", found), "duration", found),
+        sample: require_positive(record.number("sample", found), "sample", found),
         ..Experiment::default()
     };
     if let Some(entry) = record.get("inputs") {
         let entries = found.keep(entry.table("{ u = { range = [-1, 1] } }"))?;
-        let inputs = entries.iter().filter_map(|entry| input(entry, found));
+        let inputs = entries.iter().filter_map(|entry| read_input(entry, found));
         experiment.inputs = inputs.collect();
     }
     if let Some(entry) = record.get("limits") {
         let entries = found.keep(entry.table("{ x = [-0.1, 0.1] }"))?;
         for entry in &entries {
-            let limit = range(entry, found)?;
+            let limit = read_range(entry, found)?;
             experiment.limits.push((entry.name.clone(), limit));
         }
     }
     Some(experiment)
 }
 
-fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
+fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
     let example = "{ range = [-1, 1], band = [0.1, 10] }";
     let record = entry.record(&keys::EXPERIMENT_INPUT, example, found)?;
     let mut pair = |key: &str| match record.get(key) {
-        Some(entry) => range(entry, found).map(Some),
+        Some(entry) => read_range(entry, found).map(Some),
         None => Some(None),
     };
     let (values, band) = (pair("range")?, pair("band")?);
@@ -79,12 +79,12 @@ fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
     Some(InputBounds {
         name: entry.name.clone(),
         range: values,
-        rate: positive(record.number("rate", found), "rate", found),
+        rate: require_positive(record.number("rate", found), "rate", found),
         band,
     })
 }
 
-fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
+fn read_range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
     let elements = found.keep(entry.list("[-1, 1]"))?;
     let [low, high] = &elements[..] else {
         found.push(
@@ -112,7 +112,7 @@ fn range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
     Some(NumberRange { low, high })
 }
 
-fn positive(number: Option<Number>, key: &str, found: &mut Diagnostics) -> Option<Number> {
+fn require_positive(number: Option<Number>, key: &str, found: &mut Diagnostics) -> Option<Number> {
     if let Some(number) = number.filter(|number| number.value <= 0.0) {
         found.push(
             Diagnostic::error(format!("`{key}` cannot be {}", number.value))

@@ -27,7 +27,7 @@ pub const SEPARATORS: [(&str, Separator); 5] = [
 /// Decimal signs with their names.
 pub const DECIMALS: [(&str, u8); 2] = [(".", b'.'), (",", b',')];
 
-const MOST_SKIPPED: i64 = 1000;
+const MAX_SKIPPED_LINES: i64 = 1000;
 
 /// Layout of a text file with numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,9 +41,9 @@ pub struct Format {
     /// First character of comment lines, if any.
     pub comment: Option<u8>,
     /// True if the first line contains the names of the columns.
-    pub names: bool,
+    pub has_names: bool,
     /// True if a line of units precedes the numbers.
-    pub units: bool,
+    pub has_units: bool,
 }
 
 impl Default for Format {
@@ -53,14 +53,14 @@ impl Default for Format {
             decimal: b'.',
             skip: 0,
             comment: None,
-            names: true,
-            units: false,
+            has_names: true,
+            has_units: false,
         }
     }
 }
 
 /// Reads the table.
-pub fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
+pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
     let record = entry.record(&keys::FORMAT, "{ separator = \";\" }", found)?;
     let usual = Format::default();
     let separator = match record.get("separator") {
@@ -74,10 +74,10 @@ pub fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
     let format = Format {
         separator,
         decimal,
-        skip: skipped(&record, found)?,
-        comment: comment(&record, found)?,
-        names: truth(&record, "names", usual.names, found)?,
-        units: truth(&record, "units", usual.units, found)?,
+        skip: read_skip(&record, found)?,
+        comment: read_comment(&record, found)?,
+        has_names: read_boolean(&record, "names", usual.has_names, found)?,
+        has_units: read_boolean(&record, "units", usual.has_units, found)?,
     };
     if separator == Separator::Character(decimal) {
         let decimal = record.get("decimal").map_or(entry.span(), Entry::span);
@@ -90,38 +90,43 @@ pub fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
     Some(format)
 }
 
-fn truth(record: &Record<'_>, key: &str, usual: bool, found: &mut Diagnostics) -> Option<bool> {
+fn read_boolean(
+    record: &Record<'_>,
+    key: &str,
+    usual: bool,
+    found: &mut Diagnostics,
+) -> Option<bool> {
     match record.get(key) {
         Some(entry) => found.keep(entry.truth()),
         None => Some(usual),
     }
 }
 
-fn skipped(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {
+fn read_skip(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {
     let Some(entry) = record.get("skip") else {
         return Some(0);
     };
     let (count, span) = found.keep(entry.whole())?;
     match usize::try_from(count)
         .ok()
-        .filter(|_| count <= MOST_SKIPPED)
+        .filter(|_| count <= MAX_SKIPPED_LINES)
     {
         Some(count) => Some(count),
         None => {
-            found.push(lines(count, span));
+            found.push(line_count_error(count, span));
             None
         }
     }
 }
 
-fn lines(count: i64, span: Span) -> Diagnostic {
+fn line_count_error(count: i64, span: Span) -> Diagnostic {
     Diagnostic::error(format!("`skip` cannot be {count}")).at(
         span,
-        format!("expected the number of lines before the columns, 0 to {MOST_SKIPPED}"),
+        format!("expected the number of lines before the columns, 0 to {MAX_SKIPPED_LINES}"),
     )
 }
 
-fn comment(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<u8>> {
+fn read_comment(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<u8>> {
     let Some(entry) = record.get("comment") else {
         return Some(None);
     };

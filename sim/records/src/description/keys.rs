@@ -66,7 +66,7 @@ pub const EXPERIMENT: [&str; 4] = ["duration", "sample", "inputs", "limits"];
 pub const EXPERIMENT_INPUT: [&str; 3] = ["range", "rate", "band"];
 
 /// Returns all keys of the first level.
-pub fn first_level() -> Vec<&'static str> {
+pub fn first_level_keys() -> Vec<&'static str> {
     let tables = TABLES.iter().map(|(name, _)| *name);
     TEXTS.into_iter().chain(tables).collect()
 }

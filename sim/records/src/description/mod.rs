@@ -6,7 +6,7 @@ pub mod format;
 pub mod keys;
 pub mod motion;
 pub mod records;
-mod required;
+mod required_entry;
 
 use std::path::Path;
 
@@ -21,9 +21,9 @@ use self::experiment::Experiment;
 use self::format::Format;
 use self::motion::{InitialState, Windows};
 use self::records::Records;
-use self::required::required;
+use self::required_entry::require_entry;
 
-const LARGEST: u64 = 1 << 20;
+const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
 
 /// Parsed dataset file.
 #[derive(Debug)]
@@ -60,15 +60,17 @@ impl Description {
     /// # Errors
     /// A file that cannot be read, and all errors of grammar, tables and keys.
     pub fn read(path: &Path) -> Result<Self, Diagnostics> {
-        Self::of(toml_file::source(path, LARGEST)?)
+        Self::parse(toml_file::source(path, MAX_DESCRIPTION_BYTES)?)
     }
 
     /// Parses the text of a dataset file.
-    pub fn of(source: Source) -> Result<Self, Diagnostics> {
-        toml_file::read(&source, |entries, found| described(&source, entries, found))
+    pub fn parse(source: Source) -> Result<Self, Diagnostics> {
+        toml_file::read(&source, |entries, found| {
+            read_tables(&source, entries, found)
+        })
     }
 
-    fn columns(&self) -> impl Iterator<Item = &ColumnKey> {
+    fn column_keys(&self) -> impl Iterator<Item = &ColumnKey> {
         let inputs = self.inputs.iter().map(|input| &input.column.column);
         let motion = self
             .motion
@@ -83,7 +85,7 @@ impl Description {
     }
 }
 
-fn described(
+fn read_tables(
     source: &Source,
     entries: &[Entry<'_>],
     found: &mut Diagnostics,
@@ -92,35 +94,35 @@ fn described(
         text: "the dataset".to_owned(),
         span: Span::new(0, 0),
     };
-    let top = Record::of(file, entries.to_vec(), &keys::first_level(), found);
+    let top = Record::of(file, entries.to_vec(), &keys::first_level_keys(), found);
     let title = top.text("title", found);
     top.text("source", found);
     let records = top
         .require("records", "write [records] with train and test", found)
         .cloned();
-    let records = records.and_then(|entry| records::read(&entry, found));
+    let records = records.and_then(|entry| records::read_records(&entry, found));
     let format = match top.get("format") {
-        Some(entry) => format::read(entry, found),
+        Some(entry) => format::read_format(entry, found),
         None => Some(Format::default()),
     };
     let time = top
         .require("time", "write [time] with column and unit", found)
         .cloned();
-    let time = time.and_then(|entry| columns::time(&entry, found));
-    let inputs = each(&top, "inputs", found, columns::input);
-    let motion = each(&top, "motion", found, columns::motion);
-    let channels = each(&top, "channels", found, columns::channel);
-    let uncertain = each(&top, "uncertain", found, uncertain);
+    let time = time.and_then(|entry| columns::read_time(&entry, found));
+    let inputs = read_entries(&top, "inputs", found, columns::read_input);
+    let motion = read_entries(&top, "motion", found, columns::read_motion);
+    let channels = read_entries(&top, "channels", found, columns::read_channel);
+    let uncertain = read_entries(&top, "uncertain", found, uncertain);
     let initial = match top.get("initial") {
-        Some(entry) => motion::initial(entry, found),
+        Some(entry) => motion::read_initial(entry, found),
         None => Some(InitialState::Estimate),
     };
     let windows = match top.get("windows") {
-        Some(entry) => motion::windows(entry, found),
+        Some(entry) => motion::read_windows(entry, found),
         None => Some(Windows::default()),
     };
     let experiment = match top.get("experiment") {
-        Some(entry) => experiment::read(entry, found),
+        Some(entry) => experiment::read_experiment(entry, found),
         None => Some(Experiment::default()),
     };
     let description = Description {
@@ -137,15 +139,15 @@ fn described(
         windows: windows?,
         experiment: experiment?,
     };
-    nameless(&description, found);
+    check_column_numbers(&description, found);
     Some(description)
 }
 
-fn nameless(description: &Description, found: &mut Diagnostics) {
-    if description.format.names {
+fn check_column_numbers(description: &Description, found: &mut Diagnostics) {
+    if description.format.has_names {
         return;
     }
-    for column in description.columns() {
+    for column in description.column_keys() {
         if let ColumnKey::Name(name) = column {
             let number = name.text.parse::<usize>().unwrap_or(2);
             found.push(
@@ -162,13 +164,13 @@ fn nameless(description: &Description, found: &mut Diagnostics) {
     }
 }
 
-fn uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
+fn read_uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
     let record = entry.record(&keys::UNCERTAIN, "{ relative = 0.05 }", found)?;
-    let relative = required(&record, "relative", "0.05", found)?;
+    let relative = require_entry(&record, "relative", "0.05", found)?;
     Some((entry.name.clone(), found.keep(relative.number())?))
 }
 
-fn each<T>(
+fn read_entries<T>(
     top: &Record<'_>,
     name: &str,
     found: &mut Diagnostics,

@@ -4,7 +4,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::table::{Entry, Name, Number};
 
 use super::keys;
-use super::required::required;
+use super::required_entry::require_entry;
 
 /// Table `[initial]`.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub enum InitialState {
     /// Unknown initial state.
     Estimate,
     /// Values of states by name.
-    Given(Vec<(Name, Number)>),
+    Values(Vec<(Name, Number)>),
 }
 
 /// Table `[windows]`.
@@ -23,32 +23,32 @@ pub struct Windows {
     /// Length of a window in s; `None` for one window per record.
     pub length: Option<Number>,
     /// True if initial states are read from the smoothed record.
-    pub smoothed: bool,
+    pub is_smoothed: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Word {
+enum InitialWord {
     Rest,
     Estimate,
     Given,
 }
 
-pub(super) fn initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
+pub(super) fn read_initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
     let record = entry.record(&keys::INITIAL, "{ state = \"rest\" }", found)?;
-    let state = required(&record, "state", "\"rest\"", found)?.clone();
+    let state = require_entry(&record, "state", "\"rest\"", found)?.clone();
     if state.is_table() {
-        return given(&state, found);
+        return read_values(&state, found);
     }
     let words = [
-        ("rest", Word::Rest),
-        ("estimate", Word::Estimate),
-        ("given", Word::Given),
+        ("rest", InitialWord::Rest),
+        ("estimate", InitialWord::Estimate),
+        ("given", InitialWord::Given),
     ];
     let word = found.keep(state.word(&words))?;
     let values = record.get("values");
     match (word, values) {
-        (Word::Given, Some(values)) => given(values, found),
-        (Word::Given, None) => {
+        (InitialWord::Given, Some(values)) => read_values(values, found),
+        (InitialWord::Given, None) => {
             found.push(
                 Diagnostic::error("no state is given")
                     .at(state.span(), "`values` are missing")
@@ -65,12 +65,12 @@ pub(super) fn initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Init
             );
             None
         }
-        (Word::Rest, None) => Some(InitialState::Rest),
-        (Word::Estimate, None) => Some(InitialState::Estimate),
+        (InitialWord::Rest, None) => Some(InitialState::Rest),
+        (InitialWord::Estimate, None) => Some(InitialState::Estimate),
     }
 }
 
-fn given(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
+fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
     let values = found.keep(entry.table("{ x = 0.1 }"))?;
     if values.is_empty() {
         found.push(
@@ -83,16 +83,16 @@ fn given(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
     for value in values {
         given.push((value.name.clone(), found.keep(value.number())?));
     }
-    Some(InitialState::Given(given))
+    Some(InitialState::Values(given))
 }
 
-pub(super) fn windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
+pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
     let record = entry.record(&keys::WINDOWS, "{ length = 0.5 }", found)?;
     let smoothed = match record.get("start") {
         Some(start) => found.keep(start.word(&[("fitted", false), ("smoothed", true)])),
         None => Some(false),
     };
-    let length = required(&record, "length", "0.5, in s, or \"record\"", found)?;
+    let length = require_entry(&record, "length", "0.5, in s, or \"record\"", found)?;
     let length = match length.written() {
         Ok(_) => found.keep(length.word(&[("record", None)])),
         Err(_) => found.keep(length.number()).map(Some),
@@ -106,6 +106,6 @@ pub(super) fn windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Wind
     }
     Some(Windows {
         length,
-        smoothed: smoothed?,
+        is_smoothed: smoothed?,
     })
 }

@@ -5,7 +5,7 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Number, Written};
 
 use super::keys;
-use super::required::required;
+use super::required_entry::require_entry;
 
 /// Table `[records]`.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ pub struct Stretch {
     pub to: Option<Number>,
 }
 
-pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records> {
+pub(super) fn read_records(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records> {
     let example = "{ train = [\"train.csv\"], test = [\"test.csv\"] }";
     let record = entry.record(&keys::RECORDS, example, found)?;
     let mut files = |key: &str| {
@@ -41,7 +41,7 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records
             .unwrap_or_default();
         let stretches = elements.iter();
         stretches
-            .filter_map(|element| stretch(element, found))
+            .filter_map(|element| read_stretch(element, found))
             .collect()
     };
     Some(Records {
@@ -51,7 +51,7 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records
     })
 }
 
-fn stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
+fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
     if !entry.is_table() {
         let file = found.keep(entry.written())?;
         return Some(Stretch {
@@ -62,7 +62,7 @@ fn stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
     }
     let example = "{ file = \"record.csv\", from = 0, to = 10 }";
     let record = entry.record(&keys::STRETCH, example, found)?;
-    let file = required(&record, "file", "\"record.csv\"", found)?.written();
+    let file = require_entry(&record, "file", "\"record.csv\"", found)?.written();
     let [from, to] = ["from", "to"].map(|key| record.number(key, found));
     if let (Some(from), Some(to)) = (from, to)
         && from.value >= to.value

@@ -1,11 +1,11 @@
 //! Detection of separator and decimal sign: those with the longest block of lines of numbers.
 
-use crate::csv_file::parsed;
+use crate::csv_file::parse_number;
 use crate::description::format::{DECIMALS, Format, SEPARATORS, Separator};
 use eomgen_model_spec::unit::Unit;
 
 /// Number of lines to examine from the start of the file.
-const LINES: usize = 400;
+const MAX_EXAMINED_LINES: usize = 400;
 
 const COMMENTS: [char; 3] = ['#', '%', '!'];
 
@@ -16,13 +16,13 @@ pub(crate) struct Layout {
     pub names: Vec<String>,
     /// Units of the columns; "" without a unit.
     pub units: Vec<String>,
-    pub are_numbers: Vec<bool>,
+    pub numeric_columns: Vec<bool>,
 }
 
-pub(crate) fn found(text: &str) -> Option<Layout> {
+pub(crate) fn detect_layout(text: &str) -> Option<Layout> {
     let lines: Vec<&str> = match text.contains('\n') {
-        true => text.lines().take(LINES).collect(),
-        false => text.split('\r').take(LINES).collect(),
+        true => text.lines().take(MAX_EXAMINED_LINES).collect(),
+        false => text.split('\r').take(MAX_EXAMINED_LINES).collect(),
     };
     let comment = COMMENTS.into_iter().find(|sign| {
         let begin = |line: &&str| line.trim_start().starts_with(*sign);
@@ -34,15 +34,15 @@ pub(crate) fn found(text: &str) -> Option<Layout> {
             if separator == Separator::Character(decimal) {
                 continue;
             }
-            let block = Block::of(&lines, separator, decimal, comment);
+            let block = Block::find_block(&lines, separator, decimal, comment);
             if block.score > best.as_ref().map_or(0.0, |best| best.score) {
                 best = Some(block);
             }
         }
     }
     let block = best?;
-    let mut layout = block.layout(comment);
-    layout.are_numbers = block.are_numbers(comment);
+    let mut layout = block.to_layout(comment);
+    layout.numeric_columns = block.numeric_columns(comment);
     Some(layout)
 }
 
@@ -58,7 +58,12 @@ struct Block<'t> {
 
 impl<'t> Block<'t> {
     /// Returns the block up to the last complete line.
-    fn of(lines: &'t [&'t str], separator: Separator, decimal: u8, comment: Option<char>) -> Self {
+    fn find_block(
+        lines: &'t [&'t str],
+        separator: Separator,
+        decimal: u8,
+        comment: Option<char>,
+    ) -> Self {
         let mut block = Self {
             lines,
             separator,
@@ -71,7 +76,7 @@ impl<'t> Block<'t> {
         for place in (0..end).rev() {
             let line = lines[place];
             let is_comment = comment.is_some_and(|sign| line.trim_start().starts_with(sign));
-            let cells = row(
+            let cells = split_row(
                 line,
                 separator,
                 Some(block.cells).filter(|count| *count > 0),
@@ -79,7 +84,9 @@ impl<'t> Block<'t> {
             if is_comment || cells.iter().all(String::is_empty) {
                 continue;
             }
-            let numbers = cells.iter().filter(|cell| parsed(cell, decimal).is_some());
+            let numbers = cells
+                .iter()
+                .filter(|cell| parse_number(cell, decimal).is_some());
             let numbers = numbers.count();
             let blank = cells.iter().filter(|cell| cell.is_empty()).count();
             let is_row = match block.cells {
@@ -96,7 +103,7 @@ impl<'t> Block<'t> {
         block
     }
 
-    fn are_numbers(&self, comment: Option<char>) -> Vec<bool> {
+    fn numeric_columns(&self, comment: Option<char>) -> Vec<bool> {
         let mut numbers = vec![0; self.cells];
         let mut texts = vec![0; self.cells];
         let end = self.lines.len().saturating_sub(1).max(self.first);
@@ -105,9 +112,9 @@ impl<'t> Block<'t> {
             if is_comment {
                 continue;
             }
-            let cells = row(line, self.separator, Some(self.cells));
+            let cells = split_row(line, self.separator, Some(self.cells));
             for (place, cell) in cells.iter().enumerate().take(self.cells) {
-                match parsed(cell, self.decimal) {
+                match parse_number(cell, self.decimal) {
                     Some(_) => numbers[place] += 1,
                     None if cell.is_empty() => {}
                     None => texts[place] += 1,
@@ -120,12 +127,12 @@ impl<'t> Block<'t> {
             .collect()
     }
 
-    fn layout(&self, comment: Option<char>) -> Layout {
+    fn to_layout(&self, comment: Option<char>) -> Layout {
         let unknown = vec![String::new(); self.cells];
         let row_above = |place: usize| {
             let line = self.lines[place].trim();
-            let cells = cells(line, self.separator);
-            let is_text = |cell: &String| parsed(cell, self.decimal).is_none();
+            let cells = split_cells(line, self.separator);
+            let is_text = |cell: &String| parse_number(cell, self.decimal).is_none();
             (cells.len() == self.cells && cells.iter().any(is_text)).then_some(cells)
         };
         let is_comment = |place: usize| {
@@ -139,10 +146,10 @@ impl<'t> Block<'t> {
         let mut format = Format {
             separator: self.separator,
             decimal: self.decimal,
-            names: false,
+            has_names: false,
             skip: 0,
             comment: None,
-            units: false,
+            has_units: false,
         };
         let has_comments = |from: usize| (from..self.lines.len()).any(is_comment);
         let Some(nearest) = above.next() else {
@@ -151,7 +158,7 @@ impl<'t> Block<'t> {
                 format,
                 names: unknown.clone(),
                 units: unknown,
-                are_numbers: Vec::new(),
+                numeric_columns: Vec::new(),
             };
         };
         if is_comment(nearest) {
@@ -160,51 +167,51 @@ impl<'t> Block<'t> {
             let line = self.lines[nearest]
                 .trim_start()
                 .trim_start_matches(COMMENTS);
-            let cells = cells(line.trim(), self.separator);
+            let cells = split_cells(line.trim(), self.separator);
             let names = if cells.len() == self.cells {
                 cells
             } else {
                 unknown.clone()
             };
             return Layout {
-                format: self.skipping(format, nearest + 1),
+                format: self.with_skip(format, nearest + 1),
                 names,
                 units: unknown,
-                are_numbers: Vec::new(),
+                numeric_columns: Vec::new(),
             };
         }
         let (nearest_row, next) = (row_above(nearest), above.next());
         let next_row = next.filter(|place| !is_comment(*place)).and_then(row_above);
         match (nearest_row, next_row) {
             (Some(units), Some(names)) if units.iter().all(|cell| is_unit(cell)) => {
-                format.names = true;
-                format.units = true;
+                format.has_names = true;
+                format.has_units = true;
                 Layout {
-                    format: self.skipping(format, next.unwrap_or(nearest)),
+                    format: self.with_skip(format, next.unwrap_or(nearest)),
                     names,
                     units,
-                    are_numbers: Vec::new(),
+                    numeric_columns: Vec::new(),
                 }
             }
             (Some(names), _) => {
-                format.names = true;
+                format.has_names = true;
                 Layout {
-                    format: self.skipping(format, nearest),
+                    format: self.with_skip(format, nearest),
                     names,
                     units: unknown,
-                    are_numbers: Vec::new(),
+                    numeric_columns: Vec::new(),
                 }
             }
             (None, _) => Layout {
-                format: self.skipping(format, nearest + 1),
+                format: self.with_skip(format, nearest + 1),
                 names: unknown.clone(),
                 units: unknown,
-                are_numbers: Vec::new(),
+                numeric_columns: Vec::new(),
             },
         }
     }
 
-    fn skipping(&self, mut format: Format, lines: usize) -> Format {
+    fn with_skip(&self, mut format: Format, lines: usize) -> Format {
         format.skip = lines;
         let sign = format.comment.map(char::from);
         let begins = |line: &&str| sign.is_some_and(|sign| line.trim_start().starts_with(sign));
@@ -216,12 +223,12 @@ impl<'t> Block<'t> {
 }
 
 /// Splits a line into cells without quotes; a separator at its end adds no cell.
-fn cells(line: &str, separator: Separator) -> Vec<String> {
-    row(line, separator, None)
+fn split_cells(line: &str, separator: Separator) -> Vec<String> {
+    split_row(line, separator, None)
 }
 
 /// Splits a line into `count` cells; the last one can be blank.
-fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
+fn split_row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
     let bare = |cell: &str| cell.trim().trim_matches('"').trim().to_owned();
     let mut cells: Vec<String> = match separator {
         Separator::Spaces => line.split_whitespace().map(bare).collect(),
@@ -235,13 +242,13 @@ fn row(line: &str, separator: Separator, count: Option<usize>) -> Vec<String> {
 }
 
 fn is_unit(cell: &str) -> bool {
-    let bare = super::matching::bare_unit(cell);
+    let bare = super::matching::strip_unit_brackets(cell);
     bare.is_empty() || bare == "-" || Unit::parse(&bare).is_ok()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Format, Separator, found};
+    use super::{Format, Separator, detect_layout};
 
     fn text(head: &str, row: &str) -> String {
         head.to_owned() + &row.repeat(40)
@@ -259,7 +266,7 @@ mod tests {
                     separator: semicolon,
                     decimal: b',',
                     skip: 2,
-                    units: true,
+                    has_units: true,
                     ..usual
                 },
                 "t u",
@@ -270,7 +277,7 @@ mod tests {
                 Format {
                     separator: Separator::Character(b'\t'),
                     decimal: b',',
-                    names: false,
+                    has_names: false,
                     ..usual
                 },
                 "  ",
@@ -280,7 +287,7 @@ mod tests {
                 text("# t u\n", "  0.1  2.0\n"),
                 Format {
                     separator: Separator::Spaces,
-                    names: false,
+                    has_names: false,
                     skip: 1,
                     ..usual
                 },
@@ -298,15 +305,15 @@ mod tests {
             ),
         ];
         for (text, format, names, units) in cases {
-            let layout = found(&text).unwrap_or_else(|| panic!("{text}"));
+            let layout = detect_layout(&text).unwrap_or_else(|| panic!("{text}"));
             assert_eq!(layout.format, format, "{text}");
             assert_eq!(layout.names.join(" "), names, "{text}");
             if !units.is_empty() {
                 assert_eq!(layout.units.join(" "), units, "{text}");
             }
         }
-        assert_eq!(found("nothing\nof numbers\n"), None);
-        assert_eq!(found(""), None);
+        assert_eq!(detect_layout("nothing\nof numbers\n"), None);
+        assert_eq!(detect_layout(""), None);
     }
 
     #[test]
@@ -318,7 +325,11 @@ mod tests {
         ] {
             let usual = text(head, row);
             for end in ["\r", "\r\n"] {
-                assert_eq!(found(&usual.replace('\n', end)), found(&usual), "{end:?}");
+                assert_eq!(
+                    detect_layout(&usual.replace('\n', end)),
+                    detect_layout(&usual),
+                    "{end:?}"
+                );
             }
         }
     }

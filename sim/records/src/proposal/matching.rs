@@ -25,11 +25,11 @@ pub(crate) struct FileColumn {
 }
 
 impl FileColumn {
-    pub fn of(number: usize, name: &str, unit: &str) -> Self {
-        let (stem, inside) = parted(name);
+    pub fn from_header(number: usize, name: &str, unit: &str) -> Self {
+        let (stem, inside) = split_unit(name);
         let stated: Vec<String> = [unit, inside]
             .into_iter()
-            .map(bare_unit)
+            .map(strip_unit_brackets)
             .filter(|text| !text.is_empty() && text != "-")
             .collect();
         let unit = stated.iter().find_map(|text| Unit::parse(text).ok());
@@ -43,12 +43,12 @@ impl FileColumn {
     }
 
     /// Reads the unit from the end of the name, for example `time_ms`, if none is known.
-    pub fn take_suffix(&mut self) {
+    pub fn read_unit_suffix(&mut self) {
         let Some((stem, unit)) = self.stem.rsplit_once('_') else {
             return;
         };
         let is_stated = self.unit.is_some() || self.unknown_unit.is_some();
-        if let (false, Ok(unit)) = (is_stated, Unit::parse(&bare_unit(unit))) {
+        if let (false, Ok(unit)) = (is_stated, Unit::parse(&strip_unit_brackets(unit))) {
             self.unit = Some(unit);
             self.stem = stem.to_owned();
         }
@@ -65,7 +65,7 @@ pub(crate) struct Quantity {
 }
 
 /// Returns inputs, observables, coordinates with rates and accelerations, and first-order states.
-pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
+pub(crate) fn list_quantities(model: &Model) -> Vec<Quantity> {
     let quantity = |name: &str, unit: &Unit, is_input: bool| Quantity {
         name: name.to_owned(),
         unit: unit.clone(),
@@ -87,7 +87,7 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
             Some(quantity(&format!("{}_{name}", c.name), &unit, false))
         })
     });
-    let observed = derivatives_of_observables(model).map(|rate| Quantity {
+    let observed = list_observed_rates(model).map(|rate| Quantity {
         is_found_by_unit: false,
         ..quantity(&rate.name(model), &rate.unit(model), false)
     });
@@ -105,7 +105,7 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
 }
 
 /// Returns rates of observables, and accelerations of observables without a rate in them.
-fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRate> {
+fn list_observed_rates(model: &Model) -> impl Iterator<Item = ObservedRate> {
     (1..=2).flat_map(move |times| {
         let observables = model.observables.iter().enumerate();
         let differentiated = observables.filter(move |(_, observable)| {
@@ -120,21 +120,24 @@ fn derivatives_of_observables(model: &Model) -> impl Iterator<Item = ObservedRat
 pub(crate) struct Match {
     pub column: usize,
     pub quantity: usize,
-    pub why: &'static str,
+    pub reason: &'static str,
 }
 
 type Rule = fn(&FileColumn, &Quantity) -> bool;
 
 /// Rules in the order of their reliability.
-const RULES: [(Rule, &str); 5] = [
+const MATCHING_RULES: [(Rule, &str); 5] = [
     (|c, q| c.name == q.name, "the same name"),
     (|c, q| c.stem == q.name, "the same name with a unit"),
     (
-        |c, q| plain(&c.stem) == plain(&q.name),
+        |c, q| normalise_name(&c.stem) == normalise_name(&q.name),
         "the same name except for case and signs",
     ),
     (
-        |c, q| nearest(&plain(&c.stem), [plain(&q.name).as_str()]).is_some() && c.stem.len() > 3,
+        |c, q| {
+            nearest(&normalise_name(&c.stem), [normalise_name(&q.name).as_str()]).is_some()
+                && c.stem.len() > 3
+        },
         "a similar name: please check",
     ),
     (
@@ -144,21 +147,21 @@ const RULES: [(Rule, &str); 5] = [
 ];
 
 /// Matches unambiguous columns and quantities, lastly with the end of a name as a unit.
-pub(crate) fn matched(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
+pub(crate) fn match_columns(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
     let mut matches = Vec::new();
-    by_rules(columns, quantities, &mut matches);
+    apply_rules(columns, quantities, &mut matches);
     for (place, column) in columns.iter_mut().enumerate() {
         if matches.iter().all(|found| found.column != place) {
-            column.take_suffix();
+            column.read_unit_suffix();
         }
     }
-    by_rules(columns, quantities, &mut matches);
+    apply_rules(columns, quantities, &mut matches);
     matches.sort_by_key(|found| found.quantity);
     matches
 }
 
-fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
-    for (rule, why) in RULES {
+fn apply_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
+    for (rule, why) in MATCHING_RULES {
         let may = |column: usize, quantity: usize| {
             let (c, q) = (&columns[column], &quantities[quantity]);
             // An unknown unit can have any dimension.
@@ -187,7 +190,7 @@ fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<M
                 matches.push(Match {
                     column,
                     quantity,
-                    why,
+                    reason: why,
                 });
             }
         }
@@ -195,7 +198,7 @@ fn by_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<M
 }
 
 /// Splits a name and its unit: `u [N m]`, `u (N m)` or `u / N`.
-fn parted(name: &str) -> (&str, &str) {
+fn split_unit(name: &str) -> (&str, &str) {
     for (opening, closing) in [('[', ']'), ('(', ')')] {
         if let Some((stem, rest)) = name.split_once(opening)
             && let Some(unit) = rest.trim_end().strip_suffix(closing)
@@ -209,7 +212,7 @@ fn parted(name: &str) -> (&str, &str) {
     (name, "")
 }
 
-pub(crate) fn bare_unit(text: &str) -> String {
+pub(crate) fn strip_unit_brackets(text: &str) -> String {
     let bare = text.trim().trim_matches(['[', ']', '(', ')']).trim();
     let known = UNITS.iter().find(|(theirs, _)| *theirs == bare);
     let symbols = [
@@ -222,17 +225,17 @@ pub(crate) fn bare_unit(text: &str) -> String {
     ];
     let spelt = |text: String, (theirs, ours): &(&str, &str)| text.replace(theirs, ours);
     known.map_or_else(
-        || with_exponents(&symbols.iter().fold(bare.to_owned(), spelt)),
+        || insert_exponents(&symbols.iter().fold(bare.to_owned(), spelt)),
         |(_, ours)| (*ours).to_owned(),
     )
 }
 
 /// Returns a unit with `^` before its exponents, from `m/s2`, `m/s²` or `m s⁻²`.
-fn with_exponents(text: &str) -> String {
-    const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+fn insert_exponents(text: &str) -> String {
+    const SUPERSCRIPT_DIGITS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
     let mut found = String::new();
     for letter in text.chars() {
-        let raised = RAISED.chars().position(|digit| digit == letter);
+        let raised = SUPERSCRIPT_DIGITS.chars().position(|digit| digit == letter);
         let digit = raised.and_then(|digit| char::from_digit(digit as u32, 10));
         let letter = match letter {
             '⁻' | '−' => '-',
@@ -247,7 +250,7 @@ fn with_exponents(text: &str) -> String {
     found
 }
 
-fn plain(name: &str) -> String {
+fn normalise_name(name: &str) -> String {
     const GREEK: [(char, &str); 9] = [
         ('θ', "theta"),
         ('φ', "phi"),
@@ -272,19 +275,19 @@ fn plain(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{FileColumn, matched, quantities};
+    use super::{FileColumn, list_quantities, match_columns};
 
     #[test]
     fn columns_match_by_name_and_compatible_unit() {
         let source = eomgen_model_spec::models::PLANETARY_ARM_RIG.source();
         let model = eomgen_model_spec::check(source).expect("a model").model;
-        let all = quantities(&model);
+        let all = list_quantities(&model);
         let names = |columns: &[(&str, &str)]| -> Vec<(String, String)> {
             let mut columns: Vec<FileColumn> = (1..)
                 .zip(columns)
-                .map(|(number, (name, unit))| FileColumn::of(number, name, unit))
+                .map(|(number, (name, unit))| FileColumn::from_header(number, name, unit))
                 .collect();
-            matched(&mut columns, &all)
+            match_columns(&mut columns, &all)
                 .into_iter()
                 .map(|m| (columns[m.column].name.clone(), all[m.quantity].name.clone()))
                 .collect()

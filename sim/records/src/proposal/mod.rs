@@ -1,9 +1,9 @@
 //! Proposal of a dataset file for a record and a model: `layout` of the file, `matching` of its
 //! columns, their `noise`, and the text with the reason for every guess (`written`).
 
+mod dataset_file;
 mod layout;
 mod matching;
-mod written;
 
 use std::path::Path;
 
@@ -18,24 +18,24 @@ use crate::description::columns::ColumnKey;
 use crate::description::format::Format;
 use crate::parquet_file;
 use crate::refusal::Refusal;
-use crate::samples::{FEWEST_SAMPLES, JITTER, typical_step};
-use crate::wrap_detection::{WrapPattern, wrap_pattern};
-use crate::wrapped_columns::{can_wrap, own_unit};
+use crate::samples::{MAX_JITTER_FRACTION, MIN_SAMPLES, typical_step};
+use crate::wrap_detection::{WrapPattern, detect_wrapping};
+use crate::wrapped_columns::{can_wrap, to_column_unit};
 
-use self::matching::{FileColumn, Match, Quantity, matched, quantities};
+use self::matching::{FileColumn, Match, Quantity, list_quantities, match_columns};
 
-const TRAIN: f64 = 0.6;
+const TRAIN_FRACTION: f64 = 0.6;
 
-const WINDOWS: f64 = 20.0;
+const WINDOWS_PER_RECORD: f64 = 20.0;
 
-const FEWEST_IN_WINDOW: f64 = 100.0;
+const MIN_SAMPLES_PER_WINDOW: f64 = 100.0;
 
 /// Number of samples above which the record is decimated, because a search would take long.
-const MANY: usize = 100_000;
+const MAX_UNDECIMATED_SAMPLES: usize = 100_000;
 
-const TIMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
+const TIME_COLUMN_NAMES: [&str; 6] = ["t", "time", "zeit", "timestamp", "seconds", "sec"];
 
-struct Found<'m> {
+struct DetectedRecord<'m> {
     model: &'m Model,
     format: Format,
     columns: Vec<FileColumn>,
@@ -47,7 +47,7 @@ struct Found<'m> {
     matches: Vec<Match>,
 }
 
-impl Found<'_> {
+impl DetectedRecord<'_> {
     fn times(&self) -> &[f64] {
         &self.values[self.time]
     }
@@ -58,7 +58,7 @@ impl Found<'_> {
         let degree = || {
             Unit::parse("deg")
                 .ok()
-                .filter(|unit| self.turns_in(matched, unit))
+                .filter(|unit| self.turns_in_unit(matched, unit))
         };
         match &self.columns[matched.column].unit {
             Some(unit) => (unit.clone(), "from the file"),
@@ -75,16 +75,16 @@ impl Found<'_> {
         }
     }
 
-    fn turns_in(&self, matched: &Match, unit: &Unit) -> bool {
+    fn turns_in_unit(&self, matched: &Match, unit: &Unit) -> bool {
         let values = &self.values[matched.column];
-        let pattern = wrap_pattern(self.times(), values, own_unit(unit));
+        let pattern = detect_wrapping(self.times(), values, to_column_unit(unit));
         pattern.is_some_and(|pattern| pattern.is_turn)
     }
 
     fn wrap_pattern(&self, matched: &Match) -> Option<WrapPattern> {
         let (unit, _) = self.unit(matched);
         let values = &self.values[matched.column];
-        let pattern = || wrap_pattern(self.times(), values, own_unit(&unit));
+        let pattern = || detect_wrapping(self.times(), values, to_column_unit(&unit));
         can_wrap(&unit).then(pattern).flatten()
     }
 
@@ -95,27 +95,27 @@ impl Found<'_> {
     fn is_uneven(&self) -> bool {
         let step = typical_step(self.times());
         let mut steps = self.times().windows(2).map(|pair| pair[1] - pair[0]);
-        steps.any(|s| (s - step).abs() > JITTER * step)
+        steps.any(|s| (s - step).abs() > MAX_JITTER_FRACTION * step)
     }
 
-    fn every(&self) -> usize {
-        self.times().len().div_ceil(MANY)
+    fn decimation_factor(&self) -> usize {
+        self.times().len().div_ceil(MAX_UNDECIMATED_SAMPLES)
     }
 
     /// Returns the start of the test part, in the unit of the time column.
-    fn split(&self) -> f64 {
+    fn test_start(&self) -> f64 {
         let times = self.times();
-        times[(TRAIN * times.len() as f64) as usize]
+        times[(TRAIN_FRACTION * times.len() as f64) as usize]
     }
 
     /// Returns the length of a window in s; `None` if the record is too short to split.
-    fn window(&self) -> Option<f64> {
-        let step = self.step() * self.every() as f64;
-        let train = self.time_unit.to_si(self.split() - self.times()[0]);
-        let length = round_down((train / WINDOWS).max(FEWEST_IN_WINDOW * step));
+    fn window_length(&self) -> Option<f64> {
+        let step = self.step() * self.decimation_factor() as f64;
+        let train = self.time_unit.to_si(self.test_start() - self.times()[0]);
+        let length = round_down((train / WINDOWS_PER_RECORD).max(MIN_SAMPLES_PER_WINDOW * step));
         let judged = self
             .time_unit
-            .to_si(self.times()[self.times().len() - 1] - self.split());
+            .to_si(self.times()[self.times().len() - 1] - self.test_start());
         (2.0 * length <= judged).then_some(length)
     }
 }
@@ -137,86 +137,89 @@ fn round_down(value: f64) -> f64 {
 ///
 /// # Errors
 /// A record that cannot be read, has no time, or has no column that is a quantity of the model.
-pub fn proposed(record: &Path, name: &str, model: &Model) -> Result<String, Refusal> {
-    let bytes = columns::bytes(record)?;
+pub fn propose_dataset(record: &Path, name: &str, model: &Model) -> Result<String, Refusal> {
+    let bytes = columns::read_bytes(record)?;
     let (format, mut columns) = match record.extension().is_some_and(|e| e == "parquet") {
         true => {
-            let names = parquet_file::names(record, bytes)?;
-            let column = |(number, name): &(usize, String)| FileColumn::of(*number, name, "");
+            let names = parquet_file::column_names(record, bytes)?;
+            let column =
+                |(number, name): &(usize, String)| FileColumn::from_header(*number, name, "");
             (Format::default(), names.iter().map(column).collect())
         }
-        false => described(record, &bytes)?,
+        false => detect_columns(record, &bytes)?,
     };
     let keys: Vec<ColumnKey> = columns
         .iter()
         .map(|column| ColumnKey::Number(column.number, Span::default()))
         .collect();
     let wanted: Vec<&ColumnKey> = keys.iter().collect();
-    let table = columns::read(record, &format, &wanted)?;
-    let (time, time_unit) = time(record, &mut columns, &table.columns)?;
-    let fewest = 2 * FEWEST_SAMPLES + FEWEST_SAMPLES / 2;
+    let table = columns::read_columns(record, &format, &wanted)?;
+    let (time, time_unit) = find_time(record, &mut columns, &table.columns)?;
+    let fewest = 2 * MIN_SAMPLES + MIN_SAMPLES / 2;
     if table.lines.len() < fewest {
-        return Err(Refusal::file(
+        return Err(Refusal::file_error(
             record,
             format!(
-                "has {} samples; expected {fewest} or more: at least {FEWEST_SAMPLES} each for training and testing",
+                "has {} samples; expected {fewest} or more: at least {MIN_SAMPLES} each for training and testing",
                 table.lines.len()
             ),
         ));
     }
-    let mut found = Found {
+    let mut found = DetectedRecord {
         model,
         format,
         columns,
         values: table.columns,
         time,
         time_unit,
-        quantities: quantities(model),
+        quantities: list_quantities(model),
         matches: Vec::new(),
     };
     let clock = found.columns.remove(time);
-    found.matches = matched(&mut found.columns, &found.quantities);
+    found.matches = match_columns(&mut found.columns, &found.quantities);
     found.columns.insert(time, clock);
     for matched in &mut found.matches {
         matched.column += usize::from(matched.column >= time);
     }
     let is_channel = |m: &Match| !found.quantities[m.quantity].is_input;
     if !found.matches.iter().any(is_channel) {
-        return Err(nothing_measured(record, &found));
+        return Err(no_match_error(record, &found));
     }
-    Ok(written::text(&found, name))
+    Ok(dataset_file::dataset_text(&found, name))
 }
 
-fn described(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
+fn detect_columns(record: &Path, bytes: &[u8]) -> Result<(Format, Vec<FileColumn>), Refusal> {
     // The reader reports a file that is not text.
-    let text = csv_file::behind_skipped(record, bytes, &Format::default())?;
+    let text = csv_file::skip_lines(record, bytes, &Format::default())?;
     let text = String::from_utf8_lossy(&text);
-    let layout = layout::found(&text).ok_or_else(|| {
-        Refusal::file(
+    let layout = layout::detect_layout(&text).ok_or_else(|| {
+        Refusal::file_error(
             record,
             "no two columns of numbers are found; expected lines of numbers, separated by commas, \
              semicolons, bars, tabs or spaces",
         )
     })?;
     let cells = layout.names.iter().zip(&layout.units).enumerate();
-    let columns = cells.filter(|(place, _)| layout.are_numbers[*place]);
-    let columns = columns.map(|(place, (name, unit))| FileColumn::of(place + 1, name, unit));
+    let columns = cells.filter(|(place, _)| layout.numeric_columns[*place]);
+    let columns =
+        columns.map(|(place, (name, unit))| FileColumn::from_header(place + 1, name, unit));
     Ok((layout.format, columns.collect()))
 }
 
-fn time(
+fn find_time(
     record: &Path,
     columns: &mut [FileColumn],
     values: &[Vec<f64>],
 ) -> Result<(usize, Unit), Refusal> {
-    let is_time = |name: &str| TIMES.contains(&name.to_lowercase().trim_matches(['#', ' ']));
+    let is_time =
+        |name: &str| TIME_COLUMN_NAMES.contains(&name.to_lowercase().trim_matches(['#', ' ']));
     for column in columns.iter_mut() {
         if column
             .stem
             .rsplit_once('_')
             .is_some_and(|(stem, _)| is_time(stem))
         {
-            column.take_suffix();
+            column.read_unit_suffix();
         }
     }
     let is_of_time = |column: &FileColumn| match (&column.unit, &column.unknown_unit) {
@@ -238,7 +241,7 @@ fn time(
         .or_else(|| all.clone().find(rises))
     else {
         let called = all.clone().find(is_called);
-        return Err(Refusal::file(
+        return Err(Refusal::file_error(
             record,
             match called {
                 Some(column) if !is_of_time(&columns[column]) => format!(
@@ -258,7 +261,7 @@ fn time(
     Ok((time, unit.unwrap_or(Unit::coherent(Dimension::TIME))))
 }
 
-fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
+fn no_match_error(record: &Path, found: &DetectedRecord<'_>) -> Refusal {
     let names = found
         .columns
         .iter()
@@ -269,7 +272,7 @@ fn nothing_measured(record: &Path, found: &Found<'_>) -> Refusal {
     let names: Vec<String> = names.collect();
     let measured = found.quantities.iter().filter(|q| !q.is_input);
     let measured: Vec<&str> = measured.map(|q| q.name.as_str()).collect();
-    Refusal::file(
+    Refusal::file_error(
         record,
         format!(
             "no column is an observable, coordinate or rate of the model by its name or unit; columns: {}; \

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use eomgen_model_spec::model::Model;
 use eomgen_records::dataset::Dataset;
-use eomgen_records::{Refusal, proposed, read_dataset};
+use eomgen_records::{Refusal, propose_dataset, read_dataset};
 use tempfile::TempDir;
 
 /// Dataset file of a pendulum; `format` is the place of further tables.
@@ -298,7 +298,7 @@ fn sensor_priors_are_converted_to_si() {
     );
     let folder = folder(&said, "t,angle\n", plain);
     let priors = read(&folder).expect("a dataset").channels[0].priors;
-    let numbers = |of: Option<eomgen_records::dataset::Expected>| {
+    let numbers = |of: Option<eomgen_records::dataset::PriorInSi>| {
         of.map(|expected| (expected.mean, expected.sd))
     };
     assert_eq!(numbers(priors.gain), Some((Some(2.0), 0.5)));
@@ -365,7 +365,7 @@ fn proposed_dataset_file_reads_original_numbers() {
     for (head, line, parts) in cases {
         let folder = folder("", head, |t, a| line(t, a + 0.1 * noise(t)));
         let record = folder.path().join("train.csv");
-        let text = proposed(&record, "train.csv", &pendulum());
+        let text = propose_dataset(&record, "train.csv", &pendulum());
         let text = text.unwrap_or_else(|refusal| panic!("{head}: {refusal}"));
         for part in parts {
             assert!(text.contains(part), "{part}: {text}");
@@ -390,7 +390,7 @@ fn proposed_dataset_file_reads_original_numbers() {
 fn proposals_never_match_another_dimension() {
     let proposal = |head: &str| {
         let folder = folder("", head, |t, a| format!("{t:.2},{:.6},{a:.6}\n", 1e-3 * a));
-        proposed(&folder.path().join("train.csv"), "train.csv", &pendulum())
+        propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum())
             .unwrap_or_else(|refusal| panic!("{head}: {refusal}"))
     };
     for unit in ["m/s^2", "parsec", "V", "m"] {
@@ -407,7 +407,7 @@ fn proposals_never_match_another_dimension() {
         "{text}"
     );
     let said = folder("", "t [mm],theta\n", |t, a| format!("{t:.2},{a:.6}\n"));
-    let said = proposed(&said.path().join("train.csv"), "train.csv", &pendulum());
+    let said = propose_dataset(&said.path().join("train.csv"), "train.csv", &pendulum());
     let said = said.expect_err("no time").to_string();
     assert!(
         said.contains("`t [mm]`, is not in a unit of time"),
@@ -421,7 +421,7 @@ fn hidden_characters_in_names_survive_proposals() {
     let folder = folder("", &head.replace(['"', '\\'], "'"), |t, a| {
         format!("{t:.2},{:.6},{a:.6}\n", 1e-3 * a)
     });
-    let text = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let text = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(
         !text.contains(eomgen_model_spec::visible::is_hidden),
@@ -449,13 +449,13 @@ fn records_without_possible_proposal_are_rejected() {
             "theta,other\n" => format!("{:.6},{a:.6}\n", a),
             _ => String::new(),
         });
-        let message = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+        let message = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
         let message = message.expect_err(part).to_string();
         assert!(message.contains(part), "{part}: {message}");
     }
     let few = "t,theta\n".to_owned() + &(0..90).map(|k| format!("{k},{k}\n")).collect::<String>();
     let folder = folder("", &few, |_, _| String::new());
-    let message = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let message = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
     let message = message.expect_err("too few").to_string();
     assert!(
         message.contains("has 90 samples; expected 125"),
@@ -659,7 +659,7 @@ fn given_speed_is_integrated_from_initial_position() {
         assert!((y.1 - y.0 - 0.5 * step * (rate.0 + rate.1)).abs() < 1e-3);
         assert!((rate.1 - rate.0 - 0.5 * step * (second.0 + second.1)).abs() < 1e-2);
     }
-    assert_eq!(record.given(1, 3)[0], 0.25);
+    assert_eq!(record.given_motion(1, 3)[0], 0.25);
     assert!(
         !dataset.notes.join("\n").contains("integrated"),
         "{:?}",
@@ -817,7 +817,7 @@ fn missing_last_cell_keeps_column_names() {
         50.0 => format!("{t:.2},\n"),
         _ => format!("{t:.2},{:.6}\n", 1e-3 * a),
     });
-    let text = proposed(&folder.path().join("train.csv"), "train.csv", &pendulum());
+    let text = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(text.contains("column = \"theta\""), "{text}");
 }

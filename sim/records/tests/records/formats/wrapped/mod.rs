@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use eomgen_model_spec::model::Model;
 use eomgen_records::dataset::Dataset;
-use eomgen_records::{Refusal, proposed, read_dataset};
+use eomgen_records::{Refusal, propose_dataset, read_dataset};
 use tempfile::TempDir;
 
 use super::write;
@@ -293,7 +293,7 @@ fn square_wave_input_is_not_wrapped() {
 #[test]
 fn proposed_file_declares_wrap() {
     let folder = folder("", |v| wrapped(v).to_radians(), |k| (0.1 * k as f64).sin());
-    let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
+    let text = propose_dataset(&folder.path().join("train.csv"), "train.csv", &rotor());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(text.contains("wrap = 6.283185307179586"), "{text}");
     write(folder.path(), "dataset.toml", &text);
@@ -305,7 +305,7 @@ fn proposed_file_declares_wrap() {
 #[test]
 fn angle_with_jumps_of_360_and_no_unit_is_in_degrees() {
     let folder = folder("", wrapped, |k| (0.1 * k as f64).sin());
-    let text = proposed(&folder.path().join("train.csv"), "train.csv", &rotor());
+    let text = propose_dataset(&folder.path().join("train.csv"), "train.csv", &rotor());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
     for line in ["unit = \"deg\"", "wrap = 360"] {
         assert!(text.contains(line), "{line}: {text}");

@@ -5,20 +5,20 @@ use std::path::Path;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 
-use crate::bound::bound;
-use crate::checks::examine;
-use crate::coverage::{self, can_be_cut};
-use crate::dataset::{Dataset, Initial, Quantity, Start};
+use crate::binding::bind_description;
+use crate::checks::check_records;
+use crate::coverage::{self, check_splittable};
+use crate::dataset::{Dataset, Initial, Quantity, StartSource};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
-use crate::gaps::unbroken;
-use crate::given_motion::notes_of_speeds;
-use crate::inputs::notes_of_inputs;
-use crate::record::{Columns, Record};
+use crate::gaps::split_at_gaps;
+use crate::given_motion::speed_notes;
+use crate::inputs::input_notes;
+use crate::record::{Record, RecordReader};
 use crate::refusal::Refusal;
-use crate::rest::without_rest;
-use crate::samples::FEWEST_SAMPLES;
+use crate::rest::remove_rest;
+use crate::samples::MIN_SAMPLES;
 
 /// Reads a dataset for a model.
 ///
@@ -26,7 +26,7 @@ use crate::samples::FEWEST_SAMPLES;
 /// Problems of the dataset file, or the first problem of a record, with its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
-    if let Some(refused) = prescribed_column(&description, model) {
+    if let Some(refused) = check_prescribed_columns(&description, model) {
         return Err(Diagnostics::one(description.source.clone(), refused).into());
     }
     if let Some(constraint) = model.constraints.first() {
@@ -45,7 +45,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             impact.name
         )));
     }
-    let bound = bound(&description, model)?;
+    let bound = bind_description(&description, model)?;
     let mut dataset = Dataset {
         path: path.to_owned(),
         title: description.title.clone(),
@@ -55,64 +55,64 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         channels: bound.channels,
         initial: bound.initial,
         window: description.windows.length.map(|length| length.value),
-        start: match description.windows.smoothed {
-            true => Start::Smoothed,
-            false => Start::Fitted,
+        start: match description.windows.is_smoothed {
+            true => StartSource::SmoothedRecord,
+            false => StartSource::Estimate,
         },
         uncertain: bound.uncertain,
         experiment: bound.experiment,
-        played: bound.played.clone(),
+        experiment_units: bound.experiment_units.clone(),
         motion: match bound.motion.is_empty() {
             true => Vec::new(),
             false => model.coordinates.iter().map(|c| c.name.clone()).collect(),
         },
-        notes: notes_of_inputs(&description, model),
+        notes: input_notes(&description, model),
     };
-    let speeds = notes_of_speeds(&bound.motion, &description);
+    let speeds = speed_notes(&bound.motion, &description);
     dataset.notes.extend(speeds);
-    let starts = starts(&dataset, model);
+    let starts = initial_values(&dataset, model);
     let decimation = Decimation::new(description.time.every, description.time.filter);
     for channel in &mut dataset.channels {
-        channel.noise *= decimation.noise();
+        channel.noise *= decimation.noise_factor();
     }
-    let columns = Columns {
+    let columns = RecordReader {
         description: &description,
         path,
         time: &bound.time,
         inputs: &bound.inputs,
         motion: &bound.motion,
         channels: &bound.channel_units,
-        starts: &starts,
+        initial_values: &starts,
         model,
         decimation: &decimation,
-        fewest: FEWEST_SAMPLES,
+        min_samples: MIN_SAMPLES,
     };
     let mut notes = Vec::new();
     let mut read = |kind: &str, files: &[Stretch]| -> Result<Vec<Record>, Refusal> {
         let files = files.iter().enumerate();
         let mut records = Vec::new();
         for (place, file) in files {
-            let record = columns.record(&format!("{kind}[{place}]"), file, &mut notes)?;
-            can_be_cut(&record, &description)?;
-            records.extend(unbroken(record, &mut notes));
+            let record = columns.read_record(&format!("{kind}[{place}]"), file, &mut notes)?;
+            check_splittable(&record, &description)?;
+            records.extend(split_at_gaps(record, &mut notes));
         }
         Ok(records)
     };
     dataset.train = read("train", &description.records.train)?;
     dataset.test = read("test", &description.records.test)?;
     dataset.notes.append(&mut notes);
-    let notes = examine(&dataset, &description, &model.inputs)?;
+    let notes = check_records(&dataset, &description, &model.inputs)?;
     dataset.notes.extend(notes);
     if dataset.gives_motion() {
-        let notes = without_rest(&mut dataset, model);
+        let notes = remove_rest(&mut dataset, model);
         dataset.notes.extend(notes);
-        coverage::check(&dataset, &description)?;
+        coverage::check_coverage(&dataset, &description)?;
     }
     Ok(dataset)
 }
 
 /// Rejects columns of prescribed motion, because `compare` and `discover` hold inputs constant.
-fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnostic> {
+fn check_prescribed_columns(description: &Description, model: &Model) -> Option<Diagnostic> {
     let is_prescribed = |name: &str| {
         let mut inputs = model.inputs.iter();
         inputs.any(|input| input.rate.is_some() && input.name == name)
@@ -131,13 +131,13 @@ fn prescribed_column(description: &Description, model: &Model) -> Option<Diagnos
 }
 
 /// Returns the initial value of each channel in SI, for coordinates with a known initial state.
-fn starts(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
+fn initial_values(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let state = model.initial_state(&orders).unwrap_or_default();
     let of = |place: usize| match &dataset.initial {
         Initial::Estimate => None,
         Initial::Rest => state.get(place).copied(),
-        Initial::Given(values) => {
+        Initial::Values(values) => {
             let name = &model.coordinates[place].name;
             let given = values.iter().find(|(given, _)| given == name);
             given.map(|(_, value)| *value).or(state.get(place).copied())

@@ -3,7 +3,7 @@
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::table::{Entry, Record};
 
-pub(super) fn required<'r, 'd>(
+pub(super) fn require_entry<'r, 'd>(
     record: &'r Record<'d>,
     key: &str,
     example: &str,

@@ -3,10 +3,10 @@
 use crate::description::Description;
 use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
-use crate::experiment::{self, ExperimentBounds, Played};
+use crate::experiment::{self, ExperimentBounds, ExperimentUnits};
 use crate::given_motion;
 use crate::motion_rates::GivenColumn;
-use crate::units::unit;
+use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
@@ -15,13 +15,13 @@ use eomgen_model_spec::table::{Name, Number};
 use eomgen_model_spec::unit::Unit;
 
 use crate::dataset::{
-    Channel, Expected, Initial, InputPriors, Quantity, TransducerPriors, Uncertain,
+    Channel, Initial, InputPriors, PriorInSi, Quantity, TransducerPriors, Uncertain,
 };
 
 /// Range of a relative standard deviation: below it a parameter is exact, above it unknown.
-const RELATIVE: (f64, f64) = (1e-9, 1e6);
+const RELATIVE_SD_RANGE: (f64, f64) = (1e-9, 1e6);
 
-pub struct Bound<'d> {
+pub struct BoundDescription<'d> {
     pub time: Unit,
     pub inputs: Vec<Option<(&'d Column, Unit)>>,
     pub input_priors: Vec<InputPriors>,
@@ -32,19 +32,22 @@ pub struct Bound<'d> {
     pub initial: Initial,
     pub uncertain: Vec<Uncertain>,
     pub experiment: ExperimentBounds,
-    pub played: Played,
+    pub experiment_units: ExperimentUnits,
 }
 
-pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d>, Diagnostics> {
+pub fn bind_description<'d>(
+    description: &'d Description,
+    model: &Model,
+) -> Result<BoundDescription<'d>, Diagnostics> {
     let mut found = Diagnostics::new(description.source.clone());
-    lists(description, &mut found);
+    check_lists(description, &mut found);
     let time = found.keep(time_unit(description));
-    let inputs = inputs(description, model, &mut found);
+    let inputs = bind_inputs(description, model, &mut found);
     let input_priors = input_priors(description, model, &mut found);
-    let motion = given_motion::columns(description, model, &mut found);
+    let motion = given_motion::given_columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
-        if let Some((channel, unit)) = found.keep(channel(entry, description, model)) {
+        if let Some((channel, unit)) = found.keep(bind_channel(entry, description, model)) {
             channels.push(channel);
             channel_units.push(unit);
         }
@@ -52,24 +55,24 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
     if !description.motion.is_empty() {
         given_motion::required_inputs(description, &channels, model, &mut found);
     }
-    let initial = initial(&description.initial, model, &mut found);
+    let initial = bind_initial(&description.initial, model, &mut found);
     let mut uncertain = Vec::new();
     for (name, relative) in &description.uncertain {
-        uncertain.extend(found.keep(doubted(name, *relative, model)));
+        uncertain.extend(found.keep(bind_uncertain(name, *relative, model)));
     }
     let input_units: Vec<Option<Unit>> = (inputs.iter())
         .map(|fed| fed.as_ref().map(|(_, unit)| unit.clone()))
         .collect();
     let units = (&input_units[..], &channel_units[..]);
-    let experiment = experiment::bound(description, model, units, &mut found);
+    let experiment = experiment::bind_experiment(description, model, units, &mut found);
     match time {
-        Some(time) if found.is_empty() => Ok(Bound {
-            played: Played {
+        Some(time) if found.is_empty() => Ok(BoundDescription {
+            experiment_units: ExperimentUnits {
                 time: time.clone(),
                 inputs: input_units,
             },
             time,
-            inputs,
+            bind_inputs,
             input_priors,
             motion,
             channels,
@@ -83,11 +86,11 @@ pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d
 }
 
 pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
-    unit(&description.time.column.unit, "s")
+    parse_unit(&description.time.column.unit, "s")
 }
 
 /// Returns the column and the unit of each input of the model.
-pub fn inputs<'d>(
+pub fn bind_inputs<'d>(
     description: &'d Description,
     model: &Model,
     found: &mut Diagnostics,
@@ -99,7 +102,7 @@ pub fn inputs<'d>(
             return None;
         }
         let column = columns.find(|column| column.name.text == input.name)?;
-        let unit = found.keep(unit(&column.column.unit, &input.unit.text))?;
+        let unit = found.keep(parse_unit(&column.column.unit, &input.unit.text))?;
         Some((&column.column, unit))
     };
     model.inputs.iter().map(of).collect()
@@ -127,13 +130,13 @@ fn input_priors(
     let of = |column: &InputColumn| {
         let mut inputs = model.inputs.iter();
         let input = inputs.find(|input| input.name == column.name.text)?;
-        let own = unit(&column.column.unit, &input.unit.text).ok()?;
+        let own = parse_unit(&column.column.unit, &input.unit.text).ok()?;
         let one = Unit::coherent(Dimension::NONE);
         Some(InputPriors {
             name: input.name.clone(),
-            gain: column.gain.map(|gain| known_before(gain, &one)),
-            bias: column.bias.map(|bias| known_before(bias, &own)),
-            delay: column.delay.map(|delay| known_before(delay, &one)),
+            gain: column.gain.map(|gain| prior_in_si(gain, &one)),
+            bias: column.bias.map(|bias| prior_in_si(bias, &own)),
+            delay: column.delay.map(|delay| prior_in_si(delay, &one)),
         })
     };
     description
@@ -144,7 +147,7 @@ fn input_priors(
         .collect()
 }
 
-fn lists(description: &Description, found: &mut Diagnostics) {
+fn check_lists(description: &Description, found: &mut Diagnostics) {
     let records = &description.records;
     for (kind, files) in [("train", &records.train), ("test", &records.test)] {
         if files.is_empty() {
@@ -164,7 +167,7 @@ fn lists(description: &Description, found: &mut Diagnostics) {
     }
 }
 
-fn channel(
+fn bind_channel(
     entry: &ChannelColumn,
     description: &Description,
     model: &Model,
@@ -173,7 +176,7 @@ fn channel(
         Some(written) => (&written.text, written.span),
         None => (&entry.name.text, entry.name.span),
     };
-    let (quantity, expected) = quantity(model, asked).ok_or_else(|| {
+    let (quantity, expected) = find_quantity(model, asked).ok_or_else(|| {
         let known = || {
             let observables = model.observables.iter().map(|o| o.name.as_str());
             let inputs = model.inputs.iter().map(|input| input.name.as_str());
@@ -196,8 +199,8 @@ fn channel(
         .at(span, "not a quantity of the model")
         .help(did_you_mean(asked, known()).unwrap_or(listed))
     })?;
-    given_motion::admitted(quantity, !description.motion.is_empty(), asked, span)?;
-    let unit = unit(&entry.column.unit, &expected)?;
+    given_motion::check_channel(quantity, !description.motion.is_empty(), asked, span)?;
+    let unit = parse_unit(&entry.column.unit, &expected)?;
     let noise = unit.to_si(entry.noise.value);
     if !(noise.is_finite() && noise > 0.0) {
         return Err(
@@ -221,22 +224,22 @@ fn channel(
         unit: expected,
         noise,
         priors: TransducerPriors {
-            gain: entry.gain.map(|gain| known_before(gain, &one)),
-            bias: entry.bias.map(|bias| known_before(bias, &unit)),
-            delay: entry.delay.map(|delay| known_before(delay, &one)),
+            gain: entry.gain.map(|gain| prior_in_si(gain, &one)),
+            bias: entry.bias.map(|bias| prior_in_si(bias, &unit)),
+            delay: entry.delay.map(|delay| prior_in_si(delay, &one)),
         },
     };
     Ok((channel, unit))
 }
 
-fn known_before(prior: Prior, unit: &Unit) -> Expected {
-    Expected {
+fn prior_in_si(prior: Prior, unit: &Unit) -> PriorInSi {
+    PriorInSi {
         mean: prior.mean.map(|mean| unit.to_si(mean.value)),
         sd: unit.to_si(prior.sd.value),
     }
 }
 
-fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
+fn find_quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = model.observables.iter().position(|o| o.name == name) {
         let unit = model.observables[place].unit.text.clone();
         return Some((Quantity::Observable(place), unit));
@@ -269,11 +272,11 @@ fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     Some((Quantity::ObservedRate(rate), rate.unit(model).text))
 }
 
-fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> Initial {
+fn bind_initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> Initial {
     let values = match written {
         InitialState::Rest => return Initial::Rest,
         InitialState::Estimate => return Initial::Estimate,
-        InitialState::Given(values) => values,
+        InitialState::Values(values) => values,
     };
     let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
     let names = model.state_names(&orders);
@@ -289,14 +292,14 @@ fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> In
         }
     }
     let values = values.iter();
-    Initial::Given(
+    Initial::Values(
         values
             .map(|(name, value)| (name.text.clone(), value.value))
             .collect(),
     )
 }
 
-fn doubted(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Diagnostic> {
+fn bind_uncertain(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Diagnostic> {
     let parameter = model.parameters.iter().find(|p| p.name == name.text);
     let wrong = |message: &str| Diagnostic::error(format!("{} {message}", quoted(&name.text)));
     match parameter.map(|parameter| &parameter.value) {
@@ -316,8 +319,8 @@ fn doubted(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Di
             )
             .help("set its expected value in the specification, or remove it here")),
         Some(ParameterValue::Number(_)) => {
-            if !(RELATIVE.0..=RELATIVE.1).contains(&relative.value) {
-                let (least, most) = RELATIVE;
+            if !(RELATIVE_SD_RANGE.0..=RELATIVE_SD_RANGE.1).contains(&relative.value) {
+                let (least, most) = RELATIVE_SD_RANGE;
                 return Err(wrong("has an invalid standard deviation").at(
                     relative.span,
                     format!("expected a fraction of its value, from {least:e} to {most:e}"),

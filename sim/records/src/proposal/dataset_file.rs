@@ -5,53 +5,53 @@ use std::fmt::Write;
 use eomgen_model_spec::model::ParameterValue;
 use eomgen_model_spec::visible::{is_hidden, visible_in_strings};
 
-use super::Found;
+use super::DetectedRecord;
 use super::matching::{FileColumn, Match};
 use crate::description::format::{DECIMALS, Format, SEPARATORS};
-use crate::noise::estimated;
+use crate::noise::estimate_noise;
 use crate::samples::span;
-use crate::unwrapping::unwrapped;
+use crate::unwrapping::unwrap_values;
 use crate::wrap_detection::WrapPattern;
 
 /// Noise of a channel without visible noise, relative to its range.
-const UNSEEN: f64 = 1e-6;
+const INVISIBLE_NOISE_FRACTION: f64 = 1e-6;
 
-pub(super) fn text(found: &Found<'_>, name: &str) -> String {
+pub(super) fn dataset_text(found: &DetectedRecord<'_>, name: &str) -> String {
     let mut text =
         "# Proposed by `eomgen dataset`. Check the entries that are marked as guessed.\n"
             .to_owned();
     text += &format!(
         "title = {}\n",
-        quoted(&format!("{name}, {}", found.model.name))
+        quote_text(&format!("{name}, {}", found.model.name))
     );
-    text += &records(found, name);
-    text += &format(&found.format);
-    text += &time(found);
+    text += &records_table(found, name);
+    text += &format_table(&found.format);
+    text += &time_table(found);
     for matched in &found.matches {
         text += &match found.quantities[matched.quantity].is_input {
-            true => input(found, matched),
-            false => channel(found, matched),
+            true => input_table(found, matched),
+            false => channel_table(found, matched),
         };
     }
-    text += &unmatched(found);
+    text += &unmatched_comments(found);
     text += "\n[initial]\nstate = \"estimate\"\u{1}or \"rest\" if the machine is at rest at the start\n";
-    text += &uncertain(found);
-    text += &windows(found);
-    aligned(&text)
+    text += &uncertain_tables(found);
+    text += &windows_table(found);
+    align_comments(&text)
 }
 
 /// Column at which comments of short lines start.
-const COMMENTS: usize = 30;
+const COMMENT_COLUMN: usize = 30;
 
-fn aligned(text: &str) -> String {
+fn align_comments(text: &str) -> String {
     let line = |line: &str| match line.split_once('\u{1}') {
-        Some((code, comment)) => format!("{code:<COMMENTS$} # {comment}\n"),
+        Some((code, comment)) => format!("{code:<COMMENT_COLUMN$} # {comment}\n"),
         None => format!("{line}\n"),
     };
     text.lines().map(line).collect()
 }
 
-fn quoted(text: &str) -> String {
+fn quote_text(text: &str) -> String {
     if !text.contains(is_hidden) {
         return toml_edit::Value::from(text).to_string();
     }
@@ -64,8 +64,8 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", visible_in_strings(&escaped))
 }
 
-fn records(found: &Found<'_>, name: &str) -> String {
-    let (file, at) = (quoted(name), found.split());
+fn records_table(found: &DetectedRecord<'_>, name: &str) -> String {
+    let (file, at) = (quote_text(name), found.test_start());
     format!(
         "\n[records]\u{1}the first 60 % for training, the rest for testing;\n\
          train = [{{ file = {file}, to = {at:?} }}]\u{1}better: another measurement, test = [\"other.csv\"]\n\
@@ -73,7 +73,7 @@ fn records(found: &Found<'_>, name: &str) -> String {
     )
 }
 
-fn format(format: &Format) -> String {
+fn format_table(format: &Format) -> String {
     let usual = Format::default();
     let mut keys = String::new();
     let mut key = |differs: bool, line: String| {
@@ -84,7 +84,7 @@ fn format(format: &Format) -> String {
     };
     let word = |words: &[(&'static str, bool)]| {
         let known = words.iter().find(|(_, is_own)| *is_own);
-        quoted(known.map_or("", |(word, _)| word))
+        quote_text(known.map_or("", |(word, _)| word))
     };
     let separator = SEPARATORS.map(|(word, sign)| (word, sign == format.separator));
     let decimal = DECIMALS.map(|(word, sign)| (word, sign == format.decimal));
@@ -99,17 +99,17 @@ fn format(format: &Format) -> String {
     key(format.skip > 0, format!("skip = {}", format.skip));
     let comment = format
         .comment
-        .map(|sign| quoted(&char::from(sign).to_string()));
+        .map(|sign| quote_text(&char::from(sign).to_string()));
     key(
         comment.is_some(),
         format!("comment = {}", comment.unwrap_or_default()),
     );
     key(
-        !format.names,
+        !format.has_names,
         "names = false\u{1}columns are identified by number".to_owned(),
     );
     key(
-        format.units,
+        format.has_units,
         "units = true\u{1}after the line of names".to_owned(),
     );
     match keys.is_empty() {
@@ -118,32 +118,32 @@ fn format(format: &Format) -> String {
     }
 }
 
-fn key(found: &Found<'_>, column: &FileColumn) -> String {
+fn column_key(found: &DetectedRecord<'_>, column: &FileColumn) -> String {
     let mut all = found
         .columns
         .iter()
         .filter(|other| other.name == column.name);
     let is_unique = all.next().is_some() && all.next().is_none();
-    match found.format.names && is_unique && !column.name.is_empty() {
-        true => quoted(&column.name),
+    match found.format.has_names && is_unique && !column.name.is_empty() {
+        true => quote_text(&column.name),
         false => column.number.to_string(),
     }
 }
 
-fn time(found: &Found<'_>) -> String {
+fn time_table(found: &DetectedRecord<'_>) -> String {
     let column = &found.columns[found.time];
     let why = match (&column.unit, &column.unknown_unit) {
         (Some(_), _) => "from the file".to_owned(),
-        (None, Some(unknown)) => format!("guessed: {} is not a known unit", quoted(unknown)),
+        (None, Some(unknown)) => format!("guessed: {} is not a known unit", quote_text(unknown)),
         (None, None) => "guessed: the file has none".to_owned(),
     };
     let mut text = format!(
         "\n[time]\ncolumn = {}\nunit = {}\u{1}{why}; samples are {:.6} s apart\n",
-        key(found, column),
-        quoted(&found.time_unit.to_string()),
+        column_key(found, column),
+        quote_text(&found.time_unit.to_string()),
         found.step()
     );
-    let every = found.every();
+    let every = found.decimation_factor();
     if every > 1 {
         let _ = writeln!(
             text,
@@ -157,42 +157,42 @@ fn time(found: &Found<'_>) -> String {
     text
 }
 
-fn unit(found: &Found<'_>, matched: &Match) -> String {
+fn unit_entry(found: &DetectedRecord<'_>, matched: &Match) -> String {
     let (unit, why) = found.unit(matched);
-    format!("unit = {}\u{1}{why}", quoted(&unit.to_string()))
+    format!("unit = {}\u{1}{why}", quote_text(&unit.to_string()))
 }
 
-fn input(found: &Found<'_>, matched: &Match) -> String {
+fn input_table(found: &DetectedRecord<'_>, matched: &Match) -> String {
     let column = &found.columns[matched.column];
     let pattern = found.wrap_pattern(matched);
     format!(
         "\n[inputs.{}]\u{1}{}\ncolumn = {}\n{}\n{}",
         found.quantities[matched.quantity].name,
-        matched.why,
-        key(found, column),
-        unit(found, matched),
-        wrap(pattern.filter(|pattern| pattern.is_wrapped(true)))
+        matched.reason,
+        column_key(found, column),
+        unit_entry(found, matched),
+        wrap_entry(pattern.filter(|pattern| pattern.is_wrapped(true)))
     )
 }
 
-fn wrap(pattern: Option<WrapPattern>) -> String {
+fn wrap_entry(pattern: Option<WrapPattern>) -> String {
     pattern.map_or_else(String::new, |pattern| {
-        let doubt = pattern.doubt(pattern.period);
+        let doubt = pattern.uncertainty_note(pattern.period);
         format!(
             "wrap = {}\u{1}it jumps by about this{}; \"none\" if the jumps are real\n",
-            pattern.written(pattern.period),
+            pattern.format_period(pattern.period),
             doubt.map_or_else(String::new, |doubt| format!(", {doubt}"))
         )
     })
 }
 
-fn channel(found: &Found<'_>, matched: &Match) -> String {
+fn channel_table(found: &DetectedRecord<'_>, matched: &Match) -> String {
     let column = &found.columns[matched.column];
     let pattern = found.wrap_pattern(matched);
     let pattern = pattern.filter(|pattern| pattern.is_wrapped(false));
     let read = &found.values[matched.column];
     let values = match pattern {
-        Some(pattern) => unwrapped(found.times(), read, pattern.period).values,
+        Some(pattern) => unwrap_values(found.times(), read, pattern.period).values,
         None => read.clone(),
     };
     let name = &found.quantities[matched.quantity].name;
@@ -203,20 +203,23 @@ fn channel(found: &Found<'_>, matched: &Match) -> String {
             column.number
         );
     }
-    let (noise, why) = match estimated(&values) {
+    let (noise, why) = match estimate_noise(&values) {
         Some(noise) => (noise, "guessed from the differences between samples"),
-        None => (UNSEEN * span, "guessed: no noise is visible"),
+        None => (
+            INVISIBLE_NOISE_FRACTION * span,
+            "guessed: no noise is visible",
+        ),
     };
     format!(
         "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\n{}noise = {noise:.1e}\u{1}{why}\n",
-        matched.why,
-        key(found, column),
-        unit(found, matched),
-        wrap(pattern),
+        matched.reason,
+        column_key(found, column),
+        unit_entry(found, matched),
+        wrap_entry(pattern),
     )
 }
 
-fn unmatched(found: &Found<'_>) -> String {
+fn unmatched_comments(found: &DetectedRecord<'_>) -> String {
     let is_used = |place: usize| {
         place == found.time || found.matches.iter().any(|matched| matched.column == place)
     };
@@ -225,12 +228,12 @@ fn unmatched(found: &Found<'_>) -> String {
     let named = columns.map(|(_, column)| {
         let name = match column.name.as_str() {
             "" => format!("column {}", column.number),
-            name => quoted(name),
+            name => quote_text(name),
         };
         let unknown = column.unknown_unit.as_ref();
         unknown.map_or_else(
             || name.clone(),
-            |unit| format!("{name} ({} is not a known unit)", quoted(unit)),
+            |unit| format!("{name} ({} is not a known unit)", quote_text(unit)),
         )
     });
     let named: Vec<String> = named.collect();
@@ -257,7 +260,7 @@ fn unmatched(found: &Found<'_>) -> String {
     text
 }
 
-fn uncertain(found: &Found<'_>) -> String {
+fn uncertain_tables(found: &DetectedRecord<'_>) -> String {
     let parameters = found.model.parameters.iter();
     let numbers = parameters.filter(|p| matches!(p.value, ParameterValue::Number(v) if v != 0.0));
     let names: Vec<&str> = numbers.map(|p| p.name.as_str()).collect();
@@ -271,8 +274,8 @@ fn uncertain(found: &Found<'_>) -> String {
     )
 }
 
-fn windows(found: &Found<'_>) -> String {
-    match found.window() {
+fn windows_table(found: &DetectedRecord<'_>) -> String {
+    match found.window_length() {
         Some(length) => format!(
             "\n[windows]\nlength = {length:?}\u{1}s; each window has a separate initial state\n"
         ),
