@@ -199,7 +199,7 @@ fn page_starts_at_given_parameters_and_state() {
     let pendulum = spec("pendulum");
     let page = |more: &[&str]| accepted(&[&["page", &pendulum, "--out", "-"], more].concat());
     assert!(!page(&[]).contains("\"initial\":0.7"));
-    let given = page(&["--state", "theta=0.7", "--set", "l=0.375"]);
+    let given = page(&["--state", "theta=0.7", "--set", "a=0.375"]);
     assert!(given.contains("\"initial\":0.7"));
     assert!(given.contains("0.375"));
 }
