@@ -1,8 +1,8 @@
 //! Sliding modes: the switching surfaces that hold a motion on them (A. F. Filippov).
 //!
-//! With s_i between -1 and 1 instead of sign(g_i), the rates of the switching functions are g' = c
-//! + W s. A surface holds the motion if its rate is zero, and releases it to the side s_i = 1 or
-//! -1 if its rate has that sign. This is a linear complementarity problem with bounds. For
+//! With s_i between -1 and 1 instead of sign(g_i), the rates of the switching functions are
+//! g' = c + W s. A surface holds the motion if its rate is zero, and releases it to the side
+//! s_i = 1 or s_i = -1 if its rate has that sign. This is a linear complementarity problem with bounds. For
 //! friction, W is -J M^-1 J^T times the friction levels, and the rates that solve the problem are
 //! unique.
 

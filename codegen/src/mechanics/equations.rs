@@ -1,6 +1,6 @@
-//! Equations of motion of one model at given truncation orders, by Lagrange's equations d/dt(dT/dq') - dT/dq
-//! + dV/dq + dR/dq' = Q: mass matrix, generalised forces, accelerations, energy, power and guards, as nodes
-//! of one graph.
+//! Equations of motion of one model at given truncation orders, by Lagrange's equations
+//! d/dt(dT/dq') - dT/dq + dV/dq + dR/dq' = Q: mass matrix, generalised forces, accelerations, energy, power and
+//! guards, as nodes of one graph.
 
 use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::{MULTIPLIER, Model, ParameterValue, Term};

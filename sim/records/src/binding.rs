@@ -72,7 +72,7 @@ pub fn bind_description<'d>(
                 inputs: input_units,
             },
             time,
-            bind_inputs,
+            inputs,
             input_priors,
             motion,
             channels,

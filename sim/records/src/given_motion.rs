@@ -90,7 +90,7 @@ fn given_column<'d>(
     let kind_and_unit = |kind: GivenKind, unit: Unit| GivenColumn {
         name: &given.name.text,
         column: &given.column,
-        parse_unit,
+        unit,
         kind,
     };
     if let Ok(unit) = parse_unit(written, &of_speed) {

@@ -75,7 +75,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
     let there = columns.iter().map(|column| column.name().to_owned());
     let there: Vec<String> = there.collect();
     let places = find_columns(path, 1, &there, wanted)?;
-    for place in &find_columns {
+    for place in &places {
         let kind = columns[*place].physical_type();
         if !is_number(kind) {
             let name = &there[*place];

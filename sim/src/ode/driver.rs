@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 
 use super::adams::Adams;
+use super::approach::Approach;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::grazing::passed_over;
-use super::limits::Approach;
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;

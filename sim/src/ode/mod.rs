@@ -25,6 +25,7 @@
 //! magnitude.
 
 mod adams;
+mod approach;
 mod attempt;
 mod collocation;
 mod continuous_extension;

@@ -112,7 +112,7 @@ fn read_tables(
     let inputs = read_entries(&top, "inputs", found, columns::read_input);
     let motion = read_entries(&top, "motion", found, columns::read_motion);
     let channels = read_entries(&top, "channels", found, columns::read_channel);
-    let uncertain = read_entries(&top, "uncertain", found, uncertain);
+    let uncertain = read_entries(&top, "uncertain", found, read_uncertain);
     let initial = match top.get("initial") {
         Some(entry) => motion::read_initial(entry, found),
         None => Some(InitialState::Estimate),
