@@ -16,20 +16,20 @@ impl<'m> AuditResult<'m> {
     pub fn new(run: &Instance<'_>, motion: &'m Motion, tolerance: f64) -> Result<Self> {
         Ok(Self {
             audit: motion.audit.as_ref(),
-            overlap: run.first_overlap_of(motion, tolerance)?,
+            overlap: run.find_first_overlap(motion, tolerance)?,
         })
     }
 
     pub fn has_failed(&self) -> bool {
-        self.overlap.is_some() || self.audit.is_some_and(|audit| audit.faults > 0)
+        self.overlap.is_some() || self.audit.is_some_and(|audit| audit.fault_count > 0)
     }
 
     pub fn warn(&self) {
-        if let Some(warning) = self.audit.and_then(Audit::warning) {
+        if let Some(warning) = self.audit.and_then(Audit::warning_message) {
             warn(&format!("warning: {warning}"));
         }
         if let Some(overlap) = &self.overlap {
-            warn(&format!("warning: {}", overlap.warning()));
+            warn(&format!("warning: {}", overlap.warning_message()));
         }
     }
 
@@ -48,17 +48,17 @@ impl<'m> AuditResult<'m> {
         });
         let largest = audit
             .largest_fault
-            .map(|fault| json!({ "t": fault.t, "size": fault.size, "tolerance": fault.tolerance }));
+            .map(|fault| json!({ "t": fault.t, "size": fault.energy_gain, "tolerance": fault.tolerance }));
         json!({
             "energy_change": audit.energy_change,
             "work": audit.work,
-            "impacts": audit.impacts,
-            "unchecked": audit.unaudited,
-            "residual": audit.unexplained(),
-            "faults": audit.faults,
+            "impacts": audit.impact_energy,
+            "unchecked": audit.unaudited_energy,
+            "residual": audit.unexplained_energy(),
+            "faults": audit.fault_count,
             "largest_fault": largest,
             "overlap": overlap,
-            "not_applicable": audit.not_applicable,
+            "not_applicable": audit.exclusion_reason,
             "evaluations": audit.evaluations,
         })
     }

@@ -67,7 +67,7 @@ struct AllowedMatrices {
 
 /// Returns the matrices, or none for a model without constraints.
 fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<AllowedMatrices>> {
-    let held = found.held(compiled);
+    let held = found.constraint_matrix(compiled);
     if held.is_empty() {
         return Ok(None);
     }

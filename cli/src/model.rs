@@ -34,15 +34,15 @@ pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
 }
 
 pub fn derive(model: Model, orders: &[usize]) -> Result<CompiledModel> {
-    Ok(CompiledModel::derive(model, Orders::Each(orders))?)
+    Ok(CompiledModel::derive(model, Orders::PerField(orders))?)
 }
 
 /// Loads and derives a model to print its equations; coordinates without inertia are accepted.
 pub fn load_to_read(path: &Path, order: Option<&str>) -> Result<CompiledModel> {
     let model = load(path)?.model;
     let orders = orders(&model, order)?;
-    Ok(CompiledModel::derive_unjudged(
+    Ok(CompiledModel::derive_without_inertia_check(
         model,
-        Orders::Each(&orders),
+        Orders::PerField(&orders),
     )?)
 }

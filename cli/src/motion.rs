@@ -1,6 +1,6 @@
 //! Simulation with a progress bar, and its table.
 
-use eomgen_compiled_model::{Choice, Instance, Motion, Moved, Request, Solver};
+use eomgen_compiled_model::{InitialChange, Instance, Motion, Request, Solver, SolverChoice};
 
 use crate::error::{Result, warn};
 use crate::progress::Bar;
@@ -11,35 +11,35 @@ const MAX_LISTED: usize = 8;
 
 /// Simulates over all requested times. A stop of the solver is an error.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
-    Ok(follow(instance, request)?.complete()?)
+    Ok(follow(instance, request)?.into_complete()?)
 }
 
 /// Simulates up to the end or a stop of the solver. A stop at the start is an error.
 pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
-    let (begin, end) = request.span();
+    let (begin, end) = request.time_span();
     let bar = Bar::new("simulating", end - begin, "s");
-    let motion = instance.follow(request, &mut |t| bar.set(t - begin))?;
-    if let Some(Choice::NotFollowed(reason)) = &motion.choice {
+    let motion = instance.simulate_until_stop(request, &mut |t| bar.set(t - begin))?;
+    if let Some(SolverChoice::NotSupportedByExact(reason)) = &motion.solver_choice {
         warn(&format!(
             "warning: not solved exactly, but with {}: {reason}",
             motion.solver
         ));
     }
-    if let Some(Choice::Stiff(reason)) = &motion.choice {
+    if let Some(SolverChoice::Stiff(reason)) = &motion.solver_choice {
         warn(&format!("note: solved with radau, because {reason}"));
     }
-    note_moved("initial state", &motion.moved);
+    note_moved("initial state", &motion.initial_changes);
     Ok(motion)
 }
 
 /// Prints a note about states that were moved onto the constraints.
-pub fn note_moved(what: &str, all: &[Moved]) {
+pub fn note_moved(what: &str, all: &[InitialChange]) {
     if all.is_empty() {
         return;
     }
     let moved = all.iter().take(MAX_LISTED);
     let moved = moved.map(|moved| {
-        let (from, to) = (Rounded(moved.from), Rounded(moved.to));
+        let (from, to) = (Rounded(moved.requested), Rounded(moved.used));
         format!("{} from {from} to {to} {}", moved.name, moved.unit)
     });
     let mut moved: Vec<String> = moved.collect();

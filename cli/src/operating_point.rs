@@ -34,7 +34,7 @@ pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<V
     let states = model.state_units(compiled.orders());
     let reader = QuantityReader::new(model).map_err(Error::Specification)?;
     let value = |given: &Assignment| -> Result<(String, f64)> {
-        let unit = match compiled.setting(given.name()) {
+        let unit = match compiled.find_setting(given.name()) {
             Ok(Setting::State(place)) => states[place].clone(),
             Ok(Setting::Input(place)) => model.inputs[place].unit.clone(),
             Ok(Setting::Time) => Unit::coherent(Dimension::TIME),
@@ -63,23 +63,29 @@ pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
     let given = as_borrowed(&given);
     match is_trimmed {
         false => consistent(run, run.operating_point(&given)?),
-        true => Ok(equilibrium_near(run, &given)?.at),
+        true => Ok(equilibrium_near(run, &given)?.point),
     }
 }
 
 fn equilibrium_near(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium> {
     let fixed = &[];
-    equilibrium(run, EquilibriumRequest { start, fixed })
+    equilibrium(
+        run,
+        EquilibriumRequest {
+            start_values: start,
+            fixed_values: fixed,
+        },
+    )
 }
 
 /// Finds an equilibrium; the command fails if there is none.
 pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
-    match run.equilibrium(request) {
+    match run.find_equilibrium(request) {
         Err(Failure::Stopped { reason, .. }) => Err(Error::Stopped(reason)),
         Err(other) => Err(other.into()),
         Ok(found) => {
-            if !found.running.is_empty() {
-                let rates = found.running.join(", ");
+            if !found.nonzero_rates.is_empty() {
+                let rates = found.nonzero_rates.join(", ");
                 warn(&format!(
                     "note: the equilibrium is a steady motion, not rest: {rates} are constant"
                 ));
@@ -87,7 +93,7 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
             if found.depends_on_time {
                 warn(&format!(
                     "warning: the forces depend on time: the state is an equilibrium at t = {} s only",
-                    found.at.t
+                    found.point.t
                 ));
             }
             Ok(found)
@@ -97,7 +103,7 @@ pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Resul
 
 /// Returns whether a point is an equilibrium, and warns if it is not.
 pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
-    let found = run.departure(at)?;
+    let found = run.find_departure(at)?;
     if !found.is_none() {
         warn(&format!(
             "warning: this state is no equilibrium: {}; the linearisation holds for a short time only; \
@@ -111,9 +117,17 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
 /// Names the quantities that change at a state that is no equilibrium.
 fn describe(found: &Departure) -> String {
     let parts = [
-        ("the machine moves", &found.moving, "is not 0"),
-        ("the machine accelerates", &found.accelerating, "changes"),
-        ("a first-order state changes", &found.changing, "changes"),
+        ("the machine moves", &found.moving_rates, "is not 0"),
+        (
+            "the machine accelerates",
+            &found.accelerating_rates,
+            "changes",
+        ),
+        (
+            "a first-order state changes",
+            &found.changing_states,
+            "changes",
+        ),
     ];
     let parts = parts.iter().filter(|(_, names, _)| !names.is_empty());
     let parts: Vec<String> = parts
@@ -129,7 +143,7 @@ fn describe(found: &Departure) -> String {
 pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     let (given, is_trimmed) = assignments(run, state)?;
     for (name, _) in &given {
-        if !matches!(run.model().setting(name)?, Setting::State(_)) {
+        if !matches!(run.model().find_setting(name)?, Setting::State(_)) {
             return Err(Error::input(format!(
                 "--state {name}: expected a coordinate, a mode, a rate or another state"
             )));
@@ -138,14 +152,14 @@ pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
     let given = as_borrowed(&given);
     match is_trimmed {
         false => Ok(run.operating_point(&given)?.state),
-        true => Ok(equilibrium_near(run, &given)?.at.state),
+        true => Ok(equilibrium_near(run, &given)?.point.state),
     }
 }
 
 /// Moves a point onto the constraints of the model, with a note about the states that moved.
 fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
     let inputs = HeldInputs::constant(at.inputs.clone());
-    let (state, moved) = run.consistent(&at.state, at.t, &inputs)?;
+    let (state, moved) = run.find_consistent_state(&at.state, at.t, &inputs)?;
     note_moved("state", &moved);
     at.state = state;
     Ok(at)

@@ -71,9 +71,9 @@ pub fn model(
     let first = at(0)?;
     warn_of_inputs(&first);
     let orders = orders(&first, options.model.order.text())?;
-    Ok(CompiledModel::derive_unjudged(
+    Ok(CompiledModel::derive_without_inertia_check(
         first,
-        Orders::Each(&orders),
+        Orders::PerField(&orders),
     )?)
 }
 

@@ -76,7 +76,9 @@ fn search(
 /// different orders, for which these checks do not exist.
 fn validate(extended: Source, order: Option<usize>) -> Result<Option<Validation>, Error> {
     let model = eomgen_model_spec::check(extended)?.model;
-    let orders = order.map_or(Orders::Declared, Orders::All).of(&model)?;
+    let orders = order
+        .map_or(Orders::Declared, Orders::Uniform)
+        .resolve(&model)?;
     if orders.windows(2).any(|pair| pair[0] != pair[1]) {
         return Ok(None);
     }

@@ -32,23 +32,23 @@ pub fn trim(
 ) -> PyResult<EquilibriumTuple> {
     let (start, fixed) = (borrowed(&start), borrowed(&fixed));
     let request = EquilibriumRequest {
-        start: &start,
-        fixed: &fixed,
+        start_values: &start,
+        fixed_values: &fixed,
     };
     py.detach(|| search(&model.instance()?, request))
         .map_err(error::model)
 }
 
 fn search(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<EquilibriumTuple, Error> {
-    let found = run.equilibrium(request)?;
-    let stability = run.stability(&found.at)?.to_string();
+    let found = run.find_equilibrium(request)?;
+    let stability = run.classify_stability(&found.point)?.to_string();
     Ok((
-        found.at.t,
-        found.at.state,
-        found.at.inputs,
+        found.point.t,
+        found.point.state,
+        found.point.inputs,
         found.residual,
-        found.running,
-        found.free,
+        found.nonzero_rates,
+        found.unknowns,
         stability,
         found.depends_on_time,
     ))

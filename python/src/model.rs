@@ -33,7 +33,7 @@ pub struct Model {
 impl Model {
     fn derive(checked: Checked, order: Option<usize>) -> Result<Self, Error> {
         let Checked { model, warnings } = checked;
-        let orders = order.map_or(Orders::Declared, Orders::All);
+        let orders = order.map_or(Orders::Declared, Orders::Uniform);
         let compiled = CompiledModel::derive(model, orders)?;
         let warnings = (!warnings.is_empty()).then(|| warnings.render(false));
         Ok(Self::new(Arc::new(compiled), order, Vec::new(), warnings))
@@ -63,7 +63,7 @@ impl Model {
     /// Returns the compiled model at its parameter values.
     pub fn instance(&self) -> Result<Instance<'_>, Error> {
         let settings = self.settings.iter().map(|(name, v)| (name.as_str(), *v));
-        self.compiled.with(&settings.collect::<Vec<_>>())
+        self.compiled.with_parameters(&settings.collect::<Vec<_>>())
     }
 
     /// Computes with an evaluator at the parameter values.
@@ -146,12 +146,12 @@ impl Model {
                         let source = declared.source.clone();
                         eomgen_model_spec::diagnostic::Diagnostics::one(source, wrong)
                     })?;
-                    let orders = Orders::Each(self.compiled.orders());
+                    let orders = Orders::PerField(self.compiled.orders());
                     Arc::new(CompiledModel::derive(model, orders)?)
                 }
             };
             // Reports invalid values now instead of at the first call.
-            compiled.with(&settings)?.evaluator()?;
+            compiled.with_parameters(&settings)?.evaluator()?;
             Ok(compiled)
         };
         let compiled = py.detach(set).map_err(error::model)?;
@@ -173,7 +173,7 @@ impl Model {
                 source = source.edited(edited);
             }
             let checked = eomgen_model_spec::check(source)?;
-            let orders = Orders::Each(self.compiled.orders());
+            let orders = Orders::PerField(self.compiled.orders());
             CompiledModel::derive(checked.model, orders)
         };
         let compiled = py.detach(derived).map_err(error::model)?;
@@ -268,7 +268,7 @@ impl Model {
     #[getter]
     fn initial(&self) -> PyResult<Vec<f64>> {
         let instance = self.instance().map_err(error::model)?;
-        Ok(instance.initial().to_vec())
+        Ok(instance.initial_state().to_vec())
     }
 }
 

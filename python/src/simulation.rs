@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use eomgen_compiled_model::{Audit, Choice, Error, Motion, Overlap, Request, Solver};
+use eomgen_compiled_model::{Audit, Error, Motion, Overlap, Request, Solver, SolverChoice};
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -97,8 +97,8 @@ pub fn simulate<'py>(
     let rows = trajectory.times.len();
     let states: Vec<f64> = trajectory.states.concat();
     let width = observables.len() / rows.max(1);
-    let choice = motion.choice.as_ref().map(describe_choice);
-    let stopped = motion.stopped.map(|stopped| (stopped.t, stopped.reason));
+    let choice = motion.solver_choice.as_ref().map(describe_choice);
+    let stopped = motion.early_stop.map(|stopped| (stopped.t, stopped.reason));
     Ok((
         motion.solver.name(),
         choice,
@@ -133,7 +133,7 @@ fn follow(
 ) -> Result<(Motion, Vec<f64>, Vec<String>), Error> {
     let instance = model.instance()?;
     let mut told = Instant::now();
-    let motion = instance.follow(request, &mut |t| {
+    let motion = instance.simulate_until_stop(request, &mut |t| {
         line.check();
         if told.elapsed() > REPORT_INTERVAL {
             told = Instant::now();
@@ -142,23 +142,25 @@ fn follow(
     })?;
     let mut observables = Vec::new();
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
-    let overlap = instance.first_overlap_of(&motion, request.tolerance)?;
-    let energy = motion.audit.as_ref().and_then(Audit::warning);
+    let overlap = instance.find_first_overlap(&motion, request.tolerance)?;
+    let energy = motion.audit.as_ref().and_then(Audit::warning_message);
     let warnings = energy.into_iter();
-    let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning));
+    let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
     let warnings = warnings.collect();
     Ok((motion, observables, warnings))
 }
 
 /// Returns the reason for the selection of a solver.
-fn describe_choice(choice: &Choice) -> String {
+fn describe_choice(choice: &SolverChoice) -> String {
     match choice {
-        Choice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
-        Choice::NotLinear(term) => format!("the model is not piecewise linear: {term}"),
-        Choice::NotFollowed(reason) => {
+        SolverChoice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
+        SolverChoice::NotPiecewiseLinear(term) => {
+            format!("the model is not piecewise linear: {term}")
+        }
+        SolverChoice::NotSupportedByExact(reason) => {
             format!("the exact solver does not support this motion: {reason}")
         }
-        Choice::Stiff(reason) => reason.clone(),
+        SolverChoice::Stiff(reason) => reason.clone(),
     }
 }
 

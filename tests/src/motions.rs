@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::fmt::Write;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::Driven;
+use eomgen_compiled_model::DrivenModel;
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -164,10 +164,10 @@ impl Subject {
     }
 
     /// Returns the model with its inputs for the general solver.
-    pub fn driven(&self) -> Driven<RefCell<Evaluator>, &HeldInputs> {
+    pub fn driven(&self) -> DrivenModel<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
         assert!(evaluator.pivots_are_positive());
-        Driven::new(RefCell::new(evaluator), &self.inputs)
+        DrivenModel::new(RefCell::new(evaluator), &self.inputs)
     }
 
     /// Simulates with the Runge-Kutta method of the general solver.

@@ -19,7 +19,7 @@ pub fn run(options: &Linearise) -> Result {
         options.model.order.text(),
         &options.parameters.set,
     )?;
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;

@@ -21,12 +21,12 @@ pub fn run(options: &Modes) -> Result {
         options.model.order.text(),
         &options.parameters.set,
     )?;
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
     let degrees = compiled.program().degrees_of_freedom();
-    let modes = constrained_modes(&found.a, &found.held(&compiled), degrees)
+    let modes = constrained_modes(&found.a, &found.constraint_matrix(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;
     let regime = regime(&run, &at)?;
     if let Some(drawing) = &drawing {

@@ -19,7 +19,10 @@ pub fn run(options: &Page) -> Result {
     let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    let initial = initial_state(&compiled.at_declared()?, &options.initial.state)?;
+    let initial = initial_state(
+        &compiled.with_declared_parameters()?,
+        &options.initial.state,
+    )?;
     let page = interactive_page(&compiled, &initial)?;
     destination.write(page.as_bytes())?;
     if options.output.json {

@@ -39,7 +39,7 @@ pub fn run(options: &Simulate) -> Result {
         );
     }
     let tolerance = options.integration.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     check_size(times.len(), columns(&run).len())?;
     let initial = initial_state(&run, &options.initial.state)?;
     let request = Request {
@@ -62,7 +62,7 @@ pub fn run(options: &Simulate) -> Result {
     }
     destination.summarise(&summary(options, &table, &motion, &audited))?;
     let is_finite = report_not_finite(&table, &compiled.state_names());
-    match &motion.stopped {
+    match &motion.early_stop {
         Some(stopped) => {
             warn(&format!("error: {}", stopped.reason));
             Err(Error::Failed)
@@ -109,7 +109,7 @@ fn summary(
             "steps": work.steps,
             "rejected": work.rejected,
             "evaluations": work.evaluations,
-            "stopped": motion.stopped.as_ref().map(|stopped| json!({
+            "stopped": motion.early_stop.as_ref().map(|stopped| json!({
                 "t": stopped.t,
                 "reason": stopped.reason,
             })),

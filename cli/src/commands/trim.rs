@@ -14,15 +14,15 @@ pub fn run(options: &Trim) -> Result {
         options.model.order.text(),
         &options.parameters.set,
     )?;
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     let start = values(&run, "--state", &options.start.state)?;
     let fixed = values(&run, "--fix", &options.fix)?;
     let request = EquilibriumRequest {
-        start: &as_borrowed(&start),
-        fixed: &as_borrowed(&fixed),
+        start_values: &as_borrowed(&start),
+        fixed_values: &as_borrowed(&fixed),
     };
     let found = equilibrium(&run, request)?;
-    let stability = run.stability(&found.at)?;
+    let stability = run.classify_stability(&found.point)?;
     print_json(&document(&compiled, &found, stability))
 }
 
@@ -34,15 +34,15 @@ fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability)
     let units = &compiled.state_units()[..coordinates.len()];
     let mut document = head(compiled);
     document.extend([
-        ("at".to_owned(), values_by_name(compiled, &found.at)),
+        ("at".to_owned(), values_by_name(compiled, &found.point)),
         ("coordinates".to_owned(), json!(coordinates)),
         ("inputs".to_owned(), json!(inputs)),
         (
             "units".to_owned(),
             json!({ "coordinates": units, "inputs": input_units }),
         ),
-        ("free".to_owned(), json!(found.free)),
-        ("steady_rates".to_owned(), json!(found.running)),
+        ("free".to_owned(), json!(found.unknowns)),
+        ("steady_rates".to_owned(), json!(found.nonzero_rates)),
         ("residual".to_owned(), json!(found.residual)),
         ("stability".to_owned(), json!(stability.to_string())),
     ]);

@@ -119,9 +119,9 @@ fn record(truth: &str, turn: f64) -> Result<Table> {
     let forces: Vec<f64> = times.iter().map(force).collect();
     let inputs = HeldInputs::new(times.clone(), forces.clone(), 1)
         .ok_or_else(|| Error::input("the stage has no force"))?;
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     let request = Request {
-        initial: run.initial(),
+        initial: run.initial_state(),
         times: &times,
         inputs: &inputs,
         solver: Solver::Rk,

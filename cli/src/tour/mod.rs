@@ -85,14 +85,14 @@ pub fn run(out: &Path) -> Result<TourResult> {
     let certificate = certify(compiled.model(), &[ORDER], &[])?;
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
-    let run = compiled.at_declared()?;
+    let run = compiled.with_declared_parameters()?;
     let times: Vec<f64> = (0..=(UNTIL / INTERVAL) as usize)
         .map(|i| i as f64 * INTERVAL)
         .collect();
     let request = Request {
-        initial: run.initial(),
+        initial: run.initial_state(),
         times: &times,
-        inputs: &run.no_inputs(),
+        inputs: &run.default_inputs(),
         solver: Solver::Auto,
         tolerance: TOLERANCE,
         max_step: f64::INFINITY,

@@ -51,7 +51,7 @@ fn candidate(model: &Model, input: &Input, fault: InputFault) -> Option<Candidat
     let what = UnknownKind::Parameter(name.clone());
     let parameter = CandidateParameter {
         name,
-        typical_size: TypicalSizes::new(model, &orders).size(input.unit.dimension),
+        typical_size: TypicalSizes::new(model, &orders).typical_size(input.unit.dimension),
         unit: fault.parameter_unit(input),
         is_positive: false,
         is_inverse: false,

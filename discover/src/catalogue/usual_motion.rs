@@ -29,7 +29,7 @@ impl UsualMotion {
     /// Returns the typical size of a quantity in a unit, SI.
     pub(super) fn typical_size(&self, unit: &str) -> f64 {
         let dimension = Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension);
-        self.sizes.size(dimension)
+        self.sizes.typical_size(dimension)
     }
 
     /// Returns the quantity that scales a shape parameter at a site, in a unit; the typical size if

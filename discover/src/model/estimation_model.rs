@@ -111,7 +111,8 @@ impl EstimationModel {
     ) -> Result<Self, Error> {
         let Checked { mut model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
         let rates = add_observed_rates(&mut model, channels);
-        let compiled = CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::All))?;
+        let compiled =
+            CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))?;
         let ranges = compiled.model().coordinate_ranges().map_err(|error| {
             Diagnostics::one(compiled.model().source.clone(), error.diagnostic())
         })?;
@@ -322,12 +323,12 @@ impl EstimationModel {
         simulation.stop = self.stop.clone();
         if self.measured.has_rates() {
             // What cannot be derived with sides is not held either.
-            simulation.measure_sticking(self.compiled.sided(values).ok().flatten());
+            simulation.measure_sticking(self.compiled.sided_model(values).ok().flatten());
         }
         let (linear, own) = match &self.linear {
             None => {
                 // What cannot be derived with sides was derived without: it is followed without.
-                if let Ok(Some(sided)) = self.compiled.sided(values) {
+                if let Ok(Some(sided)) = self.compiled.sided_model(values) {
                     simulation.use_sticking(sided);
                 }
                 return Ok(simulation);
@@ -404,7 +405,7 @@ fn linear_part(
 
 /// The model of a text.
 fn compiled(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
-    CompiledModel::of_text(name, text, order.map_or(Orders::Declared, Orders::All))
+    CompiledModel::from_text(name, text, order.map_or(Orders::Declared, Orders::Uniform))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Program, ValueId};
-use eomgen_compiled_model::Rest;
+use eomgen_compiled_model::StickingMotion;
 use eomgen_records::dataset::{Channel, Quantity};
 
 /// Source of the quantity of a channel.
@@ -43,7 +43,7 @@ pub(crate) struct OutputBuffers {
     observables: Vec<f64>,
     rates: Vec<f64>,
     /// Sticking surfaces of the motion, if any; evaluation with sign(0) = 0 does not show them.
-    pub rest: Option<Rest>,
+    pub rest: Option<StickingMotion>,
 }
 
 /// Measured quantities of a model, one per channel.
@@ -172,13 +172,13 @@ impl MeasuredOutputs {
             |output: &Output| matches!(output, Output::Observable(_) | Output::Acceleration(_));
         if self.outputs.iter().any(is_observable) {
             let rest = buffers.rest.as_mut();
-            if !rest.is_some_and(|rest| rest.observables(point, &mut buffers.observables)) {
+            if !rest.is_some_and(|rest| rest.write_observables(point, &mut buffers.observables)) {
                 evaluator.observables(point, &mut buffers.observables);
             }
         }
         if !buffers.rates.is_empty() {
             let rest = buffers.rest.as_mut();
-            if !rest.is_some_and(|rest| rest.rates(point, &mut buffers.rates)) {
+            if !rest.is_some_and(|rest| rest.write_rates(point, &mut buffers.rates)) {
                 evaluator.rates(point, &mut buffers.rates);
             }
         }

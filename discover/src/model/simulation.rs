@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::{Driven, Rest, Sided};
+use eomgen_compiled_model::{DrivenModel, SidedModel, StickingMotion};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, simulate};
 use eomgen_sim::piecewise_linear::Propagator;
@@ -38,9 +38,9 @@ pub struct Simulation<'m> {
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
     /// What surfaces such as those of dry friction do where they hold a motion, for the solver.
-    sided: Option<Sided>,
+    sided: Option<SidedModel>,
     /// The same for accelerations that are measured.
-    resting: Option<Sided>,
+    resting: Option<SidedModel>,
     /// Where records give the motion: what it takes.
     given: Option<GivenMotion>,
     /// The most steps of the solver with error control in one motion.
@@ -141,13 +141,13 @@ impl<'m> Simulation<'m> {
 
     /// Adds sticking surfaces. A solver with error control is then used, because fixed steps do not
     /// handle them.
-    pub(crate) fn use_sticking(&mut self, sided: Sided) {
+    pub(crate) fn use_sticking(&mut self, sided: SidedModel) {
         self.sided = Some(sided);
         self.longest_step = None;
     }
 
     /// Adds sticking surfaces for measured accelerations.
-    pub(crate) fn measure_sticking(&mut self, sided: Option<Sided>) {
+    pub(crate) fn measure_sticking(&mut self, sided: Option<SidedModel>) {
         self.resting = sided;
     }
 
@@ -297,11 +297,11 @@ impl<'m> Simulation<'m> {
             max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
             ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
         };
-        let driven = Driven::new(&self.evaluator, inputs)
+        let driven = DrivenModel::new(&self.evaluator, inputs)
             .with_typical_sizes(self.typical_sizes)
             .with_sliding(self.sided.take());
         let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
-        self.sided = driven.into_sided();
+        self.sided = driven.into_sided_model();
         found
             .map(|trajectory| trajectory.states)
             .map_err(SimulationError::Solver)
@@ -434,12 +434,16 @@ impl<'m> Simulation<'m> {
     /// What holds this motion is to be known where its accelerations are measured.
     fn look_at(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
         let sided = self.resting.take();
-        self.buffers.rest = sided.map(|sided| Rest::along(sided, motion, inputs));
+        self.buffers.rest = sided.map(|sided| StickingMotion::new(sided, motion, inputs));
     }
 
     /// The next motion is another one.
     fn look_away(&mut self) {
-        self.resting = self.buffers.rest.take().map(Rest::into_sided);
+        self.resting = self
+            .buffers
+            .rest
+            .take()
+            .map(StickingMotion::into_sided_model);
     }
 
     /// Appends the channels' quantities at a state.

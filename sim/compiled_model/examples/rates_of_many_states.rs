@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("expected SPEC STATES PASSES".into());
     };
     let model = CompiledModel::load(specification, Orders::Declared)?;
-    let mut evaluator = model.at_declared()?.evaluator()?;
+    let mut evaluator = model.with_declared_parameters()?.evaluator()?;
     let bytes = std::fs::read(file)?;
     let numbers = bytes.chunks_exact(8).filter_map(|n| n.try_into().ok());
     let states: Vec<f64> = numbers.map(f64::from_ne_bytes).collect();

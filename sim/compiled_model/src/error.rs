@@ -25,7 +25,7 @@ pub enum Error {
 
 impl Error {
     /// Converts an error of the model into an error at its place in the specification.
-    pub(crate) fn model(model: &Model, error: ModelError) -> Self {
+    pub(crate) fn from_model_error(model: &Model, error: ModelError) -> Self {
         Self::Specification(Diagnostics::one(model.source.clone(), error.diagnostic()))
     }
 }

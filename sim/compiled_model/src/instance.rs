@@ -11,7 +11,7 @@ use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 use crate::error::Error;
 use crate::model::CompiledModel;
 use crate::motion::Motion;
-use crate::sliding::{Observed, Sided};
+use crate::sticking::{ObservedMotion, SidedModel};
 
 /// A compiled model at one set of parameter values, and the initial state that follows from them.
 pub struct Instance<'m> {
@@ -28,8 +28,8 @@ impl CompiledModel {
     ///
     /// # Errors
     /// Invalid parameter values or initial states.
-    pub fn at_declared(&self) -> Result<Instance<'_>, Error> {
-        self.with(&[])
+    pub fn with_declared_parameters(&self) -> Result<Instance<'_>, Error> {
+        self.with_parameters(&[])
     }
 
     /// Sets independent parameters, each in the unit that the specification declares, and
@@ -39,14 +39,14 @@ impl CompiledModel {
     /// An unknown name, an invalid value, or a parameter that the specification gives by an
     /// expression. Such an expression is part of the equations: replace it in the model, then
     /// derive again.
-    pub fn with(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
         Instance::new(self, settings)
     }
 }
 
 impl<'m> Instance<'m> {
     /// Returns a copy in which residuals of constraints decay at this rate, 1/s.
-    pub(crate) fn stabilised(&self, rate: f64) -> Self {
+    pub(crate) fn with_stabilisation_rate(&self, rate: f64) -> Self {
         let mut changed = Self {
             model: self.model,
             parameters: self.parameters.clone(),
@@ -75,7 +75,7 @@ impl<'m> Instance<'m> {
 
     fn new(compiled: &'m CompiledModel, settings: &[(&str, f64)]) -> Result<Self, Error> {
         let declared = compiled.model();
-        let refused = |error| Error::model(declared, error);
+        let refused = |error| Error::from_model_error(declared, error);
         let model = declared.with_parameters(settings).map_err(refused)?;
         let is_expression = |name: &&str| {
             let mut parameters = declared.parameters.iter();
@@ -126,14 +126,14 @@ impl<'m> Instance<'m> {
     }
 
     /// Returns the initial state of the specification, SI.
-    pub fn initial(&self) -> &[f64] {
+    pub fn initial_state(&self) -> &[f64] {
         &self.initial
     }
 
     /// Returns the default inputs: 0, or the middle of the range for a prescribed motion that has
     /// one.
-    pub fn no_inputs(&self) -> HeldInputs {
-        HeldInputs::constant(self.model.usual_inputs())
+    pub fn default_inputs(&self) -> HeldInputs {
+        HeldInputs::constant(self.model.default_inputs())
     }
 
     /// Returns an evaluator at these parameters.
@@ -141,7 +141,7 @@ impl<'m> Instance<'m> {
     /// # Errors
     /// [`Error::Request`] if the mass matrix is not positive definite.
     pub fn evaluator(&self) -> Result<Evaluator, Error> {
-        positive(self.unchecked())
+        require_positive_pivots(self.evaluator_unchecked())
     }
 
     /// Returns an evaluator without machine code, for a few evaluations.
@@ -149,12 +149,12 @@ impl<'m> Instance<'m> {
     /// # Errors
     /// Same as [`Instance::evaluator`].
     pub fn interpreter(&self) -> Result<Evaluator, Error> {
-        positive(self.model.interpreter(&self.parameters))
+        require_positive_pivots(self.model.interpreter(&self.parameters))
     }
 
     /// Returns an evaluator without checking that the mass matrix is positive definite. Its
     /// accelerations may be invalid.
-    pub(crate) fn unchecked(&self) -> Evaluator {
+    pub(crate) fn evaluator_unchecked(&self) -> Evaluator {
         self.model.evaluator(&self.parameters)
     }
 
@@ -170,8 +170,8 @@ impl<'m> Instance<'m> {
     ///
     /// # Errors
     /// Terms that cannot be derived.
-    pub(crate) fn sided(&self) -> Result<Option<Sided>, Error> {
-        self.model.sided(&self.parameters)
+    pub(crate) fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
+        self.model.sided_model(&self.parameters)
     }
 
     /// Returns an exact propagator at these parameters.
@@ -209,7 +209,8 @@ impl<'m> Instance<'m> {
         let evaluator = self.evaluator()?;
         let mut observables = vec![0.0; evaluator.program().observables.len()];
         let trajectory = &motion.trajectory;
-        let mut observed = Observed::new(evaluator, self.sided()?, trajectory, &motion.inputs);
+        let mut observed =
+            ObservedMotion::new(evaluator, self.sided_model()?, trajectory, &motion.inputs);
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
             let inputs = &motion.inputs.at(t);
             observed.observables(Point { t, state, inputs }, &mut observables);
@@ -219,7 +220,7 @@ impl<'m> Instance<'m> {
     }
 }
 
-fn positive(evaluator: Evaluator) -> Result<Evaluator, Error> {
+fn require_positive_pivots(evaluator: Evaluator) -> Result<Evaluator, Error> {
     match evaluator.pivots_are_positive() {
         true => Ok(evaluator),
         false => Err(Error::Request(NOT_POSITIVE.to_owned())),

@@ -11,7 +11,7 @@ use eomgen_model_spec::model::RESIDUAL;
 
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::model::{CompiledModel, evaluator};
+use crate::model::{CompiledModel, prepare_evaluator};
 
 /// Largest magnitude of a state or an input whose fourth power does not overflow.
 const LARGEST_VALUE: f64 = 1e75;
@@ -69,7 +69,7 @@ impl Jacobian {
 }
 
 /// Positions of the structural nonzeros of one Jacobian.
-struct Layout {
+struct JacobianLayout {
     place: usize,
     rows: usize,
     columns: usize,
@@ -82,7 +82,7 @@ struct Layout {
 pub struct JacobianEvaluator {
     evaluator: Evaluator,
     /// Layouts in the order of [`Jacobian::ALL`].
-    layouts: Vec<Layout>,
+    layouts: Vec<JacobianLayout>,
 }
 
 impl JacobianEvaluator {
@@ -92,7 +92,7 @@ impl JacobianEvaluator {
         (layout.rows, layout.columns)
     }
 
-    pub(crate) fn dense(&mut self, of: Jacobian, point: Point<'_>) -> Vec<f64> {
+    pub(crate) fn evaluate_dense(&mut self, of: Jacobian, point: Point<'_>) -> Vec<f64> {
         let (rows, columns) = self.shape(of);
         let mut matrix = vec![0.0; rows * columns];
         self.evaluate(of, point, &mut matrix);
@@ -134,7 +134,7 @@ impl Linearisation {
     /// Returns the rows of H in H dx = 0, the constraints on small motions dx, row-major:
     /// derivatives of all residuals, and of the rates of holonomic residuals. Empty without
     /// constraints.
-    pub fn held(&self, model: &CompiledModel) -> Vec<f64> {
+    pub fn constraint_matrix(&self, model: &CompiledModel) -> Vec<f64> {
         let states = self.rates.len();
         let names = model.observable_names();
         let mut held = Vec::new();
@@ -166,14 +166,14 @@ impl Instance<'_> {
     /// Terms that cannot be differentiated, or a mass matrix that is not positive definite.
     pub fn jacobian_evaluator(&self) -> Result<JacobianEvaluator, Error> {
         self.interpreter()?;
-        let differentiated = self.model().differentiated()?;
-        Ok(self.jacobians(&differentiated.program, differentiated.code()))
+        let differentiated = self.model().jacobian_program()?;
+        Ok(self.jacobians(&differentiated.program, differentiated.machine_code()))
     }
 
     /// Returns an evaluator of Jacobians without machine code, for a few evaluations. It does not
     /// check that the mass matrix is positive definite, so its accelerations may be invalid.
     pub(crate) fn interpreted_jacobians(&self) -> Result<JacobianEvaluator, Error> {
-        let program = &self.model().differentiated()?.program;
+        let program = &self.model().jacobian_program()?.program;
         Ok(self.jacobians(program, None))
     }
 
@@ -182,10 +182,12 @@ impl Instance<'_> {
         program: &Program,
         code: Option<&Arc<dyn MachineCode>>,
     ) -> JacobianEvaluator {
-        let layouts = Jacobian::ALL.iter().filter_map(|of| layout(program, *of));
+        let layouts = Jacobian::ALL
+            .iter()
+            .filter_map(|of| find_layout(program, *of));
         JacobianEvaluator {
             layouts: layouts.collect(),
-            evaluator: evaluator(program, code, self.parameters()),
+            evaluator: prepare_evaluator(program, code, self.parameters()),
         }
     }
 
@@ -194,10 +196,10 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::jacobian_evaluator`].
-    pub fn felt_states(&self) -> Result<Vec<bool>, Error> {
-        let program = &self.model().differentiated()?.program;
+    pub fn influential_states(&self) -> Result<Vec<bool>, Error> {
+        let program = &self.model().jacobian_program()?.program;
         let mut felt = vec![false; program.states()];
-        if let Some(layout) = layout(program, Jacobian::RatesByState) {
+        if let Some(layout) = find_layout(program, Jacobian::RatesByState) {
             for place in &layout.dense {
                 felt[place % layout.columns] = true;
             }
@@ -208,9 +210,9 @@ impl Instance<'_> {
                 Op::Coordinate(index) => (Variable::Coordinate(index), 1),
                 Op::Rate(index) => (Variable::Rate(index), 1),
                 Op::ModeCoordinates(field) => {
-                    (Variable::ModeCoordinates(field), order(program, field))
+                    (Variable::ModeCoordinates(field), mode_count(program, field))
                 }
-                Op::ModeRates(field) => (Variable::ModeRates(field), order(program, field)),
+                Op::ModeRates(field) => (Variable::ModeRates(field), mode_count(program, field)),
                 _ => continue,
             };
             let first = program.variable_place(variable);
@@ -227,7 +229,7 @@ impl Instance<'_> {
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
         let mut evaluator = self.interpreter()?;
         let mut jacobians = self.interpreted_jacobians()?;
-        let mut dense = |of| jacobians.dense(of, point);
+        let mut dense = |of| jacobians.evaluate_dense(of, point);
         let (a, b) = (
             dense(Jacobian::RatesByState),
             dense(Jacobian::RatesByInputs),
@@ -242,7 +244,7 @@ impl Instance<'_> {
         evaluator.observables(point, &mut observables);
         let all = [&a, &b, &c, &d, &rates, &observables];
         if !all.into_iter().flatten().all(|number| number.is_finite()) {
-            return Err(self.not_linear(point));
+            return Err(self.no_linearisation_error(point));
         }
         Ok(Linearisation {
             a,
@@ -255,7 +257,7 @@ impl Instance<'_> {
     }
 
     /// Returns the error for a point without a linearisation, with its cause.
-    pub(crate) fn not_linear(&self, point: Point<'_>) -> Error {
+    pub(crate) fn no_linearisation_error(&self, point: Point<'_>) -> Error {
         let model = self.model().model();
         if let Some(far) = self.out_of_range(point) {
             return Error::Request(far);
@@ -345,11 +347,11 @@ impl Instance<'_> {
     }
 }
 
-fn order(program: &Program, field: FieldId) -> usize {
+fn mode_count(program: &Program, field: FieldId) -> usize {
     program.fields[field.index()].order
 }
 
-fn layout(program: &Program, of: Jacobian) -> Option<Layout> {
+fn find_layout(program: &Program, of: Jacobian) -> Option<JacobianLayout> {
     let jacobians = &program.outputs.jacobians;
     let place = jacobians.iter().position(|known| known.name == of.name())?;
     let jacobian = &jacobians[place];
@@ -363,7 +365,7 @@ fn layout(program: &Program, of: Jacobian) -> Option<Layout> {
             }
         }
     }
-    Some(Layout {
+    Some(JacobianLayout {
         place,
         rows: jacobian.rows,
         columns: jacobian.columns,
@@ -454,9 +456,9 @@ pull = { value = "k*x + u", unit = "N" }
                 "c = {",
                 "F = { value = 1, unit = \"N\" }\nl = { value = 1, unit = \"m\" }\nc = {",
             );
-        let model = CompiledModel::of_text("driven.toml", &text, Orders::Declared);
+        let model = CompiledModel::from_text("driven.toml", &text, Orders::Declared);
         let model = model.unwrap_or_else(|error| panic!("{force}: {error}"));
-        let run = model.at_declared().expect("an instance");
+        let run = model.with_declared_parameters().expect("an instance");
         let point = Point {
             t: 0.0,
             state: &state,
@@ -470,9 +472,9 @@ pull = { value = "k*x + u", unit = "N" }
 
     #[test]
     fn linearisation_of_linear_model_is_exact() {
-        let model = CompiledModel::of_text("driven.toml", DRIVEN, Orders::Declared);
+        let model = CompiledModel::from_text("driven.toml", DRIVEN, Orders::Declared);
         let model = model.expect("a model");
-        let run = model.with(&[("k", 18.0)]).expect("an instance");
+        let run = model.with_parameters(&[("k", 18.0)]).expect("an instance");
         let (state, inputs) = ([0.1, 0.3], [4.0]);
         let point = Point {
             t: 0.0,

@@ -15,10 +15,10 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
-use crate::differentiated::Differentiated;
 use crate::error::Error;
-use crate::sliding::Sided;
-use crate::typical_sizes::typical_sizes;
+use crate::jacobian_program::JacobianProgram;
+use crate::sticking::SidedModel;
+use crate::typical_sizes::compute_typical_sizes;
 
 /// Modal truncation orders at which a model is derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,9 +26,9 @@ pub enum Orders<'o> {
     /// The orders that the specification declares.
     Declared,
     /// The same order for every field.
-    All(usize),
+    Uniform(usize),
     /// One order per field, in the order of the specification.
-    Each(&'o [usize]),
+    PerField(&'o [usize]),
 }
 
 impl Orders<'_> {
@@ -37,18 +37,18 @@ impl Orders<'_> {
     /// # Errors
     /// An order above the limit, an order for a model without fields, or the wrong number of
     /// orders.
-    pub fn of(self, model: &Model) -> Result<Vec<usize>, Error> {
+    pub fn resolve(self, model: &Model) -> Result<Vec<usize>, Error> {
         let one = match self {
             Self::Declared => None,
-            Self::All(order) => Some(order),
-            Self::Each(orders) if orders.len() == model.fields.len() => {
+            Self::Uniform(order) => Some(order),
+            Self::PerField(orders) if orders.len() == model.fields.len() => {
                 for order in orders {
                     let checked = model.orders(Some(*order));
-                    checked.map_err(|error| Error::model(model, error))?;
+                    checked.map_err(|error| Error::from_model_error(model, error))?;
                 }
                 return Ok(orders.to_vec());
             }
-            Self::Each(orders) => {
+            Self::PerField(orders) => {
                 return Err(Error::Request(format!(
                     "{} orders are given for {} fields of the model `{}`",
                     orders.len(),
@@ -58,7 +58,7 @@ impl Orders<'_> {
             }
         };
         let orders = model.orders(one);
-        orders.map_err(|error| Error::model(model, error))
+        orders.map_err(|error| Error::from_model_error(model, error))
     }
 }
 
@@ -74,7 +74,7 @@ pub struct CompiledModel {
     program: Program,
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
-    differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
+    differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
     sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
     typical_sizes: OnceLock<Vec<f64>>,
@@ -95,7 +95,7 @@ impl CompiledModel {
     ///
     /// # Errors
     /// Same as [`CompiledModel::load`].
-    pub fn of_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
+    pub fn from_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
         let Checked { model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
         Self::derive(model, orders)
     }
@@ -106,7 +106,7 @@ impl CompiledModel {
     /// [`Error::Specification`]: invalid orders or parameter values, terms that cannot be derived,
     /// and coordinates without inertia at the initial state.
     pub fn derive(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
-        let orders = orders.of(&model)?;
+        let orders = orders.resolve(&model)?;
         let derived = Variant::derive(&model, &orders)?;
         Ok(Self::new(model, orders, derived))
     }
@@ -116,8 +116,8 @@ impl CompiledModel {
     ///
     /// # Errors
     /// Same as [`CompiledModel::derive`], except those about inertia.
-    pub fn derive_unjudged(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
-        let orders = orders.of(&model)?;
+    pub fn derive_without_inertia_check(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
+        let orders = orders.resolve(&model)?;
         let derived = Variant::derive_to_read(&model, &orders, &[])?;
         Ok(Self::new(model, orders, derived))
     }
@@ -179,7 +179,7 @@ impl CompiledModel {
 
     /// Returns the default inputs, SI: 0, or the middle of the range for a prescribed motion that
     /// has one.
-    pub fn usual_inputs(&self) -> Vec<f64> {
+    pub fn default_inputs(&self) -> Vec<f64> {
         let none = || vec![0.0; self.model.inputs.len()];
         self.model.typical_inputs(0.0).unwrap_or_else(|_| none())
     }
@@ -188,7 +188,7 @@ impl CompiledModel {
     /// from the parameters, initial values and ranges of the model. See
     /// [`TypicalSizes`](crate::TypicalSizes).
     pub fn typical_sizes(&self) -> &[f64] {
-        let sizes = || typical_sizes(&self.model, &self.orders);
+        let sizes = || compute_typical_sizes(&self.model, &self.orders);
         self.typical_sizes.get_or_init(sizes)
     }
 
@@ -212,13 +212,13 @@ impl CompiledModel {
     /// the same.
     pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
-        evaluator(&self.program, code.as_ref(), parameters)
+        prepare_evaluator(&self.program, code.as_ref(), parameters)
     }
 
     /// Returns an evaluator that interprets the program. Machine code gives the same numbers, but
     /// takes longer to generate than a few evaluations take.
     pub(crate) fn interpreter(&self, parameters: &[f64]) -> Evaluator {
-        evaluator(&self.program, None, parameters)
+        prepare_evaluator(&self.program, None, parameters)
     }
 
     /// Derives the Jacobians now. Otherwise they are derived at their first use.
@@ -226,7 +226,7 @@ impl CompiledModel {
     /// # Errors
     /// Terms that cannot be differentiated.
     pub fn differentiate(&self) -> Result<(), Error> {
-        self.differentiated().map(|_| ())
+        self.jacobian_program().map(|_| ())
     }
 
     /// Returns the program of the constraints' derivatives, or `None` without constraints. It is
@@ -238,10 +238,10 @@ impl CompiledModel {
         made.as_ref()
     }
 
-    pub(crate) fn differentiated(&self) -> Result<&Differentiated, Error> {
+    pub(crate) fn jacobian_program(&self) -> Result<&JacobianProgram, Error> {
         let made = self
             .differentiated
-            .get_or_init(|| Differentiated::of(self.model(), self.orders()));
+            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders()));
         made.as_ref().map_err(|found| found.clone().into())
     }
 
@@ -251,7 +251,7 @@ impl CompiledModel {
     ///
     /// # Errors
     /// Terms that cannot be derived.
-    pub fn sided(&self, parameters: &[f64]) -> Result<Option<Sided>, Error> {
+    pub fn sided_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
         let made = self.sided.get_or_init(|| {
             if !may_hold(&self.equations) || !self.model.impacts.is_empty() {
                 return Ok(None);
@@ -263,9 +263,9 @@ impl CompiledModel {
             }))
         });
         let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
-        let sided = made
-            .as_ref()
-            .map(|(program, code)| Sided::new(evaluator(program, code.as_ref(), parameters)));
+        let sided = made.as_ref().map(|(program, code)| {
+            SidedModel::new(prepare_evaluator(program, code.as_ref(), parameters))
+        });
         Ok(sided)
     }
 
@@ -283,7 +283,7 @@ impl CompiledModel {
 
 /// Returns an evaluator of a program at these values of the independent parameters, SI. It runs
 /// `code` if given, and otherwise interprets.
-pub(crate) fn evaluator(
+pub(crate) fn prepare_evaluator(
     program: &Program,
     code: Option<&Arc<dyn MachineCode>>,
     parameters: &[f64],

@@ -7,7 +7,7 @@ use eomgen_sim::ode::Trajectory;
 
 use crate::audit::Audit;
 use crate::error::Error;
-use crate::projection::Moved;
+use crate::projection::InitialChange;
 
 /// Solver of the equations of motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,11 +60,11 @@ pub struct Motion {
     /// Solver that computed the motion; never [`Solver::Auto`].
     pub solver: Solver,
     /// Reason for the choice of [`Solver::Auto`]; `None` if the solver was requested by name.
-    pub choice: Option<Choice>,
+    pub solver_choice: Option<SolverChoice>,
     /// Reason why the solver stopped early; `None` if it reached the end.
-    pub stopped: Option<Stopped>,
+    pub early_stop: Option<EarlyStop>,
     /// Changes of the initial state that make the constraints hold.
-    pub moved: Vec<Moved>,
+    pub initial_changes: Vec<InitialChange>,
     /// Energy balance, if requested.
     pub audit: Option<Audit>,
 }
@@ -74,42 +74,42 @@ impl Motion {
     ///
     /// # Errors
     /// [`Error::Stopped`] if the solver stopped early.
-    pub fn complete(self) -> Result<Self, Error> {
-        match self.stopped {
+    pub fn into_complete(self) -> Result<Self, Error> {
+        match self.early_stop {
             None => Ok(self),
-            Some(Stopped { t, reason, .. }) => Err(Error::Stopped { t, reason }),
+            Some(EarlyStop { t, reason, .. }) => Err(Error::Stopped { t, reason }),
         }
     }
 }
 
 /// Reason for the choice of a solver.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Choice {
+pub enum SolverChoice {
     /// The model is piecewise linear.
     PiecewiseLinear,
     /// The model is not piecewise linear; the text names the term.
-    NotLinear(String),
+    NotPiecewiseLinear(String),
     /// The model is piecewise linear, but the exact solver cannot follow this motion, for this
     /// reason.
-    NotFollowed(String),
+    NotSupportedByExact(String),
     /// The model is stiff; the text names the state and its settling time.
     Stiff(String),
 }
 
 /// Reason why a solver stopped early.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stopped {
+pub struct EarlyStop {
     /// Time reached, s, if known.
     pub t: Option<f64>,
     /// Cause, with names, and cure.
     pub reason: String,
     /// Category of the cause.
-    pub cause: Cause,
+    pub cause: StopCause,
 }
 
 /// Category of the reason why a solver stopped early.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Cause {
+pub enum StopCause {
     /// Rates that are not finite, or a mass matrix that is not positive definite.
     NotFinite,
     /// Too many events per time, or a surface that holds the motion.

@@ -46,7 +46,7 @@ impl CompiledModel {
     ///
     /// # Errors
     /// An unknown name.
-    pub fn setting(&self, name: &str) -> Result<Setting, Error> {
+    pub fn find_setting(&self, name: &str) -> Result<Setting, Error> {
         let states = self.state_names();
         if let Some(place) = states.iter().position(|known| known == name) {
             return Ok(Setting::State(place));
@@ -61,14 +61,14 @@ impl CompiledModel {
         let inputs = self.model().inputs.iter().map(|input| &*input.name);
         let known = states.iter().map(|name| &**name).chain(inputs);
         let help = did_you_mean(name, known)
-            .unwrap_or_else(|| format!("there are {}", self.settable().join(", ")));
+            .unwrap_or_else(|| format!("there are {}", self.settable_names().join(", ")));
         Err(Error::Request(format!(
             "the model `{}` has no state and no input `{name}`: {help}",
             self.model().name
         )))
     }
 
-    fn settable(&self) -> Vec<String> {
+    fn settable_names(&self) -> Vec<String> {
         let inputs = self.model().inputs.iter().map(|input| input.name.clone());
         self.state_names()
             .into_iter()
@@ -87,15 +87,15 @@ impl Instance<'_> {
     pub fn operating_point(&self, settings: &[(&str, f64)]) -> Result<OperatingPoint, Error> {
         let mut point = OperatingPoint {
             t: 0.0,
-            state: self.initial().to_vec(),
-            inputs: self.model().usual_inputs(),
+            state: self.initial_state().to_vec(),
+            inputs: self.model().default_inputs(),
         };
         for (name, value) in settings {
             if !value.is_finite() {
                 let message = format!("{name} = {value}: expected a finite number");
                 return Err(Error::Request(message));
             }
-            match self.model().setting(name)? {
+            match self.model().find_setting(name)? {
                 Setting::Time => point.t = *value,
                 Setting::State(place) => point.state[place] = *value,
                 Setting::Input(place) => point.inputs[place] = *value,

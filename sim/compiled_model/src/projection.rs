@@ -13,42 +13,42 @@ use std::cell::RefCell;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
 
-use crate::singular::SingularityWatch;
+use crate::singular_positions::SingularityWatch;
 
 /// The rate w, 1/s. It is so large that the rounding of the accelerations is negligible compared
 /// with w^2 times a residual worth correcting.
-pub(crate) const LARGE_RATE: f64 = 1_048_576.0;
+pub(crate) const LARGE_RATE_PER_S: f64 = 1_048_576.0;
 
 /// Relative size of the last correction. Newton's method squares the error, so the next correction
 /// would be below rounding.
-const LAST_CORRECTION: f64 = 1e-8;
+const LAST_CORRECTION_FRACTION: f64 = 1e-8;
 
 /// Maximum number of corrections after a step, which begins on the constraints.
-const MOST_AFTER_A_STEP: usize = 8;
+const MAX_STEP_CORRECTIONS: usize = 8;
 
 /// Projection of states onto the constraints, at one set of parameters.
 pub(crate) struct Projection {
     /// Model with the stabilisation rate w.
-    pub plus: RefCell<Evaluator>,
+    pub positive_rate_model: RefCell<Evaluator>,
     /// Model with the stabilisation rate -w.
-    pub minus: RefCell<Evaluator>,
+    pub negative_rate_model: RefCell<Evaluator>,
     /// Stabilisation rate of the model itself, 1/s.
-    pub own_rate: f64,
+    pub stabilisation_rate: f64,
     /// Detector of singular positions along the motion.
-    pub watch: RefCell<SingularityWatch>,
+    pub singularity_watch: RefCell<SingularityWatch>,
 }
 
 /// An initial value that was changed to satisfy the constraints.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moved {
+pub struct InitialChange {
     /// Name of the coordinate, mode or rate.
     pub name: String,
     /// SI unit.
     pub unit: String,
     /// Requested value.
-    pub from: f64,
+    pub requested: f64,
     /// Value used.
-    pub to: f64,
+    pub used: f64,
 }
 
 impl Projection {
@@ -69,8 +69,8 @@ impl Projection {
                 let [here, plus, minus] = &mut rates;
                 let point = Point { t, state, inputs };
                 own.rates(point, here);
-                self.plus.borrow_mut().rates(point, plus);
-                self.minus.borrow_mut().rates(point, minus);
+                self.positive_rate_model.borrow_mut().rates(point, plus);
+                self.negative_rate_model.borrow_mut().rates(point, minus);
             }
             let [largest, largest_rate] = [0, degrees].map(|first| {
                 let entries = state[first..first + degrees].iter();
@@ -84,10 +84,11 @@ impl Projection {
                     &mut plus[degrees + row],
                     &mut minus[degrees + row],
                 );
-                let of_rate = (*minus - *plus) / (4.0 * LARGE_RATE);
+                let of_rate = (*minus - *plus) / (4.0 * LARGE_RATE_PER_S);
                 let mean = 0.5 * (*plus + *minus);
-                let of_value = (here + 2.0 * self.own_rate * of_rate - mean)
-                    / (LARGE_RATE * LARGE_RATE - self.own_rate * self.own_rate);
+                let of_value = (here + 2.0 * self.stabilisation_rate * of_rate - mean)
+                    / (LARGE_RATE_PER_S * LARGE_RATE_PER_S
+                        - self.stabilisation_rate * self.stabilisation_rate);
                 relative = relative.max(of_value.abs() / largest);
                 relative = relative.max(of_rate.abs() / largest_rate.max(largest));
                 if !(of_value.is_finite() && of_rate.is_finite()) {
@@ -99,7 +100,7 @@ impl Projection {
                 state[row] -= plus[degrees + row];
                 state[degrees + row] -= minus[degrees + row];
             }
-            if relative <= LAST_CORRECTION {
+            if relative <= LAST_CORRECTION_FRACTION {
                 return Some(3 * correction);
             }
         }
@@ -109,7 +110,7 @@ impl Projection {
     /// Corrects a state after a step and returns the number of evaluations. If the correction
     /// fails or the step passes a singular position, the state is filled with NaN, which stops the
     /// motion.
-    pub(crate) fn after_a_step(
+    pub(crate) fn correct_after_step(
         &self,
         own: &mut Evaluator,
         t: f64,
@@ -117,12 +118,15 @@ impl Projection {
         state: &mut [f64],
     ) -> u64 {
         let arrived = state.to_vec();
-        let evaluations = self.correct(own, (t, &inputs.at(t)), state, MOST_AFTER_A_STEP);
+        let evaluations = self.correct(own, (t, &inputs.at(t)), state, MAX_STEP_CORRECTIONS);
         let reached = match evaluations {
             Some(_) => &*state,
             None => &arrived,
         };
-        let passes = self.watch.borrow_mut().passes(t, reached, inputs);
+        let passes = self
+            .singularity_watch
+            .borrow_mut()
+            .passes_singularity(t, reached, inputs);
         if passes || evaluations.is_none() {
             state.fill(f64::NAN);
         }

@@ -12,7 +12,7 @@ const BASE_UNITS: usize = 7;
 
 /// Singular values below this fraction of the largest count as 0; their combination of units is
 /// undetermined.
-const RANK: f64 = 1e-9;
+const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-9;
 
 /// Largest exponent of 2, so that squares of sizes remain finite.
 const LARGEST_EXPONENT: f64 = 400.0;
@@ -24,11 +24,11 @@ pub struct TypicalSizes([f64; BASE_UNITS]);
 impl TypicalSizes {
     /// Fits the sizes to the values of a model at these orders of its fields.
     pub fn new(model: &Model, orders: &[usize]) -> Self {
-        Self(base_units(&values(model, orders)))
+        Self(fit_base_units(&known_values(model, orders)))
     }
 
     /// Returns the typical size of a quantity, SI, a power of two.
-    pub fn size(&self, dimension: Dimension) -> f64 {
+    pub fn typical_size(&self, dimension: Dimension) -> f64 {
         let terms = exponents(dimension).into_iter().zip(self.0);
         let exponent: f64 = terms.map(|(exponent, unit)| exponent * unit).sum();
         let exponent = exponent.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT);
@@ -36,13 +36,15 @@ impl TypicalSizes {
     }
 }
 
-pub(crate) fn typical_sizes(model: &Model, orders: &[usize]) -> Vec<f64> {
+pub(crate) fn compute_typical_sizes(model: &Model, orders: &[usize]) -> Vec<f64> {
     let sizes = TypicalSizes::new(model, orders);
     let states = model.state_units(orders).into_iter();
-    states.map(|unit| sizes.size(unit.dimension)).collect()
+    states
+        .map(|unit| sizes.typical_size(unit.dimension))
+        .collect()
 }
 
-fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
+fn known_values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
     let parameters = model
         .parameters
         .iter()
@@ -68,7 +70,7 @@ fn values(model: &Model, orders: &[usize]) -> Vec<(f64, Dimension)> {
         .collect()
 }
 
-fn base_units(values: &[(f64, Dimension)]) -> [f64; BASE_UNITS] {
+fn fit_base_units(values: &[(f64, Dimension)]) -> [f64; BASE_UNITS] {
     let exponents = values
         .iter()
         .flat_map(|(_, dimension)| exponents(*dimension));
@@ -81,7 +83,10 @@ fn base_units(values: &[(f64, Dimension)]) -> [f64; BASE_UNITS] {
     let solved = (largest > 0.0)
         .then(|| qr_iteration::svd(&matrix))
         .flatten()
-        .and_then(|svd| svd.solve(&logarithms, RANK * largest).ok());
+        .and_then(|svd| {
+            svd.solve(&logarithms, MIN_SINGULAR_VALUE_FRACTION * largest)
+                .ok()
+        });
     let mut units = [0.0; BASE_UNITS];
     if let Some(solved) = solved {
         units
@@ -101,7 +106,7 @@ fn exponents(dimension: Dimension) -> [f64; BASE_UNITS] {
 mod tests {
     use eomgen_model_spec::source::Source;
 
-    use super::typical_sizes;
+    use super::compute_typical_sizes;
 
     /// Returns the sizes for a mass on a spring with a stop, with lengths and masses scaled by
     /// powers of two.
@@ -130,7 +135,7 @@ stop = "1/2*k*deadzone(x, b)^2"
         );
         let source = Source::new("mass.toml", text);
         let model = eomgen_model_spec::check(source).expect("a model").model;
-        typical_sizes(&model, &[])
+        compute_typical_sizes(&model, &[])
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Conversion of errors at a point to its status.
 
-use eomgen_compiled_model::{Cause, Error, Motion};
+use eomgen_compiled_model::{Error, Motion, StopCause};
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_sim::variational::GrowthError;
@@ -20,11 +20,11 @@ pub fn finished_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure>
         Error::Stopped { .. } => Failure::NotFinite,
         error => error.into(),
     })?;
-    match motion.stopped.as_ref().map(|stopped| &stopped.cause) {
+    match motion.early_stop.as_ref().map(|stopped| &stopped.cause) {
         None => Ok(motion),
-        Some(Cause::NotFinite) => Err(Failure::NotFinite),
-        Some(Cause::Switching) => Err(Failure::Switching),
-        Some(Cause::Stiff(_) | Cause::Limit) => Err(Failure::Limit),
+        Some(StopCause::NotFinite) => Err(Failure::NotFinite),
+        Some(StopCause::Switching) => Err(Failure::Switching),
+        Some(StopCause::Stiff(_) | StopCause::Limit) => Err(Failure::Limit),
     }
 }
 

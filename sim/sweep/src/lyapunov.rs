@@ -9,7 +9,7 @@ use crate::error::SweepError;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 use eomgen_analysis::exponent::{MIN_GROWTHS, mean_exponent};
-use eomgen_compiled_model::{CompiledModel, Driven, Instance};
+use eomgen_compiled_model::{CompiledModel, DrivenModel, Instance};
 use eomgen_sim::ode::Settings;
 use eomgen_sim::piecewise_linear::Lyapunov as Request;
 use eomgen_sim::variational::{Growths, Stretches, growths};
@@ -105,7 +105,7 @@ impl Measure for Lyapunov<'_> {
 
 impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let instance = self.model.with(settings)?;
+        let instance = self.model.with_parameters(settings)?;
         let stretches = self.times.stretches(&instance)?;
         let Growths { growths, switches } = match self.model.piecewise_linear() {
             Ok(_) => exact_growth(&instance, &stretches)?,
@@ -130,8 +130,8 @@ fn exact_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growth
         intervals: stretches.intervals,
         exponents: 1,
     };
-    let (mut propagator, inputs) = (instance.propagator()?, instance.no_inputs());
-    let growth = propagator.lyapunov(instance.initial(), 0.0, &inputs, &request)?;
+    let (mut propagator, inputs) = (instance.propagator()?, instance.default_inputs());
+    let growth = propagator.lyapunov(instance.initial_state(), 0.0, &inputs, &request)?;
     Ok(Growths {
         growths: growth
             .growths
@@ -143,14 +143,20 @@ fn exact_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growth
 }
 
 fn variational_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
-    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-    let system = Driven::new(&evaluator, &inputs)
+    let (evaluator, inputs) = (
+        RefCell::new(instance.evaluator()?),
+        instance.default_inputs(),
+    );
+    let system = DrivenModel::new(&evaluator, &inputs)
         .with_typical_sizes(instance.model().typical_sizes())
         .with_jacobian(instance.jacobian_evaluator()?);
-    let (felt, settings) = (instance.felt_states()?, Settings::with_tolerance(TOLERANCE));
+    let (felt, settings) = (
+        instance.influential_states()?,
+        Settings::with_tolerance(TOLERANCE),
+    );
     Ok(growths(
         &system,
-        instance.initial(),
+        instance.initial_state(),
         &felt,
         stretches,
         &settings,

@@ -177,11 +177,11 @@ impl Measure for OverTime<'_> {
 
 impl Worker for &OverTime<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let instance = self.model.with(settings)?;
+        let instance = self.model.with_parameters(settings)?;
         let (times, first) = self.sample_times(&instance)?;
-        let inputs = instance.no_inputs();
+        let inputs = instance.default_inputs();
         let request = Request {
-            initial: instance.initial(),
+            initial: instance.initial_state(),
             times: &times,
             inputs: &inputs,
             solver: Solver::Auto,
@@ -189,7 +189,7 @@ impl Worker for &OverTime<'_> {
             max_step: f64::INFINITY,
             audit: false,
         };
-        let motion = finished_motion(instance.follow(&request, &mut |_| {}))?;
+        let motion = finished_motion(instance.simulate_until_stop(&request, &mut |_| {}))?;
         let course = self.values_over_time(&instance, &motion)?;
         let (times, course) = (&times[first..], &course[first..]);
         out[0] = match self.statistic {

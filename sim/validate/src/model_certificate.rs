@@ -112,9 +112,12 @@ fn generate_kernels(
 
 fn build_propagator(model: &Model, order: usize) -> Result<Propagator, String> {
     let orders = vec![order; model.fields.len()];
-    let compiled = CompiledModel::derive_unjudged(model.clone(), Orders::Each(&orders));
+    let compiled =
+        CompiledModel::derive_without_inertia_check(model.clone(), Orders::PerField(&orders));
     let compiled = compiled.map_err(|error| error.to_string())?;
-    let instance = compiled.at_declared().map_err(|error| error.to_string())?;
+    let instance = compiled
+        .with_declared_parameters()
+        .map_err(|error| error.to_string())?;
     instance.propagator().map_err(|error| error.to_string())
 }
 

@@ -11,7 +11,7 @@ use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::lowering::lower;
 use eomgen_codegen::program::{Op, Program};
-use eomgen_compiled_model::Driven;
+use eomgen_compiled_model::DrivenModel;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, simulate};
@@ -303,7 +303,7 @@ fn general_solver_takes_same_steps_with_machine_code() {
             eomgen_jit::evaluator(program),
         ];
         let [interpreted, compiled] = evaluators.map(|evaluator| {
-            let system = Driven::new(RefCell::new(evaluator), &inputs);
+            let system = DrivenModel::new(RefCell::new(evaluator), &inputs);
             let settings = Settings::default();
             let span = (0.0, 0.02);
             simulate(&system, &initial, span, &samples, &settings, &mut |_| {}).expect("a motion")

@@ -7,7 +7,7 @@ use std::path::Path;
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{
-    CompiledModel, Driven, EquilibriumRequest, Error, Orders, Request, Solver,
+    CompiledModel, DrivenModel, EquilibriumRequest, Error, Orders, Request, Solver,
 };
 use eomgen_sim::ode::{Settings, simulate};
 
@@ -35,7 +35,7 @@ rod = { zero = "x^2 + y^2 - l^2" }
 "#;
 
 fn compile(text: &str) -> CompiledModel {
-    CompiledModel::of_text("constrained.toml", text, Orders::Declared)
+    CompiledModel::from_text("constrained.toml", text, Orders::Declared)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -51,8 +51,13 @@ fn compile_changed(line: &str, by: &str) -> CompiledModel {
 }
 
 fn simulation_error(model: &CompiledModel) -> String {
-    let run = model.at_declared().unwrap();
-    let found = run.simulate(run.initial(), &[0.0, 0.1], &run.no_inputs(), Solver::Auto);
+    let run = model.with_declared_parameters().unwrap();
+    let found = run.simulate(
+        run.initial_state(),
+        &[0.0, 0.1],
+        &run.default_inputs(),
+        Solver::Auto,
+    );
     match found {
         Err(Error::Request(reason)) => reason,
         other => panic!("not refused: {other:?}"),
@@ -63,7 +68,7 @@ fn simulation_error(model: &CompiledModel) -> String {
 #[test]
 fn squeezing_mechanism_reaches_published_end_state() {
     let model = compile_feature("squeezing_mechanism", Orders::Declared);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let published = [
         15.81077119629904,
         -15.75637105984298,
@@ -75,7 +80,12 @@ fn squeezing_mechanism_reaches_published_end_state() {
     ];
     for (solver, tolerance) in [(Solver::Rk, 2e-8), (Solver::Radau, 2e-6)] {
         let motion = run
-            .simulate(run.initial(), &[0.0, 0.03], &run.no_inputs(), solver)
+            .simulate(
+                run.initial_state(),
+                &[0.0, 0.03],
+                &run.default_inputs(),
+                solver,
+            )
             .unwrap();
         for (found, expected) in motion.trajectory.states[1].iter().zip(published) {
             let error = (found - expected).abs() / expected.abs().max(1.0);
@@ -101,9 +111,9 @@ fn constrained_rod_matches_angle_and_does_not_drift() {
     );
     let times: Vec<f64> = (0..=1000).map(|sample| 0.1 * f64::from(sample)).collect();
     let motion = |model: &CompiledModel, solver| {
-        let run = model.at_declared().unwrap();
+        let run = model.with_declared_parameters().unwrap();
         let motion = run
-            .simulate(run.initial(), &times, &run.no_inputs(), solver)
+            .simulate(run.initial_state(), &times, &run.default_inputs(), solver)
             .unwrap();
         let observables = run.observables(&motion).unwrap();
         (motion.trajectory.states, observables)
@@ -144,21 +154,29 @@ fn initial_state_is_projected_onto_constraints_with_a_note() {
         "y = { unit = \"m\" }",
         "y = { unit = \"m\", initial = 0.1, initial_rate = 2 }",
     );
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let motion = run
-        .simulate(run.initial(), &[0.0, 0.1], &run.no_inputs(), Solver::Auto)
+        .simulate(
+            run.initial_state(),
+            &[0.0, 0.1],
+            &run.default_inputs(),
+            Solver::Auto,
+        )
         .unwrap();
     let start = &motion.trajectory.states[0];
     assert!((start[0].hypot(start[1]) - 0.7).abs() < 1e-15);
     assert!((start[0] * start[2] + start[1] * start[3]).abs() < 1e-14);
     let names: Vec<&str> = motion
-        .moved
+        .initial_changes
         .iter()
         .map(|moved| moved.name.as_str())
         .collect();
     assert_eq!(names, ["x", "y", "x_dot", "y_dot"]);
     assert_eq!(
-        (motion.moved[1].from, motion.moved[1].unit.as_str()),
+        (
+            motion.initial_changes[1].requested,
+            motion.initial_changes[1].unit.as_str()
+        ),
         (0.1, "m")
     );
     // With equal masses the projection gives the nearest point of the circle.
@@ -167,7 +185,7 @@ fn initial_state_is_projected_onto_constraints_with_a_note() {
 
 fn derivation_error(constraints: &str) -> String {
     let text = ROD.replace("x^2 + y^2 - l^2", constraints);
-    match CompiledModel::of_text("constrained.toml", &text, Orders::Declared) {
+    match CompiledModel::from_text("constrained.toml", &text, Orders::Declared) {
         Err(error) => error.to_string(),
         Ok(_) => panic!("{constraints}: derived"),
     }
@@ -261,20 +279,22 @@ fn folding_linkage_stops_and_names_constraints() {
         (0.6, "the constraints `across`, `up` depend on each other"),
     ] {
         let model = compile(&parallelogram(angle));
-        let run = model.at_declared().expect("an instance");
+        let run = model.with_declared_parameters().expect("an instance");
         let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
         for solver in [Solver::Rk, Solver::Radau] {
             let request = Request {
-                initial: run.initial(),
+                initial: run.initial_state(),
                 times: &times,
-                inputs: &run.no_inputs(),
+                inputs: &run.default_inputs(),
                 solver,
                 tolerance: 1e-9,
                 max_step: f64::INFINITY,
                 audit: false,
             };
-            let motion = run.follow(&request, &mut |_| {}).expect("a motion");
-            let stopped = motion.stopped.expect("a stop");
+            let motion = run
+                .simulate_until_stop(&request, &mut |_| {})
+                .expect("a motion");
+            let stopped = motion.early_stop.expect("a stop");
             assert!(stopped.reason.contains(named), "{}", stopped.reason);
             assert!(
                 stopped.reason.contains("singular position"),
@@ -313,7 +333,7 @@ fn fold_stops_motion_for_any_sampling_and_solver() {
             _ => duplicate_linkage(&one),
         };
         let model = compile(&text);
-        let run = model.at_declared().expect("an instance");
+        let run = model.with_declared_parameters().expect("an instance");
         for sample in [0.007, 0.05, 0.07, 0.1, 0.3] {
             for (solver, tolerance) in [
                 (Solver::Rk, 1e-4),
@@ -323,17 +343,21 @@ fn fold_stops_motion_for_any_sampling_and_solver() {
             ] {
                 let samples = (0..).map(|k| f64::from(k) * sample);
                 let request = Request {
-                    initial: run.initial(),
+                    initial: run.initial_state(),
                     times: &samples.take_while(|t| *t <= 0.601).collect::<Vec<f64>>(),
-                    inputs: &run.no_inputs(),
+                    inputs: &run.default_inputs(),
                     solver,
                     tolerance,
                     max_step: f64::INFINITY,
                     audit: false,
                 };
-                let motion = run.follow(&request, &mut |_| {}).expect("a motion");
+                let motion = run
+                    .simulate_until_stop(&request, &mut |_| {})
+                    .expect("a motion");
                 let place = format!("{count} {sample} {solver} {tolerance}");
-                let stopped = motion.stopped.unwrap_or_else(|| panic!("{place}: passed"));
+                let stopped = motion
+                    .early_stop
+                    .unwrap_or_else(|| panic!("{place}: passed"));
                 assert!(
                     stopped.reason.contains("singular position"),
                     "{place}: {}",
@@ -407,7 +431,7 @@ fn time_of_fold_is_independent_of_sampling_and_solver() {
     let tilted = parallelogram(0.6);
     for text in [&tilted, SLIDER, KITE] {
         let model = compile(text);
-        let run = model.at_declared().expect("an instance");
+        let run = model.with_declared_parameters().expect("an instance");
         let mut times = Vec::new();
         for sample in [0.01, 0.07] {
             for (solver, tolerance) in [
@@ -418,16 +442,18 @@ fn time_of_fold_is_independent_of_sampling_and_solver() {
             ] {
                 let samples = (0..).map(|k| f64::from(k) * sample);
                 let request = Request {
-                    initial: run.initial(),
+                    initial: run.initial_state(),
                     times: &samples.take_while(|t| *t <= 0.601).collect::<Vec<f64>>(),
-                    inputs: &run.no_inputs(),
+                    inputs: &run.default_inputs(),
                     solver,
                     tolerance,
                     max_step: f64::INFINITY,
                     audit: false,
                 };
-                let motion = run.follow(&request, &mut |_| {}).expect("a motion");
-                let stopped = motion.stopped.expect("a stop");
+                let motion = run
+                    .simulate_until_stop(&request, &mut |_| {})
+                    .expect("a motion");
+                let stopped = motion.early_stop.expect("a stop");
                 let reason = &stopped.reason;
                 assert!(reason.contains("singular position"), "{reason}");
                 times.push(stopped.t.expect("a time"));
@@ -469,23 +495,23 @@ fn rotating_rod_is_not_stopped() {
         "y = { unit = \"m\" }",
         "y = { unit = \"m\", initial_rate = 12 }",
     );
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     for tolerance in [1e-3, 1e-9] {
         for solver in [Solver::Rk, Solver::Radau] {
             let request = Request {
-                initial: run.initial(),
+                initial: run.initial_state(),
                 times: &[0.0, 3.0],
-                inputs: &run.no_inputs(),
+                inputs: &run.default_inputs(),
                 solver,
                 tolerance,
                 max_step: f64::INFINITY,
                 audit: false,
             };
-            let motion = run.follow(&request, &mut |_| {}).unwrap();
+            let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
             assert!(
-                motion.stopped.is_none(),
+                motion.early_stop.is_none(),
                 "{solver} {tolerance}: {:?}",
-                motion.stopped
+                motion.early_stop
             );
         }
     }
@@ -494,10 +520,12 @@ fn rotating_rod_is_not_stopped() {
 #[test]
 fn constraint_residual_decays_at_given_rate() {
     let model = compile(ROD);
-    let run = model.with(&[("stabilisation_rate", 20.0)]).unwrap();
+    let run = model
+        .with_parameters(&[("stabilisation_rate", 20.0)])
+        .unwrap();
     let evaluator = RefCell::new(run.evaluator().unwrap());
-    let inputs = run.no_inputs();
-    let system = Driven::new(&evaluator, &inputs);
+    let inputs = run.default_inputs();
+    let system = DrivenModel::new(&evaluator, &inputs);
     let start = [0.72, 0.0, 0.1, 0.0];
     let residual = |state: &[f64]| state[0].powi(2) + state[1].powi(2) - 0.49;
     let rate = |state: &[f64]| 2.0 * (state[0] * state[2] + state[1] * state[3]);
@@ -519,9 +547,9 @@ fn constraint_residual_decays_at_given_rate() {
 #[test]
 fn equilibrium_satisfies_constraints() {
     let model = compile_changed("initial = \"l\"", "initial = 0.3");
-    let run = model.at_declared().unwrap();
-    let found = run.equilibrium(EquilibriumRequest::default()).unwrap();
-    let [x, y, ..] = found.at.state[..] else {
+    let run = model.with_declared_parameters().unwrap();
+    let found = run.find_equilibrium(EquilibriumRequest::default()).unwrap();
+    let [x, y, ..] = found.point.state[..] else {
         panic!("{found:?}")
     };
     assert!(x.abs() < 1e-9 && (y.abs() - 0.7).abs() < 1e-9, "{x}, {y}");
@@ -530,10 +558,15 @@ fn equilibrium_satisfies_constraints() {
 #[test]
 fn rolling_disc_conserves_energy_and_sleigh_straightens() {
     let model = compile_feature("rolling_disc", Orders::Declared);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let times: Vec<f64> = (0..=50).map(f64::from).collect();
     let motion = run
-        .simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)
+        .simulate(
+            run.initial_state(),
+            &times,
+            &run.default_inputs(),
+            Solver::Auto,
+        )
         .unwrap();
     let observables = run.observables(&motion).unwrap();
     let energies: Vec<f64> = observables.iter().map(|row| row[row.len() - 2]).collect();
@@ -545,9 +578,14 @@ fn rolling_disc_conserves_energy_and_sleigh_straightens() {
         );
     }
     let sleigh = compile(eomgen_model_spec::models::CHAPLYGIN_SLEIGH.text);
-    let run = sleigh.at_declared().unwrap();
+    let run = sleigh.with_declared_parameters().unwrap();
     let motion = run
-        .simulate(run.initial(), &[0.0, 60.0], &run.no_inputs(), Solver::Auto)
+        .simulate(
+            run.initial_state(),
+            &[0.0, 60.0],
+            &run.default_inputs(),
+            Solver::Auto,
+        )
         .unwrap();
     let (first, last) = (&motion.trajectory.states[0], &motion.trajectory.states[1]);
     // Finally all energy is kinetic, along the edge: m v^2 = m (x'^2 + y'^2) + J theta'^2.
@@ -570,7 +608,8 @@ fn constraints_add_few_operations_per_mode() {
                 );
                 text.truncate(end.min(start));
             }
-            let model = CompiledModel::of_text("coupler.toml", &text, Orders::All(order)).unwrap();
+            let model =
+                CompiledModel::from_text("coupler.toml", &text, Orders::Uniform(order)).unwrap();
             let program = model.program();
             program.operations(&program.accelerations.all())
         };
@@ -591,9 +630,11 @@ fn feature_text(name: &str) -> String {
 #[test]
 fn multipliers_equal_joint_forces() {
     let model = compile_feature("flexible_coupler", Orders::Declared);
-    let run = model.at_declared().unwrap();
-    let inputs = run.no_inputs();
-    let (state, _) = run.consistent(run.initial(), 0.0, &inputs).unwrap();
+    let run = model.with_declared_parameters().unwrap();
+    let inputs = run.default_inputs();
+    let (state, _) = run
+        .find_consistent_state(run.initial_state(), 0.0, &inputs)
+        .unwrap();
     let mut evaluator = run.evaluator().unwrap();
     let mut observables = vec![0.0; evaluator.program().observables.len()];
     let inputs = &inputs.at(0.0);
@@ -619,7 +660,7 @@ fn multipliers_equal_joint_forces() {
 #[test]
 fn constraint_nonlinear_in_rates_is_rejected_with_location() {
     let text = ROD.replace("x^2 + y^2 - l^2", "dot(x)^2 - dot(y)^2");
-    let found = CompiledModel::of_text("rod.toml", &text, Orders::Declared);
+    let found = CompiledModel::from_text("rod.toml", &text, Orders::Declared);
     let message = found
         .err()
         .map(|error| error.to_string())
@@ -650,9 +691,9 @@ fn bicycle_has_published_eigenvalues() {
         ),
     ];
     for (speed, expected) in published {
-        let run = model.with(&[("v", speed)]).unwrap();
+        let run = model.with_parameters(&[("v", speed)]).unwrap();
         let (state, moved) = run
-            .consistent(run.initial(), 0.0, &run.no_inputs())
+            .find_consistent_state(run.initial_state(), 0.0, &run.default_inputs())
             .unwrap();
         assert!(moved.is_empty(), "{moved:?}");
         let point = Point {
@@ -662,7 +703,8 @@ fn bicycle_has_published_eigenvalues() {
         };
         let linear = run.linearise(point).unwrap();
         let degrees = state.len() / 2;
-        let modes = constrained_modes(&linear.a, &linear.held(&model), degrees).unwrap();
+        let modes =
+            constrained_modes(&linear.a, &linear.constraint_matrix(&model), degrees).unwrap();
         for (re, im) in expected {
             let near = modes
                 .iter()
@@ -737,7 +779,11 @@ fn random_chains_match_in_cartesian_coordinates_and_angles() {
         let [places, in_angles] = chain(&lengths, &masses);
         let rates = |text: &str, state: &[f64]| {
             let model = compile(text);
-            let mut evaluator = model.at_declared().unwrap().evaluator().unwrap();
+            let mut evaluator = model
+                .with_declared_parameters()
+                .unwrap()
+                .evaluator()
+                .unwrap();
             let mut rates = vec![0.0; state.len()];
             let point = Point {
                 t: 0.0,

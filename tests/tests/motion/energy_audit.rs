@@ -74,23 +74,25 @@ table = { when = "y", restitution = 0.7 }
 "#;
 
 fn audit_of_text(text: &str, until: f64, solver: Solver, tolerance: f64) -> Audit {
-    let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
+    let model = CompiledModel::from_text("model.toml", text, Orders::Declared).expect("a model");
     audit(&model, until, solver, tolerance)
 }
 
 fn audit(model: &CompiledModel, until: f64, solver: Solver, tolerance: f64) -> Audit {
-    let run = model.at_declared().expect("values");
+    let run = model.with_declared_parameters().expect("values");
     let times = [0.0, 0.5 * until, until];
     let request = Request {
-        initial: run.initial(),
+        initial: run.initial_state(),
         times: &times,
-        inputs: &run.no_inputs(),
+        inputs: &run.default_inputs(),
         solver,
         tolerance,
         max_step: f64::INFINITY,
         audit: true,
     };
-    let motion = run.follow(&request, &mut |_| {}).expect("a motion");
+    let motion = run
+        .simulate_until_stop(&request, &mut |_| {})
+        .expect("a motion");
     motion.audit.expect("an audit")
 }
 
@@ -107,8 +109,11 @@ fn shipped_models_gain_no_energy_at_any_tolerance() {
         ];
         for (solver, tolerance) in all.into_iter().chain(limits) {
             let audit = audit(&model, 0.3, solver, tolerance);
-            assert_eq!(audit.faults, 0, "{name}, {solver}, {tolerance}: {audit:?}");
-            assert_eq!(audit.not_applicable, None, "{name}");
+            assert_eq!(
+                audit.fault_count, 0,
+                "{name}, {solver}, {tolerance}: {audit:?}"
+            );
+            assert_eq!(audit.exclusion_reason, None, "{name}");
         }
     }
 }
@@ -118,9 +123,13 @@ fn energy_is_conserved_or_a_warning_is_given() {
     for (name, text) in [("corner", CORNER), ("step", STEP), ("base", BASE)] {
         for solver in [Solver::Auto, Solver::Rk, Solver::Radau] {
             let audit = audit_of_text(text, 3.0, solver, 1e-9);
-            let is_kept = audit.unexplained().abs() < 1e-6;
-            assert_eq!(audit.faults == 0, is_kept, "{name}, {solver}: {audit:?}");
-            let warning = audit.warning();
+            let is_kept = audit.unexplained_energy().abs() < 1e-6;
+            assert_eq!(
+                audit.fault_count == 0,
+                is_kept,
+                "{name}, {solver}: {audit:?}"
+            );
+            let warning = audit.warning_message();
             assert_eq!(warning.is_none(), is_kept, "{warning:?}");
         }
     }
@@ -130,10 +139,10 @@ fn energy_is_conserved_or_a_warning_is_given() {
 fn losses_at_impacts_are_accounted_for() {
     for solver in [Solver::Rk, Solver::Radau] {
         let audit = audit_of_text(BALL, 5.0, solver, 1e-9);
-        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert_eq!(audit.fault_count, 0, "{audit:?}");
         // The ball ends at rest, so m g y = 0.981 J is lost.
-        assert!((audit.impacts + 0.981).abs() < 1e-6, "{audit:?}");
-        assert!(audit.unexplained().abs() < 1e-6, "{audit:?}");
+        assert!((audit.impact_energy + 0.981).abs() < 1e-6, "{audit:?}");
+        assert!(audit.unexplained_energy().abs() < 1e-6, "{audit:?}");
     }
 }
 
@@ -150,10 +159,10 @@ fn work_of_shaking_table_is_accounted_for() {
     .flat_map(|text| [(text, Solver::Rk), (text, Solver::Radau)])
     {
         let audit = audit_of_text(text, 2.0, solver, 1e-9);
-        assert_eq!(audit.faults, 0, "{audit:?}");
-        assert_eq!(audit.not_applicable, None);
-        assert!(audit.impacts <= 0.0 && audit.work != 0.0, "{audit:?}");
-        assert!(audit.unexplained().abs() < 1e-6, "{audit:?}");
+        assert_eq!(audit.fault_count, 0, "{audit:?}");
+        assert_eq!(audit.exclusion_reason, None);
+        assert!(audit.impact_energy <= 0.0 && audit.work != 0.0, "{audit:?}");
+        assert!(audit.unexplained_energy().abs() < 1e-6, "{audit:?}");
     }
 }
 
@@ -167,10 +176,13 @@ fn work_of_moving_wall_is_that_of_its_impulse() {
     for solver in [Solver::Rk, Solver::Radau] {
         let audit = audit_of_text(&text, 2.0, solver, 1e-9);
         let (energy, work) = (0.5 * 0.2 * 1.7_f64.powi(2), 0.2 * 1.7);
-        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert_eq!(audit.fault_count, 0, "{audit:?}");
         assert!((audit.energy_change - energy).abs() < 1e-9, "{audit:?}");
         assert!((audit.work - work).abs() < 1e-9, "{audit:?}");
-        assert!((audit.impacts - (energy - work)).abs() < 1e-9, "{audit:?}");
+        assert!(
+            (audit.impact_energy - (energy - work)).abs() < 1e-9,
+            "{audit:?}"
+        );
     }
 }
 
@@ -182,9 +194,9 @@ fn lift_does_work_on_its_load() {
         .replace("A = { value = 0,", "A = { value = 0.05,");
     for solver in [Solver::Rk, Solver::Radau] {
         let audit = audit_of_text(&text, 2.0, solver, 1e-9);
-        assert_eq!(audit.faults, 0, "{audit:?}");
+        assert_eq!(audit.fault_count, 0, "{audit:?}");
         assert!((audit.work - 0.2 * 9.81 * 2.0).abs() < 1e-9, "{audit:?}");
-        assert!(audit.impacts.abs() < 1e-9, "{audit:?}");
+        assert!(audit.impact_energy.abs() < 1e-9, "{audit:?}");
     }
 }
 
@@ -195,8 +207,8 @@ fn audit_omits_contacts_moved_by_inputs() {
         "[inputs]\ns = { unit = \"m\", rates = 2 }\n[kinetic]",
     );
     let audit = audit_of_text(&text, 2.0, Solver::Rk, 1e-9);
-    assert_eq!(audit.faults, 0, "{audit:?}");
-    let reason = audit.not_applicable.expect("a reason");
+    assert_eq!(audit.fault_count, 0, "{audit:?}");
+    let reason = audit.exclusion_reason.expect("a reason");
     assert!(reason.contains("`table`"), "{reason}");
 }
 
@@ -235,7 +247,7 @@ fn switched_force_gives_no_warning() {
             for solver in [Solver::Rk, Solver::Radau] {
                 let audit = audit_of_text(&text, until, solver, tolerance);
                 assert_eq!(
-                    audit.faults, 0,
+                    audit.fault_count, 0,
                     "{force} {begin} {solver} {tolerance}: {audit:?}"
                 );
             }
@@ -246,21 +258,22 @@ fn switched_force_gives_no_warning() {
 #[test]
 fn audit_does_not_change_the_motion() {
     for text in [CORNER, BASE, BALL] {
-        let model = CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model");
-        let run = model.at_declared().expect("values");
+        let model =
+            CompiledModel::from_text("model.toml", text, Orders::Declared).expect("a model");
+        let run = model.with_declared_parameters().expect("values");
         let times: Vec<f64> = (0..=50).map(|row| 0.06 * f64::from(row)).collect();
         for solver in [Solver::Rk, Solver::Radau] {
             let [with, without] = [true, false].map(|audit| {
                 let request = Request {
-                    initial: run.initial(),
+                    initial: run.initial_state(),
                     times: &times,
-                    inputs: &run.no_inputs(),
+                    inputs: &run.default_inputs(),
                     solver,
                     tolerance: 1e-9,
                     max_step: f64::INFINITY,
                     audit,
                 };
-                run.follow(&request, &mut |_| {})
+                run.simulate_until_stop(&request, &mut |_| {})
                     .expect("a motion")
                     .trajectory
             });

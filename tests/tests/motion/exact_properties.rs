@@ -300,11 +300,11 @@ fn radau_matches_best_solver_on_shipped_models() {
     ] {
         let path = eomgen_tests::models::path(name);
         let model = CompiledModel::load(&path, Orders::Declared).expect("a model");
-        let instance = model.at_declared().expect("an instance");
+        let instance = model.with_declared_parameters().expect("an instance");
         let times = grid(until, 16);
-        let inputs = instance.no_inputs();
+        let inputs = instance.default_inputs();
         let by = |solver| {
-            let motion = instance.simulate(instance.initial(), &times, &inputs, solver);
+            let motion = instance.simulate(instance.initial_state(), &times, &inputs, solver);
             motion.expect("a motion").trajectory
         };
         let (found, expected) = (by(Solver::Radau), by(reference));

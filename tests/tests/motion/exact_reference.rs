@@ -10,7 +10,7 @@ use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::lowering::lower;
-use eomgen_compiled_model::Driven;
+use eomgen_compiled_model::DrivenModel;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
@@ -254,7 +254,7 @@ fn assert_general_solver_matches(order: usize, b: f64) {
         .parameter_values()
         .expect("the parameters have values");
     let evaluator = Evaluator::new(lower(&model, &equations, &parameters));
-    let system = Driven::new(RefCell::new(evaluator), HeldInputs::zero(0));
+    let system = DrivenModel::new(RefCell::new(evaluator), HeldInputs::zero(0));
     let trajectory = simulate(
         &system,
         &vec![0.0; 2 * (3 + order)],

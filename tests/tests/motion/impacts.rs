@@ -30,15 +30,20 @@ fn compile_with_impacts(name: &str, impacts: &str, order: usize) -> CompiledMode
     let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).expect("a model");
     let orders = match order {
         0 => Orders::Declared,
-        order => Orders::All(order),
+        order => Orders::Uniform(order),
     };
-    CompiledModel::of_text("hitting.toml", &(text + impacts), orders)
+    CompiledModel::from_text("hitting.toml", &(text + impacts), orders)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn simulate_with(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64]) -> Motion {
-    let run = model.with(settings).unwrap();
-    let motion = run.simulate(run.initial(), times, &run.no_inputs(), Solver::Auto);
+    let run = model.with_parameters(settings).unwrap();
+    let motion = run.simulate(
+        run.initial_state(),
+        times,
+        &run.default_inputs(),
+        Solver::Auto,
+    );
     motion.unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
@@ -80,12 +85,12 @@ fn bouncing_ball_matches_closed_form_and_comes_to_rest() {
 }
 
 fn simulate_with_all_solvers(model: &CompiledModel, initial: &[f64], times: &[f64]) -> Vec<Motion> {
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let solvers = [Solver::Rk, Solver::Radau].into_iter();
     let motions = solvers.map(|solver| {
-        let motion = run.simulate(initial, times, &run.no_inputs(), solver);
+        let motion = run.simulate(initial, times, &run.default_inputs(), solver);
         let motion = motion.unwrap_or_else(|error| panic!("{solver} {initial:?}: {error}"));
-        let overlap = run.first_overlap_of(&motion, 1e-9).unwrap();
+        let overlap = run.find_first_overlap(&motion, 1e-9).unwrap();
         assert!(overlap.is_none(), "{solver} {initial:?}: {overlap:?}");
         motion
     });
@@ -154,7 +159,7 @@ p = "{potential}"
         ),
     ] {
         let model =
-            CompiledModel::of_text("contacts.toml", &text(potential, impacts), Orders::Declared)
+            CompiledModel::from_text("contacts.toml", &text(potential, impacts), Orders::Declared)
                 .unwrap();
         for begin in [0.0, 3.0] {
             let times: Vec<f64> = (0..=10).map(|step| begin + f64::from(step) * 0.1).collect();
@@ -175,8 +180,8 @@ fn ball_leaves_table_that_falls_faster() {
     // With e = 0, the ball stays on the table until a omega^2 sin(omega t) = g.
     let model = compile_example("bouncing_ball", Orders::Declared);
     let (a, omega, g) = (0.03, 20.0_f64, 9.81);
-    let run = model.with(&[("a", a), ("e", 0.0)]).unwrap();
-    let mut initial = run.initial().to_vec();
+    let run = model.with_parameters(&[("a", a), ("e", 0.0)]).unwrap();
+    let mut initial = run.initial_state().to_vec();
     initial[0] = 0.0;
     initial[1] = a * omega;
     let leaves = (g / (a * omega * omega)).asin() / omega;
@@ -185,7 +190,7 @@ fn ball_leaves_table_that_falls_faster() {
         a * omega * (omega * leaves).cos(),
     );
     let times: Vec<f64> = (0..20).map(|step| f64::from(step) * 0.01).collect();
-    let motion = run.simulate(&initial, &times, &run.no_inputs(), Solver::Rk);
+    let motion = run.simulate(&initial, &times, &run.default_inputs(), Solver::Rk);
     let mut flew = 0;
     for (t, state) in times.iter().zip(&motion.unwrap().trajectory.states) {
         let since = t - leaves;
@@ -227,7 +232,7 @@ bumper = {{ when = "z - x", restitution = "e" }}
         )
     };
     for e in [0.0, 0.25, 1.0] {
-        let model = CompiledModel::of_text("carts.toml", &text(e), Orders::Declared).unwrap();
+        let model = CompiledModel::from_text("carts.toml", &text(e), Orders::Declared).unwrap();
         let state = simulate_with(&model, &[], &[0.0, 1.0]).trajectory.states[1].clone();
         let centre = (2.0 * 3.0 - 5.0) / 7.0;
         let (x, z) = (centre - 5.0 / 7.0 * 4.0 * e, centre + 2.0 / 7.0 * 4.0 * e);
@@ -263,7 +268,7 @@ floor = {{ when = "y", restitution = "e" }}
 balls = {{ when = "z - y", restitution = 0.8 }}
 "#
     );
-    CompiledModel::of_text("stack.toml", &text, Orders::Declared).unwrap()
+    CompiledModel::from_text("stack.toml", &text, Orders::Declared).unwrap()
 }
 
 #[test]
@@ -318,10 +323,15 @@ fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
         text += &format!("[kinetic]\nall = \"{}\"\n", kinetic.join(" + "));
         text += &format!("[potential]\nweight = \"{}\"\n", weight.join(" + "));
         text += &format!("[impacts]\n{impacts}");
-        let model = CompiledModel::of_text("stack.toml", &text, Orders::Declared).unwrap();
+        let model = CompiledModel::from_text("stack.toml", &text, Orders::Declared).unwrap();
         let times: Vec<f64> = (0..=30).map(|step| f64::from(step) * 0.1).collect();
-        let run = model.with(&[]).unwrap();
-        let motion = run.simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto);
+        let run = model.with_parameters(&[]).unwrap();
+        let motion = run.simulate(
+            run.initial_state(),
+            &times,
+            &run.default_inputs(),
+            Solver::Auto,
+        );
         let motion = motion.unwrap_or_else(|error| panic!("{case}: {error}\n{text}"));
         let mut own = run.evaluator().unwrap();
         let names = model.observable_names();
@@ -367,11 +377,11 @@ fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
 fn dropped_box_hits_with_both_edges_or_one() {
     let model = compile_example("dropped_box", Orders::Declared);
     let (m, inertia, b, h, g, e) = (2.0, 0.0867, 0.3, 0.2, 9.81, 0.3);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let flat = run.simulate(
         &[0.0, 0.7, 0.0, 0.0, 0.0, 0.0],
         &[0.0, 0.33],
-        &run.no_inputs(),
+        &run.default_inputs(),
         Solver::Rk,
     );
     let state = flat.unwrap().trajectory.states[1].clone();
@@ -447,7 +457,7 @@ fn gradient(own: &mut Evaluator, state: &[f64], degrees: usize, place: usize) ->
 
 /// Compares impulses and rates with dense algebra on the mass matrix and difference quotients.
 fn assert_matches_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], seed: u64) {
-    let run = model.with(settings).unwrap();
+    let run = model.with_parameters(settings).unwrap();
     let mut own = run.evaluator().unwrap();
     let degrees = own.program().degrees_of_freedom();
     let mut numbers = Numbers(seed);
@@ -570,13 +580,13 @@ rod = { zero = "x^2 + y^2 - l^2" }
 [impacts]
 wall = { when = "x", restitution = 0.5 }
 "#;
-    let model = CompiledModel::of_text("rod.toml", text, Orders::Declared).unwrap();
+    let model = CompiledModel::from_text("rod.toml", text, Orders::Declared).unwrap();
     let times: Vec<f64> = (0..=100).map(|step| f64::from(step) * 0.02).collect();
     let motion = simulate_with(&model, &[], &times);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let energy =
         |state: &[f64]| state[2].powi(2) + state[3].powi(2) + 2.0 * 9.81 * (state[1] + 0.7);
-    let first = energy(run.initial());
+    let first = energy(run.initial_state());
     let states = &motion.trajectory.states;
     for state in states {
         assert!((state[0].hypot(state[1]) - 0.7).abs() < 1e-12, "{state:?}");
@@ -591,7 +601,7 @@ wall = { when = "x", restitution = 0.5 }
 #[test]
 fn stiff_contact_spring_converges_to_impact() {
     // With e = 1 the motion of a stiff contact spring converges to that of the impact.
-    let hitting = compile_example("beam_stop", Orders::All(2));
+    let hitting = compile_example("beam_stop", Orders::Uniform(2));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
     let text = std::fs::read_to_string(folder.join("beam_stop.toml")).expect("an example");
     let (before, after) = text.split_once("[impacts]").expect("impacts");
@@ -602,7 +612,7 @@ fn stiff_contact_spring_converges_to_impact() {
     );
     let spring = "stop = \"1/2*k_c*max(0, -at(w, l) - d)^2\"\n\n";
     let soft = [&before, spring, after].concat();
-    let soft = CompiledModel::of_text("soft.toml", &soft, Orders::All(2))
+    let soft = CompiledModel::from_text("soft.toml", &soft, Orders::Uniform(2))
         .unwrap_or_else(|error| panic!("{error}"));
     let times = [0.0, 0.04, 0.05];
     let hard = simulate_with(&hitting, &[("e", 1.0)], &times);
@@ -619,9 +629,9 @@ fn stiff_contact_spring_converges_to_impact() {
 #[test]
 fn initial_penetration_by_rounding_starts_on_contact() {
     let model = compile_example("bouncing_ball", Orders::Declared);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let times = [0.0, 0.3, 1.0];
-    let from = |initial: &[f64]| run.simulate(initial, &times, &run.no_inputs(), Solver::Rk);
+    let from = |initial: &[f64]| run.simulate(initial, &times, &run.default_inputs(), Solver::Rk);
     let on = from(&[0.0, 2.0]).unwrap().trajectory.states;
     for height in [-1e-17, -1e-13, -1e-300] {
         let thrown = from(&[height, 2.0]).unwrap().trajectory.states;
@@ -638,8 +648,9 @@ fn initial_penetration_by_rounding_starts_on_contact() {
 #[test]
 fn invalid_impacts_are_rejected_with_reason() {
     let model = compile_example("bouncing_ball", Orders::Declared);
-    let run = model.at_declared().unwrap();
-    let at = |initial: &[f64], solver| run.simulate(initial, &[0.0, 1.0], &run.no_inputs(), solver);
+    let run = model.with_declared_parameters().unwrap();
+    let at =
+        |initial: &[f64], solver| run.simulate(initial, &[0.0, 1.0], &run.default_inputs(), solver);
     for (found, what) in [
         (
             at(&[-0.1, 0.0], Solver::Auto),
@@ -652,7 +663,7 @@ fn invalid_impacts_are_rejected_with_reason() {
         assert!(message.contains(what), "{message}");
     }
     let refusal = model
-        .with(&[("e", 1.2)])
+        .with_parameters(&[("e", 1.2)])
         .err()
         .expect("refused")
         .to_string();
@@ -670,7 +681,7 @@ ball = "1/2*m*dot(y)^2"
 [impacts]
 nothing = { when = "0*y", restitution = 0.5 }
 "#;
-    let refusal = CompiledModel::of_text("apart.toml", text, Orders::Declared)
+    let refusal = CompiledModel::from_text("apart.toml", text, Orders::Declared)
         .err()
         .expect("refused")
         .to_string();
@@ -693,12 +704,12 @@ ball = "1/2*m*dot(y)^2"
 floor = { when = "y", restitution = 1 }
 ceiling = { when = "d - v*t - y", restitution = 1 }
 "#;
-    let model = CompiledModel::of_text("closing.toml", text, Orders::Declared).unwrap();
-    let run = model.at_declared().unwrap();
+    let model = CompiledModel::from_text("closing.toml", text, Orders::Declared).unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let found = run.simulate(
-        run.initial(),
+        run.initial_state(),
         &[0.0, 9.0, 12.0],
-        &run.no_inputs(),
+        &run.default_inputs(),
         Solver::Rk,
     );
     let Err(Error::Stopped { t, reason }) = found else {

@@ -22,7 +22,7 @@ pub(super) fn json(
         .map(|((name, unit), initial)| json!({ "name": name, "unit": format_unit(unit), "initial": initial }))
         .collect();
     let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": format_unit(&quantity.unit) });
-    let inputs = program.inputs.iter().zip(compiled.usual_inputs());
+    let inputs = program.inputs.iter().zip(compiled.default_inputs());
     let inputs = inputs.map(|(input, value)| {
         json!({ "name": input.name, "unit": format_unit(&input.unit), "value": value })
     });

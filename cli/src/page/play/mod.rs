@@ -32,7 +32,7 @@ const SCRIPT: [&str; 3] = [
 /// # Errors
 /// Declared parameters without a motion, or a module that cannot be emitted.
 pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<String> {
-    let instance = compiled.at_declared()?;
+    let instance = compiled.with_declared_parameters()?;
     let module = module(compiled.program())?;
     let quantities = Quantities::new(compiled, initial)?;
     let evaluator = instance.evaluator()?;

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_compiled_model::Driven;
+use eomgen_compiled_model::DrivenModel;
 use eomgen_sim::ode::{Settings, simulate};
 
 use crate::fit::fit_result::Fit;
@@ -97,7 +97,7 @@ fn seen(
     };
     let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
     let span = (*times.first()?, *times.last()?);
-    let driven = Driven::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
+    let driven = DrivenModel::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
     let mut quantities = Vec::new();
     let mut buffers = model.measured.create_buffers();

@@ -2,27 +2,27 @@
 
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
 
-use super::allowed::{ERROR_FACTOR, allowed_change, unlocated_work};
-use super::{Audit, Energies, EnergyAt, Imbalance};
+use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
+use super::{Audit, Energies, EnergyAndPower, Imbalance};
 
 /// Factor on the energy change of an error at the tolerance in every entry of the state, for a
 /// step with an error estimate.
 const ESTIMATE_FACTOR: f64 = 1000.0;
 
 /// A step shorter than this fraction of the preceding one crosses a surface.
-const SHORT: f64 = 1e-3;
+const MAX_CROSSING_STEP_FRACTION: f64 = 1e-3;
 
 /// Differences below this fraction of the last allowed change are not examined.
-const NEGLIGIBLE: f64 = 1e-2;
+const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
 /// Maximum number of panels of a quadrature with interpolated states.
-const MOST_PANELS: usize = 4096;
+const MAX_PANELS: usize = 4096;
 
 /// Maximum number of panels of a quadrature whose states need a step each.
-const MOST_RESOLVED_PANELS: usize = 16;
+const MAX_RESOLVED_PANELS: usize = 16;
 
 /// Rounding of an energy, relative to its magnitude.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 const EXACT_TOLERANCE: f64 = 1e-9;
 
@@ -39,7 +39,7 @@ pub(crate) struct Auditor {
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
     /// Energy change at impacts since that step, J.
-    pending: f64,
+    pending_energy: f64,
     /// Last change that errors can explain, J.
     last_allowed: f64,
     /// Length of the last step with a known interior, s.
@@ -64,7 +64,7 @@ impl Auditor {
                 .map(|size| UNMOVED_PART * size)
                 .collect(),
             energy: None,
-            pending: 0.0,
+            pending_energy: 0.0,
             last_allowed: 0.0,
             last_length: 0.0,
             audit: Audit::default(),
@@ -77,36 +77,37 @@ impl Auditor {
     }
 
     /// Audits a step.
-    pub fn step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
+    pub fn audit_step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
         let (start, end) = (step.start, step.end);
         self.raise_sizes(start.1);
         self.raise_sizes(end.1);
-        let ends = (self.at(energies, start), self.at(energies, end));
+        let ends = (self.evaluate(energies, start), self.evaluate(energies, end));
         if let Some(before) = self.energy.replace(ends.1.energy) {
-            self.jump(start, ends.0.energy - before, energies);
+            self.audit_jump(start, ends.0.energy - before, energies);
         }
-        let change = ends.1.energy - ends.0.energy - std::mem::take(&mut self.pending);
-        let (mut work, has_interior) = self.simpson(step, energies, ends);
+        let change = ends.1.energy - ends.0.energy - std::mem::take(&mut self.pending_energy);
+        let (mut work, has_interior) = self.integrate_simpson(step, energies, ends);
         let length = end.0 - start.0;
         if has_interior {
             self.last_length = length;
         }
-        let is_estimated = has_interior || length > SHORT * self.last_length;
+        let is_estimated = has_interior || length > MAX_CROSSING_STEP_FRACTION * self.last_length;
         // NaN is not negligible.
-        let is_negligible = (change - work).abs() <= NEGLIGIBLE * self.last_allowed;
+        let is_negligible = (change - work).abs() <= NEGLIGIBLE_FRACTION * self.last_allowed;
         if !is_negligible {
             let factor = match is_estimated && !self.is_exact {
                 true => ESTIMATE_FACTOR,
-                false => ERROR_FACTOR,
+                false => TOLERANCE_ERROR_FACTOR,
             };
             let values = [ends.0.energy, ends.1.energy];
-            let allowed = self.allowed(energies, factor, &[start, end], &values)
-                + unlocated_work(end.0, ends);
+            let allowed = self.find_allowed_change(energies, factor, &[start, end], &values)
+                + find_uncertain_work(end.0, ends);
             self.last_allowed = allowed;
             let judged = (ends, change);
-            let (found, tolerance) = self.look_closely(step, energies, judged, (factor, allowed));
+            let (found, tolerance) =
+                self.integrate_accurately(step, energies, judged, (factor, allowed));
             work = found;
-            self.judge(end.0, change - work, tolerance);
+            self.record_excess(end.0, change - work, tolerance);
         }
         self.audit.energy_change += change;
         self.audit.work += work;
@@ -114,39 +115,46 @@ impl Auditor {
 
     /// Audits an energy change between two steps, at a surface or by projection onto the
     /// constraints.
-    fn jump(&mut self, start: (f64, &[f64]), change: f64, energies: &mut Energies<'_>) {
+    fn audit_jump(&mut self, start: (f64, &[f64]), change: f64, energies: &mut Energies<'_>) {
         self.audit.energy_change += change;
-        let is_negligible = change.abs() <= NEGLIGIBLE / ESTIMATE_FACTOR * self.last_allowed;
+        let is_negligible =
+            change.abs() <= NEGLIGIBLE_FRACTION / ESTIMATE_FACTOR * self.last_allowed;
         if change != 0.0 && !is_negligible {
             let values = [self.energy.unwrap_or(0.0)];
-            let allowed = self.allowed(energies, ERROR_FACTOR, &[start], &values);
-            self.judge(start.0, change, allowed);
+            let allowed =
+                self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &[start], &values);
+            self.record_excess(start.0, change, allowed);
         }
     }
 
     /// Records an energy change that is NaN or exceeds the tolerance.
-    fn judge(&mut self, t: f64, size: f64, tolerance: f64) {
+    fn record_excess(&mut self, t: f64, size: f64, tolerance: f64) {
         if size.abs() > tolerance || size.is_nan() {
-            self.audit.note(Imbalance { t, size, tolerance });
+            self.audit.note(Imbalance {
+                t,
+                energy_gain: size,
+                tolerance,
+            });
         }
     }
 
     /// Returns the work of a step with this energy change, as accurately as needed, and the change
     /// that errors can explain.
-    fn look_closely(
+    fn integrate_accurately(
         &mut self,
         step: &mut ObservedStep<'_>,
         energies: &mut Energies<'_>,
-        (ends, change): ((EnergyAt, EnergyAt), f64),
+        (ends, change): ((EnergyAndPower, EnergyAndPower), f64),
         (factor, mut allowed): (f64, f64),
     ) -> (f64, f64) {
         let (mut work, mut tolerance) = (f64::NAN, f64::NAN);
         for (interior, panels) in [
-            (Interior::Interpolated, MOST_PANELS),
-            (Interior::Resolved, MOST_RESOLVED_PANELS),
+            (Interior::Interpolated, MAX_PANELS),
+            (Interior::Resolved, MAX_RESOLVED_PANELS),
         ] {
             let uncertainty;
-            (work, uncertainty) = self.work(step, energies, ends, (interior, panels, allowed));
+            (work, uncertainty) =
+                self.integrate_work(step, energies, ends, (interior, panels, allowed));
             tolerance = allowed + uncertainty;
             if (change - work).abs() <= tolerance {
                 return (work, tolerance);
@@ -154,7 +162,7 @@ impl Auditor {
             // Part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
             if let Some(state) = (step.inside)(middle, interior) {
-                let inside = self.allowed(energies, factor, &[(middle, &state)], &[]);
+                let inside = self.find_allowed_change(energies, factor, &[(middle, &state)], &[]);
                 allowed = allowed.max(inside);
                 tolerance = allowed + uncertainty;
             }
@@ -163,7 +171,7 @@ impl Auditor {
     }
 
     /// Excludes a step that cannot be audited, for a reason.
-    pub fn leave_out(
+    pub fn exclude_step(
         &mut self,
         step: &ObservedStep<'_>,
         energies: &mut Energies<'_>,
@@ -172,44 +180,49 @@ impl Auditor {
         self.raise_sizes(step.end.1);
         let first = match self.energy {
             Some(energy) => energy,
-            None => self.at(energies, step.start).energy,
+            None => self.evaluate(energies, step.start).energy,
         };
-        let last = self.at(energies, step.end).energy;
-        let change = last - first - std::mem::take(&mut self.pending);
+        let last = self.evaluate(energies, step.end).energy;
+        let change = last - first - std::mem::take(&mut self.pending_energy);
         self.energy = Some(last);
         self.audit.energy_change += change;
-        self.audit.unaudited += change;
-        let why = &mut self.audit.not_applicable;
+        self.audit.unaudited_energy += change;
+        let why = &mut self.audit.exclusion_reason;
         why.get_or_insert_with(|| reason.to_owned());
     }
 
     /// Audits an impact at time `t` (s) that changes the state, at which moving contacts do this
     /// work (J).
-    pub fn impact(
+    pub fn audit_impact(
         &mut self,
         t: f64,
         (from, to): (&[f64], &[f64]),
         work: f64,
         energies: &mut Energies<'_>,
     ) {
-        let before = self.at(energies, (t, from)).energy;
-        let after = self.at(energies, (t, to)).energy;
+        let before = self.evaluate(energies, (t, from)).energy;
+        let after = self.evaluate(energies, (t, to)).energy;
         let change = after - before;
         // The step that ends here includes the impact.
-        self.pending += change;
+        self.pending_energy += change;
         self.audit.energy_change += change;
         if let Some(reason) = &self.driven_contacts {
-            self.audit.unaudited += change;
-            self.audit.not_applicable.get_or_insert(reason.clone());
+            self.audit.unaudited_energy += change;
+            self.audit.exclusion_reason.get_or_insert(reason.clone());
             return;
         }
         let gain = change - work;
         self.audit.work += work;
-        self.audit.impacts += gain;
+        self.audit.impact_energy += gain;
         if gain > 0.0 {
             let states = [(t, from), (t, to)];
-            let allowed = self.allowed(energies, ERROR_FACTOR, &states, &[before, after, work]);
-            self.judge(t, gain, allowed);
+            let allowed = self.find_allowed_change(
+                energies,
+                TOLERANCE_ERROR_FACTOR,
+                &states,
+                &[before, after, work],
+            );
+            self.record_excess(t, gain, allowed);
         }
     }
 
@@ -218,11 +231,11 @@ impl Auditor {
         self.driven_contacts.as_deref()
     }
 
-    pub(super) fn at(
+    pub(super) fn evaluate(
         &mut self,
         energies: &mut Energies<'_>,
         (t, state): (f64, &[f64]),
-    ) -> EnergyAt {
+    ) -> EnergyAndPower {
         self.audit.evaluations += 1;
         energies(t, state)
     }
@@ -234,7 +247,7 @@ impl Auditor {
     }
 
     /// Returns the energy change that errors at these states can explain.
-    fn allowed(
+    fn find_allowed_change(
         &mut self,
         energies: &mut Energies<'_>,
         factor: f64,
@@ -248,12 +261,17 @@ impl Auditor {
                 evaluations += 1;
                 energies(*t, state).energy
             };
-            largest = largest.max(allowed_change(state, &self.sizes, self.tolerance, energy));
+            largest = largest.max(find_allowed_change(
+                state,
+                &self.sizes,
+                self.tolerance,
+                energy,
+            ));
             self.audit.evaluations += evaluations;
         }
         let rounding = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
-        factor * largest + ROUNDINGS * rounding
+        factor * largest + ENERGY_ROUNDING * rounding
     }
 }

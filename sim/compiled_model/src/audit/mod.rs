@@ -6,30 +6,30 @@
 //! gains. Contacts at rest do work only if they move with time. Contacts whose distance depends on
 //! inputs are not audited, because the distance jumps with held inputs.
 
-mod allowed;
+mod allowed_errors;
 mod auditor;
 #[cfg(test)]
 mod tests;
 mod work;
 
-pub(crate) use allowed::{ERROR_FACTOR, allowed_change};
+pub(crate) use allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 pub(crate) use auditor::Auditor;
 
 /// Energy and power at a time (s) and a state, in J and W.
-pub(crate) type Energies<'e> = dyn FnMut(f64, &[f64]) -> EnergyAt + 'e;
+pub(crate) type Energies<'e> = dyn FnMut(f64, &[f64]) -> EnergyAndPower + 'e;
 
 /// Energy and power of a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct EnergyAt {
+pub(crate) struct EnergyAndPower {
     /// Energy, J.
     pub energy: f64,
     /// Power, W.
     pub power: f64,
 }
 
-impl EnergyAt {
+impl EnergyAndPower {
     /// Reads them from the observables of a model, of which they are the last two.
-    pub fn of(observables: &[f64]) -> Self {
+    pub fn from_observables(observables: &[f64]) -> Self {
         match observables {
             [.., energy, power] => Self {
                 energy: *energy,
@@ -51,11 +51,11 @@ pub struct Audit {
     /// Integral of the power plus the work of moving contacts, J.
     pub work: f64,
     /// Change of the energy at impacts minus that work, J; losses are negative.
-    pub impacts: f64,
+    pub impact_energy: f64,
     /// Change of the energy in steps and impacts that were not audited, J.
-    pub unaudited: f64,
+    pub unaudited_energy: f64,
     /// Number of steps and impacts whose energy change exceeds the tolerance.
-    pub faults: u64,
+    pub fault_count: u64,
     /// First fault.
     pub first_fault: Option<Imbalance>,
     /// Largest fault.
@@ -63,7 +63,7 @@ pub struct Audit {
     /// Number of evaluations of energy and power.
     pub evaluations: u64,
     /// Reason why part of the motion was not audited; `None` if all was.
-    pub not_applicable: Option<String>,
+    pub exclusion_reason: Option<String>,
 }
 
 /// An unexplained change of the energy.
@@ -72,30 +72,34 @@ pub struct Imbalance {
     /// Time, s.
     pub t: f64,
     /// Energy gained, J; negative if lost.
-    pub size: f64,
+    pub energy_gain: f64,
     /// Energy that the solver's errors can explain, J.
     pub tolerance: f64,
 }
 
 impl Audit {
     /// Returns the change of the energy that neither work nor impacts explain, J.
-    pub fn unexplained(&self) -> f64 {
-        self.energy_change - self.work - self.impacts - self.unaudited
+    pub fn unexplained_energy(&self) -> f64 {
+        self.energy_change - self.work - self.impact_energy - self.unaudited_energy
     }
 
     /// Returns a warning about the first unexplained change of the energy, if there is one.
-    pub fn warning(&self) -> Option<String> {
-        let Imbalance { t, size, tolerance } = self.first_fault?;
+    pub fn warning_message(&self) -> Option<String> {
+        let Imbalance {
+            t,
+            energy_gain: size,
+            tolerance,
+        } = self.first_fault?;
         let (verb, size) = if size < 0.0 {
             ("loses", -size)
         } else {
             ("gains", size)
         };
-        let more = match self.faults {
+        let more = match self.fault_count {
             1 => String::new(),
             count => format!(
                 "; {count} steps do so, with {:.4e} J in total",
-                self.unexplained()
+                self.unexplained_energy()
             ),
         };
         Some(format!(
@@ -105,10 +109,10 @@ impl Audit {
     }
 
     fn note(&mut self, found: Imbalance) {
-        self.faults += 1;
+        self.fault_count += 1;
         self.first_fault.get_or_insert(found);
         let largest = self.largest_fault.get_or_insert(found);
-        if found.size.abs() > largest.size.abs() {
+        if found.energy_gain.abs() > largest.energy_gain.abs() {
             *largest = found;
         }
     }

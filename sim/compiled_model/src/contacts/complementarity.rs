@@ -4,17 +4,17 @@
 use eomgen_codegen::independence::vectors::{dot, largest};
 
 /// A pivot that is this small beside its diagonal entry is rounding: its row follows from others.
-const INDEPENDENT: f64 = 1e-10;
+const MIN_INDEPENDENT_PIVOT: f64 = 1e-10;
 
 /// What is this small beside the largest of the right side is zero.
-const NOTHING: f64 = 1e-12;
+const ZERO_FRACTION: f64 = 1e-12;
 
 /// Solves x >= 0, W x + c >= 0, x (W x + c) = 0 by the active-set method of Lawson and Hanson
 /// (*Solving Least Squares Problems*, chapter 23). W is given by rows.
-pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
+pub(super) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; c.len()];
     let mut pushing: Vec<usize> = Vec::new();
-    let zero = NOTHING * largest(c);
+    let zero = ZERO_FRACTION * largest(c);
     let mut follows = vec![false; c.len()];
     // Each round lowers a convex function of x; the bound is for rounding.
     for _ in 0..10 * (c.len() + 1) {
@@ -26,7 +26,7 @@ pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
         };
         pushing.push(next);
         loop {
-            let wanted = balance(w, c, &pushing);
+            let wanted = solve_rows(w, c, &pushing);
             let place = pushing.iter().position(|row| *row == next);
             if place.is_some_and(|place| wanted[place] <= 0.0) {
                 // Those that push already hold it.
@@ -55,7 +55,7 @@ pub(super) fn complementary(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
 }
 
 /// Solves W x = -c for these rows; x is 0 for dependent rows.
-pub(super) fn balance(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
+pub(super) fn solve_rows(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
     let size = rows.len();
     let mut lower = vec![0.0; size * size];
     let mut y = vec![0.0; size];
@@ -68,7 +68,7 @@ pub(super) fn balance(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
             let pivot = lower[column * size + column];
             lower[row * size + column] = if column < row {
                 if pivot == 0.0 { 0.0 } else { rest / pivot }
-            } else if rest > INDEPENDENT * w[rows[row]][rows[row]] {
+            } else if rest > MIN_INDEPENDENT_PIVOT * w[rows[row]][rows[row]] {
                 rest.sqrt()
             } else {
                 0.0
@@ -118,7 +118,7 @@ mod tests {
         for seed in 1..2000 {
             let size = 1 + (seed % 7) as usize;
             let (w, c) = problem(seed, size, 1 + (seed / 7 % 6) as usize);
-            let x = complementary(&w, &c);
+            let x = solve_complementarity(&w, &c);
             for row in 0..size {
                 let rest = dot(&w[row], &x) + c[row];
                 assert!(x[row] >= 0.0, "{seed}: {x:?}");
@@ -131,9 +131,9 @@ mod tests {
     #[test]
     fn duplicate_walls_share_one_force() {
         let w = vec![vec![2.0, 2.0], vec![2.0, 2.0]];
-        let x = complementary(&w, &[-1.0, -1.0]);
+        let x = solve_complementarity(&w, &[-1.0, -1.0]);
         assert!((x[0] + x[1] - 0.5).abs() < 1e-15, "{x:?}");
-        assert_eq!(complementary(&w, &[1.0, 0.0]), [0.0, 0.0]);
-        assert_eq!(complementary(&[], &[]), [0.0; 0]);
+        assert_eq!(solve_complementarity(&w, &[1.0, 0.0]), [0.0, 0.0]);
+        assert_eq!(solve_complementarity(&[], &[]), [0.0; 0]);
     }
 }

@@ -3,23 +3,23 @@
 use eomgen_codegen::independence::vectors::{dot, largest};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-use super::complementarity::complementary;
-use super::{Contacts, MOST_IN_A_ROW, OF_A_DISTANCE, Overlap, rounding_of};
+use super::complementarity::solve_complementarity;
+use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS, Overlap, distance_rounding};
 
 /// A flight that is this short beside the time since the start is rest.
-const SHORTEST_FLIGHT: f64 = 1e-8;
+const MIN_FLIGHT_TIME_FRACTION: f64 = 1e-8;
 
 /// A rate that an impact leaves negative is wrong if it is this large beside those before.
-const UNSOLVED: f64 = 1e-6;
+const MAX_UNSOLVED_RATE_FRACTION: f64 = 1e-6;
 
 /// A flight no higher than so many times the rounding of its distance is rest.
-const LOWEST_FLIGHT: f64 = 1000.0;
+const MIN_FLIGHT_ROUNDINGS: f64 = 1000.0;
 
 /// An energy that impulses add is rounding where it is this small beside what they exchange.
-const NO_GAIN: f64 = 1e-12;
+const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
 
 /// Halvings in the search for a restitution that adds no energy.
-const RESTITUTIONS: usize = 20;
+const RESTITUTION_HALVINGS: usize = 20;
 
 /// Which flights after an impact are none.
 struct Flight {
@@ -28,15 +28,15 @@ struct Flight {
     /// Those that are this low.
     lowest: f64,
     /// Rates that are rounding.
-    still: f64,
+    rate_rounding: f64,
     /// Accelerations that are rounding, without what contacts push.
-    even: f64,
+    acceleration_rounding: f64,
 }
 
 impl Contacts {
     /// Applies an impact in the step across a surface, from a state `before` to `state` just
     /// beyond it at the time `t`.
-    pub fn cross(
+    pub fn apply_impact(
         &mut self,
         own: &mut Evaluator,
         inputs: &[f64],
@@ -62,8 +62,8 @@ impl Contacts {
         };
         own.distances(point, &mut near);
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        let shortest = SHORTEST_FLIGHT * (t - self.start.unwrap_or(t));
-        let rounding = rounding_of(before, degrees, t);
+        let shortest = MIN_FLIGHT_TIME_FRACTION * (t - self.start.unwrap_or(t));
+        let rounding = distance_rounding(before, degrees, t);
         // What touches without a speed, as a body that falls together with the one below it, is hit
         // by the jump of the other.
         let touching: Vec<usize> = (0..count)
@@ -83,13 +83,13 @@ impl Contacts {
         };
         let hits = touching.iter().filter(|place| is_hit(place, self));
         let ago = hits.map(ago).fold(0.0, f64::max);
-        if self.nothing_hits(&touching, ago) {
+        if self.needs_no_impulse(&touching, ago) {
             // What leaves slowly went below zero by rounding.
-            self.leave(&touching, rounding);
+            self.offset_distances(&touching, rounding);
             return;
         }
-        let jumped = match self.without_end(t, shortest) {
-            false => self.jump(own, (t, inputs), state, touching, ago),
+        let jumped = match self.is_endless(t, shortest) {
+            false => self.apply_impulses(own, (t, inputs), state, touching, ago),
             true => Err(Overlap::Endless),
         };
         let (touching, still) = match jumped {
@@ -102,11 +102,12 @@ impl Contacts {
         };
         let flight = Flight {
             shortest,
-            lowest: LOWEST_FLIGHT * rounding,
-            still,
-            even: OF_A_DISTANCE * largest_acceleration(own, Point { t, state, inputs }),
+            lowest: MIN_FLIGHT_ROUNDINGS * rounding,
+            rate_rounding: still,
+            acceleration_rounding: DISTANCE_ROUNDING
+                * largest_acceleration(own, Point { t, state, inputs }),
         };
-        self.settle(&touching, &flight);
+        self.close_resting(&touching, &flight);
         self.stop_closed(own, (t, inputs), state);
     }
 
@@ -117,24 +118,24 @@ impl Contacts {
             return;
         }
         let degrees = own.program().degrees_of_freedom();
-        let drifts = self.drifts(own, Point { t, state, inputs });
+        let drifts = self.distance_rates_at_rest(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         if self.closed.iter().all(|place| drifts[*place] == 0.0) {
             return;
         }
-        let impulses = self.balanced(&self.closed, |impact| impact.rate);
-        self.push(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
+        let impulses = self.solve_balance(&self.closed, |impact| impact.rate);
+        self.add_impulses(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
         self.impact_work -= work_against(&drifts, &self.closed, &impulses);
     }
 
     /// Returns true if no contact that touches needs an impulse.
-    fn nothing_hits(&self, touching: &[usize], ago: f64) -> bool {
+    fn needs_no_impulse(&self, touching: &[usize], ago: f64) -> bool {
         let mut all = touching.iter();
-        all.all(|place| self.to_be_stopped(*place, ago, 1.0) >= 0.0)
+        all.all(|place| self.required_rate_change(*place, ago, 1.0) >= 0.0)
     }
 
     /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
-    fn to_be_stopped(&self, place: usize, ago: f64, most: f64) -> f64 {
+    fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
         let rate = self.hit_rate(place, ago);
         match self.closed.contains(&place) {
             true => rate,
@@ -156,15 +157,15 @@ impl Contacts {
     /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
     /// is hit again; then none takes more restitution than the most that does not. With none it never
     /// does: twice the energy is -P W P then.
-    fn impulses(&self, touching: &[usize], ago: f64) -> Option<Vec<f64>> {
+    fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<Vec<f64>> {
         let delassus = self.delassus(touching);
         let with = |most: f64| {
             let stopped = touching.iter();
             let stopped: Vec<f64> = stopped
-                .map(|place| self.to_be_stopped(*place, ago, most))
+                .map(|place| self.required_rate_change(*place, ago, most))
                 .collect();
-            let impulses = complementary(&delassus, &stopped);
-            solves(&delassus, &stopped, &impulses).then_some(impulses)
+            let impulses = solve_complementarity(&delassus, &stopped);
+            is_solution(&delassus, &stopped, &impulses).then_some(impulses)
         };
         // Of every impulse the rates before and after, which it moves against.
         let adds_energy = |impulses: &[f64]| {
@@ -176,7 +177,7 @@ impl Contacts {
             let (sum, size) = gained.fold((0.0, 0.0), |(sum, size), gain| {
                 (sum + gain, size + gain.abs())
             });
-            sum > NO_GAIN * size
+            sum > ENERGY_GAIN_ROUNDING * size
         };
         let impulses = with(1.0)?;
         if !adds_energy(&impulses) {
@@ -184,7 +185,7 @@ impl Contacts {
         }
         let (mut most, mut found) = (0.0, with(0.0)?);
         let mut part = 0.5;
-        for _ in 0..RESTITUTIONS {
+        for _ in 0..RESTITUTION_HALVINGS {
             let trial = with(most + part)?;
             if !adds_energy(&trial) {
                 (most, found) = (most + part, trial);
@@ -196,7 +197,7 @@ impl Contacts {
 
     /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
     /// this brings to touch in turn. Returns all that touched and how far rounding takes a rate from zero.
-    fn jump(
+    fn apply_impulses(
         &mut self,
         own: &mut Evaluator,
         (t, inputs): (f64, &[f64]),
@@ -206,23 +207,25 @@ impl Contacts {
     ) -> Result<(Vec<usize>, f64), Overlap> {
         let degrees = own.program().degrees_of_freedom();
         let mut still = 0.0_f64;
-        let drifts = self.drifts(own, Point { t, state, inputs });
+        let drifts = self.distance_rates_at_rest(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         loop {
-            let impulses = self.impulses(&touching, ago).ok_or(Overlap::NoImpulse)?;
+            let impulses = self
+                .solve_impulses(&touching, ago)
+                .ok_or(Overlap::NoImpulse)?;
             self.impact_work -= work_against(&drifts, &touching, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let most = largest(&*rates) + self.largest_push(&touching, &impulses);
-            still = still.max(OF_A_DISTANCE * most);
-            self.push(&touching, &impulses, rates);
+            still = still.max(DISTANCE_ROUNDING * most);
+            self.add_impulses(&touching, &impulses, rates);
             let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
-            self.push(&touching, &moved, coordinates);
+            self.add_impulses(&touching, &moved, coordinates);
             own.impacts(Point { t, state, inputs }, &mut self.at);
             // Where a distance was located to rounding, so that this does not add up.
             let mut below = touching.clone();
             below.retain(|place| self.at[*place].distance < 0.0);
-            let corrections = self.balanced(&below, |impact| impact.distance);
-            self.push(&below, &corrections, &mut state[..degrees]);
+            let corrections = self.solve_balance(&below, |impact| impact.distance);
+            self.add_impulses(&below, &corrections, &mut state[..degrees]);
             own.impacts(Point { t, state, inputs }, &mut self.at);
             let touched = |place: &usize| {
                 let distance = self.at[*place].distance + self.offsets[*place];
@@ -238,22 +241,23 @@ impl Contacts {
     }
 
     /// Returns true if impacts follow each other faster than the shortest flights, s.
-    fn without_end(&mut self, t: f64, shortest: f64) -> bool {
-        let first = match self.recent.len() < MOST_IN_A_ROW {
+    fn is_endless(&mut self, t: f64, shortest: f64) -> bool {
+        let first = match self.recent.len() < MAX_CONSECUTIVE_IMPACTS {
             true => None,
             false => self.recent.pop_front(),
         };
         self.recent.push_back(t);
-        first.is_some_and(|first| t - first < MOST_IN_A_ROW as f64 * shortest)
+        first.is_some_and(|first| t - first < MAX_CONSECUTIVE_IMPACTS as f64 * shortest)
     }
 
     /// Closes those that touch and would not fly in earnest, or that move on together as bodies do
     /// that fall side by side.
-    fn settle(&mut self, touching: &[usize], flight: &Flight) {
+    fn close_resting(&mut self, touching: &[usize], flight: &Flight) {
         self.closed.clear();
         loop {
             let forces = self.forces();
-            let even = flight.even + OF_A_DISTANCE * self.largest_push(&self.closed, &forces);
+            let even = flight.acceleration_rounding
+                + DISTANCE_ROUNDING * self.largest_push(&self.closed, &forces);
             let rests = |place: &&usize| {
                 let impact = &self.at[**place];
                 let held = self.closed.iter().zip(&forces);
@@ -263,7 +267,7 @@ impl Contacts {
                 let acceleration = impact.acceleration + pushed;
                 let is_short = 2.0 * impact.rate <= -acceleration * flight.shortest;
                 let is_low = impact.rate * impact.rate <= -2.0 * acceleration * flight.lowest;
-                let is_together = impact.rate <= flight.still && acceleration <= even;
+                let is_together = impact.rate <= flight.rate_rounding && acceleration <= even;
                 !self.closed.contains(place)
                     && (acceleration < 0.0 && (is_short || is_low) || is_together)
             };
@@ -273,13 +277,13 @@ impl Contacts {
             self.closed.push(*next);
             self.allowances[*next] = even / self.at[*next].delassus[*next];
         }
-        self.leave(touching, f64::MIN_POSITIVE);
+        self.offset_distances(touching, f64::MIN_POSITIVE);
     }
 }
 
 /// Returns true if impulses leave no rate negative.
-fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
-    let unsolved = UNSOLVED * largest(rates);
+fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
+    let unsolved = MAX_UNSOLVED_RATE_FRACTION * largest(rates);
     let mut rows = delassus.iter().zip(rates);
     rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
 }

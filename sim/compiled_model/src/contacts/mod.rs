@@ -9,8 +9,8 @@
 //! force falls to zero.
 
 mod complementarity;
+mod correction;
 mod impulses;
-mod kept;
 mod power;
 mod start;
 
@@ -19,17 +19,17 @@ use std::collections::VecDeque;
 use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
 
-use complementarity::{balance, complementary};
+use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
 
 /// A distance this small beside the largest coordinate is rounding.
 const ROUNDING: f64 = 1e-11;
 
 /// Rounding of a distance, beside the largest coordinate and how far that has come.
-const OF_A_DISTANCE: f64 = 64.0 * f64::EPSILON;
+const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// So many impacts within the shortest flights for each of them have no end.
-const MOST_IN_A_ROW: usize = 256;
+const MAX_CONSECUTIVE_IMPACTS: usize = 256;
 
 /// Corrections of a state with closed contacts; each squares what is left.
 const CORRECTIONS: usize = 2;
@@ -80,22 +80,22 @@ impl Contacts {
             allowances: vec![0.0; count],
             at: Vec::new(),
             size: 0.0,
-            recent: VecDeque::with_capacity(MOST_IN_A_ROW),
+            recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
             impact_work: 0.0,
             overlap: None,
         }
     }
 
     /// Returns true if a contact is closed.
-    pub fn rest(&self) -> bool {
+    pub fn has_closed(&self) -> bool {
         !self.closed.is_empty()
     }
 
     /// Writes the guards, positive while the contacts keep their state: distances of open contacts
     /// and forces of closed ones. The first call starts the motion.
-    pub fn guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
+    pub fn write_guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
         if self.start.is_none() {
-            self.begin(own, point);
+            self.start_motion(own, point);
         }
         if self.closed.is_empty() {
             own.distances(point, out);
@@ -123,7 +123,7 @@ impl Contacts {
         own.impacts(point, &mut self.at);
         let forces = self.forces();
         let degrees = own.program().degrees_of_freedom();
-        self.push(&self.closed, &forces, &mut rates[degrees..]);
+        self.add_impulses(&self.closed, &forces, &mut rates[degrees..]);
     }
 
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
@@ -141,7 +141,7 @@ impl Contacts {
                  constraints. Use a stiff spring instead of one of them"
             ),
             Overlap::Endless => format!(
-                "impacts at `{name}` follow each other without end ({MOST_IN_A_ROW} within the shortest \
+                "impacts at `{name}` follow each other without end ({MAX_CONSECUTIVE_IMPACTS} within the shortest \
                  flights). Lower its restitution, or use a stiff spring instead of the impact"
             ),
         })
@@ -150,7 +150,7 @@ impl Contacts {
     /// Closes those of the contacts that touch which then push.
     fn close(&mut self, touching: &[usize], rounding: f64) {
         let accelerations: Vec<f64> = touching.iter().map(|i| self.at[*i].acceleration).collect();
-        let forces = complementary(&self.delassus(touching), &accelerations);
+        let forces = solve_complementarity(&self.delassus(touching), &accelerations);
         let pushing = touching
             .iter()
             .zip(forces)
@@ -160,11 +160,11 @@ impl Contacts {
             self.allowances[*place] = 0.0;
         }
         // They leave without speed: for a while rounding of the state moves them more.
-        self.leave(touching, rounding);
+        self.offset_distances(touching, rounding);
     }
 
     /// Has the distances of those that touch begin above zero, and by so much.
-    fn leave(&mut self, touching: &[usize], above: f64) {
+    fn offset_distances(&mut self, touching: &[usize], above: f64) {
         for place in touching {
             let distance = self.at[*place].distance;
             self.offsets[*place] = above.max(-2.0 * distance);
@@ -172,7 +172,7 @@ impl Contacts {
     }
 
     /// What touches and does not move at the start is closed if it pushes.
-    fn begin(&mut self, own: &mut Evaluator, point: Point<'_>) {
+    fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         own.impacts(point, &mut self.at);
         let small = ROUNDING * largest(point.state);
@@ -183,28 +183,28 @@ impl Contacts {
             .iter()
             .filter(|place| self.at[**place].rate.abs() <= small);
         let still: Vec<usize> = still.copied().collect();
-        self.leave(&touching, f64::MIN_POSITIVE);
+        self.offset_distances(&touching, f64::MIN_POSITIVE);
         let degrees = own.program().degrees_of_freedom();
-        self.close(&still, rounding_of(point.state, degrees, point.t));
+        self.close(&still, distance_rounding(point.state, degrees, point.t));
     }
 
     /// The forces of the closed contacts, in which their distances do not accelerate.
     fn forces(&self) -> Vec<f64> {
-        self.balanced(&self.closed, |impact| impact.acceleration)
+        self.solve_balance(&self.closed, |impact| impact.acceleration)
     }
 
     /// What at these contacts brings a quantity of theirs to zero.
-    fn balanced(&self, places: &[usize], quantity: impl Fn(&ImpactAt) -> f64) -> Vec<f64> {
+    fn solve_balance(&self, places: &[usize], quantity: impl Fn(&ImpactAt) -> f64) -> Vec<f64> {
         let quantities: Vec<f64> = places
             .iter()
             .map(|place| quantity(&self.at[*place]))
             .collect();
         let rows: Vec<usize> = (0..places.len()).collect();
-        balance(&self.delassus(places), &quantities, &rows)
+        solve_rows(&self.delassus(places), &quantities, &rows)
     }
 
     /// Adds what impulses at these contacts do.
-    fn push(&self, places: &[usize], impulses: &[f64], rates: &mut [f64]) {
+    fn add_impulses(&self, places: &[usize], impulses: &[f64], rates: &mut [f64]) {
         for (place, impulse) in places.iter().zip(impulses) {
             for (rate, entry) in rates.iter_mut().zip(&self.at[*place].column) {
                 *rate += entry * impulse;
@@ -231,7 +231,7 @@ impl Contacts {
 }
 
 /// By how much rounding of state and time changes distances.
-fn rounding_of(state: &[f64], degrees: usize, t: f64) -> f64 {
+fn distance_rounding(state: &[f64], degrees: usize, t: f64) -> f64 {
     let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
-    f64::MIN_POSITIVE + OF_A_DISTANCE * (largest(coordinates) + t.abs() * largest(rates))
+    f64::MIN_POSITIVE + DISTANCE_ROUNDING * (largest(coordinates) + t.abs() * largest(rates))
 }

@@ -12,7 +12,7 @@ impl Contacts {
         if self.closed.is_empty() {
             return 0.0;
         }
-        let drifts = self.drifts(own, point);
+        let drifts = self.distance_rates_at_rest(own, point);
         own.impacts(point, &mut self.at);
         let forces = self.closed.iter().zip(self.forces());
         forces
@@ -26,7 +26,11 @@ impl Contacts {
     }
 
     /// Returns the rate g_t of each distance at zero rates of the coordinates.
-    pub(super) fn drifts(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+    pub(super) fn distance_rates_at_rest(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+    ) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         let mut state = point.state.to_vec();
         state[degrees..2 * degrees].fill(0.0);

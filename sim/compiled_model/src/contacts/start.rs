@@ -9,7 +9,7 @@ pub(crate) struct Start<'s> {
     /// Start, s.
     pub t: f64,
     /// End, s; equal to the start for a single state.
-    pub until: f64,
+    pub end: f64,
     /// Inputs.
     pub inputs: &'s [f64],
     /// The largest known length of each impact, in the unit of its distance.
@@ -22,14 +22,14 @@ impl Start<'_> {
     ///
     /// # Errors
     /// Index and value of the first distance that is more negative or NaN.
-    pub(crate) fn onto_contacts(
+    pub(crate) fn move_onto_contacts(
         &self,
         own: &mut Evaluator,
         state: &mut [f64],
     ) -> Result<(), (usize, f64)> {
         let degrees = own.program().degrees_of_freedom();
         let mut contacts = Contacts::new(vec![String::new(); self.lengths.len()]);
-        let span = self.until - self.t;
+        let span = self.end - self.t;
         for correction in 0..CORRECTIONS {
             let (t, inputs) = (self.t, self.inputs);
             own.impacts(Point { t, state, inputs }, &mut contacts.at);
@@ -47,8 +47,8 @@ impl Start<'_> {
             if below.is_empty() {
                 break;
             }
-            let corrections = contacts.balanced(&below, |impact| impact.distance);
-            contacts.push(&below, &corrections, &mut state[..degrees]);
+            let corrections = contacts.solve_balance(&below, |impact| impact.distance);
+            contacts.add_impulses(&below, &corrections, &mut state[..degrees]);
         }
         Ok(())
     }

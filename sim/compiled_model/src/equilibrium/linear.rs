@@ -4,38 +4,38 @@ use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this fraction of the largest count as 0.
-const RANK: f64 = 1e-12;
+const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-12;
 
 /// Largest change of the accelerations' slope along a step, relative to the slope, at which the
 /// equations count as linear.
-const STRAIGHT: f64 = 0.5;
+const MAX_SLOPE_CHANGE_FRACTION: f64 = 0.5;
 
 /// Accelerations and rates of first-order states at a point, and their derivatives with respect to
 /// the unknowns.
-pub(super) struct Linear {
+pub(super) struct LinearisedEquations {
     pub accelerations: DVector<f64>,
     pub matrix: DMatrix<f64>,
     /// Largest magnitude of each acceleration or of its terms up to now.
     pub sizes: DVector<f64>,
 }
 
-impl Linear {
+impl LinearisedEquations {
     /// Computes the smallest change of the unknowns that minimises the linearised accelerations.
     /// Each unknown is scaled by its natural scale or, without one, by its effect on the
     /// accelerations.
-    pub fn step(&self, scales: &[Option<f64>]) -> DVector<f64> {
-        let rows = self.sizes.map(positive);
+    pub fn solve_step(&self, scales: &[Option<f64>]) -> DVector<f64> {
+        let rows = self.sizes.map(nonzero_or_one);
         let relative = |row: usize, column: usize| self.matrix[(row, column)] / rows[row];
         let units = DVector::from_fn(self.matrix.ncols(), |column, _| {
             let effects = (0..self.matrix.nrows()).map(|row| relative(row, column).abs());
-            scales[column].unwrap_or_else(|| 1.0 / positive(effects.fold(0.0, f64::max)))
+            scales[column].unwrap_or_else(|| 1.0 / nonzero_or_one(effects.fold(0.0, f64::max)))
         });
         let scaled = DMatrix::from_fn(self.matrix.nrows(), self.matrix.ncols(), |row, column| {
             relative(row, column) * units[column]
         });
         let wanted = -self.accelerations.component_div(&rows);
         let step = qr_iteration::svd(&scaled).and_then(|decomposed| {
-            let least = RANK * decomposed.singular_values.amax();
+            let least = MIN_SINGULAR_VALUE_FRACTION * decomposed.singular_values.amax();
             decomposed.solve(&wanted, least).ok()
         });
         let step = step.unwrap_or_else(|| DVector::zeros(self.matrix.ncols()));
@@ -45,17 +45,17 @@ impl Linear {
     /// Returns true if the slope of the accelerations along `way` is nearly the same at another
     /// point.
     pub fn is_straight_to(&self, there: &Self, way: &DVector<f64>) -> bool {
-        let rows = self.sizes.map(positive);
+        let rows = self.sizes.map(nonzero_or_one);
         let slope = |linear: &Self| (&linear.matrix * way).component_div(&rows);
         let (here, there) = (slope(self), slope(there));
-        (&there - &here).norm() <= STRAIGHT * here.norm().max(there.norm())
+        (&there - &here).norm() <= MAX_SLOPE_CHANGE_FRACTION * here.norm().max(there.norm())
     }
 
     /// Returns the sum of the squares of the accelerations relative to these sizes.
-    pub fn measured_by(&self, sizes: &DVector<f64>) -> f64 {
+    pub fn squared_norm(&self, sizes: &DVector<f64>) -> f64 {
         let parts = self.accelerations.iter().zip(sizes);
         parts
-            .map(|(value, size)| (value / positive(*size)).powi(2))
+            .map(|(value, size)| (value / nonzero_or_one(*size)).powi(2))
             .sum()
     }
 
@@ -66,30 +66,30 @@ impl Linear {
 
     /// Returns the rows of the accelerations that are not below this fraction of their sizes.
     pub fn rows_above(&self, part: f64) -> Vec<usize> {
-        let rows = self.relative().enumerate();
+        let rows = self.relative_accelerations().enumerate();
         let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
         above.map(|(row, _)| row).collect()
     }
 
     /// Returns the row of the largest acceleration relative to its size, and its value, SI.
-    pub fn worst(&self) -> (usize, f64) {
+    pub fn largest_residual(&self) -> (usize, f64) {
         let worst = self
-            .relative()
+            .relative_accelerations()
             .enumerate()
             .max_by(|a, b| a.1.total_cmp(&b.1));
         worst.map_or((0, 0.0), |(row, _)| (row, self.accelerations[row]))
     }
 
     /// Returns the sign of the acceleration of a coordinate; 0 if it is rounding.
-    pub fn direction_of(&self, coordinate: usize) -> f64 {
+    pub fn acceleration_sign(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
         match self.sizes.get(coordinate) {
-            Some(size) if value.abs() > RANK * size => value.signum(),
+            Some(size) if value.abs() > MIN_SINGULAR_VALUE_FRACTION * size => value.signum(),
             _ => 0.0,
         }
     }
 
-    fn relative(&self) -> impl Iterator<Item = f64> {
+    fn relative_accelerations(&self) -> impl Iterator<Item = f64> {
         let parts = self.accelerations.iter().zip(&self.sizes);
         parts.map(|(value, size)| {
             if *value == 0.0 {
@@ -101,6 +101,6 @@ impl Linear {
     }
 }
 
-fn positive(size: f64) -> f64 {
+fn nonzero_or_one(size: f64) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }

@@ -20,23 +20,23 @@ use self::search::{Search, Unknown};
 pub use self::stability::Stability;
 
 /// Smallest rate that counts as nonzero, relative to its largest term.
-const NOT_ZERO: f64 = 1e-6;
+const MAX_ZERO_RATE_FRACTION: f64 = 1e-6;
 
 /// Largest difference of equal speeds, relative to the largest speed of the same unit.
-const SAME_SPEED: f64 = 1e-9;
+const MAX_SPEED_DIFFERENCE_FRACTION: f64 = 1e-9;
 
 /// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
     /// Operating point of the equilibrium.
-    pub at: OperatingPoint,
+    pub point: OperatingPoint,
     /// Remaining accelerations of the coordinates, then rates of the first-order states, SI.
     pub residual: Vec<f64>,
     /// Names of the nonzero rates, which stay constant.
-    pub running: Vec<String>,
+    pub nonzero_rates: Vec<String>,
     /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the
     /// search.
-    pub free: Vec<String>,
+    pub unknowns: Vec<String>,
     /// True if the rates depend on time. If true, the point is an equilibrium at that instant
     /// only.
     pub depends_on_time: bool,
@@ -46,11 +46,11 @@ pub struct Equilibrium {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Departure {
     /// Nonzero rates, except constant speeds along cyclic directions.
-    pub moving: Vec<String>,
+    pub moving_rates: Vec<String>,
     /// Rates whose accelerations are nonzero, relative to their terms.
-    pub accelerating: Vec<String>,
+    pub accelerating_rates: Vec<String>,
     /// First-order states whose rates are nonzero, relative to their terms.
-    pub changing: Vec<String>,
+    pub changing_states: Vec<String>,
 }
 
 impl Departure {
@@ -64,9 +64,9 @@ impl Departure {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EquilibriumRequest<'r> {
     /// Values that replace those of the initial state at the start of the search.
-    pub start: &'r [(&'r str, f64)],
+    pub start_values: &'r [(&'r str, f64)],
     /// Values that stay fixed.
-    pub fixed: &'r [(&'r str, f64)],
+    pub fixed_values: &'r [(&'r str, f64)],
 }
 
 impl Instance<'_> {
@@ -78,34 +78,38 @@ impl Instance<'_> {
     /// # Errors
     /// An unknown name, a nonzero rate of a coordinate that is not cyclic, a start outside a
     /// declared range, and [`Error::Stopped`] if no equilibrium is found.
-    pub fn equilibrium(&self, request: EquilibriumRequest<'_>) -> Result<Equilibrium, Error> {
-        let given = [request.start, request.fixed].concat();
+    pub fn find_equilibrium(&self, request: EquilibriumRequest<'_>) -> Result<Equilibrium, Error> {
+        let given = [request.start_values, request.fixed_values].concat();
         let mut at = self.operating_point(&given)?;
         self.check_ranges(&at)?;
         // At a nonzero stabilisation rate the accelerations contain the residuals of the
         // constraints.
-        let holding = self.stabilised(1.0);
+        let holding = self.with_stabilisation_rate(1.0);
         let directions = match self.is_at_rest(&at) {
             true => Vec::new(),
-            false => holding.cyclic_directions(&at)?,
+            false => holding.find_cyclic_directions(&at)?,
         };
         self.check_speeds(&at, &given, &directions)?;
-        self.move_along(&mut at, &directions);
-        let mut search = Search::new(&holding, &directions, self.free(&at, request.fixed)?)?;
+        self.project_rates(&mut at, &directions);
+        let mut search = Search::new(
+            &holding,
+            &directions,
+            self.find_unknowns(&at, request.fixed_values)?,
+        )?;
         let start = at.clone();
         let first = search.run(&mut at);
         let residual = match first {
             Ok(residual) => residual,
             Err(error) => {
                 // No equilibrium at these speeds: search for the speeds too.
-                let directions = holding.cyclic_directions(&start)?;
-                let speeds = self.free_speeds(&directions, request.fixed)?;
+                let directions = holding.find_cyclic_directions(&start)?;
+                let speeds = self.find_unknown_speeds(&directions, request.fixed_values)?;
                 if speeds.is_empty() {
                     return Err(error);
                 }
                 at = start;
-                let mut free = self.free(&at, request.fixed)?;
-                free.retain(|unknown| !is_cyclic(unknown, &directions));
+                let mut free = self.find_unknowns(&at, request.fixed_values)?;
+                free.retain(|unknown| !is_cyclic_coordinate(unknown, &directions));
                 free.extend(speeds);
                 search = Search::new(&holding, &directions, free)?;
                 search.run(&mut at).map_err(|_| error)?
@@ -113,11 +117,11 @@ impl Instance<'_> {
         };
         let depends_on_time = search.depends_on_time(&at);
         Ok(Equilibrium {
-            running: self.running(&at),
+            nonzero_rates: self.nonzero_rate_names(&at),
             residual,
-            free: search.names(),
+            unknowns: search.names(),
             depends_on_time,
-            at,
+            point: at,
         })
     }
 
@@ -126,35 +130,35 @@ impl Instance<'_> {
     /// # Errors
     /// Same as [`Instance::jacobian_evaluator`].
     pub fn is_equilibrium(&self, at: &OperatingPoint) -> Result<bool, Error> {
-        Ok(self.departure(at)?.is_none())
+        Ok(self.find_departure(at)?.is_none())
     }
 
     /// Returns the rates, accelerations and first-order states that are not steady.
     ///
     /// # Errors
     /// Same as [`Instance::jacobian_evaluator`].
-    pub fn departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
-        let holding = self.stabilised(1.0);
+    pub fn find_departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
+        let holding = self.with_stabilisation_rate(1.0);
         let mut found = Departure::default();
         if !self.is_at_rest(at) {
-            let directions = holding.cyclic_directions(at)?;
+            let directions = holding.find_cyclic_directions(at)?;
             let mut along = at.clone();
-            self.move_along(&mut along, &directions);
-            found.moving = self.other_speeds(at, &along);
+            self.project_rates(&mut along, &directions);
+            found.moving_rates = self.differing_rates(at, &along);
         }
-        let mut search = Search::new(&holding, &[], self.free(at, &[])?)?;
+        let mut search = Search::new(&holding, &[], self.find_unknowns(at, &[])?)?;
         let names = self.model().state_names();
-        for row in search.linearised(at)?.rows_above(NOT_ZERO) {
+        for row in search.linearise(at)?.rows_above(MAX_ZERO_RATE_FRACTION) {
             let name = names[self.degrees() + row].clone();
             match row < self.degrees() {
-                true => found.accelerating.push(name),
-                false => found.changing.push(name),
+                true => found.accelerating_rates.push(name),
+                false => found.changing_states.push(name),
             }
         }
         Ok(found)
     }
 
-    fn running(&self, at: &OperatingPoint) -> Vec<String> {
+    fn nonzero_rate_names(&self, at: &OperatingPoint) -> Vec<String> {
         let rates = self.degrees()..2 * self.degrees();
         let names = self.model().state_names();
         let moving = rates.filter(|place| at.state[*place] != 0.0);
@@ -174,8 +178,14 @@ impl Instance<'_> {
 
     /// Returns the unknowns at given speeds: all coordinates and first-order states that are not
     /// fixed, and the inputs that are not fixed if a state is.
-    fn free(&self, at: &OperatingPoint, fixed: &[(&str, f64)]) -> Result<Vec<Unknown>, Error> {
-        let fixed = fixed.iter().map(|(name, _)| self.model().setting(name));
+    fn find_unknowns(
+        &self,
+        at: &OperatingPoint,
+        fixed: &[(&str, f64)],
+    ) -> Result<Vec<Unknown>, Error> {
+        let fixed = fixed
+            .iter()
+            .map(|(name, _)| self.model().find_setting(name));
         let fixed = fixed.collect::<Result<Vec<Setting>, Error>>()?;
         let degrees = self.degrees();
         let is_held = fixed
@@ -192,7 +202,7 @@ impl Instance<'_> {
     }
 
     /// Returns the speeds along cyclic directions that no fixed value determines.
-    fn free_speeds(
+    fn find_unknown_speeds(
         &self,
         directions: &[Vec<f64>],
         fixed: &[(&str, f64)],
@@ -200,7 +210,7 @@ impl Instance<'_> {
         let degrees = self.degrees();
         let mut is_fixed = vec![false; degrees];
         for (name, _) in fixed {
-            if let Setting::State(place) = self.model().setting(name)?
+            if let Setting::State(place) = self.model().find_setting(name)?
                 && (degrees..2 * degrees).contains(&place)
             {
                 is_fixed[place - degrees] = true;
@@ -215,7 +225,7 @@ impl Instance<'_> {
     }
 
     /// Replaces the rates by those of the nearest motion along cyclic directions.
-    fn move_along(&self, at: &mut OperatingPoint, directions: &[Vec<f64>]) {
+    fn project_rates(&self, at: &mut OperatingPoint, directions: &[Vec<f64>]) {
         let degrees = self.degrees();
         let given = at.state[degrees..2 * degrees].to_vec();
         let rates = &mut at.state[degrees..2 * degrees];
@@ -238,7 +248,7 @@ impl Instance<'_> {
 
     /// Returns the names of the rates that differ between two states, relative to the largest rate
     /// of the same unit.
-    fn other_speeds(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
+    fn differing_rates(&self, one: &OperatingPoint, other: &OperatingPoint) -> Vec<String> {
         let model = self.model();
         let (units, names) = (
             model.model().state_units(model.orders()),
@@ -249,7 +259,7 @@ impl Instance<'_> {
             let alike = rates().filter(|other| units[*other].dimension == units[*place].dimension);
             let largest = alike.fold(0.0, |most: f64, other| most.max(one.state[other].abs()));
             let difference = (one.state[*place] - other.state[*place]).abs();
-            difference.is_nan() || difference > SAME_SPEED * largest
+            difference.is_nan() || difference > MAX_SPEED_DIFFERENCE_FRACTION * largest
         };
         let differing = rates().filter(differs);
         differing.map(|place| names[place].clone()).collect()
@@ -264,7 +274,7 @@ impl Instance<'_> {
     ) -> Result<(), Error> {
         let degrees = self.degrees();
         for (name, value) in given {
-            let Setting::State(place) = self.model().setting(name)? else {
+            let Setting::State(place) = self.model().find_setting(name)? else {
                 continue;
             };
             let coordinate = place.wrapping_sub(degrees);
@@ -285,7 +295,7 @@ impl Instance<'_> {
 
     fn check_ranges(&self, at: &OperatingPoint) -> Result<(), Error> {
         let model = self.model().model();
-        let refused = |error| Error::model(model, error);
+        let refused = |error| Error::from_model_error(model, error);
         let coordinates = model.coordinate_ranges().map_err(refused)?;
         let inputs = model.input_ranges().map_err(refused)?;
         let names = model.coordinates.iter().map(|known| &known.name);
@@ -307,7 +317,7 @@ impl Instance<'_> {
 }
 
 /// Returns true if an unknown is the only coordinate of a cyclic direction; it keeps its value.
-fn is_cyclic(unknown: &Unknown, directions: &[Vec<f64>]) -> bool {
+fn is_cyclic_coordinate(unknown: &Unknown, directions: &[Vec<f64>]) -> bool {
     let Unknown::Setting(Setting::State(place)) = unknown else {
         return false;
     };

@@ -13,7 +13,7 @@ use crate::instance::Instance;
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::operating_point::{OperatingPoint, Setting};
 
-use super::linear::Linear;
+use super::linear::LinearisedEquations;
 
 /// Maximum number of steps; near an equilibrium ten are enough.
 const MAX_STEPS: usize = 300;
@@ -26,19 +26,19 @@ const MAX_STRAIGHT_HALVINGS: i32 = 12;
 
 /// Maximum number of halvings of a step if all accelerations are zero already; the remaining gain
 /// is rounding.
-const HALVINGS_AT_THE_END: i32 = 2;
+const MAX_FINAL_HALVINGS: i32 = 2;
 
 /// Longest step, relative to a coordinate's natural scale.
-const LONGEST_STEP: f64 = 0.25;
+const MAX_STEP_FRACTION: f64 = 0.25;
 
 /// Displacement from a point at which no step helps, relative to a coordinate's natural scale.
-const NUDGE: f64 = 1.0 / 1024.0;
+const NUDGE_FRACTION: f64 = 1.0 / 1024.0;
 
 const MAX_NUDGES: usize = 3;
 
 /// Largest acceleration that counts as zero, relative to the largest value or term of its equation
 /// in this search.
-const ZERO: f64 = 1e-10;
+const MAX_ZERO_FRACTION: f64 = 1e-10;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unknown {
@@ -67,7 +67,7 @@ impl<'i, 'm> Search<'i, 'm> {
         unknowns: Vec<Unknown>,
     ) -> Result<Self, Error> {
         let model = instance.model().model();
-        let refused = |error| Error::model(model, error);
+        let refused = |error| Error::from_model_error(model, error);
         let scales = instance.natural_scales()?;
         let coordinates = model.coordinate_ranges().map_err(refused)?;
         let inputs = model.input_ranges().map_err(refused)?;
@@ -93,19 +93,19 @@ impl<'i, 'm> Search<'i, 'm> {
 
     /// Moves `at` to an equilibrium and returns the remaining accelerations.
     pub fn run(&mut self, at: &mut OperatingPoint) -> Result<Vec<f64>, Error> {
-        let mut here = self.linearised(at)?;
+        let mut here = self.linearise(at)?;
         let mut nudges = 0;
         for _ in 0..MAX_STEPS {
             if here.is_below(f64::EPSILON) {
                 break;
             }
-            let step = here.step(&self.scales);
-            let moved = match self.advanced(at, &here, &step) {
+            let step = here.solve_step(&self.scales);
+            let moved = match self.advance(at, &here, &step) {
                 // No step reduces the accelerations, which are zero up to rounding.
-                None if here.is_below(ZERO) || nudges == MAX_NUDGES => break,
+                None if here.is_below(MAX_ZERO_FRACTION) || nudges == MAX_NUDGES => break,
                 None => {
                     nudges += 1;
-                    self.nudged(at, &here)
+                    self.nudge(at, &here)
                 }
                 moved => moved,
             };
@@ -115,37 +115,37 @@ impl<'i, 'm> Search<'i, 'm> {
             there.sizes = there.sizes.sup(&here.sizes);
             (*at, here) = (trial, there);
         }
-        if here.is_below(ZERO) {
+        if here.is_below(MAX_ZERO_FRACTION) {
             return Ok(here.accelerations.iter().copied().collect());
         }
-        Err(self.not_found(at, &here))
+        Err(self.not_found_error(at, &here))
     }
 
     /// Returns the longest shortened step that reduces the accelerations and along which the
     /// equations are nearly linear. If there is none, returns the longest that reduces the
     /// accelerations.
-    fn advanced(
+    fn advance(
         &mut self,
         at: &OperatingPoint,
-        here: &Linear,
+        here: &LinearisedEquations,
         step: &DVector<f64>,
-    ) -> Option<(OperatingPoint, Linear)> {
-        let halvings = match here.is_below(ZERO) {
-            true => HALVINGS_AT_THE_END,
+    ) -> Option<(OperatingPoint, LinearisedEquations)> {
+        let halvings = match here.is_below(MAX_ZERO_FRACTION) {
+            true => MAX_FINAL_HALVINGS,
             false => MAX_HALVINGS,
         };
-        let longest = self.longest_part(step);
-        let before = here.measured_by(&here.sizes);
+        let longest = self.step_fraction(step);
+        let before = here.squared_norm(&here.sizes);
         let mut bent = None;
         for halving in 0..halvings {
             if halving >= MAX_STRAIGHT_HALVINGS && bent.is_some() {
                 break;
             }
-            let (trial, way) = self.moved(at, &(step * (longest * 0.5_f64.powi(halving))));
+            let (trial, way) = self.move_point(at, &(step * (longest * 0.5_f64.powi(halving))));
             let Some(there) = self.try_linearised(&trial) else {
                 continue;
             };
-            if there.measured_by(&here.sizes) >= before {
+            if there.squared_norm(&here.sizes) >= before {
                 continue;
             }
             if here.is_straight_to(&there, &way) {
@@ -157,10 +157,10 @@ impl<'i, 'm> Search<'i, 'm> {
     }
 
     /// Returns the fraction of a step that keeps every unknown within [`LONGEST_STEP`].
-    fn longest_part(&self, step: &DVector<f64>) -> f64 {
+    fn step_fraction(&self, step: &DVector<f64>) -> f64 {
         let parts = step.iter().zip(&self.scales);
         let part = |(change, scale): (&f64, &Option<f64>)| match scale {
-            Some(scale) if *change != 0.0 => LONGEST_STEP * scale / change.abs(),
+            Some(scale) if *change != 0.0 => MAX_STEP_FRACTION * scale / change.abs(),
             _ => f64::INFINITY,
         };
         parts.map(part).fold(1.0, f64::min)
@@ -168,35 +168,43 @@ impl<'i, 'm> Search<'i, 'm> {
 
     /// Returns a point displaced in the direction of the accelerations. If no step helps, forces
     /// may have an extremum.
-    fn nudged(&mut self, at: &OperatingPoint, here: &Linear) -> Option<(OperatingPoint, Linear)> {
+    fn nudge(
+        &mut self,
+        at: &OperatingPoint,
+        here: &LinearisedEquations,
+    ) -> Option<(OperatingPoint, LinearisedEquations)> {
         let change = DVector::from_fn(self.unknowns.len(), |place, _| {
             match (self.unknowns[place], self.scales[place]) {
                 (Unknown::Setting(Setting::State(state)), Some(scale)) => {
-                    NUDGE * scale * here.direction_of(state)
+                    NUDGE_FRACTION * scale * here.acceleration_sign(state)
                 }
                 _ => 0.0,
             }
         });
-        let (trial, way) = self.moved(at, &change);
+        let (trial, way) = self.move_point(at, &change);
         let there = self.try_linearised(&trial)?;
         (way.amax() > 0.0).then_some((trial, there))
     }
 
     /// Returns the accelerations at a point and their derivatives with respect to the unknowns.
-    pub fn linearised(&mut self, at: &OperatingPoint) -> Result<Linear, Error> {
+    pub fn linearise(&mut self, at: &OperatingPoint) -> Result<LinearisedEquations, Error> {
         let found = self.try_linearised(at);
-        found.ok_or_else(|| self.instance.not_linear(at.point()))
+        found.ok_or_else(|| self.instance.no_linearisation_error(at.point()))
     }
 
     /// Returns the same, or `None` if a number is not finite.
-    fn try_linearised(&mut self, at: &OperatingPoint) -> Option<Linear> {
+    fn try_linearised(&mut self, at: &OperatingPoint) -> Option<LinearisedEquations> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = at.state.len();
         let mut rates = vec![0.0; states];
         self.evaluator.rates(at.point(), &mut rates);
         let mut dense = |of: Jacobian| {
             let (rows, columns) = self.jacobians.shape(of);
-            DMatrix::from_row_slice(rows, columns, &self.jacobians.dense(of, at.point()))
+            DMatrix::from_row_slice(
+                rows,
+                columns,
+                &self.jacobians.evaluate_dense(of, at.point()),
+            )
         };
         let by_state = dense(Jacobian::RatesByState);
         let by_inputs = dense(Jacobian::RatesByInputs);
@@ -235,14 +243,18 @@ impl<'i, 'm> Search<'i, 'm> {
             let terms = of_states.chain(of_inputs).chain(of_scales);
             terms.fold(accelerations[row].abs(), f64::max)
         });
-        Some(Linear {
+        Some(LinearisedEquations {
             accelerations,
             matrix,
             sizes,
         })
     }
 
-    fn moved(&self, at: &OperatingPoint, change: &DVector<f64>) -> (OperatingPoint, DVector<f64>) {
+    fn move_point(
+        &self,
+        at: &OperatingPoint,
+        change: &DVector<f64>,
+    ) -> (OperatingPoint, DVector<f64>) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));
         for (place, unknown) in self.unknowns.iter().enumerate() {
@@ -272,7 +284,9 @@ impl<'i, 'm> Search<'i, 'm> {
 
     /// Returns true if a rate depends on time at a point.
     pub fn depends_on_time(&mut self, at: &OperatingPoint) -> bool {
-        let by_time = self.jacobians.dense(Jacobian::RatesByTime, at.point());
+        let by_time = self
+            .jacobians
+            .evaluate_dense(Jacobian::RatesByTime, at.point());
         by_time.iter().any(|rate| *rate != 0.0)
     }
 
@@ -293,10 +307,10 @@ impl<'i, 'm> Search<'i, 'm> {
         self.unknowns.iter().map(name).collect()
     }
 
-    fn not_found(&self, at: &OperatingPoint, here: &Linear) -> Error {
+    fn not_found_error(&self, at: &OperatingPoint, here: &LinearisedEquations) -> Error {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let states = self.instance.model().state_names();
-        let (row, left) = here.worst();
+        let (row, left) = here.largest_residual();
         let place = if row < degrees { row } else { row + degrees };
         let at_the_end = self
             .unknowns

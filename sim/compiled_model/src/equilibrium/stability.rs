@@ -9,7 +9,7 @@ use crate::instance::Instance;
 use crate::operating_point::OperatingPoint;
 
 /// Largest real part of an eigenvalue that counts as 0, relative to the largest magnitude.
-const ZERO: f64 = 1e-9;
+const MAX_ZERO_REAL_PART_FRACTION: f64 = 1e-9;
 
 /// Stability of an equilibrium of the linearised model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,17 +37,17 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::linearise`], and eigenvalues that cannot be computed.
-    pub fn stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
+    pub fn classify_stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
         let linear = self.linearise(at.point())?;
         let degrees = self.model().program().degrees_of_freedom();
-        let modes = constrained_modes(&linear.a, &linear.held(self.model()), degrees)
+        let modes = constrained_modes(&linear.a, &linear.constraint_matrix(self.model()), degrees)
             .map_err(|error| Error::Request(error.to_string()))?;
         let eigenvalues = || modes.iter().map(|mode| mode.eigenvalue);
         let largest = eigenvalues().fold(0.0, |most: f64, value| most.max(value.norm()));
         let growth = eigenvalues().fold(f64::NEG_INFINITY, |most, value| most.max(value.re));
         Ok(match growth {
-            growth if growth > ZERO * largest => Stability::Unstable,
-            growth if growth < -ZERO * largest => Stability::Asymptotic,
+            growth if growth > MAX_ZERO_REAL_PART_FRACTION * largest => Stability::Unstable,
+            growth if growth < -MAX_ZERO_REAL_PART_FRACTION * largest => Stability::Asymptotic,
             _ => Stability::Marginal,
         })
     }

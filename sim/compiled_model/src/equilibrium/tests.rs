@@ -25,40 +25,46 @@ motor = { on = "theta", value = "u" }
 "#;
 
 fn fixed(run: &Instance<'_>, fixed: &[(&str, f64)]) -> Result<Equilibrium, Error> {
-    run.equilibrium(EquilibriumRequest { start: &[], fixed })
+    run.find_equilibrium(EquilibriumRequest {
+        start_values: &[],
+        fixed_values: fixed,
+    })
 }
 
 fn from(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium, Error> {
-    run.equilibrium(EquilibriumRequest { start, fixed: &[] })
+    run.find_equilibrium(EquilibriumRequest {
+        start_values: start,
+        fixed_values: &[],
+    })
 }
 
 fn compiled(text: &str) -> CompiledModel {
-    CompiledModel::of_text("model.toml", text, Orders::Declared).expect("a model")
+    CompiledModel::from_text("model.toml", text, Orders::Declared).expect("a model")
 }
 
 fn model() -> CompiledModel {
-    CompiledModel::of_text("pendulum.toml", PENDULUM, Orders::Declared).expect("a model")
+    CompiledModel::from_text("pendulum.toml", PENDULUM, Orders::Declared).expect("a model")
 }
 
 #[test]
 fn pendulum_equilibria_match_closed_forms() {
     let model = model();
-    let run = model.at_declared().expect("an instance");
+    let run = model.with_declared_parameters().expect("an instance");
     let found = fixed(&run, &[]).expect("an equilibrium");
     assert!(
-        (found.at.state[0] - std::f64::consts::PI).abs() < 1e-12,
+        (found.point.state[0] - std::f64::consts::PI).abs() < 1e-12,
         "{found:?}"
     );
-    assert_eq!(found.at.inputs, [0.0]);
+    assert_eq!(found.point.inputs, [0.0]);
     let held = fixed(&run, &[("theta", 0.3)]).expect("a torque");
     let right = 2.0 * 9.81 * 0.5 * 0.3_f64.sin();
     assert!(
-        (held.at.inputs[0] - right).abs() < 1e-12 * right,
+        (held.point.inputs[0] - right).abs() < 1e-12 * right,
         "{held:?}"
     );
     let loaded = fixed(&run, &[("u", 5.0)]).expect("an angle");
     assert!(
-        (loaded.at.state[0].sin() * 9.81 - 5.0).abs() < 1e-11,
+        (loaded.point.state[0].sin() * 9.81 - 5.0).abs() < 1e-11,
         "{loaded:?}"
     );
 }
@@ -66,7 +72,7 @@ fn pendulum_equilibria_match_closed_forms() {
 #[test]
 fn impossible_equilibria_and_invalid_requests_are_rejected() {
     let model = model();
-    let run = model.at_declared().expect("an instance");
+    let run = model.with_declared_parameters().expect("an instance");
     for given in [&[("u", 20.0)][..], &[("theta", 0.3), ("u", 0.0)]] {
         let found = fixed(&run, given);
         assert!(
@@ -87,7 +93,7 @@ fn impossible_equilibria_and_invalid_requests_are_rejected() {
 fn search_finds_nearer_equilibrium_of_pendulum() {
     use std::f64::consts::{FRAC_PI_2, PI};
     let model = model();
-    let run = model.at_declared().expect("an instance");
+    let run = model.with_declared_parameters().expect("an instance");
     for (start, right) in [
         (1.5, 0.0),
         (1.57, 0.0),
@@ -98,20 +104,20 @@ fn search_finds_nearer_equilibrium_of_pendulum() {
     ] {
         let found = from(&run, &[("theta", start)]).expect("an equilibrium");
         assert!(
-            (found.at.state[0] - right).abs() < 1e-9,
+            (found.point.state[0] - right).abs() < 1e-9,
             "{start}: {found:?}"
         );
     }
     let found = from(&run, &[("theta", FRAC_PI_2)])
         .expect("an equilibrium")
-        .at
+        .point
         .state[0];
     assert!(found.abs() < 1e-9 || (found - PI).abs() < 1e-9, "{found}");
     // At 0, the slope of the force is exactly 0 if the angle is measured from the horizontal.
     let level = PENDULUM.replace("-m*g*l*cos(theta)", "m*g*l*sin(theta)");
     let model = compiled(&level.replace("2.8", "0"));
-    let run = model.at_declared().expect("an instance");
-    let found = from(&run, &[]).expect("an equilibrium").at.state[0];
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = from(&run, &[]).expect("an equilibrium").point.state[0];
     assert!((found + FRAC_PI_2).abs() < 1e-9, "it falls: {found}");
 }
 
@@ -119,7 +125,7 @@ fn search_finds_nearer_equilibrium_of_pendulum() {
 fn search_stays_within_declared_range() {
     let within = PENDULUM.replace("initial = 2.8", "range = [0.4, 4], initial = 1.2");
     let model = compiled(&within);
-    let run = model.at_declared().expect("an instance");
+    let run = model.with_declared_parameters().expect("an instance");
     let found = from(&run, &[]);
     assert!(
         matches!(found, Err(Error::Stopped { .. })),
@@ -127,7 +133,7 @@ fn search_stays_within_declared_range() {
     );
     let found = from(&run, &[("theta", 2.0)])
         .expect("an equilibrium")
-        .at
+        .point
         .state[0];
     assert!((found - std::f64::consts::PI).abs() < 1e-9, "{found}");
     assert!(matches!(
@@ -149,8 +155,8 @@ fn search_crosses_kink_of_bilinear_spring() {
         )
         .replace("2.8", "-1");
     let model = compiled(&text);
-    let run = model.at_declared().expect("an instance");
-    let found = from(&run, &[]).expect("an equilibrium").at.state[0];
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = from(&run, &[]).expect("an equilibrium").point.state[0];
     assert!((found - 0.015).abs() < 1e-12, "{found}");
 }
 
@@ -183,23 +189,23 @@ motor = { on = "phi", value = "T + u" }
 #[test]
 fn governor_at_steady_speed_is_equilibrium() {
     let model = compiled(GOVERNOR);
-    let run = model.at_declared().expect("an instance");
+    let run = model.with_declared_parameters().expect("an instance");
     // T = c omega at 8 rad/s; the angle of the bob follows from cos(theta) = g/(l omega^2).
     let right = (9.81 / (0.4 * 64.0_f64)).acos();
     let found = from(&run, &[("theta", 1.0)]).expect("steady running");
-    assert!((found.at.state[2] - 8.0).abs() < 1e-8, "{found:?}");
-    assert!((found.at.state[1] - right).abs() < 1e-8, "{found:?}");
-    assert!(found.free.contains(&"phi_dot".to_owned()), "{found:?}");
-    assert!(run.is_equilibrium(&found.at).expect("an answer"));
+    assert!((found.point.state[2] - 8.0).abs() < 1e-8, "{found:?}");
+    assert!((found.point.state[1] - right).abs() < 1e-8, "{found:?}");
+    assert!(found.unknowns.contains(&"phi_dot".to_owned()), "{found:?}");
+    assert!(run.is_equilibrium(&found.point).expect("an answer"));
     // At a fixed speed the motor input is an unknown.
-    let found = run.equilibrium(EquilibriumRequest {
-        start: &[("theta", 1.0)],
-        fixed: &[("phi_dot", 10.0)],
+    let found = run.find_equilibrium(EquilibriumRequest {
+        start_values: &[("theta", 1.0)],
+        fixed_values: &[("phi_dot", 10.0)],
     });
     let found = found.expect("steady running");
-    assert_eq!(found.at.state[2], 10.0);
-    assert!((found.at.inputs[0] - 0.2).abs() < 1e-9, "{found:?}");
-    let mut slipping = found.at.clone();
+    assert_eq!(found.point.state[2], 10.0);
+    assert!((found.point.inputs[0] - 0.2).abs() < 1e-9, "{found:?}");
+    let mut slipping = found.point.clone();
     slipping.state[3] = 0.1;
     assert!(!run.is_equilibrium(&slipping).expect("an answer"));
 }

@@ -69,11 +69,11 @@ const ORIFICE: [(f64, [[f64; 3]; 4]); 3] = [
 
 fn agrees_with_scipy(law: &str, solvers: &[Solver], starts: usize) {
     let model = orifice(law);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     for (pressure, right) in ORIFICE.into_iter().take(starts) {
         for solver in solvers {
             let initial = [0.1, 0.0, pressure];
-            let motion = run.simulate(&initial, &TIMES, &run.no_inputs(), *solver);
+            let motion = run.simulate(&initial, &TIMES, &run.default_inputs(), *solver);
             let motion =
                 motion.unwrap_or_else(|error| panic!("{law}, {solver}, {pressure}: {error}"));
             // Errors are relative to the largest magnitude of a state.
@@ -100,7 +100,7 @@ fn orifice_flow_reversal_matches_scipy() {
 #[test]
 fn many_flow_reversals_match_scipy() {
     let model = orifice("sign(p)*sqrt(abs(p))");
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let right = [
         [-0.002955238307, -0.04177712003, -1772.652808],
         [-0.004200321087, -0.001746957389, -3.056043997],
@@ -108,7 +108,7 @@ fn many_flow_reversals_match_scipy() {
         [0.0003171976985, -0.002219041077, -4.923837063],
     ];
     for solver in [Solver::Radau, Solver::Auto] {
-        let motion = run.simulate(&[0.0, 0.0, 1e6], &TIMES, &run.no_inputs(), solver);
+        let motion = run.simulate(&[0.0, 0.0, 1e6], &TIMES, &run.default_inputs(), solver);
         let motion = motion.unwrap_or_else(|error| panic!("{solver}: {error}"));
         for (state, right) in motion.trajectory.states[1..].iter().zip(right) {
             for ((value, right), size) in state.iter().zip(right).zip([0.01, 1.0, 1e6]) {
@@ -229,9 +229,14 @@ T = { value = 0.5, unit = "s" }
 m = "1/2*m*dot(x)^2"
 "#,
     );
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     for solver in STEPPING {
-        let error = run.simulate(run.initial(), &[0.0, 1.0], &run.no_inputs(), solver);
+        let error = run.simulate(
+            run.initial_state(),
+            &[0.0, 1.0],
+            &run.default_inputs(),
+            solver,
+        );
         let said = error
             .err()
             .map(|error| error.to_string())

@@ -23,7 +23,7 @@ fn example(name: &str) -> CompiledModel {
 }
 
 fn of_text(text: &str) -> CompiledModel {
-    CompiledModel::of_text("rest.toml", text, Orders::Declared)
+    CompiledModel::from_text("rest.toml", text, Orders::Declared)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -39,8 +39,8 @@ fn simulated(
     times: &[f64],
     solver: Solver,
 ) -> Motion {
-    let run = model.with(settings).unwrap();
-    let motion = run.simulate(run.initial(), times, &run.no_inputs(), solver);
+    let run = model.with_parameters(settings).unwrap();
+    let motion = run.simulate(run.initial_state(), times, &run.default_inputs(), solver);
     motion.unwrap_or_else(|error| panic!("{settings:?} {solver}: {error}"))
 }
 
@@ -68,7 +68,7 @@ fn pendulum_sticks_off_the_vertical_with_friction_equal_to_weight() {
         assert!(states[100][0].abs() > 1e-3, "{:?}", states[100]);
         assert!((states[100][0] - states[60][0]).abs() < 1e-13);
         assert!(states[60..].iter().all(|state| state[1].abs() < 1e-14));
-        let run = model.at_declared().unwrap();
+        let run = model.with_declared_parameters().unwrap();
         let observables = run.observables(&motion).unwrap();
         for (row, state) in observables[60..].iter().zip(&states[60..]) {
             // Observable `rubs`, energy and power.
@@ -329,7 +329,7 @@ both = { value = "-F*sign(dot(x)) - G*sign(3*dot(x))", unit = "N" }
 "#
     .replace("a = { value = 1, unit = \"N\" }\n", "");
     let model = of_text(&text);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     for solver in GENERAL {
         let motion = simulated(&model, &[], &grid(4.0, 40), solver);
         let rows = run.observables(&motion).unwrap();
@@ -370,7 +370,7 @@ rub = { on = "x", value = "-F*sign(dot(x) - w)" }
 pull = { on = "x", value = "u" }
 "#;
     let model = of_text(text);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     // Sticking for 1 s, accelerated by 1 m/s^2 for 1 s, then decelerated by 2 m/s^2 to rest at 2.5
     // s. At 3 s the belt starts at 1 m/s, which the block reaches after 0.5 s.
     let times = vec![0.0, 1.0, 2.0, 3.0];
@@ -380,7 +380,7 @@ pull = { on = "x", value = "u" }
     let wanted = [0.0, 0.0, 0.0, 0.125, 0.5, 0.75, 0.75, 1.0, 1.5, 2.0, 2.5];
     for solver in GENERAL {
         let motion = run
-            .simulate(run.initial(), &samples, &inputs, solver)
+            .simulate(run.initial_state(), &samples, &inputs, solver)
             .unwrap();
         for (state, wanted) in motion.trajectory.states.iter().zip(wanted) {
             assert!(
@@ -499,16 +499,16 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
         )
         .replace("motor = {", &format!("{brake}\nmotor = {{"));
     let model = of_text(&text);
-    let run = model.at_declared().unwrap();
+    let run = model.with_declared_parameters().unwrap();
     let inputs = HeldInputs::new(vec![0.0, 0.05, 0.1], vec![4.0, -2.0, 1.0], 1).unwrap();
     let samples = grid(0.2, 20);
     let exact = run
-        .simulate(run.initial(), &samples, &inputs, Solver::Exact)
+        .simulate(run.initial_state(), &samples, &inputs, Solver::Exact)
         .unwrap();
     assert!(exact.trajectory.switches.len() >= 3);
     for solver in [Solver::Rk, Solver::Radau] {
         let motion = run
-            .simulate(run.initial(), &samples, &inputs, solver)
+            .simulate(run.initial_state(), &samples, &inputs, solver)
             .unwrap();
         for (a, b) in motion
             .trajectory
@@ -525,9 +525,9 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
 #[test]
 fn adams_stops_with_message_at_sticking() {
     let model = of_text(SLED);
-    let run = model.at_declared().unwrap();
-    let none = run.no_inputs();
-    let error = run.simulate(run.initial(), &[0.0, 1.0], &none, Solver::Adams);
+    let run = model.with_declared_parameters().unwrap();
+    let none = run.default_inputs();
+    let error = run.simulate(run.initial_state(), &[0.0, 1.0], &none, Solver::Adams);
     let said = error
         .err()
         .map(|error| error.to_string())

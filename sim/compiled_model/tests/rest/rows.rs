@@ -101,9 +101,9 @@ fn random_rows_match_exact_solver() {
     for seed in 1..=40 {
         let text = random_row(seed);
         let model = of_text(&text);
-        let run = model.at_declared().unwrap();
-        let none = run.no_inputs();
-        let Ok(exact) = run.simulate(run.initial(), &times, &none, Solver::Exact) else {
+        let run = model.with_declared_parameters().unwrap();
+        let none = run.default_inputs();
+        let Ok(exact) = run.simulate(run.initial_state(), &times, &none, Solver::Exact) else {
             continue;
         };
         compared += 1;

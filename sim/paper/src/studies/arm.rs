@@ -121,7 +121,7 @@ impl Arm {
         let names = model.parameters.iter().map(|p| p.name.clone()).collect();
         let mut derived = Vec::with_capacity(orders.len());
         for &order in orders {
-            let compiled = CompiledModel::derive(model.clone(), Orders::All(order))?;
+            let compiled = CompiledModel::derive(model.clone(), Orders::Uniform(order))?;
             compiled.piecewise_linear().map_err(Clone::clone)?;
             derived.push((order, compiled));
         }
@@ -149,7 +149,10 @@ impl Arm {
     /// # Errors
     /// An order that was not derived, or inadmissible values.
     pub fn propagator(&self, case: &Case) -> Result<Propagator, StudyError> {
-        Ok(self.compiled(case)?.with(&settings(case))?.propagator()?)
+        Ok(self
+            .compiled(case)?
+            .with_parameters(&settings(case))?
+            .propagator()?)
     }
 
     fn compiled(&self, case: &Case) -> Result<&CompiledModel, StudyError> {
@@ -175,7 +178,7 @@ impl Arm {
     /// An order that was not derived, or inadmissible values.
     pub fn closed_mesh_frequencies(&self, case: &Case) -> Result<Vec<f64>, StudyError> {
         let compiled = self.compiled(case)?;
-        let instance = compiled.with(&settings(case))?;
+        let instance = compiled.with_parameters(&settings(case))?;
         // A point beyond every backlash of the paper; the linearisation is the same in the whole
         // regime.
         let beyond = 2.0 * case.backlash + 1e-3;

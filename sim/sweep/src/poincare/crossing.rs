@@ -134,16 +134,19 @@ fn follow_crossings(
     until: f64,
     settings: &Settings,
 ) -> Result<CrossingResult, Failure> {
-    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
+    let (evaluator, inputs) = (
+        RefCell::new(instance.evaluator()?),
+        instance.default_inputs(),
+    );
     let watched = SectionSystem {
-        system: instance.driven(&evaluator, &inputs)?,
+        system: instance.driven_model(&evaluator, &inputs)?,
         surface: Surface {
             crossing,
             turn_start: in_every_turn.then(Cell::default),
         },
         found_crossings: RefCell::default(),
     };
-    let (initial, _) = instance.consistent(instance.initial(), 0.0, &inputs)?;
+    let (initial, _) = instance.find_consistent_state(instance.initial_state(), 0.0, &inputs)?;
     let between = watched.follow(&initial, until, wanted, settings)?;
     let (times, points) = watched.found_crossings.into_inner().into_iter().unzip();
     Ok(CrossingResult {

@@ -262,7 +262,7 @@ impl Measure for Poincare<'_> {
 
 impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let instance = self.model.with(settings)?;
+        let instance = self.model.with_parameters(settings)?;
         let SectionPoints {
             points,
             repetition,
@@ -371,15 +371,18 @@ impl Poincare<'_> {
 
     fn motion(&self, instance: &Instance<'_>, times: &[f64]) -> Result<Trajectory, Failure> {
         let span = (0.0, times.last().copied().ok_or(Failure::Undefined)?);
-        let (initial, quiet) = (instance.initial(), &mut |_: f64| {});
+        let (initial, quiet) = (instance.initial_state(), &mut |_: f64| {});
         if self.model.piecewise_linear().is_ok() {
             let mut propagator = instance.propagator()?;
-            let inputs = instance.no_inputs();
+            let inputs = instance.default_inputs();
             return Ok(propagator.simulate(initial, span, times, &inputs, quiet)?);
         }
-        let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-        let system = instance.driven(&evaluator, &inputs)?;
-        let (initial, _) = instance.consistent(initial, 0.0, &inputs)?;
+        let (evaluator, inputs) = (
+            RefCell::new(instance.evaluator()?),
+            instance.default_inputs(),
+        );
+        let system = instance.driven_model(&evaluator, &inputs)?;
+        let (initial, _) = instance.find_consistent_state(initial, 0.0, &inputs)?;
         Ok(simulate(
             &system,
             &initial,

@@ -39,7 +39,7 @@ pub fn remove_drift(
         return Ok(());
     }
     if is_angle {
-        let start = instance.initial()[place];
+        let start = instance.initial_state()[place];
         for point in points {
             point[shown] = wrap_angle(point[shown], start);
         }
@@ -72,7 +72,7 @@ pub fn is_periodic_angle(
         .into_iter()
         .zip(states.iter().map(|s| &s[..]))
         .collect();
-    Ok(is_cyclic(instance, looks, place)? || instance.repeats_with_a_turn(place, &compared)?)
+    Ok(is_cyclic(instance, looks, place)? || instance.repeats_after_turn(place, &compared)?)
 }
 
 fn is_cyclic(
@@ -86,10 +86,10 @@ fn is_cyclic(
     let at = OperatingPoint {
         t: *t,
         state: state.clone(),
-        inputs: instance.model().usual_inputs(),
+        inputs: instance.model().default_inputs(),
     };
     // A model without Jacobians has no known cyclic direction.
-    let directions = instance.cyclic_directions(&at).unwrap_or_default();
+    let directions = instance.find_cyclic_directions(&at).unwrap_or_default();
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
 }
 
@@ -106,5 +106,5 @@ fn has_equal_equations_after_turn(
         .step_by(step)
         .map(|(t, state)| (*t, &state[..]))
         .collect();
-    Ok(instance.repeats_with_a_turn(place, &compared)?)
+    Ok(instance.repeats_after_turn(place, &compared)?)
 }

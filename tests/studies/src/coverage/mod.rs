@@ -63,7 +63,7 @@ pub fn run(sample: &Sample) -> Result<String, String> {
 /// Returns, for each run, the deviation of each estimated parameter from its true value, in
 /// standard deviations of the estimate.
 fn deviations(machine: &Machine, number: usize, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
-    let model = CompiledModel::of_text(machine.name, machine.text, Orders::Declared)
+    let model = CompiledModel::from_text(machine.name, machine.text, Orders::Declared)
         .map_err(|error| format!("{}: {error}", machine.name))?;
     let of_run = |run: usize| {
         let stream = (run * MACHINES.len() + number) as u64;

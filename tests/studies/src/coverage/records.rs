@@ -38,7 +38,9 @@ pub fn write(
 ) -> Result<Vec<f64>, String> {
     let mut draw = ChaCha8Rng::seed_from_u64(seed);
     draw.set_stream(stream);
-    let declared = model.at_declared().map_err(|error| error.to_string())?;
+    let declared = model
+        .with_declared_parameters()
+        .map_err(|error| error.to_string())?;
     let mut truth = Vec::new();
     for (name, relative) in machine.uncertain {
         let value = declared.value(name).ok_or("an unknown parameter")?;
@@ -46,7 +48,9 @@ pub fn write(
     }
     let names = machine.uncertain.iter().map(|(name, _)| *name);
     let settings: Vec<(&str, f64)> = names.zip(truth.iter().copied()).collect();
-    let instance = model.with(&settings).map_err(|error| error.to_string())?;
+    let instance = model
+        .with_parameters(&settings)
+        .map_err(|error| error.to_string())?;
     let sensors: Vec<Sensor> = (machine.channels.iter())
         .map(|channel| Sensor {
             gain: 1.0 + SENSOR[0] * truncated_normal(&mut draw),
@@ -116,7 +120,7 @@ fn quantity(
     let mut simulated: Vec<f64> = [0.0].into_iter().chain(late.clone()).collect();
     simulated.dedup();
     let motion = instance
-        .simulate(instance.initial(), &simulated, inputs, Solver::Auto)
+        .simulate(instance.initial_state(), &simulated, inputs, Solver::Auto)
         .map_err(|error| error.to_string())?;
     let model = instance.model();
     let position = |names: Vec<String>| names.iter().position(|known| known == name);

@@ -82,9 +82,11 @@ type Sampling<'a> = dyn Fn(&[f64], &[f64], Solver, f64) -> Result<Sampled, Strin
 /// Returns an error if the machine has no reference.
 pub fn judge(machine: &Machine) -> Result<Verdict, String> {
     let text = machine.specification(place_of_stop(machine)?);
-    let model = CompiledModel::of_text("grazing.toml", &text, Orders::Declared)
+    let model = CompiledModel::from_text("grazing.toml", &text, Orders::Declared)
         .map_err(|error| error.to_string())?;
-    let run = model.with(&[]).map_err(|error| error.to_string())?;
+    let run = model
+        .with_parameters(&[])
+        .map_err(|error| error.to_string())?;
     let times: Vec<f64> = (0..=SAMPLES)
         .map(|place| machine.duration * place as f64 / SAMPLES as f64)
         .collect();
@@ -140,7 +142,7 @@ fn sample(
     solver: Solver,
     tolerance: f64,
 ) -> Result<Sampled, String> {
-    let inputs = run.no_inputs();
+    let inputs = run.default_inputs();
     let request = Request {
         initial,
         times,
@@ -151,8 +153,8 @@ fn sample(
         max_step: f64::INFINITY,
     };
     let motion = run
-        .follow(&request, &mut |_| {})
-        .and_then(|motion| motion.complete());
+        .simulate_until_stop(&request, &mut |_| {})
+        .and_then(|motion| motion.into_complete());
     let motion = motion.map_err(|error| error.to_string())?;
     let names = run.model().observable_names();
     let place = names.iter().position(|name| name == "energy").unwrap_or(0);

@@ -21,9 +21,12 @@ pub fn place_of_stop(machine: &Machine) -> Result<f64, String> {
             .initial
             .iter()
             .fold(0.0_f64, |most, y| most.max(y.abs()));
-    let model = CompiledModel::of_text("free.toml", &machine.specification(far), Orders::Declared)
+    let model =
+        CompiledModel::from_text("free.toml", &machine.specification(far), Orders::Declared)
+            .map_err(|error| error.to_string())?;
+    let run = model
+        .with_parameters(&[])
         .map_err(|error| error.to_string())?;
-    let run = model.with(&[]).map_err(|error| error.to_string())?;
     let step = machine.duration / SAMPLES as f64;
     let free = deflections(machine, &run, (0.0, machine.duration))?;
     let peaks = record_maxima(&free);
@@ -61,15 +64,15 @@ fn deflections(
     let request = Request {
         initial: &machine.initial,
         times: &times,
-        inputs: &run.no_inputs(),
+        inputs: &run.default_inputs(),
         solver: Solver::Rk,
         tolerance: TOLERANCE,
         audit: false,
         max_step: f64::INFINITY,
     };
     let motion = run
-        .follow(&request, &mut |_| {})
-        .and_then(|motion| motion.complete());
+        .simulate_until_stop(&request, &mut |_| {})
+        .and_then(|motion| motion.into_complete());
     let motion = motion.map_err(|error| format!("without the stop: {error}"))?;
     let states = motion
         .trajectory

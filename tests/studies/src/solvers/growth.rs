@@ -72,7 +72,12 @@ pub fn growth(
                 times,
                 ..*request
             };
-            Ok::<_, Error>(instance.follow(&request, &mut |_| {})?.trajectory.states)
+            Ok::<_, Error>(
+                instance
+                    .simulate_until_stop(&request, &mut |_| {})?
+                    .trajectory
+                    .states,
+            )
         };
         let reference = follow(&states[first])?;
         for _ in 0..DIRECTIONS {

@@ -81,14 +81,16 @@ pub fn run(sample: &Sample) -> Result<String, String> {
 }
 
 fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
-    let model = CompiledModel::of_text("drawn.toml", &machine.text, Orders::Declared)
+    let model = CompiledModel::from_text("drawn.toml", &machine.text, Orders::Declared)
         .map_err(|error| error.to_string())?;
-    let instance = model.at_declared().map_err(|error| error.to_string())?;
+    let instance = model
+        .with_declared_parameters()
+        .map_err(|error| error.to_string())?;
     let times: Vec<f64> = (0..SAMPLES)
         .map(|k| machine.until * k as f64 / (SAMPLES - 1) as f64)
         .collect();
     let request = |solver, tolerance| Request {
-        initial: instance.initial(),
+        initial: instance.initial_state(),
         times: &times,
         inputs: &machine.inputs,
         solver,
@@ -144,9 +146,9 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
 /// Simulates to the last requested time; returns an error if the motion stops early.
 fn complete(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, String> {
     let solver = request.solver.name();
-    let motion = instance.follow(request, &mut |_| {});
+    let motion = instance.simulate_until_stop(request, &mut |_| {});
     motion
-        .and_then(Motion::complete)
+        .and_then(Motion::into_complete)
         .map_err(|error| format!("{solver} at {:.0e}: {error}", request.tolerance))
 }
 

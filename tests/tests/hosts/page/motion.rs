@@ -45,9 +45,9 @@ fn page_motion_matches_simulate() {
         let shown = simulate_page(&spec, end);
         assert_eq!(shown["t"], end);
         let compiled = CompiledModel::load(&spec, Orders::Declared).expect("it loads");
-        let run = compiled.at_declared().expect("it runs");
-        let inputs = run.no_inputs();
-        let motion = run.simulate(run.initial(), &[0.0, end], &inputs, Solver::Auto);
+        let run = compiled.with_declared_parameters().expect("it runs");
+        let inputs = run.default_inputs();
+        let motion = run.simulate(run.initial_state(), &[0.0, end], &inputs, Solver::Auto);
         let motion = motion.expect("it moves");
         let last = motion.trajectory.states.last().expect("a state");
         let size = last

@@ -9,41 +9,41 @@
 //! its rate are zero up to rounding, which must not determine the side; so the surface is
 //! displaced by that rounding until the motion has left it.
 
-mod observed;
-mod sided;
+mod observed_motion;
+mod sided_model;
 
-pub(crate) use observed::Observed;
-pub use observed::Rest;
-pub use sided::Sided;
+pub(crate) use observed_motion::ObservedMotion;
+pub use observed_motion::StickingMotion;
+pub use sided_model::SidedModel;
 
 use eomgen_sim::ode::difference_step;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
-use sided::CORRECTIONS;
+use sided_model::CORRECTION_COUNT;
 
 /// Largest distance of a state from a surface that holds it, relative to the largest value of the
 /// switching function. Beyond it the state is corrected.
-const DRIFT: f64 = 1e-12;
+const MAX_DRIFT_FRACTION: f64 = 1e-12;
 
 /// Additional distance, relative to the effect of the surface's own force on its function since
 /// the surface holds.
-const DRIFT_OF_A_FORCE: f64 = 1e-13;
+const MAX_FORCE_DRIFT_FRACTION: f64 = 1e-13;
 
 /// Largest distance of other surfaces that count as reached, relative to the change of their
 /// functions in the step across a surface.
-const NEAR: f64 = 4.0;
+const NEAR_MOVE_FACTOR: f64 = 4.0;
 
 /// Limit of that distance, relative to the largest value of the function.
-const NEAREST: f64 = 1e-9;
+const MAX_NEAR_FRACTION: f64 = 1e-9;
 
 /// Arrival on a surface on which the motion already is.
-const STILL: Arrival = Arrival {
+const ARRIVAL_AT_REST: Arrival = Arrival {
     side: 1.0,
     is_overcome: false,
 };
 
 /// State of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+enum SurfaceState {
     /// The sign of the function determines the side.
     Free,
     /// The surface holds the motion, which came from this side, -1 or 1, at this time, s.
@@ -55,13 +55,13 @@ enum Place {
     Leaving { side: f64, moved: f64 },
 }
 
-impl Place {
+impl SurfaceState {
     fn is_on(self) -> bool {
         matches!(self, Self::Holding { .. } | Self::Bearing { .. })
     }
 
     /// Returns the displacement of the surface until the motion has left it.
-    fn moved(self) -> f64 {
+    fn displacement(self) -> f64 {
         match self {
             Self::Leaving { side, moved } => side * moved,
             Self::Free | Self::Holding { .. } | Self::Bearing { .. } => 0.0,
@@ -70,9 +70,9 @@ impl Place {
 }
 
 /// States of all surfaces along a motion.
-pub(crate) struct Sliding {
-    sided: Sided,
-    places: Vec<Place>,
+pub(crate) struct SurfaceStates {
+    sided: SidedModel,
+    places: Vec<SurfaceState>,
     /// True if the rates had no jump on a surface at the last arrival; then the sign of its
     /// function determines the side.
     is_jumpless: Vec<bool>,
@@ -86,11 +86,11 @@ pub(crate) struct Sliding {
     changes: Vec<(usize, bool)>,
 }
 
-impl Sliding {
-    pub fn new(sided: Sided) -> Self {
-        let count = sided.count();
+impl SurfaceStates {
+    pub fn new(sided: SidedModel) -> Self {
+        let count = sided.surface_count();
         Self {
-            places: vec![Place::Free; count],
+            places: vec![SurfaceState::Free; count],
             is_jumpless: vec![false; count],
             sizes: vec![0.0; count],
             begin: None,
@@ -102,7 +102,7 @@ impl Sliding {
     }
 
     /// Returns the model with sides, for use with another motion.
-    pub fn into_sided(self) -> Sided {
+    pub fn into_sided_model(self) -> SidedModel {
         self.sided
     }
 
@@ -113,48 +113,52 @@ impl Sliding {
 
     /// Returns true if the motion is on no surface and has left all surfaces.
     pub fn is_free(&self) -> bool {
-        self.places.iter().all(|place| *place == Place::Free)
+        self.places.iter().all(|place| *place == SurfaceState::Free)
     }
 
     /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
     /// without a jump are not fixed, because their rates beyond the surface may lead away from it.
-    pub fn keep_sides(&mut self, sides: Option<&[f64]>) {
+    pub fn fix_sides(&mut self, sides: Option<&[f64]>) {
         self.found_at = None;
         self.kept = sides.map(|sides| {
             let kept = |surface: usize| match self.is_jumpless[surface] {
                 true => 0.0,
-                false => sides[self.sided.guard(surface)],
+                false => sides[self.sided.guard_index(surface)],
             };
             (0..self.places.len()).map(kept).collect()
         });
     }
 
     /// Writes the rates, if this is active.
-    pub fn rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
-        self.hold(at, inputs);
-        self.sided.rates(at, inputs, out);
+    pub fn write_rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.write_rates(at, inputs, out);
     }
 
     /// Writes the observables, if this is active.
-    pub fn observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
-        self.hold(at, inputs);
-        self.sided.observables(at, out);
+    pub fn write_observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.write_observables(at, out);
     }
 
     /// Computes the derivatives of the rates with respect to the state by finite differences, if
     /// this is active. Sides and sticking remain unchanged.
-    pub fn jacobian(
+    pub fn write_jacobian(
         &mut self,
         (t, state): (f64, &[f64]),
         (inputs, typical_sizes): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        let (sides, held) = (self.sides((t, state), inputs), self.holding());
+        let (sides, held) = (
+            self.current_sides((t, state), inputs),
+            self.holding_surfaces(),
+        );
         self.found_at = None;
         let count = state.len();
         let mut rates = |state: &[f64], out: &mut [f64]| {
-            self.sided.hold((t, state), inputs, &sides, &held);
-            self.sided.rates((t, state), inputs, out);
+            self.sided
+                .find_holding_sides((t, state), inputs, &sides, &held);
+            self.sided.write_rates((t, state), inputs, out);
         };
         let (mut base, mut moved_rates) = (vec![0.0; count], vec![0.0; count]);
         rates(state, &mut base);
@@ -173,51 +177,51 @@ impl Sliding {
     /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
     /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
     /// a limit.
-    pub fn guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+    pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         if self.begin.is_none() {
-            self.begin(at, inputs);
+            self.start_motion(at, inputs);
         }
         if self.is_free() {
             return;
         }
-        self.hold(at, inputs);
+        self.find_holding_sides(at, inputs);
         for (surface, place) in self.places.iter().enumerate() {
-            let slot = &mut out[self.sided.guard(surface)];
+            let slot = &mut out[self.sided.guard_index(surface)];
             let side = self.sided.sides()[surface];
             match *place {
-                Place::Free => {}
-                Place::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
-                Place::Bearing { from, .. } => *slot = from,
-                Place::Leaving { side, moved } => *slot += side * moved,
+                SurfaceState::Free => {}
+                SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
+                SurfaceState::Bearing { from, .. } => *slot = from,
+                SurfaceState::Leaving { side, moved } => *slot += side * moved,
             }
         }
     }
 
     /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
     /// a surface, `t` and `state` just beyond it.
-    pub fn cross(
+    pub fn apply_crossing(
         &mut self,
         inputs: &[f64],
         (t_before, before): (f64, &[f64]),
         t: f64,
         state: &mut [f64],
     ) {
-        let near = self.sided.functions((t_before, before), inputs);
-        let beyond = self.sided.functions((t, state), inputs);
-        let roundings = self.sided.roundings((t, state), inputs);
+        let near = self.sided.evaluate_functions((t_before, before), inputs);
+        let beyond = self.sided.evaluate_functions((t, state), inputs);
+        let roundings = self.sided.function_roundings((t, state), inputs);
         let mut is_new = false;
         let mut touching = Vec::new();
         let mut arrivals = Vec::new();
-        let overcome = self.overcome((t, state), inputs);
-        let came_from = self.came_from(&near);
+        let overcome = self.find_overcome((t, state), inputs);
+        let came_from = self.arrival_sides(&near);
         for (surface, place) in self.places.iter().enumerate() {
             let (from, to) = (near[surface], beyond[surface]);
-            let moved = place.moved();
+            let moved = place.displacement();
             let is_crossed = came_from[surface] * (to + moved) < 0.0;
-            let near = NEAR * (to - from).abs();
-            let near = near.min(NEAREST * self.sizes[surface]) + roundings[surface];
+            let near = NEAR_MOVE_FACTOR * (to - from).abs();
+            let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
             let is_near = to.abs() <= near;
-            if place.is_on() || is_crossed || (is_near && *place == Place::Free) {
+            if place.is_on() || is_crossed || (is_near && *place == SurfaceState::Free) {
                 is_new |= is_crossed && !place.is_on();
                 touching.push(surface);
                 arrivals.push(overcome[surface].unwrap_or(Arrival {
@@ -232,16 +236,16 @@ impl Sliding {
         if !is_new && overcome.iter().all(Option::is_none) {
             return;
         }
-        self.settle((t, state), inputs, (&touching, &arrivals), &came_from);
-        self.put_back((t, state), inputs, true);
+        self.decide_states((t, state), inputs, (&touching, &arrivals), &came_from);
+        self.correct_onto_surfaces((t, state), inputs, true);
     }
 
     /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
     /// If a function is exactly zero, its fixed side counts.
-    fn came_from(&self, near: &[f64]) -> Vec<f64> {
+    fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {
         let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
         let side = |(surface, value): (usize, &f64)| {
-            let moved = self.places[surface].moved();
+            let moved = self.places[surface].displacement();
             match kept(surface).filter(|side| *side != 0.0) {
                 Some(side) if value + moved == 0.0 => side,
                 _ => (value + moved).signum(),
@@ -252,58 +256,60 @@ impl Sliding {
 
     /// Corrects a state that drifted from the surfaces that hold it; returns the number of
     /// evaluations.
-    pub fn keep(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
-        self.put_back((t, state), inputs, false)
+    pub fn correct_state(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
+        self.correct_onto_surfaces((t, state), inputs, false)
     }
 
     /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
     /// motion if an input moves a surface away or a force exceeds its limit. Returns the surfaces
     /// that began or ceased to hold since the last call.
-    pub fn arrive(
+    pub fn update(
         &mut self,
         at: (f64, &[f64]),
         (earlier, inputs): (&[f64], &[f64]),
     ) -> Vec<(usize, bool)> {
         if self.begin.is_some() && !self.is_free() {
-            let functions = self.sided.functions(at, inputs);
+            let functions = self.sided.evaluate_functions(at, inputs);
             let jumps: Vec<bool> = match earlier == inputs {
                 true => vec![false; functions.len()],
                 false => {
-                    let before = self.sided.functions(at, earlier);
-                    let roundings = self.sided.roundings(at, inputs);
+                    let before = self.sided.evaluate_functions(at, earlier);
+                    let roundings = self.sided.function_roundings(at, inputs);
                     let moved = functions.iter().zip(&before).map(|(a, b)| (a - b).abs());
                     let allowed = roundings.iter().zip(&self.sizes);
-                    let allowed = allowed.map(|(rounding, size)| rounding + DRIFT * size);
+                    let allowed =
+                        allowed.map(|(rounding, size)| rounding + MAX_DRIFT_FRACTION * size);
                     moved.zip(allowed).map(|(a, b)| a > b).collect()
                 }
             };
             for (surface, place) in self.places.iter_mut().enumerate() {
                 let value = functions[surface];
                 let has_left = match *place {
-                    Place::Leaving { side, moved } => side * value > 2.0 * moved,
+                    SurfaceState::Leaving { side, moved } => side * value > 2.0 * moved,
                     _ => jumps[surface],
                 };
-                if has_left && *place != Place::Free {
+                if has_left && *place != SurfaceState::Free {
                     if place.is_on() {
-                        self.changes.push((self.sided.guard(surface), value > 0.0));
+                        self.changes
+                            .push((self.sided.guard_index(surface), value > 0.0));
                     }
-                    *place = Place::Free;
+                    *place = SurfaceState::Free;
                     self.found_at = None;
                 }
             }
             for _ in 0..=self.places.len() {
-                let overcome = self.overcome(at, inputs);
+                let overcome = self.find_overcome(at, inputs);
                 if overcome.iter().all(Option::is_none) {
                     break;
                 }
                 let on = |surface: &usize| self.places[*surface].is_on();
                 let touching: Vec<usize> = (0..self.places.len()).filter(on).collect();
-                let arrival = |surface: &usize| overcome[*surface].unwrap_or(STILL);
+                let arrival = |surface: &usize| overcome[*surface].unwrap_or(ARRIVAL_AT_REST);
                 let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
-                self.settle(at, inputs, (&touching, &arrivals), &functions);
+                self.decide_states(at, inputs, (&touching, &arrivals), &functions);
             }
         }
-        let functions = self.sided.functions(at, inputs);
+        let functions = self.sided.evaluate_functions(at, inputs);
         for (size, value) in self.sizes.iter_mut().zip(&functions) {
             *size = size.max(value.abs());
         }
@@ -311,26 +317,27 @@ impl Sliding {
     }
 
     /// Starts a motion: surfaces on which it is may hold it.
-    fn begin(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+    fn start_motion(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         self.begin = Some(at.0);
-        let functions = self.sided.functions(at, inputs);
-        let roundings = self.sided.roundings(at, inputs);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
         let touching: Vec<usize> = (0..functions.len())
             .filter(|surface| functions[*surface].abs() <= roundings[*surface])
             .collect();
         if !touching.is_empty() {
-            let arrivals = vec![STILL; touching.len()];
-            self.settle(at, inputs, (&touching, &arrivals), &functions);
+            let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
+            self.decide_states(at, inputs, (&touching, &arrivals), &functions);
         }
         self.changes.clear();
     }
 
     /// Returns the surfaces whose force exceeds its limit, with the side.
-    fn overcome(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<Option<Arrival>> {
-        self.hold(at, inputs);
+    fn find_overcome(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<Option<Arrival>> {
+        self.find_holding_sides(at, inputs);
         let held = self.places.iter().zip(self.sided.sides());
         held.map(|(place, side)| {
-            let is_overcome = matches!(place, Place::Holding { .. }) && !(0.0..=1.0).contains(side);
+            let is_overcome =
+                matches!(place, SurfaceState::Holding { .. }) && !(0.0..=1.0).contains(side);
             is_overcome.then_some(Arrival {
                 side: (side - 0.5).signum(),
                 is_overcome,
@@ -341,7 +348,7 @@ impl Sliding {
 
     /// Decides the states of the surfaces `touching`, on which the motion is. It came from the
     /// sides with these signs of the functions.
-    fn settle(
+    fn decide_states(
         &mut self,
         at: (f64, &[f64]),
         inputs: &[f64],
@@ -349,43 +356,43 @@ impl Sliding {
         came_from: &[f64],
     ) {
         self.found_at = None;
-        let sides = self.sides(at, inputs);
-        let jumps = self.sided.jumps_on(at, inputs, touching, &sides);
+        let sides = self.current_sides(at, inputs);
+        let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
         let asked = (&touching[..], &arrivals[..]);
         let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
             // The sign of the function decides, and the solver reports chattering.
             for surface in touching {
-                self.places[surface] = Place::Free;
+                self.places[surface] = SurfaceState::Free;
             }
             return;
         };
-        let functions = self.sided.functions(at, inputs);
-        let mut roundings = self.sided.roundings(at, inputs);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let mut roundings = self.sided.function_roundings(at, inputs);
         let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
         for (surface, rounding) in roundings.iter_mut().enumerate() {
             // A rate of rounding, accumulated over time.
-            *rounding += DRIFT_OF_A_FORCE * self.sided.own_rate(surface) * passed;
+            *rounding += MAX_FORCE_DRIFT_FRACTION * self.sided.own_force_rate(surface) * passed;
         }
         for (surface, verdict) in touching.iter().zip(verdicts) {
             let old = self.places[*surface];
             let from = match old {
-                Place::Holding { from, .. } | Place::Bearing { from, .. } => from,
+                SurfaceState::Holding { from, .. } | SurfaceState::Bearing { from, .. } => from,
                 _ if came_from[*surface] < 0.0 => -1.0,
                 _ => 1.0,
             };
             let since = match old {
-                Place::Holding { since, .. } => since,
+                SurfaceState::Holding { since, .. } => since,
                 _ => at.0,
             };
             let new = match verdict {
-                Verdict::Holds(_) => Place::Holding { from, since },
-                Verdict::Bears(side) => Place::Bearing { from, side },
+                Verdict::Holds(_) => SurfaceState::Holding { from, since },
+                Verdict::Bears(side) => SurfaceState::Bearing { from, side },
                 Verdict::LetsGo(side) => {
                     let value = functions[*surface];
                     match side * value > 2.0 * roundings[*surface] {
-                        true => Place::Free,
-                        false => Place::Leaving {
+                        true => SurfaceState::Free,
+                        false => SurfaceState::Leaving {
                             side,
                             moved: roundings[*surface].max(-2.0 * side * value),
                         },
@@ -396,7 +403,7 @@ impl Sliding {
             if let Some(kept) = &mut self.kept {
                 kept[*surface] = verdict.sign().signum();
             }
-            let guard = self.sided.guard(*surface);
+            let guard = self.sided.guard_index(*surface);
             if old.is_on() && !new.is_on() {
                 self.changes.push((guard, verdict.sign() > 0.0));
             } else if new.is_on() && !old.is_on() {
@@ -420,10 +427,10 @@ impl Sliding {
                 continue;
             }
             if self.places[*surface].is_on() {
-                let guard = self.sided.guard(*surface);
+                let guard = self.sided.guard_index(*surface);
                 self.changes.push((guard, arrival.side > 0.0));
             }
-            self.places[*surface] = Place::Free;
+            self.places[*surface] = SurfaceState::Free;
             if let Some(kept) = &mut self.kept {
                 kept[*surface] = 0.0;
             }
@@ -433,50 +440,58 @@ impl Sliding {
 
     /// Returns the sides of all surfaces at a point, 0.5 for those that hold. Functions are
     /// evaluated only if needed.
-    fn sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+    fn current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let kept = self.kept.clone().unwrap_or_default();
         let mut functions = Vec::new();
         let mut sides = Vec::with_capacity(self.places.len());
         for (surface, place) in self.places.iter().enumerate() {
             let kept = kept.get(surface).filter(|side| **side != 0.0);
             let moved = match (*place, kept) {
-                (Place::Holding { .. }, _) => {
+                (SurfaceState::Holding { .. }, _) => {
                     sides.push(0.5);
                     continue;
                 }
-                (Place::Bearing { side, .. }, _) | (Place::Leaving { side, .. }, Some(_)) => {
+                (SurfaceState::Bearing { side, .. }, _)
+                | (SurfaceState::Leaving { side, .. }, Some(_)) => {
                     sides.push(0.5 + 0.5 * side);
                     continue;
                 }
-                (Place::Free, Some(side)) => {
+                (SurfaceState::Free, Some(side)) => {
                     sides.push(0.5 + 0.5 * side);
                     continue;
                 }
-                (Place::Free | Place::Leaving { .. }, None) => place.moved(),
+                (SurfaceState::Free | SurfaceState::Leaving { .. }, None) => place.displacement(),
             };
             if functions.is_empty() {
-                functions = self.sided.functions(at, inputs);
+                functions = self.sided.evaluate_functions(at, inputs);
             }
-            sides.push(self.sided.side_of(surface, functions[surface] + moved));
+            sides.push(
+                self.sided
+                    .side_at_value(surface, functions[surface] + moved),
+            );
         }
         sides
     }
 
-    fn holding(&self) -> Vec<usize> {
-        let holds = |surface: &usize| matches!(self.places[*surface], Place::Holding { .. });
+    fn holding_surfaces(&self) -> Vec<usize> {
+        let holds = |surface: &usize| matches!(self.places[*surface], SurfaceState::Holding { .. });
         (0..self.places.len()).filter(holds).collect()
     }
 
     /// Computes the sides that hold the motion at a point.
-    fn hold(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+    fn find_holding_sides(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         if let Some((known, at)) = &self.found_at
             && *known == t
             && at == state
         {
             return;
         }
-        let (sides, held) = (self.sides((t, state), inputs), self.holding());
-        self.sided.hold((t, state), inputs, &sides, &held);
+        let (sides, held) = (
+            self.current_sides((t, state), inputs),
+            self.holding_surfaces(),
+        );
+        self.sided
+            .find_holding_sides((t, state), inputs, &sides, &held);
         match &mut self.found_at {
             Some((known, at)) => {
                 *known = t;
@@ -487,29 +502,35 @@ impl Sliding {
     }
 
     /// Corrects a state onto the surfaces that hold it, if it has drifted or `always`.
-    fn put_back(&mut self, (t, state): (f64, &mut [f64]), inputs: &[f64], always: bool) -> u64 {
-        let held = self.holding();
+    fn correct_onto_surfaces(
+        &mut self,
+        (t, state): (f64, &mut [f64]),
+        inputs: &[f64],
+        always: bool,
+    ) -> u64 {
+        let held = self.holding_surfaces();
         if held.is_empty() {
             return 0;
         }
-        let values = self.sided.functions((t, state), inputs);
+        let values = self.sided.evaluate_functions((t, state), inputs);
         let has_strayed = |surface: &usize| {
-            let Place::Holding { since, .. } = self.places[*surface] else {
+            let SurfaceState::Holding { since, .. } = self.places[*surface] else {
                 return false;
             };
-            let by_force = self.sided.own_rate(*surface) * (t - since).abs();
-            let allowed = DRIFT * self.sizes[*surface] + DRIFT_OF_A_FORCE * by_force;
+            let by_force = self.sided.own_force_rate(*surface) * (t - since).abs();
+            let allowed =
+                MAX_DRIFT_FRACTION * self.sizes[*surface] + MAX_FORCE_DRIFT_FRACTION * by_force;
             values[*surface].abs() > allowed
         };
         if !always && !held.iter().any(has_strayed) {
             return 0;
         }
-        self.hold((t, state), inputs);
+        self.find_holding_sides((t, state), inputs);
         self.found_at = None;
-        for _ in 0..CORRECTIONS {
-            let values = self.sided.functions((t, state), inputs);
-            self.sided.put_on(t, state, (&held, &values));
+        for _ in 0..CORRECTION_COUNT {
+            let values = self.sided.evaluate_functions((t, state), inputs);
+            self.sided.move_onto_surfaces(t, state, (&held, &values));
         }
-        CORRECTIONS as u64
+        CORRECTION_COUNT as u64
     }
 }

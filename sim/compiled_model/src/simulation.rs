@@ -11,18 +11,18 @@ use eomgen_sim::ode::{
 };
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
-use crate::audit::{Audit, Auditor, EnergyAt};
-use crate::driven::Driven;
+use crate::audit::{Audit, Auditor, EnergyAndPower};
+use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{Cause, Choice, Motion, Solver, Stopped};
+use crate::motion::{EarlyStop, Motion, Solver, SolverChoice, StopCause};
 
 /// Default relative tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
 /// changes to the implicit solver. That solver needs a few times less time for the whole motion.
-const MOST_STIFF_STEPS: u64 = 100_000;
+const MAX_STIFF_STEPS: u64 = 100_000;
 
 /// Request for a simulation.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,7 @@ impl Request<'_> {
     }
 
     /// Returns the first and the last sample time, s.
-    pub fn span(&self) -> (f64, f64) {
+    pub fn time_span(&self) -> (f64, f64) {
         let first = self.times.first().copied().unwrap_or(0.0);
         (first, self.times.last().copied().unwrap_or(first))
     }
@@ -81,7 +81,8 @@ impl Instance<'_> {
             max_step: f64::INFINITY,
             audit: false,
         };
-        self.follow(&request, &mut |_| {})?.complete()
+        self.simulate_until_stop(&request, &mut |_| {})?
+            .into_complete()
     }
 
     /// Simulates a request and returns the samples up to the time that the solver reaches. Calls
@@ -90,7 +91,7 @@ impl Instance<'_> {
     /// # Errors
     /// An invalid request, a solver that does not support the model, or a solver that stops before
     /// its first step.
-    pub fn follow(
+    pub fn simulate_until_stop(
         &self,
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
@@ -101,10 +102,19 @@ impl Instance<'_> {
         };
         let exact = match request.solver {
             Solver::Rk => {
-                return self.general(request, &asked(Method::DormandPrince853), None, progress);
+                return self.simulate_general(
+                    request,
+                    &asked(Method::DormandPrince853),
+                    None,
+                    progress,
+                );
             }
-            Solver::Adams => return self.general(request, &asked(Method::Adams), None, progress),
-            Solver::Radau => return self.general(request, &asked(Method::Radau), None, progress),
+            Solver::Adams => {
+                return self.simulate_general(request, &asked(Method::Adams), None, progress);
+            }
+            Solver::Radau => {
+                return self.simulate_general(request, &asked(Method::Radau), None, progress);
+            }
             Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
         };
         let is_free = request.solver == Solver::Auto;
@@ -112,9 +122,9 @@ impl Instance<'_> {
             let reason = "the exact solver holds inputs constant between samples, but these inputs are \
                           functions of time";
             return match is_free {
-                true => self.chosen(
+                true => self.simulate_automatically(
                     request,
-                    Some(Choice::NotLinear(reason.to_owned())),
+                    Some(SolverChoice::NotPiecewiseLinear(reason.to_owned())),
                     progress,
                 ),
                 false => Err(Error::Request(format!("{reason}: use --solver rk"))),
@@ -122,8 +132,8 @@ impl Instance<'_> {
         }
         if let Err(error) = exact {
             if is_free {
-                let choice = Some(Choice::NotLinear(error.to_string()));
-                return self.chosen(request, choice, progress);
+                let choice = Some(SolverChoice::NotPiecewiseLinear(error.to_string()));
+                return self.simulate_automatically(request, choice, progress);
             }
             return Err(error.into());
         }
@@ -143,52 +153,57 @@ impl Instance<'_> {
         });
         let audit = auditor.map(|auditor| auditor.audit().clone());
         let Err(error) = ended else {
-            let choice = is_free.then_some(Choice::PiecewiseLinear);
-            return Ok(motion(trajectory, request, Solver::Exact, (choice, audit)));
+            let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
+            return Ok(new_motion(
+                trajectory,
+                request,
+                Solver::Exact,
+                (choice, audit),
+            ));
         };
-        let surfaces = Driven::new(&evaluator, request.inputs).surfaces();
-        let reason = self.named((&surfaces, Solver::Exact), |names| error.named(names));
-        if is_free && is_for_the_general(&error) {
-            let choice = Some(Choice::NotFollowed(reason));
-            return self.chosen(request, choice, progress);
+        let surfaces = DrivenModel::new(&evaluator, request.inputs).surfaces();
+        let reason = self.format_named((&surfaces, Solver::Exact), |names| error.named(names));
+        if is_free && may_be_supported_by_general(&error) {
+            let choice = Some(SolverChoice::NotSupportedByExact(reason));
+            return self.simulate_automatically(request, choice, progress);
         }
-        let choice = is_free.then_some(Choice::PiecewiseLinear);
+        let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
         let t = error.time();
-        let so_far = motion(trajectory, request, Solver::Exact, (choice, audit));
-        let cause = self.cause_of_exact(&error, &surfaces);
-        stopped(so_far, Stopped { t, reason, cause })
+        let so_far = new_motion(trajectory, request, Solver::Exact, (choice, audit));
+        let cause = self.exact_stop_cause(&error, &surfaces);
+        with_early_stop(so_far, EarlyStop { t, reason, cause })
     }
 
     /// Simulates with the explicit solver, and again with the implicit one if the motion is stiff.
-    fn chosen(
+    fn simulate_automatically(
         &self,
         request: &Request<'_>,
-        choice: Option<Choice>,
+        choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         let explicit = Settings {
-            max_steps_if_stiff: MOST_STIFF_STEPS,
+            max_steps_if_stiff: MAX_STIFF_STEPS,
             ..request.settings()
         };
-        let motion = self.general(request, &explicit, choice, progress)?;
-        let cause = motion.stopped.as_ref().map(|stopped| &stopped.cause);
-        let Some(Cause::Stiff(what)) = cause else {
+        let motion = self.simulate_general(request, &explicit, choice, progress)?;
+        let cause = motion.early_stop.as_ref().map(|stopped| &stopped.cause);
+        let Some(StopCause::Stiff(what)) = cause else {
             return Ok(motion);
         };
         let implicit = Settings {
             method: Method::Radau,
             ..request.settings()
         };
-        let choice = Some(Choice::Stiff(what.clone()));
-        self.general(request, &implicit, choice, progress)
+        let choice = Some(SolverChoice::Stiff(what.clone()));
+        self.simulate_general(request, &implicit, choice, progress)
     }
 
     /// Simulates with a solver that supports any model.
-    fn general(
+    fn simulate_general(
         &self,
         request: &Request<'_>,
         settings: &Settings,
-        choice: Option<Choice>,
+        choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         let is_constrained = !self.model.model().constraints.is_empty();
@@ -208,9 +223,9 @@ impl Instance<'_> {
         }
         // Before the evaluator, whose pivots give a less specific error for dependent constraints.
         let (initial, moved) =
-            self.consistent_start(request.initial, request.span(), request.inputs)?;
+            self.find_consistent_start(request.initial, request.time_span(), request.inputs)?;
         let evaluator = RefCell::new(self.evaluator()?);
-        let mut system = self.driven(&evaluator, request.inputs)?;
+        let mut system = self.driven_model(&evaluator, request.inputs)?;
         if settings.method == Method::Adams {
             // The Adams method uses the preceding steps, so it cannot continue from sticking; it
             // reports the time of sticking instead.
@@ -227,19 +242,19 @@ impl Instance<'_> {
         let auditor = request.audit.then(|| self.auditor(Some(request.tolerance)));
         let system = system.with_auditor(auditor);
         let mut trajectory = Trajectory::default();
-        let asked = (initial.as_slice(), request.span(), request.times);
+        let asked = (initial.as_slice(), request.time_span(), request.times);
         let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
         let so_far = Motion {
-            moved,
-            ..motion(trajectory, request, solver, (choice, system.audit()))
+            initial_changes: moved,
+            ..new_motion(trajectory, request, solver, (choice, system.audit()))
         };
         match ended {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let cause = self.cause(&error, &surfaces);
-                let ended_at = t.unwrap_or(request.span().0);
-                let may_be = matches!(cause, Cause::NotFinite | Cause::Limit);
+                let ended_at = t.unwrap_or(request.time_span().0);
+                let may_be = matches!(cause, StopCause::NotFinite | StopCause::Limit);
                 let passed = system.projection().filter(|_| may_be);
                 let passed = passed.and_then(|projection| {
                     let state = &so_far.trajectory.last;
@@ -251,25 +266,27 @@ impl Instance<'_> {
                         inputs,
                     };
                     evaluator.borrow_mut().rates(point, &mut rates);
-                    let mut watch = projection.watch.borrow_mut();
-                    watch.ended((ended_at, state), &rates, request.inputs)
+                    let mut watch = projection.singularity_watch.borrow_mut();
+                    watch.find_end((ended_at, state), &rates, request.inputs)
                 });
                 let (t, singular) = match passed {
                     Some((passed, reason)) => (Some(passed), Some(reason)),
                     None => (t, None),
                 };
-                let reason = match (system.overlap(), singular) {
+                let reason = match (system.overlap_message(), singular) {
                     (Some(overlap), _) => format!("at t = {ended_at:?} s {overlap}"),
                     (None, Some(reason)) => reason,
-                    (None, None) => self.named((&surfaces, solver), |names| error.named(names)),
+                    (None, None) => {
+                        self.format_named((&surfaces, solver), |names| error.named(names))
+                    }
                 };
-                stopped(so_far, Stopped { t, reason, cause })
+                with_early_stop(so_far, EarlyStop { t, reason, cause })
             }
         }
     }
 
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
-        let driven = self.driven_contact().map(|name| {
+        let driven = self.input_driven_impact().map(|name| {
             format!(
                 "the distance of the impact `{name}` depends on inputs, so the contact jumps when they jump"
             )
@@ -277,41 +294,43 @@ impl Instance<'_> {
         Auditor::new(tolerance, self.model().typical_sizes(), driven)
     }
 
-    fn cause(&self, error: &SolveError, surfaces: &[Surface]) -> Cause {
+    fn cause(&self, error: &SolveError, surfaces: &[Surface]) -> StopCause {
         match error {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
-                Cause::NotFinite
+                StopCause::NotFinite
             }
-            SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => Cause::Switching,
+            SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => StopCause::Switching,
             SolveError::Stiff { state, within, .. } => {
                 let state = &self.model.state_names()[*state];
-                Cause::Stiff(format!(
+                StopCause::Stiff(format!(
                     "the model is stiff: `{state}` settles within {within:.1e} s"
                 ))
             }
-            SolveError::StiffAtSurface { guard, .. } => Cause::Stiff(match surfaces.get(*guard) {
-                Some(surface) => {
-                    format!("stiff near the place where `{}` is zero", surface.formula)
-                }
-                None => "stiff near a switching surface".to_owned(),
-            }),
+            SolveError::StiffAtSurface { guard, .. } => {
+                StopCause::Stiff(match surfaces.get(*guard) {
+                    Some(surface) => {
+                        format!("stiff near the place where `{}` is zero", surface.formula)
+                    }
+                    None => "stiff near a switching surface".to_owned(),
+                })
+            }
             SolveError::Request { .. }
             | SolveError::StepTooSmall { .. }
-            | SolveError::TooManySteps { .. } => Cause::Limit,
+            | SolveError::TooManySteps { .. } => StopCause::Limit,
         }
     }
 
-    fn cause_of_exact(&self, error: &ExactError, surfaces: &[Surface]) -> Cause {
+    fn exact_stop_cause(&self, error: &ExactError, surfaces: &[Surface]) -> StopCause {
         match error {
             ExactError::Stopped(error) => self.cause(error, surfaces),
-            ExactError::Held { .. } => Cause::Switching,
-            ExactError::NotFinite | ExactError::NotPositiveDefinite => Cause::NotFinite,
-            _ => Cause::Limit,
+            ExactError::Held { .. } => StopCause::Switching,
+            ExactError::NotFinite | ExactError::NotPositiveDefinite => StopCause::NotFinite,
+            _ => StopCause::Limit,
         }
     }
 
     /// Formats an error of a solver with the names of the states and of these switching functions.
-    fn named(
+    fn format_named(
         &self,
         (surfaces, solver): (&[Surface], Solver),
         message: impl FnOnce(&Names<'_>) -> String,
@@ -339,7 +358,7 @@ fn propagate(
     request: &Request<'_>,
     (progress, auditor): (&mut dyn FnMut(f64), ExactAudit<'_>),
 ) -> Result<(), ExactError> {
-    let asked = (request.initial, request.span(), request.times);
+    let asked = (request.initial, request.time_span(), request.times);
     let Some((auditor, evaluator)) = auditor else {
         return propagator.simulate_into(trajectory, asked, request.inputs, progress);
     };
@@ -348,39 +367,39 @@ fn propagate(
     let mut energies = |t: f64, state: &[f64]| {
         let inputs = &request.inputs.at(t);
         evaluator.observables(Point { t, state, inputs }, &mut observables);
-        EnergyAt::of(&observables)
+        EnergyAndPower::from_observables(&observables)
     };
     let mut observer = |step: &mut ObservedStep<'_>, is_held: bool| match is_held {
-        true => auditor.leave_out(step, &mut energies, HELD),
-        false => auditor.step(step, &mut energies),
+        true => auditor.exclude_step(step, &mut energies, STICKING_EXCLUSION),
+        false => auditor.audit_step(step, &mut energies),
     };
     let observer = (progress, Some(&mut observer as &mut StepObserver<'_>));
     propagator.simulate_observed(trajectory, asked, request.inputs, observer)
 }
 
 /// Reason for excluding steps during which the exact solver holds the motion on a surface.
-const HELD: &str =
+const STICKING_EXCLUSION: &str =
     "during sticking, the model does not give the power of the force that holds the motion";
 
-fn motion(
+fn new_motion(
     trajectory: Trajectory,
     request: &Request<'_>,
     solver: Solver,
-    (choice, audit): (Option<Choice>, Option<Audit>),
+    (choice, audit): (Option<SolverChoice>, Option<Audit>),
 ) -> Motion {
     Motion {
         trajectory,
         inputs: request.inputs.clone(),
         solver,
-        choice,
-        stopped: None,
-        moved: Vec::new(),
+        solver_choice: choice,
+        early_stop: None,
+        initial_changes: Vec::new(),
         audit,
     }
 }
 
 /// Returns the motion up to the stop; an error if the solver stopped before its first step.
-fn stopped(mut motion: Motion, why: Stopped) -> Result<Motion, Error> {
+fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> {
     // An invalid request may be found after the first sample.
     if motion.trajectory.times.len() <= usize::from(why.t.is_none()) {
         return Err(Error::Stopped {
@@ -388,11 +407,11 @@ fn stopped(mut motion: Motion, why: Stopped) -> Result<Motion, Error> {
             reason: why.reason,
         });
     }
-    motion.stopped = Some(why);
+    motion.early_stop = Some(why);
     Ok(motion)
 }
 
 /// Returns true if another solver may follow the motion.
-fn is_for_the_general(error: &ExactError) -> bool {
+fn may_be_supported_by_general(error: &ExactError) -> bool {
     matches!(error, ExactError::Held { .. } | ExactError::NotConverged)
 }

@@ -19,28 +19,28 @@ use nalgebra::{DMatrix, DVector};
 
 /// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60
 /// degrees.
-const TURNED_LITTLE: f64 = 0.5;
+const MIN_TURN_EIGENVALUE: f64 = 0.5;
 
-const MOST_HALVINGS: u32 = 40;
+const MAX_HALVINGS: u32 = 40;
 
 /// Least singular value of the scaled rows below which constraints count as dependent.
-const SINGULAR: f64 = 1e-3;
+const SINGULAR_VALUE_LIMIT: f64 = 1e-3;
 
 /// Least singular value of the scaled rows below which a motion is extrapolated to a singular
 /// position.
-const NEAR: f64 = 0.1;
+const NEAR_SINGULAR_VALUE_LIMIT: f64 = 0.1;
 
 /// Maximum number of doublings of the extrapolated time, from its rounding on.
-const MOST_DOUBLINGS: i32 = 52;
+const MAX_DOUBLINGS: i32 = 52;
 
 /// Smallest coefficient of a constraint in the dependent combination, relative to the largest, at
 /// which an error names it.
-const TAKES_PART: f64 = 0.1;
+const MIN_NAMED_COEFFICIENT: f64 = 0.1;
 
 /// Number of states kept before the present one: the starts of this step and the preceding one.
-const REMEMBERED: usize = 2;
+const KEPT_STATES: usize = 2;
 
-struct Passed {
+struct WatchedState {
     t: f64,
     state: Vec<f64>,
     /// The orthonormal rows F.
@@ -48,7 +48,7 @@ struct Passed {
     /// Least singular value of the scaled rows.
     least: f64,
     /// Combination of the constraints for the least singular value.
-    combined: DVector<f64>,
+    dependent_combination: DVector<f64>,
 }
 
 /// States on a path, by the time (s).
@@ -60,7 +60,7 @@ pub(crate) struct SingularityWatch {
     names: Vec<String>,
     /// Largest length of each row up to now; a single row may vanish.
     lengths: Vec<f64>,
-    passed: Vec<Passed>,
+    passed: Vec<WatchedState>,
     found: Option<(f64, String)>,
 }
 
@@ -76,43 +76,50 @@ impl SingularityWatch {
     }
 
     /// Returns true if the motion passes a singular position between the last state and this one.
-    pub(crate) fn passes(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> bool {
+    pub(crate) fn passes_singularity(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        inputs: &HeldInputs,
+    ) -> bool {
         // The solver rejected steps to later times.
         self.passed.retain(|earlier| earlier.t < t);
-        let Some(here) = self.at(t, state.to_vec(), inputs) else {
+        let Some(here) = self.watch_state(t, state.to_vec(), inputs) else {
             return false;
         };
         if let Some(last) = self.passed.pop() {
             let path = cubic(&last, &here, self.degrees());
-            let fold = self.fold_between(&last, &here, &path, inputs);
+            let fold = self.find_singularity_between(&last, &here, &path, inputs);
             self.passed.push(last);
             if let Some(fold) = fold {
-                self.found = Some(self.report(&fold));
+                self.found = Some(self.describe_singularity(&fold));
                 return true;
             }
         }
         self.passed.push(here);
-        let forgotten = self.passed.len().saturating_sub(REMEMBERED);
+        let forgotten = self.passed.len().saturating_sub(KEPT_STATES);
         self.passed.drain(..forgotten);
         false
     }
 
     /// Returns the time (s) of the singular position that stopped the motion, and a message;
     /// `None` if there is none. The solver stopped at `t` (s) and `state`, with these rates.
-    pub(crate) fn ended(
+    pub(crate) fn find_end(
         &mut self,
         (t, state): (f64, &[f64]),
         rates: &[f64],
         inputs: &HeldInputs,
     ) -> Option<(f64, String)> {
-        let ahead = self.at(t, state.to_vec(), inputs).and_then(|last| {
-            if last.least > NEAR {
-                return None;
-            }
-            let fold = self.fold_ahead(&last, rates, inputs);
-            let fold = fold.or((last.least <= SINGULAR).then_some(last))?;
-            Some(self.report(&fold))
-        });
+        let ahead = self
+            .watch_state(t, state.to_vec(), inputs)
+            .and_then(|last| {
+                if last.least > NEAR_SINGULAR_VALUE_LIMIT {
+                    return None;
+                }
+                let fold = self.find_singularity_ahead(&last, rates, inputs);
+                let fold = fold.or((last.least <= SINGULAR_VALUE_LIMIT).then_some(last))?;
+                Some(self.describe_singularity(&fold))
+            });
         ahead.or_else(|| self.found.clone())
     }
 
@@ -128,7 +135,12 @@ impl SingularityWatch {
         })
     }
 
-    fn at(&mut self, t: f64, state: Vec<f64>, inputs: &HeldInputs) -> Option<Passed> {
+    fn watch_state(
+        &mut self,
+        t: f64,
+        state: Vec<f64>,
+        inputs: &HeldInputs,
+    ) -> Option<WatchedState> {
         let rows = self.scaled_rows(t, &state, inputs);
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
@@ -139,30 +151,35 @@ impl SingularityWatch {
         for value in squares.eigenvalues.iter_mut() {
             *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
         }
-        Some(Passed {
+        Some(WatchedState {
             t,
             state,
             frame: squares.recompose() * rows,
             least: least.max(0.0).sqrt(),
-            combined,
+            dependent_combination: combined,
         })
     }
 
-    fn fold_between(
+    fn find_singularity_between(
         &mut self,
-        a: &Passed,
-        b: &Passed,
+        a: &WatchedState,
+        b: &WatchedState,
         path: &Path<'_>,
         inputs: &HeldInputs,
-    ) -> Option<Passed> {
+    ) -> Option<WatchedState> {
         let t = 0.5 * (a.t + b.t);
-        let middle = self.at(t, path(t), inputs)?;
-        let first = self.search((a, &middle), path, inputs, MOST_HALVINGS);
-        first.or_else(|| self.search((&middle, b), path, inputs, MOST_HALVINGS))
+        let middle = self.watch_state(t, path(t), inputs)?;
+        let first = self.search((a, &middle), path, inputs, MAX_HALVINGS);
+        first.or_else(|| self.search((&middle, b), path, inputs, MAX_HALVINGS))
     }
 
     /// Returns the singular position that the extrapolated motion reaches, if there is one.
-    fn fold_ahead(&mut self, last: &Passed, rates: &[f64], inputs: &HeldInputs) -> Option<Passed> {
+    fn find_singularity_ahead(
+        &mut self,
+        last: &WatchedState,
+        rates: &[f64],
+        inputs: &HeldInputs,
+    ) -> Option<WatchedState> {
         let degrees = self.degrees();
         let path = |t: f64| {
             let (time, mut state) = (t - last.t, last.state.clone());
@@ -173,11 +190,11 @@ impl SingularityWatch {
             }
             state
         };
-        for doubling in 0..MOST_DOUBLINGS {
+        for doubling in 0..MAX_DOUBLINGS {
             let t = last.t + f64::EPSILON * last.t.abs() * 2.0_f64.powi(doubling);
-            let there = self.at(t, path(t), inputs)?;
-            let fold = self.search((last, &there), &path, inputs, MOST_HALVINGS);
-            if fold.is_some() || there.least > 2.0 * NEAR {
+            let there = self.watch_state(t, path(t), inputs)?;
+            let fold = self.search((last, &there), &path, inputs, MAX_HALVINGS);
+            if fold.is_some() || there.least > 2.0 * NEAR_SINGULAR_VALUE_LIMIT {
                 return fold;
             }
         }
@@ -190,18 +207,18 @@ impl SingularityWatch {
 
     fn search(
         &mut self,
-        (a, b): (&Passed, &Passed),
+        (a, b): (&WatchedState, &WatchedState),
         path: &Path<'_>,
         inputs: &HeldInputs,
         halvings: u32,
-    ) -> Option<Passed> {
+    ) -> Option<WatchedState> {
         let turned = &a.frame * b.frame.transpose();
         let symmetric = 0.5 * (&turned + turned.transpose());
-        if symmetric_eigen(&symmetric)?.eigenvalues.min() > TURNED_LITTLE {
+        if symmetric_eigen(&symmetric)?.eigenvalues.min() > MIN_TURN_EIGENVALUE {
             return None;
         }
         let t = a.t + 0.5 * (b.t - a.t);
-        let middle = self.at(t, path(t), inputs)?;
+        let middle = self.watch_state(t, path(t), inputs)?;
         if halvings == 0 || t <= a.t || t >= b.t {
             return Some(middle);
         }
@@ -209,14 +226,14 @@ impl SingularityWatch {
         first.or_else(|| self.search((&middle, b), path, inputs, halvings - 1))
     }
 
-    fn report(&self, fold: &Passed) -> (f64, String) {
-        (fold.t, self.reason(fold.t, &fold.combined))
+    fn describe_singularity(&self, fold: &WatchedState) -> (f64, String) {
+        (fold.t, self.reason(fold.t, &fold.dependent_combination))
     }
 
     fn reason(&self, t: f64, combined: &DVector<f64>) -> String {
         let parts = self.names.iter().zip(combined.iter());
         let names: Vec<String> = parts
-            .filter(|(_, part)| part.abs() > TAKES_PART * combined.amax())
+            .filter(|(_, part)| part.abs() > MIN_NAMED_COEFFICIENT * combined.amax())
             .map(|(name, _)| format!("`{name}`"))
             .collect();
         let what = match &names[..] {
@@ -235,7 +252,7 @@ impl SingularityWatch {
     }
 }
 
-fn cubic(a: &Passed, b: &Passed, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
+fn cubic(a: &WatchedState, b: &WatchedState, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {
     let (begin, step) = (a.t, b.t - a.t);
     let (from, to) = (a.state.clone(), b.state.clone());
     move |t| {

@@ -3,17 +3,17 @@
 use eomgen_codegen::independence::vectors::largest;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-use super::{CORRECTIONS, Contacts, OF_A_DISTANCE, Overlap, rounding_of};
+use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap, distance_rounding};
 
 /// A distance below zero by more than this part of the largest coordinate is no error of a step. For a closed
 /// contact the same part of its distance before the correction may remain after it.
-const OVERLAP: f64 = 1e-6;
+const MAX_OVERLAP_FRACTION: f64 = 1e-6;
 
 impl Contacts {
     /// Corrects a state onto the closed contacts, opens contacts whose force would pull, and
     /// returns the number of evaluations. A state in which bodies overlap is replaced by NaN,
     /// which stops the motion.
-    pub fn keep(
+    pub fn correct_state(
         &mut self,
         own: &mut Evaluator,
         (t, inputs): (f64, &[f64]),
@@ -26,7 +26,7 @@ impl Contacts {
         let mut arrived = vec![0.0; self.names.len()];
         own.distances(Point { t, state, inputs }, &mut arrived);
         if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
-            return self.end_overlapping(place, state);
+            return self.stop_overlapping(place, state);
         }
         if self.closed.is_empty() {
             return 0;
@@ -34,23 +34,23 @@ impl Contacts {
         for _ in 0..CORRECTIONS {
             own.impacts(Point { t, state, inputs }, &mut self.at);
             let (coordinates, rates) = state.split_at_mut(degrees);
-            let corrections = self.balanced(&self.closed, |impact| impact.distance);
-            self.push(&self.closed, &corrections, coordinates);
-            let corrections = self.balanced(&self.closed, |impact| impact.rate);
-            self.push(&self.closed, &corrections, rates);
+            let corrections = self.solve_balance(&self.closed, |impact| impact.distance);
+            self.add_impulses(&self.closed, &corrections, coordinates);
+            let corrections = self.solve_balance(&self.closed, |impact| impact.rate);
+            self.add_impulses(&self.closed, &corrections, rates);
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let is_left = |place: &&usize| {
             let (before, after) = (arrived[**place], self.at[**place].distance);
-            is_below(after, OVERLAP * self.size.max(before.abs()))
+            is_below(after, MAX_OVERLAP_FRACTION * self.size.max(before.abs()))
         };
         if let Some(place) = self.closed.iter().find(is_left) {
-            return self.end_overlapping(*place, state);
+            return self.stop_overlapping(*place, state);
         }
         let pulls = |(place, force): (&usize, f64)| force + self.allowances[*place] < 0.0;
         if self.closed.iter().zip(self.forces()).any(pulls) {
             let touching = std::mem::take(&mut self.closed);
-            self.close(&touching, rounding_of(state, degrees, t));
+            self.close(&touching, distance_rounding(state, degrees, t));
         }
         CORRECTIONS as u64 + 1
     }
@@ -63,23 +63,23 @@ impl Contacts {
         point: Point<'_>,
         distances: &[f64],
     ) -> Option<usize> {
-        let deepest = OVERLAP * self.size;
+        let deepest = MAX_OVERLAP_FRACTION * self.size;
         let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
         open.find(|place| is_below(distances[*place], deepest))?;
         own.impacts(point, &mut self.at);
         let degrees = own.program().degrees_of_freedom();
-        let located = rounding_of(point.state, degrees, point.t);
+        let located = distance_rounding(point.state, degrees, point.t);
         let elapsed = point.t - self.start.unwrap_or(point.t);
         let rounding = |place: usize| {
             let impact = &self.at[place];
             let covered = elapsed * (impact.rate.abs() + elapsed * impact.acceleration.abs());
-            located + OF_A_DISTANCE * covered
+            located + DISTANCE_ROUNDING * covered
         };
         let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
         open.find(|place| is_below(distances[*place], deepest + rounding(*place)))
     }
 
-    fn end_overlapping(&mut self, place: usize, state: &mut [f64]) -> u64 {
+    fn stop_overlapping(&mut self, place: usize, state: &mut [f64]) -> u64 {
         self.overlap = Some((place, Overlap::Penetrated));
         state.fill(f64::NAN);
         1

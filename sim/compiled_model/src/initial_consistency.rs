@@ -11,26 +11,26 @@ use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::contacts::Start;
-use crate::driven::Driven;
+use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::projection::{LARGE_RATE, Moved, Projection};
-use crate::singular::SingularityWatch;
+use crate::projection::{InitialChange, LARGE_RATE_PER_S, Projection};
+use crate::singular_positions::SingularityWatch;
 
-const MOST_AT_THE_START: usize = 100;
+const MAX_INITIAL_CORRECTIONS: usize = 100;
 
 /// Derivatives are dependent if less than this fraction of one remains after the others are
 /// eliminated.
-const INDEPENDENT: f64 = 1e-9;
+const MIN_INDEPENDENT_FRACTION: f64 = 1e-9;
 
 /// Smallest coefficient of a constraint in a dependent combination, relative to the largest, at
 /// which an error names it.
-const TAKES_PART: f64 = 1e-6;
+const MIN_NAMED_COEFFICIENT: f64 = 1e-6;
 
 /// Dependent constraints are contradictory if their combined residual exceeds this fraction of its
 /// largest term. A smaller residual may be curvature, if the initial state does not satisfy the
 /// constraints.
-const CONTRADICTION: f64 = 0.1;
+const MIN_CONTRADICTION_FRACTION: f64 = 0.1;
 
 impl Instance<'_> {
     /// Returns the solvers' system of this instance: projected onto the constraints, with impacts
@@ -39,17 +39,19 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
-    pub fn driven<'d>(
+    pub fn driven_model<'d>(
         &self,
         evaluator: &'d RefCell<Evaluator>,
         inputs: &'d HeldInputs,
-    ) -> Result<Driven<&'d RefCell<Evaluator>, &'d HeldInputs>, Error> {
+    ) -> Result<DrivenModel<&'d RefCell<Evaluator>, &'d HeldInputs>, Error> {
         let impacts = self.model().model().impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
-        let driven = Driven::new(evaluator, inputs)
+        let driven = DrivenModel::new(evaluator, inputs)
             .with_typical_sizes(self.model().typical_sizes())
             .with_projection(self.projection()?);
-        Ok(driven.with_impacts(impacts).with_sliding(self.sided()?))
+        Ok(driven
+            .with_impacts(impacts)
+            .with_sliding(self.sided_model()?))
     }
 
     /// Returns the projection onto the constraints; `None` without constraints.
@@ -60,7 +62,11 @@ impl Instance<'_> {
         if self.model().model().constraints.is_empty() {
             return Ok(None);
         }
-        let at = |rate: f64| self.stabilised(rate).evaluator().map(RefCell::new);
+        let at = |rate: f64| {
+            self.with_stabilisation_rate(rate)
+                .evaluator()
+                .map(RefCell::new)
+        };
         let constraints = self.model().model().constraints.iter();
         let names = constraints
             .map(|constraint| constraint.name.clone())
@@ -69,10 +75,10 @@ impl Instance<'_> {
             return Ok(None);
         };
         Ok(Some(Projection {
-            watch: RefCell::new(SingularityWatch::new(rows, names)),
-            plus: at(LARGE_RATE)?,
-            minus: at(-LARGE_RATE)?,
-            own_rate: self.value(STABILISATION_RATE).unwrap_or(0.0),
+            singularity_watch: RefCell::new(SingularityWatch::new(rows, names)),
+            positive_rate_model: at(LARGE_RATE_PER_S)?,
+            negative_rate_model: at(-LARGE_RATE_PER_S)?,
+            stabilisation_rate: self.value(STABILISATION_RATE).unwrap_or(0.0),
         }))
     }
 
@@ -82,13 +88,13 @@ impl Instance<'_> {
     /// # Errors
     /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
     /// satisfies the constraints; the message names them.
-    pub fn consistent(
+    pub fn find_consistent_state(
         &self,
         state: &[f64],
         t: f64,
         inputs: &HeldInputs,
-    ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
-        self.consistent_start(state, (t, t), inputs)
+    ) -> Result<(Vec<f64>, Vec<InitialChange>), Error> {
+        self.find_consistent_start(state, (t, t), inputs)
     }
 
     /// Returns a consistent state for a motion over a time span, s. A negative distance of an
@@ -96,23 +102,23 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::consistent`].
-    pub(crate) fn consistent_start(
+    pub(crate) fn find_consistent_start(
         &self,
         state: &[f64],
         (t, until): (f64, f64),
         inputs: &HeldInputs,
-    ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
+    ) -> Result<(Vec<f64>, Vec<InitialChange>), Error> {
         let inputs = &inputs.at(t);
         let projection = match self.projection() {
             Ok(Some(projection)) => projection,
             Ok(None) => {
                 let mut found = state.to_vec();
-                self.bring_above_zero((t, until), &mut found, inputs)?;
+                self.remove_rounding_overlap((t, until), &mut found, inputs)?;
                 return Ok((found, Vec::new()));
             }
             // If constraints are dependent at every state, no pivot is positive.
             Err(error) => {
-                let reason = self.dependent(t, state, inputs)?;
+                let reason = self.describe_dependent_constraint(t, state, inputs)?;
                 return Err(reason.map_or(error, Error::Request));
             }
         };
@@ -120,20 +126,20 @@ impl Instance<'_> {
         let mut found = state.to_vec();
         let at = (t, &inputs[..]);
         if projection
-            .correct(&mut own, at, &mut found, MOST_AT_THE_START)
+            .correct(&mut own, at, &mut found, MAX_INITIAL_CORRECTIONS)
             .is_none()
         {
-            let error = match self.dependent(t, state, inputs)? {
+            let error = match self.describe_dependent_constraint(t, state, inputs)? {
                 Some(reason) => Error::Request(reason),
-                None => self.not_kept(t, &found, inputs),
+                None => self.unsatisfied_constraints_error(t, &found, inputs),
             };
             return Err(error);
         }
         // Rounding can make a correction succeed although constraints are dependent.
-        if let Some(reason) = self.dependent(t, &found, inputs)? {
+        if let Some(reason) = self.describe_dependent_constraint(t, &found, inputs)? {
             return Err(Error::Request(reason));
         }
-        self.bring_above_zero((t, until), &mut found, inputs)?;
+        self.remove_rounding_overlap((t, until), &mut found, inputs)?;
         let names = self.model().state_names();
         let units = self.model().state_units();
         let largest = state
@@ -143,11 +149,11 @@ impl Instance<'_> {
         let entries = names.into_iter().zip(units).zip(state.iter().zip(&found));
         let moved = entries
             .filter(|(_, (from, to))| (*from - *to).abs() > 1e-12 * largest)
-            .map(|((name, unit), (from, to))| Moved {
+            .map(|((name, unit), (from, to))| InitialChange {
                 name,
                 unit,
-                from: *from,
-                to: *to,
+                requested: *from,
+                used: *to,
             });
         Ok((found.clone(), moved.collect()))
     }
@@ -156,7 +162,7 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// [`Error::Request`] with the name of an impact whose distance is more negative.
-    fn bring_above_zero(
+    fn remove_rounding_overlap(
         &self,
         (t, until): (f64, f64),
         state: &mut [f64],
@@ -172,11 +178,11 @@ impl Instance<'_> {
             .collect();
         let start = Start {
             t,
-            until,
+            end: until,
             inputs,
             lengths: &lengths,
         };
-        let below = start.onto_contacts(&mut self.evaluator()?, state);
+        let below = start.move_onto_contacts(&mut self.evaluator()?, state);
         below.map_err(|(place, distance)| {
             let impact = &impacts[place];
             Error::Request(format!(
@@ -201,7 +207,12 @@ impl Instance<'_> {
 
     /// Returns an error text if a constraint has a zero, infinite or dependent derivative at a
     /// state, and whether it contradicts the others.
-    fn dependent(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Option<String>, Error> {
+    fn describe_dependent_constraint(
+        &self,
+        t: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Option<String>, Error> {
         let point = Point { t, state, inputs };
         let Some(mut rows) = self.constraint_rows() else {
             return Ok(None);
@@ -226,7 +237,7 @@ impl Instance<'_> {
         for (row, length) in all.iter_mut().zip(&lengths) {
             row.iter_mut().for_each(|entry| *entry /= length);
         }
-        let Some(parts) = dependent_combination(&all, INDEPENDENT) else {
+        let Some(parts) = dependent_combination(&all, MIN_INDEPENDENT_FRACTION) else {
             return Ok(None);
         };
         let last = parts.iter().rposition(|part| *part != 0.0).unwrap_or(0);
@@ -234,22 +245,22 @@ impl Instance<'_> {
             .iter()
             .fold(0.0_f64, |most, part| most.max(part.abs()));
         let others: Vec<usize> = (0..last)
-            .filter(|place| parts[*place].abs() > TAKES_PART * most)
+            .filter(|place| parts[*place].abs() > MIN_NAMED_COEFFICIENT * most)
             .collect();
         let part = |place: usize| {
             parts[place] / lengths[place] * residuals[place] / (parts[last] / lengths[last])
         };
         let combined = others.iter().chain([&last]).map(|place| part(*place));
-        let depends = Depends {
+        let depends = DependentConstraint {
             constraint: &constraints[last],
             on: others.iter().map(|place| &constraints[*place]).collect(),
-            apart: combined.clone().sum(),
+            combined_residual: combined.clone().sum(),
             scale: combined.map(f64::abs).fold(0.0, f64::max),
         };
         Ok(Some(depends.reason()))
     }
 
-    fn not_kept(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
+    fn unsatisfied_constraints_error(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
         let constraints = &self.model().model().constraints;
         let rows = self.constraint_rows();
         let residuals = rows.map(|mut rows| rows.residuals(Point { t, state, inputs }));
@@ -274,16 +285,16 @@ impl Instance<'_> {
 }
 
 /// A constraint whose derivative is a linear combination of the derivatives of others.
-struct Depends<'a> {
+struct DependentConstraint<'a> {
     constraint: &'a Constraint,
     on: Vec<&'a Constraint>,
     /// Residual minus the same combination of the other residuals.
-    apart: f64,
+    combined_residual: f64,
     /// Largest term of that combination.
     scale: f64,
 }
 
-impl Depends<'_> {
+impl DependentConstraint<'_> {
     /// Returns the error text: a contradiction if the residuals do not satisfy the combination,
     /// otherwise a singular position.
     fn reason(&self) -> String {
@@ -291,11 +302,11 @@ impl Depends<'_> {
         let (name, others) = (&self.constraint.name, names.join(", "));
         let kind = self.constraint.is_nonholonomic;
         let of_one_kind = self.on.iter().all(|on| on.is_nonholonomic == kind);
-        if of_one_kind && self.apart.abs() > CONTRADICTION * self.scale {
+        if of_one_kind && self.combined_residual.abs() > MIN_CONTRADICTION_FRACTION * self.scale {
             return format!(
                 "the constraint `{name}` contradicts {others} at the initial state: they restrict the \
                  same motion, and a residual of {:.3e} {} remains; remove or correct one of them",
-                self.apart.abs(),
+                self.combined_residual.abs(),
                 self.constraint.unit
             );
         }

@@ -10,13 +10,13 @@ use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
 /// The program of a model with its Jacobians; its machine code is compiled at the first use.
-pub(crate) struct Differentiated {
+pub(crate) struct JacobianProgram {
     pub(crate) program: Program,
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
 }
 
-impl Differentiated {
-    pub(crate) fn of(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
+impl JacobianProgram {
+    pub(crate) fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         let outputs = [Output::Jacobians, Output::TimeDerivatives];
         let program = Variant::derive_to_read(model, orders, &outputs)?.program;
         Ok(Self {
@@ -25,7 +25,7 @@ impl Differentiated {
         })
     }
 
-    pub(crate) fn code(&self) -> Option<&Arc<dyn MachineCode>> {
+    pub(crate) fn machine_code(&self) -> Option<&Arc<dyn MachineCode>> {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         code.as_ref()
     }

@@ -16,10 +16,10 @@ use crate::jacobians::Jacobian;
 use crate::operating_point::OperatingPoint;
 
 /// Pivots below this fraction of the largest entry count as 0.
-const RANK: f64 = 1e-10;
+const MIN_PIVOT: f64 = 1e-10;
 
 /// Largest change of a rate that counts as none, relative to its largest term.
-const UNCHANGED: f64 = 1e-9;
+const MAX_UNCHANGED_FRACTION: f64 = 1e-9;
 
 /// Displacements along a candidate, relative to the scale of its coordinate.
 const DISPLACEMENTS: [f64; 3] = [0.37, 1.0, -2.6];
@@ -30,13 +30,13 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::jacobian_evaluator`].
-    pub fn cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
+    pub fn find_cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
         let degrees = self.model().program().degrees_of_freedom();
         let scales = self.natural_scales()?;
         let mut rates = self.accelerations(&mut self.interpreter()?, at);
         let matrix = self
             .interpreted_jacobians()?
-            .dense(Jacobian::RatesByState, at.point());
+            .evaluate_dense(Jacobian::RatesByState, at.point());
         let states = at.state.len();
         let row = |row: usize| &matrix[(degrees + row) * states..][..states];
         let rows: Vec<Vec<f64>> = (0..rates.len())
@@ -84,11 +84,11 @@ impl Instance<'_> {
                         .zip(direction)
                         .map(|(entry, speed)| (entry * way * speed).abs());
                     let size = added.fold(sizes[r], f64::max);
-                    (*here - there).abs() <= UNCHANGED * size
+                    (*here - there).abs() <= MAX_UNCHANGED_FRACTION * size
                 })
             })
         };
-        let mut found = null_directions(&rows, degrees);
+        let mut found = null_space_basis(&rows, degrees);
         found.retain(|direction| is_cyclic(direction));
         Ok(found)
     }
@@ -97,7 +97,7 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
-    pub fn repeats_with_a_turn(
+    pub fn repeats_after_turn(
         &self,
         coordinate: usize,
         states: &[(f64, &[f64])],
@@ -108,7 +108,7 @@ impl Instance<'_> {
             let at = OperatingPoint {
                 t: *t,
                 state: state.to_vec(),
-                inputs: self.model().usual_inputs(),
+                inputs: self.model().default_inputs(),
             };
             let mut turned = at.clone();
             turned.state[coordinate] += std::f64::consts::TAU;
@@ -121,7 +121,7 @@ impl Instance<'_> {
                 .map(|[rates, _]| rates[row].abs())
                 .fold(0.0, f64::max);
             let mut differences = pairs.iter().map(|[a, b]| (a[row] - b[row]).abs());
-            differences.all(|difference| difference <= UNCHANGED * size)
+            differences.all(|difference| difference <= MAX_UNCHANGED_FRACTION * size)
         }))
     }
 
@@ -157,7 +157,7 @@ impl Instance<'_> {
         let model = self.model().model();
         let ranges = model
             .coordinate_ranges()
-            .map_err(|error| Error::model(model, error))?;
+            .map_err(|error| Error::from_model_error(model, error))?;
         let of_kind = |dimension: Dimension| dimension.is_none().then_some(1.0);
         let coordinates = model
             .coordinates
@@ -176,7 +176,7 @@ impl Instance<'_> {
 
 /// Returns a basis of the null space of a matrix given by rows; each vector has a 1 at an index
 /// where the others have 0. Rows and columns may have different units.
-fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
+fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
     let row_sizes = rows.iter().map(largest);
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()
@@ -203,7 +203,7 @@ fn null_directions(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         let free = (0..matrix.len()).filter(|row| !is_taken(&pivots, *row));
         let entries = free.flat_map(|row| (0..columns).map(move |column| (row, column)));
         let best = entries.max_by(|a, b| matrix[a.0][a.1].abs().total_cmp(&matrix[b.0][b.1].abs()));
-        let Some((row, column)) = best.filter(|(r, c)| matrix[*r][*c].abs() > RANK) else {
+        let Some((row, column)) = best.filter(|(r, c)| matrix[*r][*c].abs() > MIN_PIVOT) else {
             break;
         };
         let pivot = matrix[row][column];
@@ -264,11 +264,11 @@ weight = "-w*cos(theta)"
 
     #[test]
     fn coupled_wheels_and_free_rack_are_cyclic_directions() {
-        let model = CompiledModel::of_text("machine.toml", MACHINE, Orders::Declared);
+        let model = CompiledModel::from_text("machine.toml", MACHINE, Orders::Declared);
         let model = model.expect("a model");
-        let run = model.at_declared().expect("an instance");
+        let run = model.with_declared_parameters().expect("an instance");
         let at = run.operating_point(&[]).expect("a point");
-        let found = run.cyclic_directions(&at).expect("directions");
+        let found = run.find_cyclic_directions(&at).expect("directions");
         assert_eq!(found.len(), 2, "{found:?}");
         let wheels = found
             .iter()
@@ -281,7 +281,7 @@ weight = "-w*cos(theta)"
         assert!(found.contains(&vec![0.0, 0.0, 1.0, 0.0]), "{found:?}");
         let states = [(0.0, &at.state[..])];
         let repeats = |coordinate| {
-            run.repeats_with_a_turn(coordinate, &states)
+            run.repeats_after_turn(coordinate, &states)
                 .expect("an answer")
         };
         assert_eq!([0, 1, 3].map(repeats), [false, false, true]);

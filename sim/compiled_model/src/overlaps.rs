@@ -5,7 +5,7 @@ use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::ode::UNMOVED_PART;
 
-use crate::audit::{ERROR_FACTOR, allowed_change};
+use crate::audit::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::Motion;
@@ -25,7 +25,7 @@ pub struct Overlap {
 
 impl Overlap {
     /// Returns a warning with the impact, its distance and the time.
-    pub fn warning(&self) -> String {
+    pub fn warning_message(&self) -> String {
         let Self {
             impact,
             t,
@@ -45,7 +45,7 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
-    pub fn first_overlap_of(
+    pub fn find_first_overlap(
         &self,
         motion: &Motion,
         tolerance: f64,
@@ -63,17 +63,17 @@ impl Instance<'_> {
                 *size = size.max(entry.abs());
             }
             let inputs = &motion.inputs.at(t);
-            let distances = distances(&mut evaluator, Point { t, state, inputs });
+            let distances = evaluate_distances(&mut evaluator, Point { t, state, inputs });
             for (place, distance) in distances.iter().enumerate() {
                 if *distance >= 0.0 {
                     continue;
                 }
                 let of_impact = &mut |state: &[f64]| {
                     let point = Point { t, state, inputs };
-                    self::distances(&mut evaluator, point)[place]
+                    self::evaluate_distances(&mut evaluator, point)[place]
                 };
-                let change = allowed_change(state, &sizes, tolerance, of_impact);
-                let tolerance = ERROR_FACTOR * change;
+                let change = find_allowed_change(state, &sizes, tolerance, of_impact);
+                let tolerance = TOLERANCE_ERROR_FACTOR * change;
                 if distance.is_nan() || *distance < -tolerance {
                     return Ok(Some(Overlap {
                         impact: impacts[place].name.clone(),
@@ -87,7 +87,7 @@ impl Instance<'_> {
         Ok(None)
     }
 
-    pub(crate) fn driven_contact(&self) -> Option<&str> {
+    pub(crate) fn input_driven_impact(&self) -> Option<&str> {
         let program = self.model().program();
         let is_driven = |op: &Op| matches!(op, Op::Input(_));
         let mut impacts = program.impacts.iter();
@@ -102,7 +102,7 @@ impl Instance<'_> {
     }
 }
 
-fn distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+fn evaluate_distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
     let mut distances = vec![0.0; evaluator.program().impacts.len()];
     evaluator.distances(point, &mut distances);
     distances

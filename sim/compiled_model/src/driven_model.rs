@@ -9,27 +9,27 @@ use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ObservedStep, Surface, System, jacobian_by_differences};
 
-use crate::audit::{Audit, Auditor, EnergyAt};
+use crate::audit::{Audit, Auditor, EnergyAndPower};
 use crate::contacts::Contacts;
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
-use crate::sliding::{Sided, Sliding};
+use crate::sticking::{SidedModel, SurfaceStates};
 
 /// A compiled model with its inputs, as the solvers' system; it owns or borrows both. The mass
 /// matrix must be positive definite at the evaluator's parameters.
-pub struct Driven<E, I> {
+pub struct DrivenModel<E, I> {
     evaluator: E,
     inputs: I,
     jacobians: Option<RefCell<JacobianEvaluator>>,
     projection: Option<Projection>,
     contacts: Option<RefCell<Contacts>>,
-    sliding: Option<RefCell<Sliding>>,
+    sliding: Option<RefCell<SurfaceStates>>,
     auditor: Option<RefCell<Auditor>>,
     /// Typical sizes of the states; empty if all are 1.
     typical_sizes: Vec<f64>,
 }
 
-impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Combines an evaluator, prepared at its parameters, with inputs.
     pub fn new(evaluator: E, inputs: I) -> Self {
         Self {
@@ -61,21 +61,21 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     }
 
     /// Returns energy and power, with the forces during sticking and those of contacts at rest.
-    fn energies(&self, t: f64, state: &[f64]) -> EnergyAt {
+    fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
-        match self.sliding.as_ref().filter(|_| self.slides()) {
+        match self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
             Some(sliding) => {
                 let inputs = &self.inputs.borrow().at(t);
                 let mut sliding = sliding.borrow_mut();
-                sliding.observables((t, state), inputs, &mut observables);
+                sliding.write_observables((t, state), inputs, &mut observables);
             }
-            None => self.at(t, state, |evaluator, point| {
+            None => self.evaluate_at(t, state, |evaluator, point| {
                 evaluator.observables(point, &mut observables);
             }),
         }
-        let mut found = EnergyAt::of(&observables);
+        let mut found = EnergyAndPower::from_observables(&observables);
         if let Some(contacts) = &self.contacts {
-            found.power += self.at(t, state, |evaluator, point| {
+            found.power += self.evaluate_at(t, state, |evaluator, point| {
                 contacts.borrow_mut().power(evaluator, point)
             });
         }
@@ -95,15 +95,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
 
     /// Enables sticking on switching surfaces, as under dry friction, at the same parameters. The
     /// system keeps the state of sticking, so use it for one motion only.
-    pub fn with_sliding(mut self, sided: Option<Sided>) -> Self {
-        self.sliding = sided.map(|sided| RefCell::new(Sliding::new(sided)));
+    pub fn with_sliding(mut self, sided: Option<SidedModel>) -> Self {
+        self.sliding = sided.map(|sided| RefCell::new(SurfaceStates::new(sided)));
         self
     }
 
     /// Returns the model with sides, for use with another motion.
-    pub fn into_sided(self) -> Option<Sided> {
+    pub fn into_sided_model(self) -> Option<SidedModel> {
         let sliding = self.sliding?;
-        Some(sliding.into_inner().into_sided())
+        Some(sliding.into_inner().into_sided_model())
     }
 
     pub(crate) fn projection(&self) -> Option<&Projection> {
@@ -111,18 +111,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     }
 
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
-    pub(crate) fn overlap(&self) -> Option<String> {
+    pub(crate) fn overlap_message(&self) -> Option<String> {
         self.contacts.as_ref()?.borrow().overlap()
     }
 
-    fn rests(&self) -> bool {
+    fn has_closed_contacts(&self) -> bool {
         let contacts = self.contacts.as_ref();
-        contacts.is_some_and(|contacts| contacts.borrow().rest())
+        contacts.is_some_and(|contacts| contacts.borrow().has_closed())
     }
 
     /// Returns true if surfaces hold the motion, so that the signs of the switching functions do
     /// not determine the rates.
-    fn slides(&self) -> bool {
+    fn is_sticking_active(&self) -> bool {
         let sliding = self.sliding.as_ref();
         sliding.is_some_and(|sliding| sliding.borrow().is_active())
     }
@@ -139,7 +139,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
 
     /// Calls `of` with the evaluator and the point of a time and a state, with the inputs at that
     /// time.
-    fn at<T>(&self, t: f64, state: &[f64], of: impl FnOnce(&mut Evaluator, Point<'_>) -> T) -> T {
+    fn evaluate_at<T>(
+        &self,
+        t: f64,
+        state: &[f64],
+        of: impl FnOnce(&mut Evaluator, Point<'_>) -> T,
+    ) -> T {
         let inputs = &self.inputs.borrow().at(t);
         of(&mut self.evaluator(), Point { t, state, inputs })
     }
@@ -180,24 +185,24 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         for (place, coordinate) in state[..degrees].iter_mut().enumerate() {
             *coordinate = size / (place + 2) as f64;
         }
-        self.at(0.0, &state, |evaluator, point| {
+        self.evaluate_at(0.0, &state, |evaluator, point| {
             evaluator.guards(point, &mut values);
         });
         values
     }
 }
 
-impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, I> {
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenModel<E, I> {
     fn states(&self) -> usize {
         self.evaluator().program().states()
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        if let Some(sliding) = self.sliding.as_ref().filter(|_| self.slides()) {
+        if let Some(sliding) = self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
             let inputs = &self.inputs.borrow().at(t);
-            return sliding.borrow_mut().rates((t, y), inputs, out);
+            return sliding.borrow_mut().write_rates((t, y), inputs, out);
         }
-        self.at(t, y, |evaluator, point| {
+        self.evaluate_at(t, y, |evaluator, point| {
             evaluator.rates(point, out);
             if let Some(contacts) = &self.contacts {
                 contacts.borrow_mut().add_to_rates(evaluator, point, out);
@@ -213,14 +218,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let is_on = |sliding: &&RefCell<Sliding>| !RefCell::borrow(sliding).is_free();
+        let is_on = |sliding: &&RefCell<SurfaceStates>| !RefCell::borrow(sliding).is_free();
         if let Some(sliding) = self.sliding.as_ref().filter(is_on) {
             let inputs = &self.inputs.borrow().at(t);
             let given = (&inputs[..], &self.typical_sizes()[..]);
-            return sliding.borrow_mut().jacobian((t, y), given, out);
+            return sliding.borrow_mut().write_jacobian((t, y), given, out);
         }
         match &self.jacobians {
-            Some(jacobians) if !self.rests() => {
+            Some(jacobians) if !self.has_closed_contacts() => {
                 let mut jacobians = jacobians.borrow_mut();
                 let inputs = &self.inputs.borrow().at(t);
                 let point = Point {
@@ -241,16 +246,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.at(t, y, |evaluator, point| {
+        self.evaluate_at(t, y, |evaluator, point| {
             let (own, more) = out.split_at_mut(evaluator.guard_count());
             evaluator.guards(point, own);
             if let Some(contacts) = &self.contacts {
-                contacts.borrow_mut().guards(evaluator, point, more);
+                contacts.borrow_mut().write_guards(evaluator, point, more);
             }
         });
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().at(t);
-            sliding.borrow_mut().guards((t, y), inputs, out);
+            sliding.borrow_mut().write_guards((t, y), inputs, out);
         }
     }
 
@@ -267,11 +272,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
             },
             &mut mass,
         );
-        first_not_positive(&mut mass, size)
+        first_indefinite_row(&mut mass, size)
     }
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
-        let holds = self.projection.is_some() || self.contacts.is_some() || self.slides();
+        let holds =
+            self.projection.is_some() || self.contacts.is_some() || self.is_sticking_active();
         if !holds {
             return 0;
         }
@@ -279,13 +285,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         let (at, mut evaluations) = ((t, &inputs[..]), 0);
         if let Some(projection) = &self.projection {
             let given = self.inputs.borrow();
-            evaluations += projection.after_a_step(&mut self.evaluator(), t, given, y);
+            evaluations += projection.correct_after_step(&mut self.evaluator(), t, given, y);
         }
         if let Some(contacts) = &self.contacts {
-            evaluations += contacts.borrow_mut().keep(&mut self.evaluator(), at, y);
+            evaluations += contacts
+                .borrow_mut()
+                .correct_state(&mut self.evaluator(), at, y);
         }
         if let Some(sliding) = &self.sliding {
-            evaluations += sliding.borrow_mut().keep(t, inputs, y);
+            evaluations += sliding.borrow_mut().correct_state(t, inputs, y);
         }
         evaluations
     }
@@ -296,25 +304,25 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
             let inputs = &self.inputs.borrow().at(t);
             contacts
                 .borrow_mut()
-                .cross(&mut self.evaluator(), inputs, before, t, y);
+                .apply_impact(&mut self.evaluator(), inputs, before, t, y);
             let work = contacts.borrow().impact_work();
             if let (Some(auditor), Some(arrived)) = (&self.auditor, arrived)
                 && arrived != y
             {
                 let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
                 let states = (&arrived[..], &*y);
-                auditor.borrow_mut().impact(t, states, work, energies);
+                auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
         }
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().at(t);
-            sliding.borrow_mut().cross(inputs, before, t, y);
+            sliding.borrow_mut().apply_crossing(inputs, before, t, y);
         }
     }
 
     fn keep_sides(&self, sides: Option<&[f64]>) {
         if let Some(sliding) = &self.sliding {
-            sliding.borrow_mut().keep_sides(sides);
+            sliding.borrow_mut().fix_sides(sides);
         }
     }
 
@@ -325,7 +333,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         let given = self.inputs.borrow();
         let (earlier, inputs) = (given.at(t.next_down()), given.at(t));
         let mut sliding = sliding.borrow_mut();
-        sliding.arrive((t, y), (earlier.as_ref(), inputs.as_ref()))
+        sliding.update((t, y), (earlier.as_ref(), inputs.as_ref()))
     }
 
     fn is_observing(&self) -> bool {
@@ -339,8 +347,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
         let mut auditor = auditor.borrow_mut();
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
         match auditor.driven_contacts().map(str::to_owned) {
-            Some(reason) if self.rests() => auditor.leave_out(step, energies, &reason),
-            _ => auditor.step(step, energies),
+            Some(reason) if self.has_closed_contacts() => {
+                auditor.exclude_step(step, energies, &reason)
+            }
+            _ => auditor.audit_step(step, energies),
         }
     }
 
@@ -350,10 +360,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
 }
 
 /// Pivots below this fraction of their diagonal entry count as rounding.
-const NOTHING_LEFT: f64 = 1e-14;
+const PIVOT_ROUNDING: f64 = 1e-14;
 
 /// Returns the first row of a symmetric matrix of finite entries whose pivot is not positive.
-fn first_not_positive(matrix: &mut [f64], size: usize) -> Option<usize> {
+fn first_indefinite_row(matrix: &mut [f64], size: usize) -> Option<usize> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
@@ -365,7 +375,7 @@ fn first_not_positive(matrix: &mut [f64], size: usize) -> Option<usize> {
                 .map(|k| matrix[row * size + k] * matrix[column * size + k])
                 .sum::<f64>();
             let rest = matrix[row * size + column] - products;
-            if column == row && rest <= NOTHING_LEFT * diagonal.abs() {
+            if column == row && rest <= PIVOT_ROUNDING * diagonal.abs() {
                 return Some(row);
             }
             matrix[row * size + column] = if column == row {
