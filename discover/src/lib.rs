@@ -17,7 +17,7 @@
 //!     text: &text,
 //!     order: None,
 //! };
-//! let effects = catalogue::effects(None)?;
+//! let effects = catalogue::load_effects(None)?;
 //! let progress = |line: &str| eprintln!("{line}");
 //! let found = eomgen_discover::discover(specification, dataset, &effects, 1, &progress)?;
 //! if found.verdict == Verdict::EffectsFound {
@@ -27,7 +27,7 @@
 //!     std::fs::write("extended.toml", &found.extended)?;
 //! }
 //! std::fs::write("discovery.json", found.to_json().to_string())?;
-//! std::fs::write("report.html", found.page())?;
+//! std::fs::write("report.html", found.to_html())?;
 //! # Ok(())
 //! # }
 //! ```

@@ -1,7 +1,7 @@
 //! Empirical expressions for a gap that no effect of the catalogue explains: an expression of few
 //! terms in the equation of motion with the largest residual force. It is fitted like an effect and
 //! must pass a stricter test on held-out records. Its status is `empirical`, without another name.
-//! `expressions` defines the terms, and `chosen` selects them.
+//! `expressions` defines the terms, and `term_selection` selects them.
 
 pub mod expressions;
 pub mod term_selection;

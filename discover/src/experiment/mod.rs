@@ -5,7 +5,7 @@
 //! [`proposal`] (admissible inputs), [`prediction`] (response of a fitted model), [`separation`]
 //! (residual of another model after a fit to that response), [`discrimination`] (input that
 //! separates best), [`detection`] (input that shows an undetectable effect best), `members` (fits
-//! of a class), `played` (the CSV file), [`next`] (the result).
+//! of a class), `experiment_csv` (the CSV file), [`next_experiment`] (the result).
 
 pub mod bounds;
 pub mod detection;

@@ -75,7 +75,7 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the RMS over all channels of the difference from the prediction of model `truth`
-    /// before a fit. It is an upper bound of [`Rival::leaves_by_tangents`]. `None` if the motion
+    /// before a fit. It is an upper bound of [`Rival::predict_linear_rms`]. `None` if the motion
     /// cannot be simulated.
     pub fn predict_unfitted_rms(
         &self,

@@ -21,7 +21,7 @@ use crate::thresholds;
 const LEAST_RANGE: f64 = 1e-6;
 
 /// Returns whether unknowns share a direction along which derivatives that are off by
-/// [`thresholds::TANGENT_ERROR`] tell more than the records do.
+/// [`thresholds::MAX_TANGENT_ERROR`] tell more than the records do.
 fn is_ill_conditioned(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,

@@ -1,5 +1,5 @@
 //! Fitted specification: estimates, uncertainties and residuals. The algorithm is in
-//! [`crate::fit::full`].
+//! [`crate::fit::full_fit`].
 
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
@@ -22,7 +22,7 @@ pub struct Fit {
     /// Standard deviation of each unknown if the model is correct, with correlated residuals and
     /// without priors from preceding windows.
     pub sd: Vec<f64>,
-    /// Standard deviation of each unknown for the test of effects, larger by [`thresholds::WIDER`],
+    /// Standard deviation of each unknown for the test of effects, larger by [`thresholds::UNCERTAINTY_FACTOR`],
     /// because the model may be wrong.
     pub effect_sd: Vec<f64>,
     /// Error of each unknown due to a misfit of one standard deviation of the noise in each sample

@@ -63,7 +63,7 @@ pub fn fit_specification(
 ///
 /// # Errors
 ///
-/// As [`fit`].
+/// As [`fit_specification`].
 pub fn complete_fit(
     problem: &EstimationProblem<'_>,
     preliminary: PreliminaryFit,

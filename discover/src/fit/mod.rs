@@ -1,10 +1,10 @@
 //! Fits of a specification to records by multiple shooting: residuals of windows ([`shooting`]),
 //! their derivatives ([`sensitivity`]), elimination of initial states ([`variable_projection`]),
 //! steps ([`gauss_newton`] with [`bounded_least_squares`], [`continuation`] for distant start
-//! values, `whole_motions` for collinear unknowns), [`initial_states`], a [`preliminary`] and a
-//! [`full`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
+//! values, `final_steps` for collinear unknowns), [`initial_states`], a [`preliminary_fit`] and a
+//! [`full_fit`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
 //! [`mod@noise_floor`] of a correct model, and [`contradiction`]s between records that are fitted
-//! [`alone`].
+//! [`single_record`].
 
 pub(crate) mod acceleration_differences;
 pub mod bounded_least_squares;

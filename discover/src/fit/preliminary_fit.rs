@@ -50,7 +50,7 @@ pub struct WarmStart<'f> {
 ///
 /// # Errors
 ///
-/// As [`crate::fit::full::fit`].
+/// As [`crate::fit::full_fit::fit_specification`].
 pub fn fit_beginnings(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,
@@ -122,7 +122,7 @@ pub fn fit_beginnings(
 ///
 /// # Errors
 ///
-/// As [`crate::fit::full::fit`].
+/// As [`crate::fit::full_fit::fit_specification`].
 pub fn start_from_fit(
     problem: &EstimationProblem<'_>,
     texts: SpecificationTexts,

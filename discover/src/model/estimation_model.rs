@@ -102,7 +102,7 @@ impl EstimationModel {
     ///
     /// # Errors
     ///
-    /// As [`EstimationModel::of`].
+    /// As [`EstimationModel::derive`].
     pub fn derive_equations(
         text: &str,
         name: &str,

@@ -135,7 +135,7 @@ fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
     (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// The change of a state that moves the outputs by [`thresholds::UNMOVED_STATE`]; none if none does.
+/// The change of a state that moves the outputs by [`thresholds::UNMOVED_STATE_IN_NOISE`]; none if none does.
 fn unmoved(
     simulation: &mut Simulation<'_>,
     record: &Record,

@@ -345,7 +345,7 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// As [`Simulation::states`].
+    /// As [`Simulation::simulate_states`].
     pub fn simulate_outputs(
         &mut self,
         initial: &[f64],
@@ -364,7 +364,7 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// As [`Simulation::states`].
+    /// As [`Simulation::simulate_states`].
     pub fn simulate_motion(
         &mut self,
         initial: &[f64],

@@ -1,10 +1,10 @@
 //! Results of a comparison or search: the whole computation ([`run`]) from the input ([`origin`]),
 //! the [`result`] types filled in `discovery`, the [`location`] of the difference, the extended
 //! specification ([`write_back`]) and its simulation ([`mod@resimulation`]), the remaining gap
-//! (`left`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
+//! (`remaining_gap`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
 //! `pictures` and the `overlay` of measurement and simulation, formatted numbers (`quantity`),
 //! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
-//! delay (`late_channels`), the interactive model (`playback`), and the next `experiment`.
+//! delay (`common_delay`), the interactive model (`playback`), and the next `experiment`.
 
 mod common_delay;
 mod discovery;

@@ -61,7 +61,7 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
 ///
 /// # Errors
 ///
-/// As [`full::fit`].
+/// As [`full_fit::fit_specification`].
 pub(crate) fn fit_without_effect(
     problem: &EstimationProblem<'_>,
     found: &SearchResult,

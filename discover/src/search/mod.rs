@@ -3,10 +3,10 @@
 //!
 //! The files in the order of their dependence: [`response`] by [`mod@variational_response`] or
 //! [`mod@perturbed_response`] (selected in [`mod@responses`]), [`screening`], [`acceptance`],
-//! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`fitted`];
-//! `shape_restarts`, `singles`, `halves_alone`, `pairs`; [`tested`], [`parameter_offsets`],
-//! [`selected`], `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer`,
-//! `unfinished`, [`mod@unconfirmed`]; [`found`], `rejected`, [`backward_elimination`].
+//! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`hypothesis_fits`];
+//! `shape_restarts`, `single_candidates`, `pair_halves`, `pairs`; [`tested_pool`], [`parameter_offsets`],
+//! [`selection`], `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer_selection`,
+//! `unfinished_round`, [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`].
 
 pub mod acceptance;
 mod alternatives;

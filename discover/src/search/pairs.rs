@@ -132,7 +132,7 @@ fn best_pairs(
 
 /// Fits pairs that share one effect with a pair and whose other effect is similar to its other. If
 /// the pair has a larger gap than a correct model, the same effect at other sites is fitted too.
-/// The most similar are fitted first, at most [`thresholds::FITS_AT_ONCE`] and only new ones.
+/// The most similar are fitted first, at most [`thresholds::FITS_IN_PARALLEL`] and only new ones.
 pub fn fit_other_halves(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],

@@ -60,7 +60,7 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
 }
 
 /// Fits candidates similar to one of them with a sufficient prediction, the most similar first; at
-/// most [`thresholds::MOST_FITS`].
+/// most [`thresholds::MAX_FULL_FITS_PER_ROUND`].
 pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
     let similarity = |other: &ResponseId| pool.screening.compute_similarity(response, *other);
     let mut similar = pool.rank_responses();

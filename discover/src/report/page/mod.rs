@@ -1,7 +1,7 @@
 //! HTML page of a result: verdict, measured and simulated motion before and after, found and
 //! rejected effects, nuisances, changes of the specification, and origin.
 //!
-//! The files: `verdict` (first sentence), `gap` (gap of each channel), `found` (effects and steps),
+//! The files: `verdict` (first sentence), `gap_table` (gap of each channel), `found_effects` (effects and steps),
 //! `alternatives` (rejected effects), `nuisances` (declared and estimated values), `origin` (files
 //! and hashes).
 

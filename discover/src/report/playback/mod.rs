@@ -1,7 +1,7 @@
 //! Interactive part of a page: it simulates the test record with the emitted module for changed
 //! values of the found parameters, and draws it over the measurement.
 //!
-//! `stretch` is the part of the record on the page, `followed` checks if a page can simulate it,
+//! `record_excerpt` is the part of the record on the page, `reproduction_check` checks if a page can simulate it,
 //! `controls` has the sliders, `data` is the input of the script.
 
 mod controls;
