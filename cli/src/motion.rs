@@ -64,7 +64,7 @@ impl std::fmt::Display for Rounded {
 
 /// Returns the work of the solver in words.
 pub fn describe_work(motion: &Motion) -> String {
-    let work = motion.trajectory.work;
+    let work = motion.trajectory.statistics;
     match motion.solver {
         Solver::Exact => format!("{} exact steps", work.steps),
         _ => format!("{} evaluations of the right-hand side", work.evaluations),

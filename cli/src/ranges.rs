@@ -29,7 +29,7 @@ pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInput
     let ranges = model.input_ranges().map_err(error)?;
     for (place, input) in model.inputs.iter().enumerate() {
         let times = trajectory.times.iter();
-        let values = times.map(|t| (*t, inputs.at(*t)[place]));
+        let values = times.map(|t| (*t, inputs.evaluate(*t)[place]));
         warn_of_first(&input.name, &input.unit.to_string(), ranges[place], values);
     }
     Ok(())

@@ -198,7 +198,7 @@ pub fn with_functions(
             if let Some(raised) = failures.take(py) {
                 return Err(raised);
             }
-            if let Some(spline) = CubicSpline::through(times, values) {
+            if let Some(spline) = CubicSpline::fit(times, values) {
                 inputs = inputs.with_prescribed(place, spline);
             }
             continue;
@@ -206,5 +206,5 @@ pub fn with_functions(
         let count = if has_rates { MAX_VALUES } else { 1 };
         inputs = inputs.with_function(place, count, Arc::new(given));
     }
-    Ok((inputs.with_breaks(breaks), failures))
+    Ok((inputs.with_jump_times(breaks), failures))
 }

@@ -185,7 +185,7 @@ fn with_splines(
             continue;
         }
         let samples = column(place).copied().collect();
-        if let Some(spline) = CubicSpline::through(times.to_vec(), samples) {
+        if let Some(spline) = CubicSpline::fit(times.to_vec(), samples) {
             inputs = inputs.with_prescribed(place, spline);
         }
     }

@@ -6,15 +6,15 @@ use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
 /// Largest entry of a matrix that can be balanced, 1/s. Squares of larger entries overflow, and
 /// balancing does not terminate.
-pub(crate) const LARGEST: f64 = 1e150;
+pub(crate) const MAX_ENTRY_PER_S: f64 = 1e150;
 
 /// Entries below this fraction of the largest entry do not affect the balance, so that negligible
 /// couplings do not determine the scale of a state.
-const NEGLIGIBLE: f64 = 1e-6;
+const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 
 /// Reduction of the largest entry by a balance of all entries, above which that entry is an effect
 /// of the units.
-const BY_UNITS: f64 = 1e3;
+const MIN_UNIT_EFFECT_FACTOR: f64 = 1e3;
 
 /// Returns the diagonal of D, powers of two, for which the entries of D^-1 A D have similar size.
 /// `guess` is the initial diagonal. The entries of A must be below [`LARGEST`].
@@ -22,18 +22,20 @@ pub(crate) fn balance(matrix: &DMatrix<f64>, guess: Vec<f64>) -> Vec<f64> {
     let all = balance_above(matrix, guess.clone(), 0.0);
     // The second pass balances the large entries among themselves.
     let twice = |scale| {
-        let once = balance_above(matrix, scale, NEGLIGIBLE);
-        balance_above(matrix, once, NEGLIGIBLE)
+        let once = balance_above(matrix, scale, NEGLIGIBLE_FRACTION);
+        balance_above(matrix, once, NEGLIGIBLE_FRACTION)
     };
     let large = twice(guess);
-    if BY_UNITS * scaled(matrix, &all).amax() < scaled(matrix, &large).amax() {
+    if MIN_UNIT_EFFECT_FACTOR * scale_matrix(matrix, &all).amax()
+        < scale_matrix(matrix, &large).amax()
+    {
         return twice(all);
     }
     large
 }
 
 /// Returns D^-1 A D.
-pub(crate) fn scaled(matrix: &DMatrix<f64>, scale: &[f64]) -> DMatrix<f64> {
+pub(crate) fn scale_matrix(matrix: &DMatrix<f64>, scale: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
         matrix[(i, j)] * scale[j] / scale[i]
     })
@@ -41,7 +43,7 @@ pub(crate) fn scaled(matrix: &DMatrix<f64>, scale: &[f64]) -> DMatrix<f64> {
 
 /// Balances the entries that are not below the fraction `part` of the largest entry.
 fn balance_above(matrix: &DMatrix<f64>, mut scale: Vec<f64>, part: f64) -> Vec<f64> {
-    let scaled = scaled(matrix, &scale);
+    let scaled = scale_matrix(matrix, &scale);
     let least = part * scaled.amax();
     let mut kept = scaled.map(|entry| if entry.abs() < least { 0.0 } else { entry });
     let found = balance_parlett_reinsch(&mut kept);
@@ -52,7 +54,7 @@ fn balance_above(matrix: &DMatrix<f64>, mut scale: Vec<f64>, part: f64) -> Vec<f
 
 #[cfg(test)]
 mod tests {
-    use super::{balance, scaled};
+    use super::{balance, scale_matrix};
     use nalgebra::DMatrix;
 
     #[test]
@@ -68,7 +70,7 @@ mod tests {
         };
         for unit in [1e-6, 1.0, 1e3, 1e6, 1e9] {
             let matrix = rates(unit);
-            let largest = scaled(&matrix, &balance(&matrix, vec![1.0; 3])).amax();
+            let largest = scale_matrix(&matrix, &balance(&matrix, vec![1.0; 3])).amax();
             assert!(largest < 1e3, "{unit:e}: {largest:e}");
         }
     }

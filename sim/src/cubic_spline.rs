@@ -15,13 +15,13 @@ pub struct CubicSpline {
 impl CubicSpline {
     /// Fits a spline through values at ascending times, s. Returns `None` without samples, or if
     /// the times do not ascend or a number is not finite.
-    pub fn through(times: Vec<f64>, values: Vec<f64>) -> Option<Self> {
+    pub fn fit(times: Vec<f64>, values: Vec<f64>) -> Option<Self> {
         let ascending = times.windows(2).all(|pair| pair[0] < pair[1]);
         let finite = times.iter().chain(&values).all(|number| number.is_finite());
         if times.is_empty() || times.len() != values.len() || !ascending || !finite {
             return None;
         }
-        let curvatures = curvatures(&times, &values);
+        let curvatures = fit_curvatures(&times, &values);
         curvatures.iter().all(|m| m.is_finite()).then_some(Self {
             times,
             values,
@@ -30,7 +30,7 @@ impl CubicSpline {
     }
 
     /// Returns the value and its first and second derivative at a time, s.
-    pub fn at(&self, t: f64) -> [f64; 3] {
+    pub fn evaluate(&self, t: f64) -> [f64; 3] {
         let last = self.times.len() - 1;
         if t < self.times[0] {
             return [self.values[0], 0.0, 0.0];
@@ -56,7 +56,7 @@ impl CubicSpline {
 
 /// Computes the second derivatives at the samples: a line through two samples, a parabola through
 /// three, and a not-a-knot spline from four on.
-fn curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
+fn fit_curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
     let count = times.len();
     if count < 3 {
         return vec![0.0; count];
@@ -111,7 +111,7 @@ mod tests {
 
     fn spline(times: &[f64], of: impl Fn(f64) -> f64) -> CubicSpline {
         let values = times.iter().map(|t| of(*t)).collect();
-        CubicSpline::through(times.to_vec(), values).expect("a spline")
+        CubicSpline::fit(times.to_vec(), values).expect("a spline")
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
             for k in 0..=20 {
                 let t = times[count - 1] * f64::from(k) / 20.0;
                 let right = [of(t), -2.0 + t - 2.1 * t * t, 1.0 - 4.2 * t];
-                for (found, right) in spline.at(t).iter().zip(right) {
+                for (found, right) in spline.evaluate(t).iter().zip(right) {
                     assert!(
                         (found - right).abs() < 1e-12,
                         "{count}, {t}: {found} {right}"
@@ -141,7 +141,7 @@ mod tests {
                 .collect();
             let spline = spline(&times, f64::sin);
             let off = |t: f64| {
-                let [value, rate, second] = spline.at(t);
+                let [value, rate, second] = spline.evaluate(t);
                 [value - t.sin(), rate - t.cos(), second + t.sin()]
             };
             (0..=997)
@@ -159,22 +159,20 @@ mod tests {
 
     #[test]
     fn few_samples_give_polynomials_and_constant_ends() {
-        assert_eq!(spline(&[1.0], |_| 3.0).at(5.0), [3.0, 0.0, 0.0]);
+        assert_eq!(spline(&[1.0], |_| 3.0).evaluate(5.0), [3.0, 0.0, 0.0]);
         let line = spline(&[1.0, 3.0], |t| 2.0 * t);
-        assert_eq!(line.at(2.0), [4.0, 2.0, 0.0]);
+        assert_eq!(line.evaluate(2.0), [4.0, 2.0, 0.0]);
         assert_eq!(
-            (line.at(0.0), line.at(4.0)),
+            (line.evaluate(0.0), line.evaluate(4.0)),
             ([2.0, 0.0, 0.0], [6.0, 0.0, 0.0])
         );
         let parabola = spline(&[0.0, 1.0, 3.0], |t| t * t);
         assert!(
-            (parabola.at(2.0)[0] - 4.0).abs() < 1e-14 && (parabola.at(2.0)[2] - 2.0).abs() < 1e-14
+            (parabola.evaluate(2.0)[0] - 4.0).abs() < 1e-14
+                && (parabola.evaluate(2.0)[2] - 2.0).abs() < 1e-14
         );
-        assert_eq!(CubicSpline::through(vec![], vec![]), None);
-        assert_eq!(CubicSpline::through(vec![0.0, 0.0], vec![1.0, 2.0]), None);
-        assert_eq!(
-            CubicSpline::through(vec![0.0, 1.0], vec![1.0, f64::NAN]),
-            None
-        );
+        assert_eq!(CubicSpline::fit(vec![], vec![]), None);
+        assert_eq!(CubicSpline::fit(vec![0.0, 0.0], vec![1.0, 2.0]), None);
+        assert_eq!(CubicSpline::fit(vec![0.0, 1.0], vec![1.0, f64::NAN]), None);
     }
 }

@@ -41,7 +41,7 @@ pub struct HeldInputs {
     prescribed: Vec<(usize, CubicSpline)>,
     functions: Vec<GivenInputs>,
     /// Times at which functions jump, ascending, s.
-    breaks: Vec<f64>,
+    jump_times: Vec<f64>,
 }
 
 impl HeldInputs {
@@ -53,7 +53,7 @@ impl HeldInputs {
             count,
             prescribed: Vec::new(),
             functions: Vec::new(),
-            breaks: Vec::new(),
+            jump_times: Vec::new(),
         }
     }
 
@@ -65,7 +65,7 @@ impl HeldInputs {
             values,
             prescribed: Vec::new(),
             functions: Vec::new(),
-            breaks: Vec::new(),
+            jump_times: Vec::new(),
         }
     }
 
@@ -79,7 +79,7 @@ impl HeldInputs {
             count,
             prescribed: Vec::new(),
             functions: Vec::new(),
-            breaks: Vec::new(),
+            jump_times: Vec::new(),
         })
     }
 
@@ -110,22 +110,22 @@ impl HeldInputs {
     /// Sets the times (s) at which functions jump, so that solvers end a step there. Times that
     /// are not finite are ignored.
     #[must_use]
-    pub fn with_breaks(mut self, mut breaks: Vec<f64>) -> Self {
+    pub fn with_jump_times(mut self, mut breaks: Vec<f64>) -> Self {
         breaks.retain(|time| time.is_finite());
         breaks.sort_by(f64::total_cmp);
-        self.breaks = breaks;
+        self.jump_times = breaks;
         self
     }
 
     /// Returns true if an input varies between samples.
-    pub fn moves(&self) -> bool {
+    pub fn is_time_varying(&self) -> bool {
         !(self.prescribed.is_empty() && self.functions.is_empty())
     }
 
     /// Returns the inputs at a time (s), in the order of the model.
-    pub fn at(&self, t: f64) -> Cow<'_, [f64]> {
-        let held = self.held_at(t);
-        if !self.moves() {
+    pub fn evaluate(&self, t: f64) -> Cow<'_, [f64]> {
+        let held = self.last_sample(t);
+        if !self.is_time_varying() {
             return Cow::Borrowed(held);
         }
         let mut inputs = held.to_vec();
@@ -134,14 +134,14 @@ impl HeldInputs {
             given.function.write(t, &mut inputs[places]);
         }
         for (place, spline) in &self.prescribed {
-            inputs[*place..*place + 3].copy_from_slice(&spline.at(t));
+            inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));
         }
         Cow::Owned(inputs)
     }
 
     /// Returns the inputs of the last sample at or before a time (s), without prescribed motion
     /// and functions.
-    pub fn held_at(&self, t: f64) -> &[f64] {
+    pub fn last_sample(&self, t: f64) -> &[f64] {
         let row = self.times_until(t).saturating_sub(1);
         &self.values[row * self.count..(row + 1) * self.count]
     }
@@ -173,7 +173,7 @@ impl HeldInputs {
             return None;
         }
         let sample = self.times.get(self.times_until(t)).copied();
-        let jump = self.breaks.iter().copied().find(|time| *time > t);
+        let jump = self.jump_times.iter().copied().find(|time| *time > t);
         match (sample, jump) {
             (Some(sample), Some(jump)) => Some(sample.min(jump)),
             (sample, jump) => sample.or(jump),
@@ -198,12 +198,12 @@ mod tests {
             count: 1,
             prescribed: Vec::new(),
             functions: Vec::new(),
-            breaks: Vec::new(),
+            jump_times: Vec::new(),
         };
-        assert_eq!(*held.at(-1.0), [5.0]);
-        assert_eq!(*held.at(0.999), [5.0]);
-        assert_eq!(*held.at(1.0), [6.0]);
-        assert_eq!(*held.at(9.0), [7.0]);
+        assert_eq!(*held.evaluate(-1.0), [5.0]);
+        assert_eq!(*held.evaluate(0.999), [5.0]);
+        assert_eq!(*held.evaluate(1.0), [6.0]);
+        assert_eq!(*held.evaluate(9.0), [7.0]);
         assert_eq!(held.next_change(0.0), Some(1.0));
         assert_eq!(held.next_change(1.5), Some(2.0));
         assert_eq!(held.next_change(2.0), None);
@@ -220,20 +220,20 @@ mod tests {
                 count: 1,
                 prescribed: Vec::new(),
                 functions: Vec::new(),
-                breaks: Vec::new(),
+                jump_times: Vec::new(),
             };
             for t in (-10..1300).map(|k| 0.1 * f64::from(k)).chain(times.clone()) {
                 let row = times.iter().filter(|time| **time <= t).count().max(1) - 1;
-                assert_eq!(held.held_at(t), [row as f64], "at {t}");
+                assert_eq!(held.last_sample(t), [row as f64], "at {t}");
             }
-            assert_eq!(held.held_at(f64::INFINITY), [(times.len() - 1) as f64]);
+            assert_eq!(held.last_sample(f64::INFINITY), [(times.len() - 1) as f64]);
         }
     }
 
     #[test]
     fn zero_inputs_never_change() {
         assert_eq!(HeldInputs::zero(0).next_change(0.0), None);
-        assert_eq!(*HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
+        assert_eq!(*HeldInputs::zero(2).evaluate(3.0), [0.0, 0.0]);
     }
 
     #[derive(Debug)]
@@ -249,9 +249,9 @@ mod tests {
     fn function_varies_with_time_and_changes_at_its_breaks() {
         let held = HeldInputs::constant(vec![5.0, 6.0])
             .with_function(1, 1, std::sync::Arc::new(Ramp))
-            .with_breaks(vec![3.0, f64::NAN, 1.0]);
-        assert!(held.moves());
-        assert_eq!(*held.at(0.25), [5.0, 0.5]);
+            .with_jump_times(vec![3.0, f64::NAN, 1.0]);
+        assert!(held.is_time_varying());
+        assert_eq!(*held.evaluate(0.25), [5.0, 0.5]);
         assert_eq!(held.next_change(0.0), Some(1.0));
         assert_eq!(held.next_change(1.0), Some(3.0));
         assert_eq!(held.next_change(3.0), None);

@@ -10,16 +10,16 @@ use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 /// Rates below this fraction of their terms count as rounding.
-const ROUNDING: f64 = 1e-10;
+const RATE_ROUNDING: f64 = 1e-10;
 
 /// Singular values below this fraction of the largest belong to dependent surfaces.
-pub const DEPENDENT: f64 = 1e-10;
+pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;
 
 /// Number of changes per surface that select the largest error. After these, the first error is
 /// selected, which is guaranteed to terminate (K. G. Murty, *Linear Complementarity*, chapter 11).
-const LARGEST_FIRST: usize = 4;
+const LARGEST_FIRST_CHANGES: usize = 4;
 
-const MOST_TO_TRY: usize = 7;
+const MAX_SURFACES_TO_TRY: usize = 7;
 
 /// Effect of a surface on a motion that is on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,16 +27,16 @@ pub enum Verdict {
     /// The surface holds the motion; the number replaces the sign.
     Holds(f64),
     /// The surface exerts its largest force to this side, and other surfaces hold the motion.
-    Bears(f64),
+    AtLimit(f64),
     /// The surface releases the motion to this side.
-    LetsGo(f64),
+    Releases(f64),
 }
 
 impl Verdict {
     /// Returns the number that replaces the sign.
     pub fn sign(self) -> f64 {
         match self {
-            Self::Holds(s) | Self::Bears(s) | Self::LetsGo(s) => s,
+            Self::Holds(s) | Self::AtLimit(s) | Self::Releases(s) => s,
         }
     }
 }
@@ -48,7 +48,7 @@ pub struct Arrival {
     pub side: f64,
     /// True if the surface held the motion until now and would need more than its largest force to
     /// this side.
-    pub is_overcome: bool,
+    pub exceeds_limit: bool,
 }
 
 /// Rates of the switching functions on their surfaces, g' = c + W s, with s instead of their
@@ -65,14 +65,14 @@ pub struct Rates {
 pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
     let count = arrivals.len();
     let begins = |(i, arrival): (usize, &Arrival)| {
-        (arrival.is_overcome || !rates.may_hold(i)).then_some(arrival.side)
+        (arrival.exceeds_limit || !rates.may_hold(i)).then_some(arrival.side)
     };
     let mut sides: Vec<Option<f64>> = arrivals.iter().enumerate().map(begins).collect();
     for change in 0..20 * (count + 1) {
-        let s = rates.signs(&sides);
-        let errors = (0..count).map(|i| rates.error(&sides, &s, i));
+        let s = rates.solve_signs(&sides);
+        let errors = (0..count).map(|i| rates.case_violation(&sides, &s, i));
         let wrong = errors.enumerate().filter(|(_, error)| *error > 0.0);
-        let next = match change < LARGEST_FIRST * count {
+        let next = match change < LARGEST_FIRST_CHANGES * count {
             true => wrong.max_by(|a, b| a.1.total_cmp(&b.1)),
             false => wrong.min_by_key(|(place, _)| *place),
         };
@@ -88,7 +88,7 @@ pub fn decide(rates: &Rates, arrivals: &[Arrival]) -> Option<Vec<Verdict>> {
             Some(side) => Some(-side),
         };
     }
-    (count <= MOST_TO_TRY).then(|| rates.by_trial(count))?
+    (count <= MAX_SURFACES_TO_TRY).then(|| rates.try_all_cases(count))?
 }
 
 impl Rates {
@@ -99,13 +99,13 @@ impl Rates {
 
     /// Returns the values that replace the signs: the given sides, and for the other surfaces the
     /// smallest values that hold.
-    fn signs(&self, sides: &[Option<f64>]) -> DVector<f64> {
+    fn solve_signs(&self, sides: &[Option<f64>]) -> DVector<f64> {
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|s| s.unwrap_or(0.0)));
-        let held = held(sides);
+        let held = held_surfaces(sides);
         let free = &self.c + &self.w * &s;
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -free[*i]));
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
-        for (i, value) in held.iter().zip(&least(w, right)) {
+        for (i, value) in held.iter().zip(&solve_least_squares(w, right)) {
             s[*i] = *value;
         }
         s
@@ -113,12 +113,12 @@ impl Rates {
 
     /// Returns the violation of the assumed case of a surface at the values s; positive if
     /// violated.
-    fn error(&self, sides: &[Option<f64>], s: &DVector<f64>, i: usize) -> f64 {
+    fn case_violation(&self, sides: &[Option<f64>], s: &DVector<f64>, i: usize) -> f64 {
         match sides[i] {
             None => s[i].abs() - 1.0,
             Some(side) => {
                 let (rate, size) = self.rate(s, i);
-                let back = -side * rate - ROUNDING * size;
+                let back = -side * rate - RATE_ROUNDING * size;
                 let by_own = self.w[(i, i)].abs();
                 if by_own > 0.0 { back / by_own } else { back }
             }
@@ -134,30 +134,30 @@ impl Rates {
     }
 
     fn are_held(&self, sides: &[Option<f64>], s: &DVector<f64>) -> bool {
-        held(sides).into_iter().all(|i| {
+        held_surfaces(sides).into_iter().all(|i| {
             let (rate, size) = self.rate(s, i);
-            rate.abs() <= 10.0 * ROUNDING * size
+            rate.abs() <= 10.0 * RATE_ROUNDING * size
         })
     }
 
     fn verdicts(&self, sides: &[Option<f64>], s: &DVector<f64>) -> Vec<Verdict> {
-        let held = held(sides);
+        let held = held_surfaces(sides);
         let verdict = |i: usize| match sides[i] {
             None => Verdict::Holds(s[i].clamp(-1.0, 1.0)),
-            Some(side) if self.follows(&held, i) => Verdict::Bears(side),
-            Some(side) => Verdict::LetsGo(side),
+            Some(side) if self.is_dependent(&held, i) => Verdict::AtLimit(side),
+            Some(side) => Verdict::Releases(side),
         };
         (0..sides.len()).map(verdict).collect()
     }
 
     /// Returns true if the rate of a surface vanishes whenever those of the held surfaces do.
-    fn follows(&self, held: &[usize], i: usize) -> bool {
+    fn is_dependent(&self, held: &[usize], i: usize) -> bool {
         if held.is_empty() {
             return false;
         }
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
         let column = DVector::from_iterator(held.len(), held.iter().map(|j| self.w[(*j, i)]));
-        let balanced = least(w, column);
+        let balanced = solve_least_squares(w, column);
         let pairs = held.iter().zip(&balanced);
         let through: f64 = pairs.map(|(j, b)| self.w[(i, *j)] * b).sum();
         let own = self.w[(i, i)];
@@ -165,7 +165,7 @@ impl Rates {
     }
 
     /// Tries all cases and returns the first solution.
-    fn by_trial(&self, count: usize) -> Option<Vec<Verdict>> {
+    fn try_all_cases(&self, count: usize) -> Option<Vec<Verdict>> {
         let cases = 3_usize.pow(count as u32);
         (0..cases).find_map(|case| {
             let side = |i: usize| match case / 3_usize.pow(i as u32) % 3 {
@@ -174,20 +174,20 @@ impl Rates {
                 _ => Some(-1.0),
             };
             let sides: Vec<Option<f64>> = (0..count).map(side).collect();
-            let s = self.signs(&sides);
-            let is_right = (0..count).all(|i| self.error(&sides, &s, i) <= 0.0);
+            let s = self.solve_signs(&sides);
+            let is_right = (0..count).all(|i| self.case_violation(&sides, &s, i) <= 0.0);
             (is_right && self.are_held(&sides, &s)).then(|| self.verdicts(&sides, &s))
         })
     }
 }
 
 /// Returns the surfaces without a side.
-fn held(sides: &[Option<f64>]) -> Vec<usize> {
+fn held_surfaces(sides: &[Option<f64>]) -> Vec<usize> {
     (0..sides.len()).filter(|i| sides[*i].is_none()).collect()
 }
 
 /// Returns the smallest least-squares solution x of W x = b.
-pub fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
+pub fn solve_least_squares(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
         return divided.map(|x| if x.is_finite() { x } else { 0.0 });
@@ -198,7 +198,8 @@ pub fn least(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
         return zero();
     };
     let most = svd.singular_values.max();
-    svd.solve(&b, DEPENDENT * most).unwrap_or_else(|_| zero())
+    svd.solve(&b, MIN_SINGULAR_VALUE_FRACTION * most)
+        .unwrap_or_else(|_| zero())
 }
 
 #[cfg(test)]
@@ -207,7 +208,7 @@ mod tests {
 
     const UP: Arrival = Arrival {
         side: 1.0,
-        is_overcome: false,
+        exceeds_limit: false,
     };
 
     struct Numbers(u64);
@@ -245,8 +246,8 @@ mod tests {
                 let (rate, size) = rates.rate(&s, i);
                 let is_right = match verdict {
                     Verdict::Holds(s) => s.abs() <= 1.0 && rate.abs() < 1e-8 * size,
-                    Verdict::Bears(s) => s.abs() == 1.0 && rate.abs() < 1e-7 * size,
-                    Verdict::LetsGo(s) => s.abs() == 1.0 && s * rate >= -1e-9 * size,
+                    Verdict::AtLimit(s) => s.abs() == 1.0 && rate.abs() < 1e-7 * size,
+                    Verdict::Releases(s) => s.abs() == 1.0 && s * rate >= -1e-9 * size,
                 };
                 assert!(is_right, "{seed}: {verdict:?}, rate {rate:e}");
             }
@@ -263,11 +264,11 @@ mod tests {
             let found = decide(&rates(load), &[UP, UP]).expect("an answer");
             let borne = found[0].sign() + 2.0 * found[1].sign();
             assert!((borne - load).abs() < 1e-12, "{load}: {found:?}");
-            let lets_go = |verdict: &Verdict| matches!(verdict, Verdict::LetsGo(_));
+            let lets_go = |verdict: &Verdict| matches!(verdict, Verdict::Releases(_));
             assert!(!found.iter().any(lets_go), "{load}: {found:?}");
         }
         let found = decide(&rates(3.001), &[UP, UP]).expect("an answer");
-        assert_eq!(found, [Verdict::LetsGo(1.0), Verdict::LetsGo(1.0)]);
+        assert_eq!(found, [Verdict::Releases(1.0), Verdict::Releases(1.0)]);
     }
 
     #[test]
@@ -278,7 +279,7 @@ mod tests {
         };
         for side in [1.0, -1.0] {
             let found = decide(&rates, &[Arrival { side, ..UP }]).expect("an answer");
-            assert_eq!(found, [Verdict::LetsGo(side)]);
+            assert_eq!(found, [Verdict::Releases(side)]);
         }
     }
 }

@@ -146,7 +146,7 @@ impl Subject {
     /// Returns the exact propagator, or the reason why there is none.
     pub fn propagator(&self) -> Result<Propagator, ExactError> {
         let orders = vec![self.order; self.model.fields.len()];
-        PiecewiseLinear::of(&self.model, &orders)?.propagator(&self.model)
+        PiecewiseLinear::derive(&self.model, &orders)?.propagator_for_model(&self.model)
     }
 
     /// Simulates a time span, s, with the exact solver.
@@ -203,7 +203,7 @@ impl Subject {
         let mut values = vec![0.0; evaluator.program().observables.len()];
         let pairs = times.iter().zip(states);
         let energy = |(&t, state): (&f64, &Vec<f64>)| {
-            let inputs = &self.inputs.at(t);
+            let inputs = &self.inputs.evaluate(t);
             evaluator.observables(Point { t, state, inputs }, &mut values);
             values[values.len() - 2]
         };

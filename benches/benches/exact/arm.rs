@@ -24,7 +24,7 @@ impl Located {
 }
 
 impl System for Located {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         STATES
     }
 

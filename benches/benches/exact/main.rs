@@ -35,10 +35,12 @@ impl Exact {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let path = folder.join("../model-spec/models/planetary_arm.toml");
         let model = eomgen_model_spec::load(&path).expect("a model").model;
-        let derived = PiecewiseLinear::of(&model, &[order]).expect("piecewise linear");
+        let derived = PiecewiseLinear::derive(&model, &[order]).expect("piecewise linear");
         Self {
             order,
-            propagator: derived.propagator(&model).expect("finite matrices"),
+            propagator: derived
+                .propagator_for_model(&model)
+                .expect("finite matrices"),
             initial: model.initial_state(&[order]).expect("a start"),
             derived,
             model,
@@ -57,7 +59,7 @@ impl Exact {
     fn simulate_uncached(&mut self) -> Trajectory {
         self.propagator = self
             .derived
-            .propagator(&self.model)
+            .propagator_for_model(&self.model)
             .expect("finite matrices");
         self.simulate_cached(&[])
     }
@@ -76,7 +78,7 @@ fn exact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("one_second_exact");
     for arm in &mut orders {
         group.bench_function(format!("order_{}", arm.order), |bencher| {
-            bencher.iter(|| arm.simulate_cached(black_box(&[])).last);
+            bencher.iter(|| arm.simulate_cached(black_box(&[])).final_state);
         });
     }
     group.finish();

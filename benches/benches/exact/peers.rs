@@ -132,7 +132,7 @@ fn locate(arm: &Located, method: Method, tolerance: f64, times: &[f64]) -> Optio
     let start = [0.0; STATES];
     let found = simulate(arm, &start, (0.0, 1.0), times, &settings, &mut |_| {}).ok()?;
     let samples = found.states.iter().map(|state| state[0]).collect();
-    Some((found.last[0], samples))
+    Some((found.final_state[0], samples))
 }
 
 impl ODE<f64, State> for Momentum {

@@ -98,7 +98,7 @@ fn summary(
 ) -> String {
     let file = options.out.display();
     let (rows, switches) = (table.rows(), motion.trajectory.switches.len());
-    let work = motion.trajectory.work;
+    let work = motion.trajectory.statistics;
     if options.output.json {
         let document = json!({
             "schema": SCHEMA,
@@ -107,7 +107,7 @@ fn summary(
             "rows": rows,
             "switches": switches,
             "steps": work.steps,
-            "rejected": work.rejected,
+            "rejected": work.rejected_steps,
             "evaluations": work.evaluations,
             "stopped": motion.early_stop.as_ref().map(|stopped| json!({
                 "t": stopped.t,

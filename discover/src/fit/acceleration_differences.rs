@@ -1,7 +1,7 @@
 //! Differences between the accelerations of similar models, which drive tangent vectors.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_sim::exponential::Drives;
+use eomgen_sim::exponential::DrivingAccelerations;
 
 use crate::model::simulation::NeighbourDrives;
 
@@ -41,8 +41,8 @@ impl<'c> AccelerationDifferences<'c> {
     }
 }
 
-impl Drives for AccelerationDifferences<'_> {
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
+impl DrivingAccelerations for AccelerationDifferences<'_> {
+    fn write_differences(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let [base, moved] = &mut self.rates;
         let first = self.base.program().degrees_of_freedom();
         self.base.rates(Point { t, state, inputs }, base);

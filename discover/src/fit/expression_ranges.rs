@@ -45,7 +45,7 @@ pub fn compute_ranges(
             let point = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.held_at(*t),
+                inputs: inputs.last_sample(*t),
             };
             evaluator.observables(point, &mut observables);
             for (travel, observable) in found.iter_mut().zip(&shown) {

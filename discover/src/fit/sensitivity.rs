@@ -427,7 +427,7 @@ fn moved_parameters(shooting: &Shooting<'_>, theta: &[f64]) -> Vec<Vec<MovedPara
             moved[number] = reach.clamp(theta[number] + change);
             MovedParameters {
                 values: shooting.parameter_values(&moved),
-                change: moved[number] - theta[number],
+                parameter_change: moved[number] - theta[number],
             }
         });
         ends.to_vec()

@@ -26,7 +26,7 @@ use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
-use eomgen_sim::exponential::{ExponentialIntegrator, NotIntegrated};
+use eomgen_sim::exponential::{ExponentialIntegrator, UnsupportedModel};
 
 /// A derived model with its measured outputs.
 pub struct EstimationModel {
@@ -347,13 +347,15 @@ impl EstimationModel {
                 .map(|integrator| integrator.with_typical_sizes(self.typical_sizes()));
         match (integrator, self.is_linear()) {
             // A part that moves that much faster than the samples show is no longer seen to move.
-            (Err(NotIntegrated::Steps(steps)), _)
+            (Err(UnsupportedModel::TooManySteps(steps)), _)
                 if steps.is_nan() || steps > thresholds::MAX_PARTS_PER_STEP =>
             {
                 return Err(SimulationError::TooFast);
             }
             (Err(_), true) => {
-                let exact = exact.at(values).map_err(SimulationError::Propagator)?;
+                let exact = exact
+                    .propagator_at(values)
+                    .map_err(SimulationError::Propagator)?;
                 simulation.use_propagator(exact);
             }
             (Ok(integrator), true) => simulation.use_integrator(integrator, None),
@@ -394,7 +396,7 @@ fn linear_part(
     if part.state_names() != model.states {
         return None;
     }
-    let own = part.piecewise_linear().ok()?.parameters();
+    let own = part.piecewise_linear().ok()?.parameter_names();
     let parameters = own.iter().map(|name| model.find_parameter(name));
     let parameters = parameters.collect::<Option<Vec<ParameterId>>>()?;
     Some(LinearPart::Part(Box::new(LinearTerms {

@@ -54,7 +54,7 @@ fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usi
 }
 
 impl Force for NonlinearRemainder {
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
+    fn write_accelerations(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let [whole, linear] = &mut self.rates;
         self.whole.rates(Point { t, state, inputs }, whole);
         self.linear.rates(Point { t, state, inputs }, linear);
@@ -66,7 +66,7 @@ impl Force for NonlinearRemainder {
             .for_each(|(slot, difference)| *slot = difference);
     }
 
-    fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool {
+    fn write_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool {
         let Some(guards) = &self.guards else {
             return false;
         };
@@ -90,7 +90,7 @@ mod tests {
     use crate::model::simulation::NeighbourDrives;
     use eomgen_records::dataset::{Channel, Quantity, TransducerPriors};
     use eomgen_records::record::Record;
-    use eomgen_sim::exponential::Free;
+    use eomgen_sim::exponential::NoDrives;
 
     /// The rig, and the rig with teeth that deviate by more than twice the play.
     fn texts() -> (String, String) {
@@ -171,7 +171,7 @@ mod tests {
         let times = &record.times[..4];
         let free = NeighbourDrives {
             count: 0,
-            drives: &mut Free,
+            drives: &mut NoDrives,
         };
         let found = simulation
             .simulate_with_tangents(&initial, times, &record.inputs, (true, 0), free)

@@ -20,7 +20,8 @@ use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::stop::StopRequest;
 use crate::thresholds;
 use eomgen_sim::exponential::{
-    Directions, Drives, ExponentialIntegrator, Force, MovedParameters, Options, Tangents,
+    Directions, DrivingAccelerations, ExponentialIntegrator, Force, MovedParameters, Options,
+    Tangents,
 };
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
@@ -54,7 +55,7 @@ pub struct NeighbourDrives<'d> {
     /// Number of drives.
     pub count: usize,
     /// Values along a motion.
-    pub drives: &'d mut dyn Drives,
+    pub drives: &'d mut dyn DrivingAccelerations,
 }
 
 /// A motion with tangent vectors.
@@ -189,7 +190,7 @@ impl<'m> Simulation<'m> {
     /// of the model, whose parameters are all in its linear part.
     pub(crate) fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         if let Some(integrator) = &mut self.integrator {
-            integrator.differentiate_by(own, moved);
+            integrator.set_moved_parameters(own, moved);
         }
     }
 
@@ -210,9 +211,9 @@ impl<'m> Simulation<'m> {
         let mut tangents = Tangents::new(
             (n, integrator.degrees_of_freedom()),
             Directions {
-                by_state,
-                by_parameter,
-                driven: driven.count,
+                has_state_vectors: by_state,
+                parameter_count: by_parameter,
+                driven_count: driven.count,
             },
             driven.drives,
         );
@@ -223,7 +224,7 @@ impl<'m> Simulation<'m> {
             tangents: Some(&mut tangents),
         };
         integrator
-            .run(
+            .simulate(
                 initial,
                 samples,
                 inputs,
@@ -267,7 +268,7 @@ impl<'m> Simulation<'m> {
             return Err(SimulationError::Stopped);
         }
         if let Some(given) = &self.given {
-            let state = |t: &f64| Some(given.state_of_row(inputs.held_at(*t))?.to_vec());
+            let state = |t: &f64| Some(given.state_of_row(inputs.last_sample(*t))?.to_vec());
             let states: Option<Vec<Vec<f64>>> = samples.iter().map(state).collect();
             return states.ok_or(SimulationError::StateNotRecorded);
         }
@@ -277,7 +278,7 @@ impl<'m> Simulation<'m> {
                 force: self.remainder.as_mut().map(|force| force as &mut dyn Force),
                 tangents: None,
             };
-            let run = integrator.run(initial, samples, inputs, options, &mut |_, state, _| {
+            let run = integrator.simulate(initial, samples, inputs, options, &mut |_, state, _| {
                 states.push(state.to_vec());
             });
             return run.map(|()| states).map_err(SimulationError::Integrator);
@@ -327,7 +328,7 @@ impl<'m> Simulation<'m> {
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
                 // Half a step on, so that rounding of a sample's time does not decide.
-                let inputs = inputs.held_at(begin + 0.5 * h);
+                let inputs = inputs.last_sample(begin + 0.5 * h);
                 method.step(&mut state, (begin, h), |_, t, state, rates| {
                     evaluator.rates(Point { t, state, inputs }, rates);
                 });
@@ -402,7 +403,7 @@ impl<'m> Simulation<'m> {
         let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
         let propagator = self.propagator.as_mut()?;
         let found = propagator
-            .neighbours(initial, span, samples, inputs, directions)
+            .simulate_with_derivatives(initial, span, samples, inputs, directions)
             .ok()?;
         let channels = self.measured.count();
         let mut outputs = Outputs::default();
@@ -452,7 +453,7 @@ impl<'m> Simulation<'m> {
             linear_outputs.append(state, values);
             return;
         }
-        let inputs = inputs.held_at(t);
+        let inputs = inputs.last_sample(t);
         let evaluator = self.evaluator.get_mut();
         let required = match &mut self.given {
             None => None,

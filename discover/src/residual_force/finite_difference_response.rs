@@ -122,7 +122,7 @@ impl<'s> SteppedWindow<'s> {
         let mut squares = vec![0.0; rates.len() - first];
         for step in &own.steps {
             for (t, state) in &step.points {
-                let (t, inputs) = (*t, inputs.held_at(step.middle));
+                let (t, inputs) = (*t, inputs.last_sample(step.middle));
                 self.evaluator.rates(Point { t, state, inputs }, &mut rates);
                 for (square, rate) in squares.iter_mut().zip(&rates[first..]) {
                     *square += rate * rate;
@@ -143,8 +143,8 @@ impl<'s> SteppedWindow<'s> {
         let mut all = vec![0.0; driven.count * forced];
         for step in &own.steps {
             for (t, state) in &step.points {
-                let inputs = inputs.held_at(step.middle);
-                driven.drives.at(*t, state, inputs, &mut all);
+                let inputs = inputs.last_sample(step.middle);
+                driven.drives.write_differences(*t, state, inputs, &mut all);
                 for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
                     force.in_steps.extend_from_slice(now);
                 }
@@ -155,7 +155,9 @@ impl<'s> SteppedWindow<'s> {
         }
         let times = self.shooting.output_times(window).times;
         for (t, state) in times.iter().zip(&own.states) {
-            driven.drives.at(*t, state, inputs.held_at(*t), &mut all);
+            driven
+                .drives
+                .write_differences(*t, state, inputs.last_sample(*t), &mut all);
             for (force, now) in found.iter_mut().zip(all.chunks_exact(forced)) {
                 force.at_times.extend_from_slice(now);
             }
@@ -214,7 +216,7 @@ impl<'s> SteppedWindow<'s> {
             for step in 0..steps {
                 let begin = before + step as f64 * h;
                 let middle = begin + 0.5 * h;
-                let held = inputs.held_at(middle);
+                let held = inputs.last_sample(middle);
                 let mut points = [const { (0.0, Vec::new()) }; 3];
                 method.step(&mut state, (begin, h), |stage, t, state, rates| {
                     let point = POINTS[stage];
@@ -241,7 +243,7 @@ impl<'s> SteppedWindow<'s> {
             let at = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.held_at(*t),
+                inputs: inputs.last_sample(*t),
             };
             let added = force.map(|(size, force)| (size, force.at(place, forced)));
             self.measure(at, added, &mut measured);

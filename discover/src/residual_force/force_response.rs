@@ -12,7 +12,7 @@ use crate::fit::shooting::{Shooting, count_samples};
 use crate::model::simulation::NeighbourDrives;
 use crate::residual_force::equations::{EquationEvaluator, EquationSet, OperatingPoint};
 use crate::residual_force::finite_difference_response::SteppedWindow;
-use eomgen_sim::exponential::Drives;
+use eomgen_sim::exponential::DrivingAccelerations;
 
 /// Function that computes one weight per column from the operating points and the inputs.
 pub type FillWeights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;
@@ -48,8 +48,8 @@ impl<'c> ForceDrives<'c> {
     }
 }
 
-impl Drives for ForceDrives<'_> {
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
+impl DrivingAccelerations for ForceDrives<'_> {
+    fn write_differences(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let point = Point { t, state, inputs };
         self.evaluator
             .append_operating_points(point, &mut self.operating_points);
@@ -162,7 +162,7 @@ pub fn compute_operating_points(
             let point = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.held_at(*t),
+                inputs: inputs.last_sample(*t),
             };
             evaluator.append_operating_points(point, &mut operating_points);
             for operating_point in &mut operating_points {

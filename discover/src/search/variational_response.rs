@@ -147,13 +147,13 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
             .zip(states)
             .step_by(thresholds::SIZE_SAMPLE_STRIDE);
         for (t, state) in samples {
-            let rates = simulation.compute_rates(*t, &state, inputs.held_at(*t));
+            let rates = simulation.compute_rates(*t, &state, inputs.last_sample(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[first..]) {
                 *sum += rate * rate;
             }
             points.times.push(*t);
             points.states.push(state);
-            points.inputs.push(inputs.held_at(*t).to_vec());
+            points.inputs.push(inputs.last_sample(*t).to_vec());
             points.rates.push(rates);
         }
     }

@@ -65,7 +65,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
         match self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
             Some(sliding) => {
-                let inputs = &self.inputs.borrow().at(t);
+                let inputs = &self.inputs.borrow().evaluate(t);
                 let mut sliding = sliding.borrow_mut();
                 sliding.write_observables((t, state), inputs, &mut observables);
             }
@@ -145,7 +145,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         state: &[f64],
         of: impl FnOnce(&mut Evaluator, Point<'_>) -> T,
     ) -> T {
-        let inputs = &self.inputs.borrow().at(t);
+        let inputs = &self.inputs.borrow().evaluate(t);
         of(&mut self.evaluator(), Point { t, state, inputs })
     }
 
@@ -180,7 +180,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Evaluates the switching functions at zero rates, with coordinates of this size.
     fn guards_at_rest(&self, size: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.evaluator().guard_count()];
-        let mut state = vec![0.0; self.states()];
+        let mut state = vec![0.0; self.state_count()];
         let degrees = self.evaluator().program().degrees_of_freedom();
         for (place, coordinate) in state[..degrees].iter_mut().enumerate() {
             *coordinate = size / (place + 2) as f64;
@@ -193,13 +193,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenModel<E, I> {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         self.evaluator().program().states()
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         if let Some(sliding) = self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
-            let inputs = &self.inputs.borrow().at(t);
+            let inputs = &self.inputs.borrow().evaluate(t);
             return sliding.borrow_mut().write_rates((t, y), inputs, out);
         }
         self.evaluate_at(t, y, |evaluator, point| {
@@ -212,7 +212,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn typical_sizes(&self) -> Vec<f64> {
         match self.typical_sizes.is_empty() {
-            true => vec![1.0; self.states()],
+            true => vec![1.0; self.state_count()],
             false => self.typical_sizes.clone(),
         }
     }
@@ -220,14 +220,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let is_on = |sliding: &&RefCell<SurfaceStates>| !RefCell::borrow(sliding).is_free();
         if let Some(sliding) = self.sliding.as_ref().filter(is_on) {
-            let inputs = &self.inputs.borrow().at(t);
+            let inputs = &self.inputs.borrow().evaluate(t);
             let given = (&inputs[..], &self.typical_sizes()[..]);
             return sliding.borrow_mut().write_jacobian((t, y), given, out);
         }
         match &self.jacobians {
             Some(jacobians) if !self.has_closed_contacts() => {
                 let mut jacobians = jacobians.borrow_mut();
-                let inputs = &self.inputs.borrow().at(t);
+                let inputs = &self.inputs.borrow().evaluate(t);
                 let point = Point {
                     t,
                     state: y,
@@ -254,16 +254,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             }
         });
         if let Some(sliding) = &self.sliding {
-            let inputs = &self.inputs.borrow().at(t);
+            let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().write_guards((t, y), inputs, out);
         }
     }
 
-    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
+    fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         let mut evaluator = self.evaluator();
         let size = evaluator.program().degrees_of_freedom();
         let mut mass = vec![0.0; size * size];
-        let inputs = &self.inputs.borrow().at(t);
+        let inputs = &self.inputs.borrow().evaluate(t);
         evaluator.mass_matrix(
             Point {
                 t,
@@ -281,7 +281,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if !holds {
             return 0;
         }
-        let inputs = &self.inputs.borrow().at(t);
+        let inputs = &self.inputs.borrow().evaluate(t);
         let (at, mut evaluations) = ((t, &inputs[..]), 0);
         if let Some(projection) = &self.projection {
             let given = self.inputs.borrow();
@@ -298,10 +298,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         evaluations
     }
 
-    fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
         if let Some(contacts) = &self.contacts {
             let arrived = self.auditor.as_ref().map(|_| y.to_vec());
-            let inputs = &self.inputs.borrow().at(t);
+            let inputs = &self.inputs.borrow().evaluate(t);
             contacts
                 .borrow_mut()
                 .apply_impact(&mut self.evaluator(), inputs, before, t, y);
@@ -315,23 +315,23 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             }
         }
         if let Some(sliding) = &self.sliding {
-            let inputs = &self.inputs.borrow().at(t);
+            let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().apply_crossing(inputs, before, t, y);
         }
     }
 
-    fn keep_sides(&self, sides: Option<&[f64]>) {
+    fn fix_sides(&self, sides: Option<&[f64]>) {
         if let Some(sliding) = &self.sliding {
             sliding.borrow_mut().fix_sides(sides);
         }
     }
 
-    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
         let Some(sliding) = &self.sliding else {
             return Vec::new();
         };
         let given = self.inputs.borrow();
-        let (earlier, inputs) = (given.at(t.next_down()), given.at(t));
+        let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));
         let mut sliding = sliding.borrow_mut();
         sliding.update((t, y), (earlier.as_ref(), inputs.as_ref()))
     }

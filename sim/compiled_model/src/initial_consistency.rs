@@ -108,7 +108,7 @@ impl Instance<'_> {
         (t, until): (f64, f64),
         inputs: &HeldInputs,
     ) -> Result<(Vec<f64>, Vec<InitialChange>), Error> {
-        let inputs = &inputs.at(t);
+        let inputs = &inputs.evaluate(t);
         let projection = match self.projection() {
             Ok(Some(projection)) => projection,
             Ok(None) => {

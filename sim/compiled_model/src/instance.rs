@@ -5,7 +5,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::{ParameterValue, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::NOT_POSITIVE;
+use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
 use crate::error::Error;
@@ -181,8 +181,8 @@ impl<'m> Instance<'m> {
     pub fn propagator(&self) -> Result<Propagator, ExactError> {
         let exact = self.model.piecewise_linear().map_err(Clone::clone)?;
         let value = |name: &String| self.value(name).unwrap_or(f64::NAN);
-        let values: Vec<f64> = exact.parameters().iter().map(value).collect();
-        exact.at(&values)
+        let values: Vec<f64> = exact.parameter_names().iter().map(value).collect();
+        exact.propagator_at(&values)
     }
 
     /// Returns the observables at every sample of a motion, one row per sample; `energy` and
@@ -212,7 +212,7 @@ impl<'m> Instance<'m> {
         let mut observed =
             ObservedMotion::new(evaluator, self.sided_model()?, trajectory, &motion.inputs);
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
-            let inputs = &motion.inputs.at(t);
+            let inputs = &motion.inputs.evaluate(t);
             observed.observables(Point { t, state, inputs }, &mut observables);
             show(t, state, &observables);
         }
@@ -223,6 +223,6 @@ impl<'m> Instance<'m> {
 fn require_positive_pivots(evaluator: Evaluator) -> Result<Evaluator, Error> {
     match evaluator.pivots_are_positive() {
         true => Ok(evaluator),
-        false => Err(Error::Request(NOT_POSITIVE.to_owned())),
+        false => Err(Error::Request(NOT_POSITIVE_DEFINITE_MESSAGE.to_owned())),
     }
 }

@@ -276,7 +276,7 @@ impl CompiledModel {
     pub fn piecewise_linear(&self) -> Result<&PiecewiseLinear, &ExactError> {
         let made = self
             .piecewise_linear
-            .get_or_init(|| PiecewiseLinear::of(&self.model, &self.orders));
+            .get_or_init(|| PiecewiseLinear::derive(&self.model, &self.orders));
         made.as_ref()
     }
 }

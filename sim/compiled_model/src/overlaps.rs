@@ -3,7 +3,7 @@
 
 use eomgen_codegen::program::Op;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_sim::ode::UNMOVED_PART;
+use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::audit::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 use crate::error::Error;
@@ -57,12 +57,12 @@ impl Instance<'_> {
         let mut evaluator = self.evaluator()?;
         let trajectory = &motion.trajectory;
         let typical = self.model().typical_sizes().iter();
-        let mut sizes: Vec<f64> = typical.map(|size| UNMOVED_PART * size).collect();
+        let mut sizes: Vec<f64> = typical.map(|size| UNMOVED_SIZE_FRACTION * size).collect();
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
             for (size, entry) in sizes.iter_mut().zip(state) {
                 *size = size.max(entry.abs());
             }
-            let inputs = &motion.inputs.at(t);
+            let inputs = &motion.inputs.evaluate(t);
             let distances = evaluate_distances(&mut evaluator, Point { t, state, inputs });
             for (place, distance) in distances.iter().enumerate() {
                 if *distance >= 0.0 {

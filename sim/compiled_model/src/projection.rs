@@ -118,7 +118,7 @@ impl Projection {
         state: &mut [f64],
     ) -> u64 {
         let arrived = state.to_vec();
-        let evaluations = self.correct(own, (t, &inputs.at(t)), state, MAX_STEP_CORRECTIONS);
+        let evaluations = self.correct(own, (t, &inputs.evaluate(t)), state, MAX_STEP_CORRECTIONS);
         let reached = match evaluations {
             Some(_) => &*state,
             None => &arrived,

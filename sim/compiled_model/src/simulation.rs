@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{
-    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, Unfollowed,
+    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, UnsupportedSticking,
     simulate_into,
 };
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
@@ -118,7 +118,7 @@ impl Instance<'_> {
             Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
         };
         let is_free = request.solver == Solver::Auto;
-        if request.inputs.moves() {
+        if request.inputs.is_time_varying() {
             let reason = "the exact solver holds inputs constant between samples, but these inputs are \
                           functions of time";
             return match is_free {
@@ -162,7 +162,9 @@ impl Instance<'_> {
             ));
         };
         let surfaces = DrivenModel::new(&evaluator, request.inputs).surfaces();
-        let reason = self.format_named((&surfaces, Solver::Exact), |names| error.named(names));
+        let reason = self.format_named((&surfaces, Solver::Exact), |names| {
+            error.format_named(names)
+        });
         if is_free && may_be_supported_by_general(&error) {
             let choice = Some(SolverChoice::NotSupportedByExact(reason));
             return self.simulate_automatically(request, choice, progress);
@@ -257,9 +259,9 @@ impl Instance<'_> {
                 let may_be = matches!(cause, StopCause::NotFinite | StopCause::Limit);
                 let passed = system.projection().filter(|_| may_be);
                 let passed = passed.and_then(|projection| {
-                    let state = &so_far.trajectory.last;
+                    let state = &so_far.trajectory.final_state;
                     let mut rates = vec![0.0; state.len()];
-                    let inputs = &request.inputs.at(ended_at);
+                    let inputs = &request.inputs.evaluate(ended_at);
                     let point = Point {
                         t: ended_at,
                         state,
@@ -277,7 +279,7 @@ impl Instance<'_> {
                     (Some(overlap), _) => format!("at t = {ended_at:?} s {overlap}"),
                     (None, Some(reason)) => reason,
                     (None, None) => {
-                        self.format_named((&surfaces, solver), |names| error.named(names))
+                        self.format_named((&surfaces, solver), |names| error.format_named(names))
                     }
                 };
                 with_early_stop(so_far, EarlyStop { t, reason, cause })
@@ -299,7 +301,9 @@ impl Instance<'_> {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
                 StopCause::NotFinite
             }
-            SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => StopCause::Switching,
+            SolveError::Sticking { .. } | SolveError::TooManySwitches { .. } => {
+                StopCause::Switching
+            }
             SolveError::Stiff { state, within, .. } => {
                 let state = &self.model.state_names()[*state];
                 StopCause::Stiff(format!(
@@ -323,7 +327,7 @@ impl Instance<'_> {
     fn exact_stop_cause(&self, error: &ExactError, surfaces: &[Surface]) -> StopCause {
         match error {
             ExactError::Stopped(error) => self.cause(error, surfaces),
-            ExactError::Held { .. } => StopCause::Switching,
+            ExactError::Sticking { .. } => StopCause::Switching,
             ExactError::NotFinite | ExactError::NotPositiveDefinite => StopCause::NotFinite,
             _ => StopCause::Limit,
         }
@@ -337,14 +341,14 @@ impl Instance<'_> {
     ) -> String {
         let states = self.model.state_names();
         let unfollowed = match solver {
-            Solver::Adams => Unfollowed::Adams,
-            _ if !self.model.model().impacts.is_empty() => Unfollowed::Impacts,
-            _ => Unfollowed::Formula,
+            Solver::Adams => UnsupportedSticking::Adams,
+            _ if !self.model.model().impacts.is_empty() => UnsupportedSticking::Impacts,
+            _ => UnsupportedSticking::Formula,
         };
         message(&Names {
             states: &states,
             surfaces,
-            unfollowed,
+            unsupported_sticking: unfollowed,
         })
     }
 }
@@ -365,7 +369,7 @@ fn propagate(
     let mut evaluator = evaluator.borrow_mut();
     let mut observables = vec![0.0; evaluator.program().observables.len()];
     let mut energies = |t: f64, state: &[f64]| {
-        let inputs = &request.inputs.at(t);
+        let inputs = &request.inputs.evaluate(t);
         evaluator.observables(Point { t, state, inputs }, &mut observables);
         EnergyAndPower::from_observables(&observables)
     };
@@ -413,5 +417,8 @@ fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> 
 
 /// Returns true if another solver may follow the motion.
 fn may_be_supported_by_general(error: &ExactError) -> bool {
-    matches!(error, ExactError::Held { .. } | ExactError::NotConverged)
+    matches!(
+        error,
+        ExactError::Sticking { .. } | ExactError::NotConverged
+    )
 }

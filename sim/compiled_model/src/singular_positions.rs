@@ -124,7 +124,7 @@ impl SingularityWatch {
     }
 
     fn scaled_rows(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) -> DMatrix<f64> {
-        let inputs = &inputs.at(t);
+        let inputs = &inputs.evaluate(t);
         let rows = self.rows.rows(Point { t, state, inputs });
         for (length, row) in self.lengths.iter_mut().zip(&rows) {
             *length = length.max(norm(row));

@@ -26,10 +26,10 @@ pub(crate) fn differentiate_position(times: &[f64], column: &[f64]) -> Option<[V
     let samples = times.iter().zip(column);
     let known = samples.filter(|(_, value)| value.is_finite());
     let (at, values) = known.map(|(t, value)| (*t, *value)).unzip();
-    let spline = CubicSpline::through(at, values)?;
+    let spline = CubicSpline::fit(at, values)?;
     let mut found = [const { Vec::new() }; 3];
     for t in times {
-        for (column, value) in found.iter_mut().zip(spline.at(*t)) {
+        for (column, value) in found.iter_mut().zip(spline.evaluate(*t)) {
             column.push(value);
         }
     }

@@ -58,7 +58,7 @@ impl Record {
     }
 
     fn column(&self, place: usize) -> Vec<f64> {
-        let value = |t: &f64| self.inputs.held_at(*t)[place];
+        let value = |t: &f64| self.inputs.last_sample(*t)[place];
         self.times.iter().map(value).collect()
     }
 }
@@ -302,7 +302,7 @@ impl RecordReader<'_> {
             let samples = times.iter().zip(&columns[place]);
             let known = samples.filter(|(_, value)| value.is_finite());
             let (times, values) = known.map(|(t, value)| (*t, *value)).unzip();
-            if let Some(spline) = CubicSpline::through(times, values) {
+            if let Some(spline) = CubicSpline::fit(times, values) {
                 inputs = inputs.with_prescribed(place, spline);
             }
         }

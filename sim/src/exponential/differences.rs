@@ -38,7 +38,7 @@ impl ExponentialIntegrator {
                 self.differentiate(motion, t, &mut **force, slopes)?;
             }
             let regime = &self.regimes[motion.regime];
-            tangents.catch_up(regime, t, &motion.state, &motion.given);
+            tangents.advance_pending(regime, t, &motion.state, &motion.given);
         }
         Ok(())
     }
@@ -112,14 +112,14 @@ impl ExponentialIntegrator {
         let inputs = &motion.given[1..];
         let guard = self.surfaces.guards[surface][0];
         let (mut state, mut values) = (motion.state.clone(), Vec::new());
-        if !force.at_guards(t, &state, inputs, &mut values) {
+        if !force.write_guards(t, &state, inputs, &mut values) {
             return gradient;
         }
         let here = values[guard];
         for (place, slot) in gradient.iter_mut().enumerate() {
             let x = state[place];
             state[place] = x + self.difference(place, x, rates[place]);
-            force.at_guards(t, &state, inputs, &mut values);
+            force.write_guards(t, &state, inputs, &mut values);
             *slot = (values[guard] - here) / (state[place] - x);
             state[place] = x;
         }
@@ -144,7 +144,7 @@ impl ExponentialIntegrator {
         let functions = self.regimes[motion.regime].functions.iter();
         let both = base.moved.iter().zip(&moved.moved);
         functions.zip(both).any(|(function, (before, after))| {
-            let here = function.at(&motion.state, &motion.given);
+            let here = function.evaluate(&motion.state, &motion.given);
             let there = here + size * function.state[place];
             Side::of(here + before) != Side::of(there + after)
         })

@@ -15,7 +15,7 @@ pub struct Columns {
 
 impl Columns {
     /// A matrix from its entries.
-    pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub fn from_entries(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let padded = rows.next_multiple_of(LANES);
         let mut entries = vec![0.0; padded * columns];
         for column in 0..columns {
@@ -30,7 +30,7 @@ impl Columns {
     }
 
     /// One of its numbers.
-    pub fn at(&self, row: usize, column: usize) -> f64 {
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
         self.entries[column * self.rows + row]
     }
 
@@ -112,7 +112,7 @@ mod tests {
     fn products_are_sums_of_columns() {
         for (rows, columns) in [(1, 1), (5, 3), (8, 2), (17, 9)] {
             let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
-            let matrix = Columns::of(rows, columns, entry);
+            let matrix = Columns::from_entries(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
             let mut out = vec![1.0; matrix.rows];
             matrix.add_product(&vector, &mut out);

@@ -19,12 +19,12 @@ mod crossing;
 mod differences;
 mod kernels;
 mod parameter_derivatives;
-mod parts;
+mod partial_steps;
 mod regime;
 mod regime_rates;
 mod release;
 mod remainder;
-mod remainder_at;
+mod remainder_search;
 mod slopes;
 mod surfaces;
 mod tangents;
@@ -43,9 +43,9 @@ pub use remainder::Force;
 use remainder::{RegimeDifference, Remainder};
 use slopes::Slopes;
 use surfaces::{Side, Surfaces, dot};
-pub use tangents::{Directions, Drives, Free, Tangents};
+pub use tangents::{Directions, DrivingAccelerations, NoDrives, Tangents};
 use types::Motion;
-pub use types::{ExponentialIntegrator, NotIntegrated, Options, Show};
+pub use types::{ExponentialIntegrator, Options, SampleCallback, UnsupportedModel};
 
 /// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
 /// knows where a surface is crossed to a hundredth, and finds it from there.
@@ -72,19 +72,19 @@ impl ExponentialIntegrator {
         mut evaluator: AffineEvaluator,
         sample: f64,
         refinement: f64,
-    ) -> Result<Self, NotIntegrated> {
-        let surfaces = Surfaces::of(&mut evaluator).ok_or(NotIntegrated::Kind)?;
+    ) -> Result<Self, UnsupportedModel> {
+        let surfaces = Surfaces::of(&mut evaluator).ok_or(UnsupportedModel::UnsupportedTerms)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
         if !system.phases.is_empty()
             || !evaluator.half_widths_are_right()
             || !evaluator.pivots_are_positive()
         {
-            return Err(NotIntegrated::Kind);
+            return Err(UnsupportedModel::UnsupportedTerms);
         }
-        let turns = sample * regime::fastest(&mut evaluator, &surfaces) / TURN;
+        let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / TURN;
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;
         if steps.is_nan() || steps > MOST_STEPS {
-            return Err(NotIntegrated::Steps(steps));
+            return Err(UnsupportedModel::TooManySteps(steps));
         }
         Ok(Self {
             typical_sizes: vec![1.0; evaluator.states()],
@@ -114,7 +114,7 @@ impl ExponentialIntegrator {
 
     /// Adds tangent vectors of parameters. For each parameter, `moved` has values on one or both
     /// sides of `own`, the parameters of the evaluator.
-    pub fn differentiate_by(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
+    pub fn set_moved_parameters(&mut self, own: &[f64], moved: Vec<Vec<MovedParameters>>) {
         self.regimes.clear();
         self.known.clear();
         self.last_own = (Vec::new(), 0);
@@ -143,13 +143,13 @@ impl ExponentialIntegrator {
     ///
     /// # Errors
     /// A message if the motion cannot be simulated.
-    pub fn run(
+    pub fn simulate(
         &mut self,
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
         mut options: Options<'_, '_>,
-        show: &mut Show<'_>,
+        show: &mut SampleCallback<'_>,
     ) -> Result<(), String> {
         let Some(begin) = samples.first() else {
             return Ok(());
@@ -165,7 +165,7 @@ impl ExponentialIntegrator {
                     .next_change(near)
                     .filter(|next| *next < *end - 1e-3 * self.step);
                 let until = change.unwrap_or(*end);
-                let values = inputs.held_at(0.5 * (motion.t + until));
+                let values = inputs.last_sample(0.5 * (motion.t + until));
                 self.interval(&mut motion, until, values, &mut options)?;
                 motion.t = until;
             }
@@ -184,7 +184,7 @@ impl ExponentialIntegrator {
         inputs: &HeldInputs,
         options: &mut Options<'_, '_>,
     ) -> Result<Motion, String> {
-        let values = inputs.held_at(t + 1e-3 * self.step);
+        let values = inputs.last_sample(t + 1e-3 * self.step);
         let mut given = vec![1.0];
         given.extend(values);
         let count = self.surfaces.guards.len();
@@ -196,9 +196,9 @@ impl ExponentialIntegrator {
             given,
             base: Vec::new(),
             event_values: Vec::new(),
-            remainder: Remainder::none(self.forced(), count),
+            remainder: Remainder::zero(self.forced(), count),
             next: Vec::new(),
-            later: Remainder::none(self.forced(), count),
+            later: Remainder::zero(self.forced(), count),
             change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
@@ -210,7 +210,7 @@ impl ExponentialIntegrator {
         }
         let functions = functions.iter().zip(&motion.later.moved);
         let distances: Vec<f64> = functions
-            .map(|(row, moved)| row.at(initial, &motion.given) + moved)
+            .map(|(row, moved)| row.evaluate(initial, &motion.given) + moved)
             .collect();
         let sides = distances.iter().map(|distance| Side::of(*distance));
         motion.sides = sides.collect();
@@ -326,12 +326,12 @@ impl ExponentialIntegrator {
         let rows = regime.functions.iter().zip(&motion.remainder.moved);
         motion
             .event_values
-            .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
+            .extend(rows.map(|(row, moved)| row.evaluate(&motion.state, &motion.given) + moved));
         for (row, function) in regime.rates.iter().zip(&regime.functions) {
             let forced = dot(&function.state[degrees..], &motion.remainder.force);
             motion
                 .event_values
-                .push(row.at(&motion.state, &motion.given) + forced);
+                .push(row.evaluate(&motion.state, &motion.given) + forced);
         }
     }
 
@@ -380,7 +380,7 @@ impl ExponentialIntegrator {
         });
         let begin = (&motion.state[..], &motion.remainder);
         let ends = (begin, (&motion.next[..n], &motion.later));
-        if crossed || self.first_release(motion, ends, self.step).is_some() {
+        if crossed || self.find_first_release(motion, ends, self.step).is_some() {
             return Ok(false);
         }
         motion.state.copy_from_slice(&motion.next[..n]);

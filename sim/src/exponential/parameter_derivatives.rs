@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::kernels::Columns;
 use super::regime_rates::{DOUBLINGS, Rates, TERMS, flow_scale, held_rates};
 use super::surfaces::{Row, Side, Surfaces};
-use crate::balancing::scaled;
+use crate::balancing::scale_matrix;
 
 /// A series of the exponential converges to rounding within [`TERMS`] terms for a matrix whose norm is
 /// below this.
@@ -19,7 +19,7 @@ pub struct MovedParameters {
     /// Values of all parameters.
     pub values: Vec<f64>,
     /// Change of that parameter, SI.
-    pub change: f64,
+    pub parameter_change: f64,
 }
 
 /// Derivatives of a regime by one parameter.
@@ -56,8 +56,8 @@ pub(super) fn regime_derivatives(
     let own = rows_at(base)?;
     let derivatives = moved.iter().map(|ends| {
         let ends = ends.iter().filter_map(|end| {
-            let rows = rows_at(&end.values).filter(|_| end.change != 0.0)?;
-            Some((rows, end.change))
+            let rows = rows_at(&end.values).filter(|_| end.parameter_change != 0.0)?;
+            Some((rows, end.parameter_change))
         });
         let mut ends: Vec<(RegimeRows, f64)> = ends.collect();
         ends.push((own.clone(), 0.0));
@@ -91,18 +91,18 @@ fn difference(
         given: quotient(&a.given, &b.given),
     });
     let (n, given) = (rates.state.nrows(), rates.given.ncols());
-    let doubled = flow_derivatives(&own.joined(), &rates.joined(), n, step);
+    let doubled = flow_derivatives(&own.joined_matrix(), &rates.joined_matrix(), n, step);
     let doubled = doubled.iter().map(|of| {
         (
-            Columns::of(n, n, |r, c| of[(r, c)]),
-            Columns::of(n, given, |r, c| of[(r, n + c)]),
+            Columns::from_entries(n, n, |r, c| of[(r, c)]),
+            Columns::from_entries(n, given, |r, c| of[(r, n + c)]),
         )
     });
     RegimeDerivative {
         functions: functions.collect(),
         doubled: doubled.collect(),
-        state: Columns::of(n, n, |r, c| rates.state[(r, c)]),
-        given: Columns::of(n, given, |r, c| rates.given[(r, c)]),
+        state: Columns::from_entries(n, n, |r, c| rates.state[(r, c)]),
+        given: Columns::from_entries(n, given, |r, c| rates.given[(r, c)]),
     }
 }
 
@@ -117,7 +117,10 @@ fn flow_derivatives(
 ) -> Vec<DMatrix<f64>> {
     let scale = flow_scale(whole, states, step);
     let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
-    let (w, v) = (scaled(whole, &scale) * step, scaled(change, &scale) * step);
+    let (w, v) = (
+        scale_matrix(whole, &scale) * step,
+        scale_matrix(change, &scale) * step,
+    );
     let norm = w.column_iter().map(|column| column.lp_norm(1));
     let norm = norm.fold(0.0, f64::max);
     let squarings = (norm / SERIES_NORM).log2().ceil().max(0.0);
@@ -141,7 +144,7 @@ fn flow_derivatives(
     }
     let mut doubled = Vec::with_capacity(DOUBLINGS);
     for _ in 0..DOUBLINGS {
-        doubled.push(scaled(&derivative, &back));
+        doubled.push(scale_matrix(&derivative, &back));
         double(&mut flow, &mut derivative);
     }
     doubled

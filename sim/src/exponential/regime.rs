@@ -6,11 +6,11 @@ use eomgen_analysis::qr_iteration;
 use eomgen_codegen::program::affine::AffineEvaluator;
 use nalgebra::DMatrix;
 
-use crate::balancing::scaled;
+use crate::balancing::scale_matrix;
 
 use super::kernels::Columns;
 use super::parameter_derivatives::RegimeDerivative;
-use super::regime_rates::{DOUBLINGS, Held, Rates, flow_scale, held_rates, state_scale};
+use super::regime_rates::{DOUBLINGS, HeldRates, Rates, flow_scale, held_rates, state_scale};
 use super::surfaces::{Row, Side, Surfaces, dot};
 
 /// Distance from a surface that holds a motion, at which a model is evaluated on one side of it: this
@@ -43,7 +43,7 @@ pub struct Regime {
     pub held: Vec<HeldSurface>,
     /// What accelerations that come from elsewhere add to these sides, a row for each, and what that
     /// adds to the accelerations, a column for each.
-    borne: (DMatrix<f64>, DMatrix<f64>),
+    force_effects: (DMatrix<f64>, DMatrix<f64>),
 }
 
 /// Several steps at once.
@@ -84,7 +84,7 @@ impl Regime {
         step: f64,
     ) -> Option<Self> {
         let (rates, functions, held) = held_rates(evaluator, surfaces, sides)?;
-        let Held {
+        let HeldRates {
             sides: held,
             factor,
             jumps,
@@ -114,7 +114,7 @@ impl Regime {
         );
         let given = rates.given.ncols();
         let columns = n + given + forced;
-        let mut whole = rates.joined().resize(columns, columns, 0.0);
+        let mut whole = rates.joined_matrix().resize(columns, columns, 0.0);
         for place in 0..forced {
             whole[(degrees + place, n + given + place)] = 1.0;
         }
@@ -123,9 +123,9 @@ impl Regime {
         let mut longer = flow.clone();
         for _ in 0..DOUBLINGS {
             doubled.push(DoubledStep {
-                state: Columns::of(n, n, |r, c| longer[(r, c)]),
-                given: Columns::of(n, given, |r, c| longer[(r, n + c)]),
-                force: Columns::of(n, forced, |r, c| longer[(r, n + given + c)]),
+                state: Columns::from_entries(n, n, |r, c| longer[(r, c)]),
+                given: Columns::from_entries(n, given, |r, c| longer[(r, n + c)]),
+                force: Columns::from_entries(n, forced, |r, c| longer[(r, n + given + c)]),
             });
             longer = &longer * &longer;
         }
@@ -141,17 +141,17 @@ impl Regime {
         };
         let rows = n + below.len();
         Some(Self {
-            matrix: Columns::of(n, n, |r, c| rates.state[(r, c)]),
-            step: Columns::of(rows, n, |r, c| row_of(r, c, None)),
-            step_given: Columns::of(rows, given, |r, c| row_of(r, n + c, Some(c))),
-            step_force: Columns::of(rows, forced, |r, c| row_of(r, n + given + c, None)),
+            matrix: Columns::from_entries(n, n, |r, c| rates.state[(r, c)]),
+            step: Columns::from_entries(rows, n, |r, c| row_of(r, c, None)),
+            step_given: Columns::from_entries(rows, given, |r, c| row_of(r, n + c, Some(c))),
+            step_force: Columns::from_entries(rows, forced, |r, c| row_of(r, n + given + c, None)),
             doubled,
             by_parameter: Vec::new(),
             given: rates.given,
             functions,
             rates: speeds,
             held,
-            borne,
+            force_effects: borne,
         })
     }
 }
@@ -159,12 +159,12 @@ impl Regime {
 impl Regime {
     /// Takes from accelerations that come from elsewhere what surfaces that hold the motion bear of
     /// them, and says what that adds to the sides.
-    pub fn bear(&self, accelerations: &mut [f64], sides: &mut Vec<f64>) {
+    pub fn subtract_held(&self, accelerations: &mut [f64], sides: &mut Vec<f64>) {
         sides.clear();
         if self.held.is_empty() {
             return;
         }
-        let (factor, jumps) = &self.borne;
+        let (factor, jumps) = &self.force_effects;
         for row in factor.row_iter() {
             let products = row.iter().zip(accelerations.iter());
             sides.push(products.map(|(a, b)| a * b).sum());
@@ -211,13 +211,13 @@ fn along(row: &Row, rates: &Rates) -> Row {
 /// the norm decides how often the exponential is squared.
 fn exponential(whole: &DMatrix<f64>, states: usize, step: f64) -> DMatrix<f64> {
     let scale = flow_scale(whole, states, step);
-    let flow = (scaled(whole, &scale) * step).exp();
+    let flow = (scale_matrix(whole, &scale) * step).exp();
     let back: Vec<f64> = scale.iter().map(|factor| 1.0 / factor).collect();
-    scaled(&flow, &back)
+    scale_matrix(&flow, &back)
 }
 
 /// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.
-pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
+pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
     let count = surfaces.guards.len();
     let mut fastest: f64 = 0.0;
     for case in 0..count + 2 {
@@ -226,15 +226,15 @@ pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
             false => Side::Below,
         };
         let sides: Vec<Side> = (0..count).map(side).collect();
-        let system = evaluator.system(&surfaces.numbers(&sides, |_| 0.0));
+        let system = evaluator.system(&surfaces.guard_sides(&sides, |_| 0.0));
         let rates = Rates::of(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
             // A matrix whose iteration does not end has no steps that are short enough.
-            let balanced = scaled(&rates.state, &state_scale(&rates.state));
+            let balanced = scale_matrix(&rates.state, &state_scale(&rates.state));
             let eigenvalues = qr_iteration::eigenvalues(&balanced);
             let sizes = eigenvalues.map(|all| all.iter().map(|e| e.norm()).fold(0.0, f64::max));
             fastest = fastest.max(sizes.unwrap_or(f64::INFINITY));
         }
     }
-    fastest
+    fastest_rate
 }

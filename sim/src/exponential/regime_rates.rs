@@ -4,7 +4,7 @@
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::DMatrix;
 
-use crate::balancing::{LARGEST, balance, scaled};
+use crate::balancing::{MAX_ENTRY_PER_S, balance, scale_matrix};
 
 use super::surfaces::{Row, Side, Surfaces};
 
@@ -35,7 +35,7 @@ impl Rates {
     }
 
     /// Both blocks as rows of a square matrix; the others are 0.
-    pub fn joined(&self) -> DMatrix<f64> {
+    pub fn joined_matrix(&self) -> DMatrix<f64> {
         let (n, given) = self.given.shape();
         let mut whole = DMatrix::zeros(n + given, n + given);
         whole.view_mut((0, 0), (n, n)).copy_from(&self.state);
@@ -61,8 +61,8 @@ pub(super) fn held_rates(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     sides: &[Side],
-) -> Option<(Rates, Vec<Row>, Held)> {
-    let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
+) -> Option<(Rates, Vec<Row>, HeldRates)> {
+    let system = evaluator.system(&surfaces.guard_sides(sides, |_| 0.0));
     let mut rates = Rates::of(&system);
     let functions = surfaces.rows(&system);
     let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
@@ -70,7 +70,7 @@ pub(super) fn held_rates(
 }
 
 /// How surfaces hold a motion.
-pub(super) struct Held {
+pub(super) struct HeldRates {
     /// For each of them its place and its side.
     pub sides: Vec<(usize, Row)>,
     /// What rates add to these sides, a row for each.
@@ -86,13 +86,13 @@ fn hold(
     sides: &[Side],
     functions: &[Row],
     rates: &mut Rates,
-) -> Option<Held> {
+) -> Option<HeldRates> {
     let places: Vec<usize> = (0..sides.len())
         .filter(|place| sides[*place] == Side::Held)
         .collect();
     let n = rates.state.nrows();
     if places.is_empty() {
-        return Some(Held {
+        return Some(HeldRates {
             sides: Vec::new(),
             factor: DMatrix::zeros(0, n),
             jumps: DMatrix::zeros(n, 0),
@@ -101,10 +101,10 @@ fn hold(
     let mut jumps = DMatrix::zeros(n, places.len());
     let scale = state_scale(&rates.state);
     for (column, held) in places.iter().enumerate() {
-        let numbers = surfaces.numbers(sides, |place| f64::from(u8::from(place == *held)));
+        let numbers = surfaces.guard_sides(sides, |place| f64::from(u8::from(place == *held)));
         let other = Rates::of(&evaluator.system(&numbers));
-        let difference = scaled(&(&other.state - &rates.state), &scale);
-        let sizes = [&other, rates].map(|rates| scaled(&rates.state, &scale).amax());
+        let difference = scale_matrix(&(&other.state - &rates.state), &scale);
+        let sizes = [&other, rates].map(|rates| scale_matrix(&rates.state, &scale).amax());
         if difference.amax() > SAME * sizes[0].max(sizes[1]) {
             return None;
         }
@@ -122,7 +122,7 @@ fn hold(
         given: of_given.row(place).iter().copied().collect(),
     };
     let held = places.iter().enumerate();
-    Some(Held {
+    Some(HeldRates {
         sides: held.map(|(k, p)| (*p, row(k))).collect(),
         factor,
         jumps,
@@ -132,7 +132,7 @@ fn hold(
 /// Powers of two that bring states of different units to like size.
 pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
     let one = vec![1.0; rates.nrows()];
-    match rates.iter().all(|entry| entry.abs() < LARGEST) {
+    match rates.iter().all(|entry| entry.abs() < MAX_ENTRY_PER_S) {
         true => balance(rates, one),
         false => one,
     }
@@ -142,7 +142,7 @@ pub(super) fn state_scale(rates: &DMatrix<f64>) -> Vec<f64> {
 pub(super) fn flow_scale(whole: &DMatrix<f64>, states: usize, step: f64) -> Vec<f64> {
     let rates = whole.view((0, 0), (states, states)).into_owned();
     let mut scale = state_scale(&rates);
-    let largest = scaled(&rates, &scale).amax().max(1.0 / step);
+    let largest = scale_matrix(&rates, &scale).amax().max(1.0 / step);
     for column in whole.column_iter().skip(states) {
         let entries = column.iter().zip(&scale);
         let size = entries

@@ -3,7 +3,7 @@
 
 use super::crossing::first_crossing;
 use super::remainder::Remainder;
-use super::remainder_at::AHEAD;
+use super::remainder_search::AHEAD;
 use super::surfaces::{Side, dot};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
@@ -33,7 +33,7 @@ impl Release {
 impl ExponentialIntegrator {
     /// Returns the first release within a step of this length, s, by the cubics through both of its
     /// ends.
-    pub(super) fn first_release(
+    pub(super) fn find_first_release(
         &self,
         motion: &Motion,
         (begin, end): (End<'_>, End<'_>),
@@ -44,11 +44,11 @@ impl ExponentialIntegrator {
             let borne = |remainder: &Remainder| remainder.borne.get(place).copied().unwrap_or(0.0);
             let slope = (borne(end.1) - borne(begin.1)) / length;
             let at = |(state, remainder): End<'_>| {
-                let share = held.share.at(state, &motion.given) + borne(remainder);
+                let share = held.share.evaluate(state, &motion.given) + borne(remainder);
                 let forced = dot(&held.share.state[self.degrees..], &remainder.force);
                 (
                     share,
-                    held.share_rate.at(state, &motion.given) + forced + slope,
+                    held.share_rate.evaluate(state, &motion.given) + forced + slope,
                 )
             };
             let (begin, end) = (at(begin), at(end));
@@ -72,7 +72,7 @@ impl ExponentialIntegrator {
 
     /// Lets the motion go on to one side of a surface that held it. Rates do not jump there: the
     /// surface bore all of one side and nothing of the other.
-    pub(super) fn let_go(
+    pub(super) fn release_motion(
         &mut self,
         motion: &mut Motion,
         t: f64,
@@ -103,7 +103,7 @@ impl ExponentialIntegrator {
         let held = self.regimes[motion.regime].held.iter().zip(borne);
         let released: Vec<(usize, Side)> = held
             .filter_map(|(held, borne)| {
-                let share = held.share.at(&motion.state, &motion.given) + borne;
+                let share = held.share.evaluate(&motion.state, &motion.given) + borne;
                 let is_held = (0.0..=1.0).contains(&share);
                 (!is_held).then(|| (held.surface, Side::of(share - 1.0)))
             })
@@ -112,7 +112,7 @@ impl ExponentialIntegrator {
             return Ok(());
         }
         self.bring(motion, t, options)?;
-        self.let_go(motion, t, &released, options)?;
+        self.release_motion(motion, t, &released, options)?;
         self.prepare(motion);
         Ok(())
     }

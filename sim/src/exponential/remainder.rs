@@ -7,11 +7,11 @@ use super::surfaces::{Row, Surfaces};
 /// Terms that a model adds to its piecewise-linear part.
 pub trait Force {
     /// Writes the added accelerations at a state; each term uses the sides of its own surfaces.
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
+    fn write_accelerations(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 
     /// Writes the value of each guard of the piecewise-linear part in the whole model. Returns
     /// false if all are always those of the piecewise-linear part.
-    fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
+    fn write_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
 }
 
 /// The nonlinear remainder at a state.
@@ -30,7 +30,7 @@ pub struct Remainder {
 
 impl Remainder {
     /// Nothing, so far.
-    pub fn none(accelerations: usize, surfaces: usize) -> Self {
+    pub fn zero(accelerations: usize, surfaces: usize) -> Self {
         Self {
             force: vec![0.0; accelerations],
             moved: vec![0.0; surfaces],
@@ -47,12 +47,12 @@ impl Remainder {
         (t, state, given): (f64, &[f64], &[f64]),
     ) {
         let inputs = &given[1..];
-        force.at(t, state, inputs, &mut self.force);
-        self.moves = force.at_guards(t, state, inputs, &mut self.guards);
+        force.write_accelerations(t, state, inputs, &mut self.force);
+        self.moves = force.write_guards(t, state, inputs, &mut self.guards);
         if self.moves {
             let surfaces = surfaces.guards.iter().zip(functions);
             for (slot, (guards, function)) in self.moved.iter_mut().zip(surfaces) {
-                *slot = self.guards[guards[0]] - function.at(state, given);
+                *slot = self.guards[guards[0]] - function.evaluate(state, given);
             }
         }
     }
@@ -87,7 +87,9 @@ impl RegimeDifference {
                 .collect()
         };
         Self {
-            by_state: differing(states, &|regime, row, column| regime.matrix.at(row, column)),
+            by_state: differing(states, &|regime, row, column| {
+                regime.matrix.entry(row, column)
+            }),
             by_given: differing(a.given.ncols(), &|regime, row, column| {
                 regime.given[(row, column)]
             }),

@@ -30,14 +30,14 @@ impl Slopes {
             here: vec![0.0; states * forced],
             there: vec![0.0; states * forced],
             largest: vec![0.0; forced],
-            base: Remainder::none(forced, surfaces),
-            moved: Remainder::none(forced, surfaces),
+            base: Remainder::zero(forced, surfaces),
+            moved: Remainder::zero(forced, surfaces),
             ..Self::default()
         }
     }
 
     /// Where the motion stands nothing is known any more.
-    pub fn forget(&mut self) {
+    pub fn forget_here(&mut self) {
         self.is_known = [false; 2];
         self.asked = 0;
     }
@@ -49,7 +49,7 @@ impl Slopes {
     }
 
     /// The neighbours have come where the motion stands.
-    pub fn arrive(&mut self) {
+    pub fn shift_to_end(&mut self) {
         std::mem::swap(&mut self.here, &mut self.there);
         self.is_known = [self.is_known[1], false];
     }

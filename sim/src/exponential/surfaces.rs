@@ -44,12 +44,12 @@ pub struct Row {
 
 impl Row {
     /// The value of the function.
-    pub fn at(&self, state: &[f64], given: &[f64]) -> f64 {
+    pub fn evaluate(&self, state: &[f64], given: &[f64]) -> f64 {
         dot(&self.state, state) + dot(&self.given, given)
     }
 
     /// The value of the function at a state and at inputs without the leading unit constant.
-    pub fn at_inputs(&self, state: &[f64], inputs: &[f64]) -> f64 {
+    pub fn evaluate_with_inputs(&self, state: &[f64], inputs: &[f64]) -> f64 {
         dot(&self.state, state) + self.given[0] + dot(&self.given[1..], inputs)
     }
 }
@@ -108,7 +108,7 @@ impl Surfaces {
     }
 
     /// A number for each guard: its side, or `held` for those that are held.
-    pub fn numbers(&self, sides: &[Side], held: impl Fn(usize) -> f64) -> Vec<f64> {
+    pub fn guard_sides(&self, sides: &[Side], held: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut numbers = vec![0.0; self.count];
         for (place, (guards, side)) in self.guards.iter().zip(sides).enumerate() {
             let number = match side {

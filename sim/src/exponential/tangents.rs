@@ -18,21 +18,21 @@ const DRIVEN_STEPS: usize = 2;
 const PART_ERROR: f64 = 1e-9;
 
 /// Differences of accelerations that drive tangent vectors.
-pub trait Drives {
+pub trait DrivingAccelerations {
     /// Writes the difference of each acceleration at a state, for one driven vector after the
     /// other.
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
+    fn write_differences(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 }
 
 /// No driven tangent vectors.
-pub struct Free;
+pub struct NoDrives;
 
-impl Drives for Free {
-    fn at(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+impl DrivingAccelerations for NoDrives {
+    fn write_differences(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
 }
 
 /// The function of a surface that a motion has reached.
-pub(super) struct Reached<'r> {
+pub(super) struct ReachedSurface<'r> {
     /// Its derivatives by the state.
     pub gradient: &'r [f64],
     /// Its derivatives by the parameters of tangent vectors.
@@ -45,11 +45,11 @@ pub(super) struct Reached<'r> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Directions {
     /// True to include the tangent vectors of all initial states.
-    pub by_state: bool,
+    pub has_state_vectors: bool,
     /// Number of parameters with a tangent vector, from the first.
-    pub by_parameter: usize,
+    pub parameter_count: usize,
     /// Number of tangent vectors driven by accelerations.
-    pub driven: usize,
+    pub driven_count: usize,
 }
 
 /// Tangent vectors of the initial state, then of parameters, then driven ones.
@@ -72,7 +72,7 @@ pub struct Tangents<'d> {
     pending: usize,
     /// The motion stands on a surface, where rounding decides what the drives are.
     on_surface: bool,
-    drives: &'d mut dyn Drives,
+    drives: &'d mut dyn DrivingAccelerations,
     /// The drives where the motion stands, and a step later.
     here: Vec<f64>,
     there: Vec<f64>,
@@ -87,13 +87,13 @@ impl<'d> Tangents<'d> {
     pub fn new(
         (states, degrees): (usize, usize),
         directions: Directions,
-        drives: &'d mut dyn Drives,
+        drives: &'d mut dyn DrivingAccelerations,
     ) -> Self {
         let forced = states - degrees;
         let Directions {
-            by_state,
-            by_parameter,
-            driven,
+            has_state_vectors: by_state,
+            parameter_count: by_parameter,
+            driven_count: driven,
         } = directions;
         Self {
             states,
@@ -163,13 +163,13 @@ impl<'d> Tangents<'d> {
     /// Discards the derivatives of the nonlinear terms at the present state.
     pub fn forget_slopes(&mut self) {
         if let Some(slopes) = &mut self.slopes {
-            slopes.forget();
+            slopes.forget_here();
         }
     }
 
     /// Advances the vectors by the pending steps, in a regime, up to a state. `given` is a unit
     /// constant and the inputs.
-    pub fn catch_up(&mut self, regime: &Regime, t: f64, state: &[f64], given: &[f64]) {
+    pub fn advance_pending(&mut self, regime: &Regime, t: f64, state: &[f64], given: &[f64]) {
         if self.pending == 0 {
             return;
         }
@@ -190,7 +190,7 @@ impl<'d> Tangents<'d> {
         self.from.copy_from_slice(state);
         std::mem::swap(&mut self.here, &mut self.there);
         if let Some(slopes) = &mut self.slopes {
-            slopes.arrive();
+            slopes.shift_to_end();
         }
     }
 
@@ -240,7 +240,7 @@ impl<'d> Tangents<'d> {
     }
 
     /// Advances the vectors by a part of a step, `tau` s, that ends at a state.
-    pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
+    pub fn advance_part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, degrees) = (self.states, self.degrees);
         let forced = n - degrees;
         if self.on_surface {
@@ -264,12 +264,12 @@ impl<'d> Tangents<'d> {
                     .zip(drives)
                     .for_each(|(r, d)| *r += d);
             }
-            series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
+            add_exponential_series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
         self.find_drives(regime, end);
         self.from.copy_from_slice(end.1);
         if let Some(slopes) = &mut self.slopes {
-            slopes.arrive();
+            slopes.shift_to_end();
         }
     }
 
@@ -317,10 +317,15 @@ impl<'d> Tangents<'d> {
 
     /// Goes through a switch: the gradient of the function that reached its surface, its derivatives by
     /// the parameters and its rate, the rates before and after.
-    pub(super) fn switch(&mut self, reached: &Reached<'_>, before: &[f64], after: &[f64]) {
+    pub(super) fn apply_saltation(
+        &mut self,
+        reached: &ReachedSurface<'_>,
+        before: &[f64],
+        after: &[f64],
+    ) {
         self.leave_surface();
         let n = self.states;
-        let Reached { gradient, rate, .. } = *reached;
+        let ReachedSurface { gradient, rate, .. } = *reached;
         let terms = gradient.iter().zip(before);
         let size: f64 = terms.map(|(a, b)| (a * b).abs()).sum();
         if rate.abs() <= GRAZING * size {
@@ -342,34 +347,34 @@ impl<'d> Tangents<'d> {
 /// combination of those on both sides, and the surface takes away what would lead off it.
 fn drives_in(
     regime: &Regime,
-    drives: &mut dyn Drives,
+    drives: &mut dyn DrivingAccelerations,
     (t, state, inputs): (f64, &[f64], &[f64]),
     (out, forced): (&mut [f64], usize),
 ) {
     if regime.held.is_empty() {
-        drives.at(t, state, inputs, out);
+        drives.write_differences(t, state, inputs, out);
         return;
     }
     let mut below = state.to_vec();
     let held = regime.held.iter();
     for held in held.clone() {
-        let function = regime.functions[held.surface].at_inputs(&below, inputs);
+        let function = regime.functions[held.surface].evaluate_with_inputs(&below, inputs);
         move_across(&mut below, held, -held.distance - function);
     }
-    drives.at(t, &below, inputs, out);
+    drives.write_differences(t, &below, inputs, out);
     let (all_below, mut above) = (out.to_vec(), out.to_vec());
     for held in held {
-        let share = held.share.at_inputs(state, inputs);
+        let share = held.share.evaluate_with_inputs(state, inputs);
         let mut beyond = below.clone();
         move_across(&mut beyond, held, 2.0 * held.distance);
-        drives.at(t, &beyond, inputs, &mut above);
+        drives.write_differences(t, &beyond, inputs, &mut above);
         for ((slot, above), below) in out.iter_mut().zip(&above).zip(&all_below) {
             *slot += share * (above - below);
         }
     }
     let mut shares = Vec::new();
     for drive in out.chunks_exact_mut(forced.max(1)) {
-        regime.bear(drive, &mut shares);
+        regime.subtract_held(drive, &mut shares);
     }
 }
 
@@ -381,7 +386,13 @@ fn move_across(state: &mut [f64], held: &HeldSurface, distance: f64) {
 
 /// Adds to a vector its change over `tau` s by the exponential series, until a term adds less than
 /// the fraction `error` to each entry.
-pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64, error: f64) {
+pub fn add_exponential_series(
+    matrix: &Columns,
+    vector: &mut [f64],
+    rates: &mut [f64],
+    tau: f64,
+    error: f64,
+) {
     let n = vector.len();
     let mut next = [0.0; 64];
     let mut large = Vec::new();

@@ -6,7 +6,10 @@ use crate::piecewise_linear::PiecewiseLinear;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
-use super::{Directions, Drives, ExponentialIntegrator, Free, MovedParameters, Options, Tangents};
+use super::{
+    Directions, DrivingAccelerations, ExponentialIntegrator, MovedParameters, NoDrives, Options,
+    Tangents,
+};
 
 fn rig() -> Model {
     let path =
@@ -36,7 +39,7 @@ fn run(
         tangents: None,
     };
     integrator
-        .run(initial, times, inputs, options, &mut |_, state, _| {
+        .simulate(initial, times, inputs, options, &mut |_, state, _| {
             states.push(state.to_vec());
         })
         .expect("a motion");
@@ -46,12 +49,12 @@ fn run(
 #[test]
 fn integration_matches_exact_motion_through_events() {
     let model = rig();
-    let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[4]).expect("piecewise linear");
     let values: Vec<f64> = exact_values(&model);
     let times: Vec<f64> = (0..200).map(|k| f64::from(k) * 5e-4).collect();
     let inputs = torque(&times);
     let initial = vec![0.0; 14];
-    let mut propagator = exact.at(&values).expect("a propagator");
+    let mut propagator = exact.propagator_at(&values).expect("a propagator");
     let wanted = propagator
         .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
         .expect("a motion");
@@ -95,7 +98,7 @@ push = { on = "y", value = "u" }
     let is_integrated = |jump: &str| {
         let source = Source::new("preload", text.replace("JUMP", jump).as_str());
         let model = eomgen_model_spec::check(source).expect("valid").model;
-        let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+        let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
         ExponentialIntegrator::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_ok()
     };
     assert!(is_integrated("sign(y)"));
@@ -121,7 +124,7 @@ fn exact_values(model: &Model) -> Vec<f64> {
 #[test]
 fn tangents_match_differences_of_neighbouring_motions() {
     let model = rig();
-    let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[4]).expect("piecewise linear");
     let values = exact_values(&model);
     let times: Vec<f64> = (0..60).map(|k| f64::from(k) * 5e-4).collect();
     let inputs = torque(&times);
@@ -129,7 +132,7 @@ fn tangents_match_differences_of_neighbouring_motions() {
     (initial[0], initial[7]) = (3e-5, 0.01);
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
-    let mut free = Free;
+    let mut free = NoDrives;
     let mut tangents = Tangents::new((14, 7), by_state(), &mut free);
     let mut found = vec![0.0; 14 * 14];
     let options = Options {
@@ -137,7 +140,7 @@ fn tangents_match_differences_of_neighbouring_motions() {
         tangents: Some(&mut tangents),
     };
     integrator
-        .run(&initial, &times, &inputs, options, &mut |_, _, tangents| {
+        .simulate(&initial, &times, &inputs, options, &mut |_, _, tangents| {
             let tangents = tangents.expect("tangents");
             for place in 0..14 {
                 let first = place * tangents.stride;
@@ -172,14 +175,14 @@ fn tangents_match_differences_of_neighbouring_motions() {
 
 fn by_state() -> Directions {
     Directions {
-        by_state: true,
+        has_state_vectors: true,
         ..Directions::default()
     }
 }
 
 fn driven(driven: usize) -> Directions {
     Directions {
-        driven,
+        driven_count: driven,
         ..Directions::default()
     }
 }
@@ -210,7 +213,7 @@ friction = { on = "x", value = "-T*sign(dot(x))" }
 #[test]
 fn dry_friction_sticks_and_releases() {
     let model = sliding();
-    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
     // Sticking for a second, 1 m/s^2 for the next, then decelerated by 1.5 m/s^2 until it sticks
@@ -228,8 +231,8 @@ fn dry_friction_sticks_and_releases() {
 /// An acceleration of 1 that drives the second of two vectors.
 struct Push;
 
-impl Drives for Push {
-    fn at(&mut self, _: f64, _: &[f64], _: &[f64], out: &mut [f64]) {
+impl DrivingAccelerations for Push {
+    fn write_differences(&mut self, _: f64, _: &[f64], _: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&[0.0, 1.0]);
     }
 }
@@ -237,7 +240,7 @@ impl Drives for Push {
 #[test]
 fn driven_tangent_matches_response_to_acceleration() {
     let model = sliding();
-    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
@@ -250,7 +253,7 @@ fn driven_tangent_matches_response_to_acceleration() {
         tangents: Some(&mut tangents),
     };
     integrator
-        .run(
+        .simulate(
             &[0.0, 0.1],
             &times,
             &inputs,
@@ -299,12 +302,12 @@ friction = { on = "x", value = "-F*sign(dot(x))" }
 #[test]
 fn release_within_step_is_located() {
     let model = axis();
-    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let values = exact_values(&model);
     let times: Vec<f64> = (0..500).map(|k| f64::from(k) * 2e-3).collect();
     let push = times.iter().map(|t| 200.0 * (9.0 * t).sin());
     let inputs = HeldInputs::new(times.clone(), push.collect(), 1).expect("inputs");
-    let mut propagator = exact.at(&values).expect("a propagator");
+    let mut propagator = exact.propagator_at(&values).expect("a propagator");
     let span = (0.0, times[499]);
     let wanted = propagator
         .simulate(&[0.0; 4], span, &times, &inputs, &mut |_| {})
@@ -322,7 +325,7 @@ fn release_within_step_is_located() {
 #[test]
 fn driven_tangent_stays_on_sticking_surface() {
     let model = sliding();
-    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
     let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
         .expect("can be integrated");
     // Sticking for a second, then 1 m/s^2.
@@ -336,7 +339,7 @@ fn driven_tangent_stays_on_sticking_surface() {
         tangents: Some(&mut tangents),
     };
     integrator
-        .run(
+        .simulate(
             &[0.0; 2],
             &times,
             &inputs,
@@ -368,19 +371,19 @@ fn by_parameters(
             moved[place] += change;
             MovedParameters {
                 values: moved,
-                change,
+                parameter_change: change,
             }
         };
         let size = 1e-4 * values[place];
         vec![end(-size), end(size)]
     });
-    integrator.differentiate_by(values, ends.collect());
+    integrator.set_moved_parameters(values, ends.collect());
     let states = initial.len();
     let directions = Directions {
-        by_parameter: values.len(),
+        parameter_count: values.len(),
         ..Directions::default()
     };
-    let mut free = Free;
+    let mut free = NoDrives;
     let mut tangents = Tangents::new((states, states / 2), directions, &mut free);
     let mut derivatives = Vec::new();
     let options = Options {
@@ -388,7 +391,7 @@ fn by_parameters(
         tangents: Some(&mut tangents),
     };
     integrator
-        .run(initial, times, inputs, options, &mut |_, _, tangents| {
+        .simulate(initial, times, inputs, options, &mut |_, _, tangents| {
             let tangents = tangents.expect("tangents");
             let vectors = tangents.vectors.chunks_exact(tangents.stride);
             derivatives.push(vectors.map(|vector| vector[..states].to_vec()).collect());
@@ -425,7 +428,7 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
         .expect("valid")
         .model;
     for (name, model, sample, size) in [("axis", axis(), 2e-3, 200.0), ("play", play, 1e-3, 1.0)] {
-        let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+        let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
         let values = exact_values(&model);
         let times: Vec<f64> = (0..120).map(|k| f64::from(k) * sample).collect();
         let push = times.iter().map(|t| size * (22.0 * t).sin());
@@ -434,7 +437,7 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
         let found = by_parameters(&exact, &values, (&initial, &times), &inputs);
         let span = (0.0, times[119]);
         let motion = |values: &[f64]| {
-            let mut propagator = exact.at(values).expect("a propagator");
+            let mut propagator = exact.propagator_at(values).expect("a propagator");
             propagator
                 .simulate(&initial, span, &times, &inputs, &mut |_| {})
                 .expect("a motion")

@@ -38,11 +38,11 @@ pub struct ExponentialIntegrator {
 
 /// Reason why the fixed-step integrator does not support a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NotIntegrated {
+pub enum UnsupportedModel {
     /// Unsupported terms, or invalid parameters.
-    Kind,
+    UnsupportedTerms,
     /// Too many steps between two samples; the number required.
-    Steps(f64),
+    TooManySteps(f64),
 }
 
 /// Where a motion stands.
@@ -74,4 +74,4 @@ pub struct Options<'c, 'd> {
 }
 
 /// Callback for each sample: its index, the state and the tangent vectors.
-pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
+pub type SampleCallback<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;

@@ -12,13 +12,13 @@
 use differential_equations::ode::ODE;
 
 use super::attempt::{Attempt, Errors};
-use super::dormand_prince::{single_step, steps_within};
+use super::dormand_prince::{make_step, make_steps_within};
 use super::error::SolveError;
 use super::history::{History, MAX_ORDER};
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// The error aimed at, relative to what is allowed.
 const AIM: f64 = 0.5;
@@ -51,7 +51,7 @@ impl Stand {
     }
 
     /// A step of `length` s from here.
-    fn attempt<S: System + ?Sized>(&self, watched: &Watched<'_, S>, length: f64) -> Attempt {
+    fn attempt<S: System + ?Sized>(&self, watched: &WatchedSystem<'_, S>, length: f64) -> Attempt {
         Attempt::new(watched, &self.point, &self.history, self.order, length)
     }
 }
@@ -83,11 +83,11 @@ impl Stepper for Adams {
         }
     }
 
-    fn here(&self) -> &Point {
+    fn current_point(&self) -> &Point {
         &self.now.point
     }
 
-    fn last(&self) -> &Point {
+    fn step_start(&self) -> &Point {
         &self.before.point
     }
 
@@ -119,7 +119,7 @@ impl Stepper for Adams {
 
     fn advance<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
         self.begin(watched)?;
@@ -131,11 +131,11 @@ impl Stepper for Adams {
             length,
         };
         let attempt = self.now.attempt(watched, length);
-        if watched.crossed().is_some() {
+        if watched.crossed_guard().is_some() {
             return Ok(outcome);
         }
-        let errors = attempt.errors(&self.now.history, &self.magnitudes);
-        outcome.is_accepted = errors.same <= 1.0;
+        let errors = attempt.estimate_errors(&self.now.history, &self.magnitudes);
+        outcome.is_accepted = errors.same_order <= 1.0;
         if !outcome.is_accepted {
             self.refuse(errors, length);
             return Ok(outcome);
@@ -161,12 +161,12 @@ impl Stepper for Adams {
 
     fn trial<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<Point> {
         self.begin(watched).ok()?;
         let end = self.now.attempt(watched, length).end;
-        watched.look(end.t, &end.y);
+        watched.check_sides(end.t, &end.y);
         end.y.iter().all(|y| y.is_finite()).then_some(end)
     }
 
@@ -177,34 +177,41 @@ impl Stepper for Adams {
         let mut y = point.y.clone();
         history.predict(&weights, last.order, &mut y);
         let factor = history.correction_inside(&weights, last.order, last.weights.length);
-        for (y, surprise) in y.iter_mut().zip(&last.surprise) {
+        for (y, surprise) in y.iter_mut().zip(&last.difference) {
             *y += factor * surprise;
         }
         Some(y)
     }
 
-    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
             return Some(state);
         }
         // The driver stepped over a surface; what is remembered says nothing of that.
         let start = &self.before.point;
-        Some(steps_within(watched, start, t - start.t, &self.magnitudes)?.y)
+        Some(make_steps_within(watched, start, t - start.t, &self.magnitudes)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
         &self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
     ) -> Option<Point> {
-        single_step(watched, start, length)
+        make_step(watched, start, length)
     }
 }
 
 impl Adams {
     /// Evaluates the rates at a start and shortens the step to what they allow.
-    fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> Result<(), SolveError> {
+    fn begin<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+    ) -> Result<(), SolveError> {
         if self.now.history.points() > 0 {
             return Ok(());
         }
@@ -214,7 +221,7 @@ impl Adams {
         watched.diff(*t, y, &mut rates);
         let norm = self.magnitudes.norm(rates.iter().copied(), y);
         if !norm.is_finite() {
-            return Err(refusal(watched, here, self.step));
+            return Err(rejection_error(watched, here, self.step));
         }
         // Shampine and Gordon's guess; a refusal at order 1 corrects it at once.
         self.step = self.step.min(0.25 / norm.sqrt());
@@ -228,7 +235,7 @@ impl Adams {
         self.now.even = 0;
         if self.now.order == 1 {
             // The error of order 1 is known well: go there at once.
-            let factor = (AIM / errors.same).sqrt();
+            let factor = (AIM / errors.same_order).sqrt();
             let factor = if factor.is_finite() { factor } else { 0.0 };
             self.step = length * factor.clamp(1e-3, 0.5);
             return;
@@ -246,7 +253,7 @@ impl Adams {
     /// Moves to the end of a step and decides about the next one.
     fn accept<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         attempt: Attempt,
         errors: Errors,
     ) {
@@ -279,18 +286,18 @@ impl Adams {
             return;
         }
         stand.is_starting = false;
-        let mut error = errors.same;
+        let mut error = errors.same_order;
         if errors.is_lower_enough {
             stand.order -= 1;
-            error = errors.lower;
+            error = errors.lower_order;
         } else if order < MAX_ORDER && stand.even > order {
             // The new difference of the next order, known only after even steps.
             let higher = stand.history.difference(order + 1);
-            let higher = attempt.norm(order + 1, higher, &self.magnitudes);
-            if order > 1 && errors.lower <= errors.same.min(higher) {
+            let higher = attempt.error_norm(order + 1, higher, &self.magnitudes);
+            if order > 1 && errors.lower_order <= errors.same_order.min(higher) {
                 stand.order -= 1;
-                error = errors.lower;
-            } else if higher < errors.same * if order > 1 { 1.0 } else { 0.5 } {
+                error = errors.lower_order;
+            } else if higher < errors.same_order * if order > 1 { 1.0 } else { 0.5 } {
                 stand.order += 1;
                 error = higher;
             }

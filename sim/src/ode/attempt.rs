@@ -8,7 +8,7 @@ use super::history::{History, Weights};
 use super::magnitudes::Magnitudes;
 use super::stepper::Point;
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// A step of one length, as far as it goes without the final rates.
 pub struct Attempt {
@@ -17,7 +17,7 @@ pub struct Attempt {
     /// The order of the predictor; the corrector's is one higher.
     pub order: usize,
     /// The new difference of the predicted rates.
-    pub surprise: Vec<f64>,
+    pub difference: Vec<f64>,
     /// Where it leads.
     pub end: Point,
 }
@@ -26,9 +26,9 @@ pub struct Attempt {
 #[derive(Clone, Copy)]
 pub struct Errors {
     /// Of the order used.
-    pub same: f64,
+    pub same_order: f64,
     /// Of one less; infinite if there is none.
-    pub lower: f64,
+    pub lower_order: f64,
     /// One less would have done as well.
     pub is_lower_enough: bool,
 }
@@ -36,7 +36,7 @@ pub struct Errors {
 impl Attempt {
     /// Makes a step of `length` s from `start`, where `history` ends.
     pub fn new<S: System + ?Sized>(
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         history: &History,
         order: usize,
@@ -48,7 +48,7 @@ impl Attempt {
         let t = start.t + length;
         let mut surprise = vec![0.0; y.len()];
         watched.diff(t, &y, &mut surprise);
-        history.surprise(&weights, order, &mut surprise);
+        history.write_prediction_difference(&weights, order, &mut surprise);
         let factor = length * weights.g(order);
         for (y, surprise) in y.iter_mut().zip(&surprise) {
             *y += factor * surprise;
@@ -56,21 +56,21 @@ impl Attempt {
         Self {
             weights,
             order,
-            surprise,
+            difference: surprise,
             end: Point { t, y },
         }
     }
 
     /// The errors that predictors of this order and of lower ones make.
-    pub fn errors(&self, history: &History, magnitudes: &Magnitudes) -> Errors {
-        let same = self.norm(self.order, self.surprise.iter().copied(), magnitudes);
-        let mut difference = self.surprise.clone();
+    pub fn estimate_errors(&self, history: &History, magnitudes: &Magnitudes) -> Errors {
+        let same = self.error_norm(self.order, self.difference.iter().copied(), magnitudes);
+        let mut difference = self.difference.clone();
         let mut at_order = |order: usize| {
-            let continued = history.continued(&self.weights, order);
+            let continued = history.continued_difference(&self.weights, order);
             for (entry, continued) in difference.iter_mut().zip(continued) {
                 *entry += continued;
             }
-            self.norm(order, difference.iter().copied(), magnitudes)
+            self.error_norm(order, difference.iter().copied(), magnitudes)
         };
         let (lower, is_lower_enough) = match self.order {
             0 | 1 => (f64::INFINITY, false),
@@ -84,14 +84,14 @@ impl Attempt {
             }
         };
         Errors {
-            same,
-            lower,
+            same_order: same,
+            lower_order: lower,
             is_lower_enough,
         }
     }
 
     /// The error of an order, given the new differences of that order.
-    pub fn norm(
+    pub fn error_norm(
         &self,
         order: usize,
         differences: impl Iterator<Item = f64>,

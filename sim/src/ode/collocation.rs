@@ -12,10 +12,10 @@ use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 use super::magnitudes::Magnitudes;
 use super::stepper::Point;
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// Iterations of Newton's method in a step.
-pub const MOST_ITERATIONS: u32 = 7;
+pub const MAX_ITERATIONS: u32 = 7;
 
 /// The stages are solved for to this part of the tolerance at most.
 const STAGES: f64 = 0.03;
@@ -128,7 +128,7 @@ impl Stages {
     /// step before if there is one. If Newton's method does not converge, the error holds its last two
     /// iterates: across a surface it may jump to and fro.
     pub fn solve<S: System + ?Sized>(
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         factors: &Factors,
         before: Option<&Self>,
@@ -145,7 +145,7 @@ impl Stages {
         let enough = STAGES.min(tolerance.sqrt());
         let enough = enough.max(ROUNDING * f64::EPSILON / tolerance);
         let (mut last_change, mut contraction) = (0.0, 0.0);
-        for iterations in 1..=MOST_ITERATIONS {
+        for iterations in 1..=MAX_ITERATIONS {
             let rates = rates_of(watched, start, length, &z);
             let Some(change) = change(factors, &w, &transformed(&T_INVERSE, &rates)) else {
                 break;
@@ -181,7 +181,7 @@ impl Stages {
                     contraction,
                 });
             }
-            let more = (MOST_ITERATIONS - iterations) as i32;
+            let more = (MAX_ITERATIONS - iterations) as i32;
             if !is_first && left * contraction.powi(more - 1) > enough {
                 break;
             }
@@ -190,27 +190,27 @@ impl Stages {
         Err(Box::new([z_before, z].map(|z| Self {
             z,
             length,
-            iterations: MOST_ITERATIONS,
+            iterations: MAX_ITERATIONS,
             contraction,
         })))
     }
 
     /// Notices if a stage lies beyond a surface.
-    pub fn look<S: System + ?Sized>(&self, watched: &Watched<'_, S>, start: &Point) {
+    pub fn check_sides<S: System + ?Sized>(&self, watched: &WatchedSystem<'_, S>, start: &Point) {
         for (node, z) in nodes().into_iter().zip(&self.z) {
             let y: Vec<f64> = start.y.iter().zip(z).map(|(y, z)| y + z).collect();
-            watched.look(start.t + node * self.length, &y);
+            watched.check_sides(start.t + node * self.length, &y);
         }
     }
 
     /// The state at the end of the step.
-    pub fn end(&self, start: &[f64]) -> Vec<f64> {
+    pub fn end_state(&self, start: &[f64]) -> Vec<f64> {
         start.iter().zip(&self.z[2]).map(|(y, z)| y + z).collect()
     }
 
     /// The state so long after `start` (s), where the step began, by the polynomial through the
     /// start and the stages: of order 3 everywhere in the step.
-    pub fn inside(&self, start: &[f64], after: f64) -> Vec<f64> {
+    pub fn interpolate(&self, start: &[f64], after: f64) -> Vec<f64> {
         let difference = self.difference(after / self.length);
         start.iter().zip(&difference).map(|(y, z)| y + z).collect()
     }
@@ -239,7 +239,12 @@ impl Stages {
     /// The estimated error of states inside the step relative to what is allowed, from how the third
     /// derivative changed since the step `before`. The error estimate of the step does not see it
     /// in what decays fast, where the ends of steps are right however long they are.
-    pub fn error_inside(&self, before: &Self, start: &Point, magnitudes: &Magnitudes) -> f64 {
+    pub fn estimate_interior_error(
+        &self,
+        before: &Self,
+        start: &Point,
+        magnitudes: &Magnitudes,
+    ) -> f64 {
         let apart = 0.5 * (self.length + before.length);
         let change = (self.third_derivative() - before.third_derivative()) / apart;
         let error = change * (LARGEST_BETWEEN_NODES / 24.0 * self.length.powi(4));
@@ -261,9 +266,9 @@ impl Stages {
     /// The estimated error of the step relative to what is allowed. `rates` are those at the start.
     /// `is_doubted` filters it once more by the rates beside the start, which a first step or one
     /// after a refusal needs.
-    pub fn error<S: System + ?Sized>(
+    pub fn estimate_error<S: System + ?Sized>(
         &self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         rates: &[f64],
         (factors, magnitudes): (&Factors, &Magnitudes),
@@ -298,7 +303,7 @@ const LARGEST_BETWEEN_NODES: f64 = 0.01826;
 
 /// The rates at the stages.
 fn rates_of<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+    watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
     z: &[DVector<f64>; 3],

@@ -38,7 +38,7 @@ impl ContinuousExtension {
 
     /// The interior of a step from `start` to `end`; `swapped` gives the crate's interpolation at a
     /// part of it, or nothing.
-    pub fn interior(
+    pub fn find_interior(
         &self,
         (start, end): (&[f64], &[f64]),
         mut swapped: impl FnMut(f64) -> Option<Vec<f64>>,
@@ -66,7 +66,7 @@ pub struct Interior {
 
 impl Interior {
     /// The state at a `part` of the step from `start` to `end`.
-    pub fn state(&self, part: f64, (start, end): (&[f64], &[f64])) -> Vec<f64> {
+    pub fn interpolate(&self, part: f64, (start, end): (&[f64], &[f64])) -> Vec<f64> {
         let powers = straight(part) * (part * (1.0 - part));
         let ends = start.iter().zip(end);
         ends.zip(&self.coefficients)
@@ -104,8 +104,8 @@ mod tests {
         let extension = ContinuousExtension::new();
         for part in [0.0, 0.2, 0.55, 1.0] {
             let step = (&start[..], &end[..]);
-            let interior = extension.interior(step, |s| Some(vec![of(s, swapped(s))]));
-            let state = interior.expect("an interior").state(part, step);
+            let interior = extension.find_interior(step, |s| Some(vec![of(s, swapped(s))]));
+            let state = interior.expect("an interior").interpolate(part, step);
             let error = state[0] - of(part, straight(part));
             assert!(error.abs() < 1e-13, "{error:e} at {part}");
         }

@@ -7,7 +7,7 @@
 
 use super::stepper::Stepper;
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// How much of an approach is left, relative to its length, before the next one begins.
 const REMAINDER: f64 = 1e-3;
@@ -24,31 +24,31 @@ pub struct Approach {
     /// The longest step that stays on the near side, s; 0 if none does.
     pub length: f64,
     /// How far beyond it the surface may lie, s.
-    pub rest: f64,
+    pub distance_beyond: f64,
     /// The switching functions there; none if they are not known.
-    pub beyond: Vec<f64>,
+    pub guards_beyond: Vec<f64>,
     /// The trial steps made.
     pub trials: u64,
 }
 
 /// The step over the surface that belongs to a step of `length` s.
-pub fn over(length: f64) -> f64 {
+pub fn crossing_step(length: f64) -> f64 {
     length * OVER
 }
 
 /// Searches the longest step from where `stepper` stands that stays on the near side of
 /// all surfaces, given that one of `length` s does not. A trial that overflows or leaves the domain
 /// of the rates counts as one beyond.
-pub fn approach<S: System + ?Sized, M: Stepper>(
-    watched: &Watched<'_, S>,
+pub fn find_approach<S: System + ?Sized, M: Stepper>(
+    watched: &WatchedSystem<'_, S>,
     stepper: &mut M,
     length: f64,
     beyond: Vec<f64>,
 ) -> Approach {
-    let start = stepper.here();
+    let start = stepper.current_point();
     let mut near = End {
         at: 0.0,
-        guards: watched.guards_at(start.t, &start.y),
+        guards: watched.evaluate_guards(start.t, &start.y),
     };
     let mut far = End {
         at: length,
@@ -57,18 +57,20 @@ pub fn approach<S: System + ?Sized, M: Stepper>(
     let mut trials = 0;
     while far.at - near.at > REMAINDER * length && trials < MAX_TRIALS {
         let at = next_trial(watched, &near, &far, trials, length);
-        watched.reset();
+        watched.forget_trials();
         let point = stepper.trial(watched, at);
         trials += 1;
-        let is_beyond = point.is_none() || watched.crossed().is_some();
-        let guards = point.map_or(Vec::new(), |point| watched.guards_at(point.t, &point.y));
+        let is_beyond = point.is_none() || watched.crossed_guard().is_some();
+        let guards = point.map_or(Vec::new(), |point| {
+            watched.evaluate_guards(point.t, &point.y)
+        });
         let end = if is_beyond { &mut far } else { &mut near };
         *end = End { at, guards };
     }
     Approach {
         length: near.at,
-        rest: far.at - near.at,
-        beyond: far.guards,
+        distance_beyond: far.at - near.at,
+        guards_beyond: far.guards,
         trials,
     }
 }
@@ -83,7 +85,7 @@ struct End {
 /// secants, and every third time in the middle, so that the interval shrinks whatever
 /// the functions do.
 fn next_trial<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+    watched: &WatchedSystem<'_, S>,
     near: &End,
     far: &End,
     trial: u64,

@@ -11,9 +11,9 @@ use differential_equations::tolerance::Tolerance;
 use super::continuous_extension::{ContinuousExtension, Interior};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, in_parts, refusal};
+use super::stepper::{Outcome, Point, Stepper, rejection_error, split_step};
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, Vec<f64>, 8, 12, 16>;
 
@@ -57,11 +57,11 @@ impl Stepper for DormandPrince853 {
         }
     }
 
-    fn here(&self) -> &Point {
+    fn current_point(&self) -> &Point {
         &self.here
     }
 
-    fn last(&self) -> &Point {
+    fn step_start(&self) -> &Point {
         &self.last
     }
 
@@ -96,7 +96,7 @@ impl Stepper for DormandPrince853 {
 
     fn advance<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
         let limit = until - self.here.t;
@@ -117,7 +117,7 @@ impl Stepper for DormandPrince853 {
                     length,
                 });
             }
-            Err(_) => return Err(refusal(watched, &self.here, length)),
+            Err(_) => return Err(rejection_error(watched, &self.here, length)),
         }
         if matches!(self.method.status(), Status::RejectedStep) {
             self.step = self.method.h().min(0.9 * length);
@@ -151,10 +151,10 @@ impl Stepper for DormandPrince853 {
 
     fn trial<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<Point> {
-        single_step(watched, &self.here, length)
+        make_step(watched, &self.here, length)
     }
 
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
@@ -167,16 +167,16 @@ impl Stepper for DormandPrince853 {
         if self.interior.is_none() {
             let method = &mut self.method;
             let swapped = |part: f64| method.interpolate(begin + part * (end - begin)).ok();
-            self.interior = self.extension.interior(step, swapped);
+            self.interior = self.extension.find_interior(step, swapped);
         }
         self.interior
             .as_ref()
-            .map(|interior| interior.state(part, step))
+            .map(|interior| interior.interpolate(part, step))
     }
 
-    fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
+    fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
         let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
-        let Some(middle) = single_step(watched, &self.last, half) else {
+        let Some(middle) = make_step(watched, &self.last, half) else {
             return false;
         };
         let Some(told) = self.interpolated(begin + half) else {
@@ -186,19 +186,23 @@ impl Stepper for DormandPrince853 {
         self.magnitudes.norm(errors, &middle.y) <= 1.0
     }
 
-    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
         // The extension is of order 7; a step from the same start is of 8, and notices what
         // its stages run into.
-        Some(steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)
+        Some(make_steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)
     }
 
     fn single_step<S: System + ?Sized>(
         &self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
     ) -> Option<Point> {
-        single_step(watched, start, length)
+        make_step(watched, start, length)
     }
 }
 
@@ -206,7 +210,7 @@ impl DormandPrince853 {
     /// Initialises the method at the start.
     fn begin<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Result<(), SolveError> {
         self.made_last = false;
@@ -224,7 +228,7 @@ impl DormandPrince853 {
                 horizon(&self.here, length),
                 &self.here.y,
             )
-            .map_err(|_| refusal(watched, &self.here, length))?;
+            .map_err(|_| rejection_error(watched, &self.here, length))?;
         self.ready = true;
         Ok(())
     }
@@ -232,8 +236,8 @@ impl DormandPrince853 {
 
 /// The state one step of exactly `length` s after `start`, whatever its error; `None` if the step
 /// overflows or leaves the domain of the rates.
-pub fn single_step<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+pub fn make_step<S: System + ?Sized>(
+    watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
 ) -> Option<Point> {
@@ -245,8 +249,8 @@ pub fn single_step<S: System + ?Sized>(
 
 /// The state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
 /// none are short enough.
-pub fn steps_within<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+pub fn make_steps_within<S: System + ?Sized>(
+    watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
     magnitudes: &Magnitudes,
@@ -257,12 +261,12 @@ pub fn steps_within<S: System + ?Sized>(
         let y = step_with(watched, start, length, method)?.y;
         Some(Point { t: end, y })
     };
-    in_parts(start, length, step, || false)
+    split_step(start, length, step, || false)
 }
 
 /// One step of `length` s by a new `method`; `None` if it refuses.
 fn step_with<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+    watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
     method: Method,
@@ -292,7 +296,7 @@ mod tests {
     struct Growth;
 
     impl System for Growth {
-        fn states(&self) -> usize {
+        fn state_count(&self) -> usize {
             1
         }
 
@@ -307,9 +311,9 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = Watched::new(&Growth, point.t, &point.y);
+        let watched = WatchedSystem::new(&Growth, point.t, &point.y);
         for _ in 0..steps {
-            point = single_step(&watched, &point, 4.0 / f64::from(steps)).expect("a step");
+            point = make_step(&watched, &point, 4.0 / f64::from(steps)).expect("a step");
         }
         (point.y[0] - 4.0_f64.sin().exp()).abs()
     }
@@ -327,11 +331,11 @@ mod tests {
                 t: 0.0,
                 y: vec![1.0],
             };
-            let watched = Watched::new(&Growth, start.t, &start.y);
+            let watched = WatchedSystem::new(&Growth, start.t, &start.y);
             let mut stepper = DormandPrince853::new(
                 start.clone(),
                 length,
-                Magnitudes::of(&start.y, &[1.0], 1e-1),
+                Magnitudes::new(&start.y, &[1.0], 1e-1),
             );
             assert!(stepper.interpolated(0.0).is_none());
             let outcome = stepper.advance(&watched, 10.0).expect("a step");
@@ -354,8 +358,8 @@ mod tests {
                 t: 0.0,
                 y: vec![10.0_f64.powi(exponent)],
             };
-            let watched = Watched::new(&Growth, start.t, &start.y);
-            let point = single_step(&watched, &start, 3.0);
+            let watched = WatchedSystem::new(&Growth, start.t, &start.y);
+            let point = make_step(&watched, &start, 3.0);
             assert!(point.is_some(), "from {:e}: {point:?}", start.y[0]);
         }
     }
@@ -366,9 +370,9 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = Watched::new(&Growth, start.t, &start.y);
+        let watched = WatchedSystem::new(&Growth, start.t, &start.y);
         let mut stepper =
-            DormandPrince853::new(start.clone(), 3.0, Magnitudes::of(&start.y, &[1.0], 1e-10));
+            DormandPrince853::new(start.clone(), 3.0, Magnitudes::new(&start.y, &[1.0], 1e-10));
         let outcome = stepper.advance(&watched, 10.0).expect("a trial");
         assert_eq!(
             outcome,
@@ -377,7 +381,7 @@ mod tests {
                 length: 3.0
             }
         );
-        assert!(stepper.step() < 3.0 && stepper.here().t == 0.0);
+        assert!(stepper.step() < 3.0 && stepper.current_point().t == 0.0);
     }
 
     #[test]
@@ -386,10 +390,10 @@ mod tests {
             t: 0.1,
             y: vec![1.0],
         };
-        let watched = Watched::new(&Growth, start.t, &start.y);
+        let watched = WatchedSystem::new(&Growth, start.t, &start.y);
         let mut stepper =
-            DormandPrince853::new(start.clone(), 0.5, Magnitudes::of(&start.y, &[1.0], 1e-3));
+            DormandPrince853::new(start.clone(), 0.5, Magnitudes::new(&start.y, &[1.0], 1e-3));
         let outcome = stepper.advance(&watched, 0.3).expect("a step");
-        assert!(outcome.is_accepted && stepper.here().t == 0.3 && stepper.step() >= 0.5);
+        assert!(outcome.is_accepted && stepper.current_point().t == 0.3 && stepper.step() >= 0.5);
     }
 }

@@ -6,17 +6,17 @@ use super::adams::Adams;
 use super::approach::Approach;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
-use super::grazing::passed_over;
+use super::grazing::find_passed_surface;
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
 use super::resolution::{PARTS, Resolution};
 use super::settings::{Method, Settings};
-use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::stiffness::Pace;
 use super::system::{Interior, System};
 use super::trajectory::{Switch, Trajectory};
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// The first step, relative to the span; the error estimate corrects it at once.
 const FIRST_STEP: f64 = 1e-6;
@@ -92,10 +92,10 @@ fn run<S: System + ?Sized, M: Stepper>(
         t: span.0,
         y: initial.to_vec(),
     };
-    let watched = Watched::new(system, start.t, &start.y);
-    watched.keep_sides(true);
+    let watched = WatchedSystem::new(system, start.t, &start.y);
+    watched.fix_sides(true);
     let step = FIRST_STEP * (span.1 - span.0);
-    let magnitudes = Magnitudes::of(&start.y, &system.typical_sizes(), settings.tolerance);
+    let magnitudes = Magnitudes::new(&start.y, &system.typical_sizes(), settings.tolerance);
     let mut driver = Driver {
         watched: &watched,
         stepper: M::new(start, step, magnitudes),
@@ -118,16 +118,16 @@ fn run<S: System + ?Sized, M: Stepper>(
 /// What becomes of a step whose error is small enough.
 pub(super) enum Accepted {
     /// The motion goes on from its end.
-    Stands,
+    Continues,
     /// It was taken back and is to be made shorter.
     Shortened,
     /// It was taken back: so far from its start (s) the motion is beyond a surface.
-    PassedOver(f64),
+    SurfacePassed(f64),
 }
 
 /// A simulation under way.
 pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
-    pub(super) watched: &'a Watched<'a, S>,
+    pub(super) watched: &'a WatchedSystem<'a, S>,
     pub(super) stepper: M,
     pub(super) settings: &'a Settings,
     samples: &'a [f64],
@@ -149,9 +149,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         system: &S,
         progress: &mut dyn FnMut(f64),
     ) -> Result<(), SolveError> {
-        while self.stepper.here().t < self.end {
+        while self.stepper.current_point().t < self.end {
             self.advance(system)?;
-            progress(self.stepper.here().t);
+            progress(self.stepper.current_point().t);
             self.look_at_the_pace(system)?;
         }
         Ok(())
@@ -159,16 +159,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// One accepted step, or the way to and over a switching surface.
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
-        let begin = self.stepper.here().t;
+        let begin = self.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
         let until = next.map_or(self.end, |next| next.min(self.end));
-        self.watched.see_until(next.unwrap_or(f64::INFINITY));
+        self.watched.limit_time(next.unwrap_or(f64::INFINITY));
         let mut shortened = 0;
         loop {
             self.limit_step();
             self.check_step_size()?;
-            let outcome = self.controlled_step(until)?;
-            if self.watched.crossed().is_some() {
+            let outcome = self.make_controlled_step(until)?;
+            if self.watched.crossed_guard().is_some() {
                 // Also when the error refused the step: it is the surface that makes it
                 // large, and ever shorter steps would creep towards it.
                 if outcome.is_accepted {
@@ -179,8 +179,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             if outcome.is_accepted {
                 match self.look_at(outcome.length, shortened < MOST_SHORTENED) {
                     Accepted::Shortened => shortened += 1,
-                    Accepted::PassedOver(length) => return self.cross(length),
-                    Accepted::Stands => return self.accept(begin),
+                    Accepted::SurfacePassed(length) => return self.cross(length),
+                    Accepted::Continues => return self.accept(begin),
                 }
             }
         }
@@ -198,26 +198,29 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !self.watched.is_observing() {
             return;
         }
-        let (start, end) = (self.stepper.last().clone(), self.stepper.here().clone());
+        let (start, end) = (
+            self.stepper.step_start().clone(),
+            self.stepper.current_point().clone(),
+        );
         let (stepper, watched) = (&mut self.stepper, self.watched);
         let mut inside = |t, interior| match interior {
             Interior::Interpolated => stepper.interpolated(t),
-            Interior::Resolved => stepper.inside(watched, t),
+            Interior::Recomputed => stepper.inside(watched, t),
         };
         watched.observe_step(&start, &end, &mut inside);
     }
 
     /// Tries a step that ends at `until` at the latest.
-    pub(super) fn controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
+    pub(super) fn make_controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
         self.check_steps()?;
-        self.watched.reset();
+        self.watched.forget_trials();
         let mut outcome = self.stepper.advance(self.watched, until)?;
-        if outcome.is_accepted && self.watched.not_finite().is_some() {
+        if outcome.is_accepted && self.watched.non_finite_state().is_some() {
             // It ends where the rates have no value: no motion gets there.
             self.refuse(outcome.length);
             outcome.is_accepted = false;
         } else if !outcome.is_accepted {
-            self.trajectory.work.rejected += 1;
+            self.trajectory.statistics.rejected_steps += 1;
         }
         Ok(outcome)
     }
@@ -226,13 +229,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     fn refuse(&mut self, length: f64) {
         self.stepper.take_back();
         self.stepper.set_step(SHORTENED * length);
-        self.trajectory.work.rejected += 1;
+        self.trajectory.statistics.rejected_steps += 1;
     }
 
     /// The switching functions at [`PARTS`] of the last step; nothing where the method made none to here, or one
     /// so short that times inside are rounding.
     fn glimpses(&mut self) -> Option<[Vec<f64>; 5]> {
-        let (start, end) = (self.stepper.last().clone(), self.stepper.here().clone());
+        let (start, end) = (
+            self.stepper.step_start().clone(),
+            self.stepper.current_point().clone(),
+        );
         let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
         if is_short || !self.watched.has_guards() {
             return None;
@@ -245,7 +251,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 1.0 => end.y.clone(),
                 _ => self.stepper.interpolated(t)?,
             };
-            *values = self.watched.guards_seen(t, &state);
+            *values = self.watched.evaluate_guards_before(t, &state);
         }
         Some(values)
     }
@@ -256,7 +262,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let side = |guard| self.watched.side(guard);
         let mut longest = self.resolution.longest(values, side, &[]);
         if longest < 1.0 {
-            let start = self.stepper.last();
+            let start = self.stepper.step_start();
             let roundings = self.watched.guard_roundings(start.t, &start.y);
             longest = self.resolution.longest(values, side, &roundings);
         }
@@ -267,7 +273,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         } else {
             self.stepper.take_back();
             self.stepper.set_step(longest.max(SHORTENED) * length);
-            self.trajectory.work.rejected += 1;
+            self.trajectory.statistics.rejected_steps += 1;
         }
         !is_seen
     }
@@ -279,10 +285,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             if may_shorten && self.shortened(values, length) {
                 return Accepted::Shortened;
             }
-            let trials = &mut self.trajectory.work.trials;
-            if let Some(length) = passed_over(self.watched, &mut self.stepper, values, trials) {
+            let trials = &mut self.trajectory.statistics.trial_steps;
+            if let Some(length) =
+                find_passed_surface(self.watched, &mut self.stepper, values, trials)
+            {
                 self.stepper.take_back();
-                return Accepted::PassedOver(length);
+                return Accepted::SurfacePassed(length);
             }
         }
         if !self.project() && may_shorten {
@@ -292,13 +300,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if let Some(values) = &values {
             self.resolution.settle(values);
         }
-        Accepted::Stands
+        Accepted::Continues
     }
 
     /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance
     /// promises: a step that strayed farther than its error estimate says did not meet the tolerance.
     pub(super) fn project(&mut self) -> bool {
-        let here = self.stepper.here();
+        let here = self.stepper.current_point();
         let mut y = here.y.clone();
         self.projected = None;
         if !self.watched.project(here.t, &mut y) {
@@ -317,23 +325,23 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return Ok(state);
         }
         self.check_steps()?;
-        self.trajectory.work.trials += 1;
-        self.watched.reset();
+        self.trajectory.statistics.trial_steps += 1;
+        self.watched.forget_trials();
         let state = self.stepper.inside(self.watched, t);
         state.ok_or_else(|| {
-            let start = self.stepper.last();
-            refusal(self.watched, start, t - start.t)
+            let start = self.stepper.step_start();
+            rejection_error(self.watched, start, t - start.t)
         })
     }
 
     /// Samples from `begin` (s) to here, takes the projected state, and enters the regime found here.
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
-        check_finite(begin, &self.stepper.here().y)?;
+        check_finite(begin, &self.stepper.current_point().y)?;
         self.stepper.settle(self.projected.is_some());
-        self.trajectory.work.steps += 1;
-        self.watched.arrive();
+        self.trajectory.statistics.steps += 1;
+        self.watched.forget_later_trials();
         self.observe_step();
-        let t = self.stepper.here().t;
+        let t = self.stepper.current_point().t;
         let is_told = self.is_interior_told(t);
         while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {
             let mut state = self.inside(sample, is_told)?;
@@ -349,7 +357,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
             self.trajectory.times.push(sample);
-            self.trajectory.states.push(self.stepper.here().y.clone());
+            self.trajectory
+                .states
+                .push(self.stepper.current_point().y.clone());
         }
         self.enter_regime()
     }
@@ -366,7 +376,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if self.samples.get(next).is_none_or(|sample| *sample >= t) {
             return false;
         }
-        self.watched.reset();
+        self.watched.forget_trials();
         self.stepper.tells_interior(self.watched)
     }
 
@@ -377,10 +387,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Takes note of the surfaces that caught the motion or let it go, and of the switching functions
     /// that changed sign.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
-        let here = self.stepper.here();
+        let here = self.stepper.current_point();
         let t = here.t;
-        let mut changed = self.watched.caught_or_let_go(t, &here.y);
-        for guard in self.watched.enter(t, &here.y) {
+        let mut changed = self.watched.update_sticking(t, &here.y);
+        for guard in self.watched.enter_regime(t, &here.y) {
             if changed.iter().all(|(known, _)| *known != guard) {
                 changed.push((guard, self.watched.is_positive(guard)));
             }
@@ -394,7 +404,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.check_switch_rate(t, guard)?;
         }
         // Rates that lead back from beyond a surface must not keep trials from getting there.
-        self.watched.keep_sides(true);
+        self.watched.fix_sides(true);
         Ok(())
     }
 }
@@ -410,7 +420,7 @@ fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
 /// Samples at the start, and the end.
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     fn sample_start(&mut self) {
-        let start = self.stepper.here();
+        let start = self.stepper.current_point();
         for sample in self.samples.iter().take_while(|sample| **sample <= start.t) {
             self.trajectory.times.push(*sample);
             self.trajectory.states.push(start.y.clone());
@@ -418,8 +428,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     fn finish(self) {
-        self.watched.keep_sides(false);
-        self.trajectory.last = self.stepper.here().y.clone();
-        self.trajectory.work.evaluations = self.watched.evaluations();
+        self.watched.fix_sides(false);
+        self.trajectory.final_state = self.stepper.current_point().y.clone();
+        self.trajectory.statistics.evaluations = self.watched.evaluations();
     }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use super::names::Names;
 
 /// Message for a mass matrix that is not positive definite.
-pub const NOT_POSITIVE: &str = "the mass matrix is not positive definite: check for a mass, inertia or length that is zero or negative";
+pub const NOT_POSITIVE_DEFINITE_MESSAGE: &str = "the mass matrix is not positive definite: check for a mass, inertia or length that is zero or negative";
 
 /// Reason why a simulation stopped; times in s.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +73,7 @@ pub enum SolveError {
         state: usize,
     },
     /// A switching surface holds the motion: the rates on both sides point towards it.
-    Caught {
+    Sticking {
         /// Time reached, s.
         t: f64,
         /// Index of the switching function.
@@ -101,13 +101,13 @@ impl SolveError {
             | Self::Stiff { t, .. }
             | Self::StiffAtSurface { t, .. }
             | Self::TooManySteps { t, .. }
-            | Self::Caught { t, .. }
+            | Self::Sticking { t, .. }
             | Self::TooManySwitches { t, .. } => Some(t),
         }
     }
 
     /// Returns the message with cause, time, place and cure.
-    pub fn named(&self, names: &Names<'_>) -> String {
+    pub fn format_named(&self, names: &Names<'_>) -> String {
         match self {
             Self::Request { problem } => problem.clone(),
             Self::NotFinite { t, state } => format!(
@@ -115,19 +115,19 @@ impl SolveError {
                  of a negative number) in the rate of {}; check the parameters and the initial \
                  state, keep the function in its domain (as sqrt(max(x, 0)) does), or shorten the \
                  time",
-                names.state(*state)
+                names.state_name(*state)
             ),
             Self::NotPositiveDefinite { t, coordinate } => format!(
                 "at t = {t:?} s the mass matrix is not positive definite: the inertia of {} is \
                  zero or negative, so no acceleration is determined; check the kinetic energy \
                  in that position",
-                names.state(*coordinate)
+                names.state_name(*coordinate)
             ),
             Self::StepTooSmall { t, step, state } => format!(
                 "at t = {t:?} s no step meets the tolerance (last step: {step:e} s), because {} changes \
                  too fast. The state diverges, or its rate is singular; check the \
                  parameters, loosen the tolerance, or shorten the time",
-                names.state(*state)
+                names.state_name(*state)
             ),
             Self::Stiff {
                 t,
@@ -139,7 +139,7 @@ impl SolveError {
                  so an explicit solver would need {steps:.1e} more steps; use the implicit solver \
                  radau, or soften the cause (a stiff spring or damper, or a smooth friction law \
                  that is too steep)",
-                names.state(*state)
+                names.state_name(*state)
             ),
             Self::StiffAtSurface {
                 t,
@@ -151,23 +151,23 @@ impl SolveError {
                  sqrt(abs(p)) of an orifice is near p = 0. An explicit solver has to take steps of \
                  {within:.1e} s there, {steps:.1e} more of them; take the solver radau, which is \
                  implicit, or make the flow linear near zero",
-                names.surface(*guard)
+                names.surface_condition(*guard)
             ),
             Self::TooManySteps { t, steps, state } => format!(
                 "stopped at t = {t:?} s after {steps} steps: {} moves too fast for such a \
                  long time; loosen the tolerance or shorten the time",
-                names.state(*state)
+                names.state_name(*state)
             ),
-            Self::Caught { t, guard } => format!(
+            Self::Sticking { t, guard } => format!(
                 "at t = {t:?} s the motion stays on the switching surface on which {}: {}",
-                names.surface(*guard),
-                names.held(*guard)
+                names.surface_condition(*guard),
+                names.sticking_reason(*guard)
             ),
             Self::TooManySwitches { t, guard, rate } => format!(
                 "at t = {t:?} s the motion crosses the switching surface on which {} more than {rate:e} times per \
                  second: {}",
-                names.surface(*guard),
-                names.held(*guard)
+                names.surface_condition(*guard),
+                names.sticking_reason(*guard)
             ),
         }
     }
@@ -175,7 +175,7 @@ impl SolveError {
 
 impl fmt::Display for SolveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.named(&Names::default()))
+        f.write_str(&self.format_named(&Names::default()))
     }
 }
 

@@ -12,7 +12,7 @@
 use super::resolution::PARTS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// The motion is asked where a parabola promises less than this part of the lowest value known.
 const WORTH_A_LOOK: f64 = 0.5;
@@ -39,13 +39,13 @@ struct Sample {
 /// that it neither began nor ended beyond; `None` if it was not. The switching functions have these values at
 /// [`PARTS`] of the step. `trials` counts the states that the stepper computes for it. A state
 /// inside that overflows or leaves the domain of the rates counts as one beyond.
-pub fn passed_over<S: System + ?Sized, M: Stepper>(
-    watched: &Watched<'_, S>,
+pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
+    watched: &WatchedSystem<'_, S>,
     stepper: &mut M,
     values: &[Vec<f64>; 5],
     trials: &mut u64,
 ) -> Option<f64> {
-    let (begin, end) = (stepper.last().t, stepper.here().t);
+    let (begin, end) = (stepper.step_start().t, stepper.current_point().t);
     let mut after = |length: f64| {
         *trials += 1;
         let t = begin + length;
@@ -72,8 +72,8 @@ pub fn passed_over<S: System + ?Sized, M: Stepper>(
 }
 
 /// The same for one step of a method from `start` to `end`, whatever its error.
-pub fn leapt_over<S: System + ?Sized, M: Stepper>(
-    watched: &Watched<'_, S>,
+pub fn find_leapt_surface<S: System + ?Sized, M: Stepper>(
+    watched: &WatchedSystem<'_, S>,
     stepper: &M,
     (start, end): (&Point, &Point),
     trials: &mut u64,
@@ -87,7 +87,7 @@ pub fn leapt_over<S: System + ?Sized, M: Stepper>(
         return Some(0.5 * length);
     };
     let points = [start, &middle, end];
-    let values = points.map(|point| watched.guards_at(point.t, &point.y));
+    let values = points.map(|point| watched.evaluate_guards(point.t, &point.y));
     let samples = |guard: usize, side: f64| {
         let parts = [0.0, 0.5, 1.0];
         let samples = [0, 1, 2].map(|place| Sample {
@@ -102,7 +102,7 @@ pub fn leapt_over<S: System + ?Sized, M: Stepper>(
 /// How far from its start (s) a motion in a step of `length` s is beyond a surface, given the `samples` of each of
 /// so many functions on a side and by how much their parabola may be off; `after` computes the point so far from the start.
 fn search<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+    watched: &WatchedSystem<'_, S>,
     length: f64,
     guards: usize,
     samples: impl Fn(usize, f64) -> ([Sample; 3], f64),
@@ -117,12 +117,12 @@ fn search<S: System + ?Sized>(
             .fold(0.0, f64::max);
         let negligible = ROUNDING * highest;
         let mut look = |at: f64| {
-            watched.reset();
+            watched.forget_trials();
             let point = after(at * length)?;
-            let value = side * watched.guards_at(point.t, &point.y)[guard];
+            let value = side * watched.evaluate_guards(point.t, &point.y)[guard];
             // A trial state beyond a surface counts too: rates from there may have thrown the
             // motion back already.
-            let is_beyond = value < -negligible || watched.crossed().is_some();
+            let is_beyond = value < -negligible || watched.crossed_guard().is_some();
             (!is_beyond).then_some(value)
         };
         if let Some(at) = beyond(samples, doubt, &mut look) {

@@ -113,14 +113,14 @@ impl History {
 
     /// Turns the rates at the new point into its `order`-th modified difference: how far
     /// they are from the continuation of the rates before.
-    pub fn surprise(&self, weights: &Weights, order: usize, rates: &mut [f64]) {
+    pub fn write_prediction_difference(&self, weights: &Weights, order: usize, rates: &mut [f64]) {
         for (j, difference) in self.differences.iter().enumerate().take(order) {
             add(-weights.beta[j], difference, rates);
         }
     }
 
     /// beta_j Phi_j, entry by entry; zeros where it is not known.
-    pub fn continued(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
+    pub fn continued_difference(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
         let beta = weights.beta.get(j).copied().unwrap_or(0.0);
         self.difference(j).map(move |difference| beta * difference)
     }
@@ -152,7 +152,7 @@ impl History {
         let mut difference = rates.to_vec();
         for (j, place) in self.differences.iter_mut().enumerate() {
             place.clone_from(&difference);
-            let continued = before.continued(weights, j);
+            let continued = before.continued_difference(weights, j);
             for (difference, continued) in difference.iter_mut().zip(continued) {
                 *difference -= continued;
             }
@@ -184,7 +184,7 @@ mod tests {
             let mut predicted = [y];
             history.predict(&weights, order, &mut predicted);
             let mut surprise = [f(next)];
-            history.surprise(&weights, order, &mut surprise);
+            history.write_prediction_difference(&weights, order, &mut surprise);
             y = predicted[0] + weights.length * weights.g(order) * surprise[0];
             if step < order {
                 y = exact(next);

@@ -3,8 +3,8 @@
 use super::approach::Approach;
 use super::driver::Driver;
 use super::error::SolveError;
-use super::stepper::{Point, Stepper, refusal};
-use super::stiffness::Standing;
+use super::stepper::{Point, Stepper, rejection_error};
+use super::stiffness::Progress;
 use super::system::System;
 
 /// Over this many switches their rate is averaged.
@@ -26,21 +26,26 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns true if the next step would still move the time; if not, what the last trial ran
     /// into says why.
     pub(super) fn check_step_size(&self) -> Result<(), SolveError> {
-        let (t, step) = (self.stepper.here().t, self.stepper.step());
+        let (t, step) = (self.stepper.current_point().t, self.stepper.step());
         if step > self.shortest_step() {
             return Ok(());
         }
-        Err(match (self.watched.indefinite(), self.watched.crossed()) {
-            (None, Some(guard)) if self.watched.not_finite().is_none() => {
-                SolveError::Caught { t, guard }
-            }
-            _ => refusal(self.watched, self.stepper.here(), step),
-        })
+        Err(
+            match (
+                self.watched.indefinite_coordinate(),
+                self.watched.crossed_guard(),
+            ) {
+                (None, Some(guard)) if self.watched.non_finite_state().is_none() => {
+                    SolveError::Sticking { t, guard }
+                }
+                _ => rejection_error(self.watched, self.stepper.current_point(), step),
+            },
+        )
     }
 
     /// The shortest step that moves the time, s.
     pub(super) fn shortest_step(&self) -> f64 {
-        let t = self.stepper.here().t.abs();
+        let t = self.stepper.current_point().t.abs();
         f64::EPSILON * t.max(SMALLEST_TIME * self.end.abs())
     }
 
@@ -87,11 +92,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if self.steps() < steps {
             return Ok(());
         }
-        let Point { t, y } = self.stepper.here();
+        let Point { t, y } = self.stepper.current_point();
         Err(SolveError::TooManySteps {
             t: *t,
             steps,
-            state: self.watched.fastest(*t, y),
+            state: self.watched.fastest_state(*t, y),
         })
     }
 
@@ -106,7 +111,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !M::IS_EXPLICIT {
             return Ok(());
         }
-        let (t, steps) = (self.stepper.here().t, self.steps());
+        let (t, steps) = (self.stepper.current_point().t, self.steps());
         self.approaches.push_back(Approach {
             t,
             steps,
@@ -138,8 +143,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// All steps that were tried so far.
     fn steps(&self) -> u64 {
-        let work = &self.trajectory.work;
-        work.steps + work.rejected + work.trials
+        let work = &self.trajectory.statistics;
+        work.steps + work.rejected_steps + work.trial_steps
     }
 
     /// Returns true if there will be an end.
@@ -147,15 +152,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !M::IS_EXPLICIT {
             return Ok(());
         }
-        let Point { t, y } = self.stepper.here();
-        let standing = Standing {
+        let Point { t, y } = self.stepper.current_point();
+        let standing = Progress {
             t: *t,
             y,
             step: self.stepper.step(),
             steps: (self.steps(), self.settings.max_steps),
-            most_if_stiff: self.settings.max_steps_if_stiff,
+            max_steps_if_stiff: self.settings.max_steps_if_stiff,
             end: self.end,
         };
-        self.pace.look(system, &standing)
+        self.pace.check(system, &standing)
     }
 }

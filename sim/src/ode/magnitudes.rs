@@ -1,6 +1,6 @@
 //! The scale on which the errors of a step are measured; see the solver's page.
 
-use super::settings::UNMOVED_PART;
+use super::settings::UNMOVED_SIZE_FRACTION;
 
 /// What rounding is, in units of the last place.
 const ROUNDING: f64 = 10.0;
@@ -23,10 +23,10 @@ pub struct Magnitudes {
 
 impl Magnitudes {
     /// Magnitudes of a state where a motion begins, with the typical sizes of its components.
-    pub fn of(y: &[f64], typical_sizes: &[f64], tolerance: f64) -> Self {
+    pub fn new(y: &[f64], typical_sizes: &[f64], tolerance: f64) -> Self {
         let smallest: Vec<f64> = typical_sizes
             .iter()
-            .map(|size| UNMOVED_PART * size)
+            .map(|size| UNMOVED_SIZE_FRACTION * size)
             .collect();
         let largest = y
             .iter()
@@ -42,7 +42,7 @@ impl Magnitudes {
 
     /// Components that have not moved yet, none so small that the rounding of what it has been counts: what
     /// has come to rest is small, and its rounding is not.
-    pub fn afresh(&self) -> Self {
+    pub fn reset_copy(&self) -> Self {
         let roundings = ROUNDING * f64::EPSILON / self.tolerance;
         let largest = self.largest.iter().zip(&self.smallest);
         let largest = largest.map(|(largest, smallest)| smallest.max(roundings * largest));
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn rounding_of_others_does_not_grow_from_step_to_step() {
         for tolerance in [1e-9, 1e-13, 1e-14] {
-            let mut magnitudes = Magnitudes::of(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
+            let mut magnitudes = Magnitudes::new(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
             let mut floors = Vec::new();
             for _ in 0..50 {
                 magnitudes.raise(&[100.0, 1e-3]);

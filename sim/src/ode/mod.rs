@@ -52,8 +52,8 @@ mod trajectory;
 mod watch;
 
 pub use driver::{simulate, simulate_into};
-pub use error::{NOT_POSITIVE, SolveError};
-pub use names::{Names, Surface, Unfollowed};
-pub use settings::{Method, Settings, UNMOVED_PART, difference_step};
+pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
+pub use names::{Names, Surface, UnsupportedSticking};
+pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
-pub use trajectory::{Switch, Trajectory, Work};
+pub use trajectory::{SolverStatistics, Switch, Trajectory};

@@ -11,7 +11,7 @@ pub struct Surface {
 
 /// Reason why a solver does not support sticking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unfollowed {
+pub enum UnsupportedSticking {
     /// The model does not determine the force that holds.
     #[default]
     Formula,
@@ -29,12 +29,12 @@ pub struct Names<'a> {
     /// Names of the switching functions, in their order.
     pub surfaces: &'a [Surface],
     /// Reason why sticking is not supported.
-    pub unfollowed: Unfollowed,
+    pub unsupported_sticking: UnsupportedSticking,
 }
 
 impl Names<'_> {
     /// Returns the name of a state.
-    pub(crate) fn state(&self, index: usize) -> String {
+    pub(crate) fn state_name(&self, index: usize) -> String {
         match self.states.get(index) {
             Some(name) => format!("`{name}`"),
             None => format!("state variable {index}"),
@@ -42,7 +42,7 @@ impl Names<'_> {
     }
 
     /// Returns the condition on a switching surface.
-    pub(crate) fn surface(&self, index: usize) -> String {
+    pub(crate) fn surface_condition(&self, index: usize) -> String {
         match self.surfaces.get(index) {
             Some(surface) => format!("`{}` is zero", surface.formula),
             None => format!("switching function {index} is zero"),
@@ -51,31 +51,31 @@ impl Names<'_> {
 
     /// Returns reason and cure if a motion does not leave a surface, as far as the surface is
     /// known.
-    pub(crate) fn held(&self, index: usize) -> String {
+    pub(crate) fn sticking_reason(&self, index: usize) -> String {
         match self.surfaces.get(index).map(|surface| surface.is_speed) {
             Some(true) => {
-                let (reason, cure) = match self.unfollowed {
-                    Unfollowed::Adams => ("by the solver adams", "use the solver rk, or "),
-                    Unfollowed::Impacts => ("for a model with impacts", ""),
-                    Unfollowed::Formula => {
+                let (reason, cure) = match self.unsupported_sticking {
+                    UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
+                    UnsupportedSticking::Impacts => ("for a model with impacts", ""),
+                    UnsupportedSticking::Formula => {
                         ("for a speed with piecewise functions or an exponent", "")
                     }
                 };
-                format!("{STICKS} {reason}; {cure}{SMOOTH}")
+                format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
             }
-            Some(false) => CHATTERS.to_owned(),
+            Some(false) => CHATTERING.to_owned(),
             None => "replace the jump by a steep smooth function".to_owned(),
         }
     }
 }
 
 /// Sticking under dry friction.
-const STICKS: &str = "it sticks, as a body at rest under dry friction, which is not supported";
+const STICKING: &str = "it sticks, as a body at rest under dry friction, which is not supported";
 
 /// Alternative to dry friction.
-const SMOOTH: &str =
+const SMOOTH_LAW: &str =
     "write a smooth law, such as tanh(v/v_0) with a small speed v_0 instead of sign(v)";
 
 /// Chattering at a jump of the force over a position.
-const CHATTERS: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
+const CHATTERING: &str = "it chatters, because the forces on both sides lead back to it. Replace the \
     jump by a continuous force over a small distance, such as a stiff spring";

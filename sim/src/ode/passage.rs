@@ -1,10 +1,10 @@
 //! The passage over a switching surface, or past one that was touched.
 
-use super::crossing::{approach, over};
-use super::dormand_prince::single_step;
+use super::crossing::{crossing_step, find_approach};
+use super::dormand_prince::make_step;
 use super::driver::{Accepted, Driver};
 use super::error::SolveError;
-use super::grazing::leapt_over;
+use super::grazing::find_leapt_surface;
 use super::resolution::ROUNDINGS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
@@ -19,18 +19,18 @@ const SHORTEST_WINDOW: f64 = 16.0;
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Goes to the surface that may lie within `length` of here, and over it.
     pub(super) fn cross(&mut self, length: f64) -> Result<(), SolveError> {
-        let guard = self.watched.crossed();
+        let guard = self.watched.crossed_guard();
         let mut window = length;
         let mut beyond = Vec::new();
-        while window > over(length) {
-            let begin = self.stepper.here().t;
-            let found = approach(self.watched, &mut self.stepper, window, beyond);
-            self.trajectory.work.trials += found.trials;
-            window = found.rest;
-            beyond = found.beyond;
+        while window > crossing_step(length) {
+            let begin = self.stepper.current_point().t;
+            let found = find_approach(self.watched, &mut self.stepper, window, beyond);
+            self.trajectory.statistics.trial_steps += found.trials;
+            window = found.distance_beyond;
+            beyond = found.guards_beyond;
             if found.length > 0.0 {
                 self.stepper.set_step(found.length);
-                let outcome = self.controlled_step(f64::INFINITY)?;
+                let outcome = self.make_controlled_step(f64::INFINITY)?;
                 if !outcome.is_accepted {
                     // Not the surface alone: shorter steps, and then again.
                     return Ok(());
@@ -42,20 +42,22 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 }
                 match self.look_at(outcome.length, true) {
                     Accepted::Shortened => return Ok(()),
-                    Accepted::PassedOver(length) => {
+                    Accepted::SurfacePassed(length) => {
                         window = length.min(0.5 * found.length);
                         beyond = Vec::new();
                         continue;
                     }
-                    Accepted::Stands => {}
+                    Accepted::Continues => {}
                 }
-                if self.watched.crossed().is_some() && self.is_beyond(self.stepper.here()) {
+                if self.watched.crossed_guard().is_some()
+                    && self.is_beyond(self.stepper.current_point())
+                {
                     // Its error led it over.
-                    let mut point = self.stepper.here().clone();
+                    let mut point = self.stepper.current_point().clone();
                     self.stepper.take_back();
-                    let start = self.stepper.here().clone();
+                    let start = self.stepper.current_point().clone();
                     self.watched
-                        .cross((start.t, &start.y), point.t, &mut point.y);
+                        .apply_event((start.t, &start.y), point.t, &mut point.y);
                     self.stepper.restart(point, length);
                     self.project();
                     return self.accept(begin);
@@ -63,24 +65,24 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 self.accept(begin)?;
             }
         }
-        let has_crossed = self.step_over(window.max(over(length)), length)?;
+        let has_crossed = self.step_over(window.max(crossing_step(length)), length)?;
         self.check_approaches(guard, has_crossed)
     }
 
     /// Steps over the surface `window` ahead, wider where rounding hides it and as long as the step is
     /// resolved, and goes on with steps of `length`. Returns false if the motion did not cross the surface.
     fn step_over(&mut self, mut window: f64, length: f64) -> Result<bool, SolveError> {
-        let start = self.stepper.here().clone();
+        let start = self.stepper.current_point().clone();
         let mut last = 0.0;
         while last < length {
             self.check_steps()?;
-            self.trajectory.work.trials += 1;
+            self.trajectory.statistics.trial_steps += 1;
             let Some(mut point) = self.resolved_step(&start, window) else {
                 break;
             };
             if self.is_beyond(&point) {
                 self.watched
-                    .cross((start.t, &start.y), point.t, &mut point.y);
+                    .apply_event((start.t, &start.y), point.t, &mut point.y);
                 self.stepper.restart(point, length);
                 self.project();
                 self.accept(start.t)?;
@@ -88,9 +90,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             }
             // In a step that does not move the time there is nothing to leap over.
             if window > SHORTEST_CONTACT * length && point.t > start.t {
-                let trials = &mut self.trajectory.work.trials;
+                let trials = &mut self.trajectory.statistics.trial_steps;
                 let step = (&start, &point);
-                if let Some(ahead) = leapt_over(self.watched, &self.stepper, step, trials) {
+                if let Some(ahead) = find_leapt_surface(self.watched, &self.stepper, step, trials) {
                     // Too short for this step: let shorter ones find it.
                     self.stepper.restart(start, 0.25 * ahead);
                     return Ok(false);
@@ -110,13 +112,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// at neither end lead to another point, or as short as times or states can be told apart. Such a step is explicit
     /// for every method: Newton's method may not converge across a jump, and nothing is stiff in it.
     fn resolved_step(&self, start: &Point, window: f64) -> Option<Point> {
-        self.watched.reset();
-        let kept = single_step(self.watched, start, window);
+        self.watched.forget_trials();
+        let kept = make_step(self.watched, start, window);
         let point = kept.or_else(|| self.step_of_own_sides(start, window))?;
         let near = self.rates_at(start);
-        self.watched.keep_sides(false);
+        self.watched.fix_sides(false);
         let beyond = self.rates_at(&point);
-        self.watched.keep_sides(true);
+        self.watched.fix_sides(true);
         let is_resolved = |rates: &Vec<f64>| {
             let ends = point.y.iter().zip(&start.y);
             let errors = ends.zip(rates).map(|((b, a), rate)| b - a - window * rate);
@@ -132,7 +134,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns true if a step crosses surfaces and changes their functions by no more than rounding: no shorter
     /// step may cross them.
     fn moves_by_rounding(&self, start: &Point, end: &Point) -> bool {
-        let [from, to] = [start, end].map(|point| self.watched.guards_at(point.t, &point.y));
+        let [from, to] = [start, end].map(|point| self.watched.evaluate_guards(point.t, &point.y));
         let crossed = (0..to.len()).filter(|guard| self.watched.is_beyond(*guard, to[*guard]));
         let crossed: Vec<usize> = crossed.collect();
         if crossed.is_empty() {
@@ -147,10 +149,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// The same whatever its error, where the rates of the near side have no value beyond the surface, and
     /// those of the side where a trial is have one.
     fn step_of_own_sides(&self, start: &Point, window: f64) -> Option<Point> {
-        self.watched.reset();
-        self.watched.keep_sides(false);
-        let point = single_step(self.watched, start, window);
-        self.watched.keep_sides(true);
+        self.watched.forget_trials();
+        self.watched.fix_sides(false);
+        let point = make_step(self.watched, start, window);
+        self.watched.fix_sides(true);
         point
     }
 
@@ -162,7 +164,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Returns true if a point lies beyond a surface of the present regime.
     fn is_beyond(&self, point: &Point) -> bool {
-        let guards = self.watched.guards_at(point.t, &point.y);
+        let guards = self.watched.evaluate_guards(point.t, &point.y);
         (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
     }
 }

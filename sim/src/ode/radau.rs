@@ -7,12 +7,12 @@
 
 use nalgebra::DMatrix;
 
-use super::collocation::{Factors, MOST_ITERATIONS, Stages};
+use super::collocation::{Factors, MAX_ITERATIONS, Stages};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, in_parts};
+use super::stepper::{Outcome, Point, Stepper, split_step};
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// The step that the error estimate proposes is shortened by this.
 const SAFETY: f64 = 0.9;
@@ -74,11 +74,11 @@ impl Stepper for Radau {
         }
     }
 
-    fn here(&self) -> &Point {
+    fn current_point(&self) -> &Point {
         &self.here
     }
 
-    fn last(&self) -> &Point {
+    fn step_start(&self) -> &Point {
         &self.last
     }
 
@@ -115,7 +115,7 @@ impl Stepper for Radau {
 
     fn advance<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
         if std::mem::take(&mut self.is_starting) {
@@ -140,20 +140,20 @@ impl Stepper for Radau {
             Err(iterates) => {
                 // A surface may be what makes it hard.
                 for stages in iterates.iter() {
-                    stages.look(watched, &self.here);
+                    stages.check_sides(watched, &self.here);
                 }
                 self.refuse(0.5 * length);
                 return Ok(outcome(false));
             }
         };
-        stages.look(watched, &self.here);
+        stages.check_sides(watched, &self.here);
         let rates = self.rates.take();
         let rates = rates.unwrap_or_else(|| rates_at(watched, &self.here));
         let is_doubted = self.is_refused || self.accepted.is_none();
         let by = (&factors, &self.magnitudes);
-        let error = stages.error(watched, &self.here, &rates, by, is_doubted);
+        let error = stages.estimate_error(watched, &self.here, &rates, by, is_doubted);
         let inside = (self.stages.as_ref()).map_or(0.0, |before| {
-            stages.error_inside(before, &self.here, &self.magnitudes)
+            stages.estimate_interior_error(before, &self.here, &self.magnitudes)
         });
         let error = error.max(inside);
         if error.is_nan() || error >= 1.0 {
@@ -164,7 +164,7 @@ impl Stepper for Radau {
         }
         let end = Point {
             t: if is_cut { until } else { self.here.t + length },
-            y: stages.end(&self.here.y),
+            y: stages.end_state(&self.here.y),
         };
         let next = length * self.growth(length, error, stages.iterations);
         // A step cut short says nothing against the longer one.
@@ -191,7 +191,7 @@ impl Stepper for Radau {
 
     fn trial<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<Point> {
         self.single_step(watched, &self.here, length)
@@ -199,10 +199,14 @@ impl Stepper for Radau {
 
     fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
         let stages = self.stages.as_ref()?;
-        Some(stages.inside(&self.last.y, t - self.last.t))
+        Some(stages.interpolate(&self.last.y, t - self.last.t))
     }
 
-    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>> {
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
         if let Some(state) = self.interpolated(t) {
             return Some(state);
         }
@@ -212,22 +216,22 @@ impl Stepper for Radau {
 
     fn single_step<S: System + ?Sized>(
         &self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
     ) -> Option<Point> {
-        let mut magnitudes = self.magnitudes.afresh();
+        let mut magnitudes = self.magnitudes.reset_copy();
         // In parts where Newton's method does not converge.
         let step = |point: &Point, length: f64, t: f64| {
             magnitudes.raise(&point.y);
             let factors = Factors::new(&jacobian(watched, point), length);
             let stages = Stages::solve(watched, point, &factors, None, &magnitudes).ok()?;
-            stages.look(watched, point);
-            let y = stages.end(&point.y);
+            stages.check_sides(watched, point);
+            let y = stages.end_state(&point.y);
             Some(Point { t, y })
         };
         // Values behind a surface are of no use to a trial.
-        in_parts(start, length, step, || watched.crossed().is_some())
+        split_step(start, length, step, || watched.crossed_guard().is_some())
     }
 }
 
@@ -246,7 +250,7 @@ impl Radau {
     /// estimate is blind there: it passes a step so long that the method damps a fast vibration
     /// which it should follow. By the rule of Hairer, Norsett and Wanner, "Solving Ordinary
     /// Differential Equations I", section II.4, for an error of order 3.
-    fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) {
+    fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         let here = &self.here;
         let norm = |values: &[f64]| self.magnitudes.norm(values.iter().copied(), &here.y);
         let rates = rates_at(watched, here);
@@ -306,7 +310,7 @@ impl Radau {
 
 /// By how much a next step may be longer, from the error of this one and the work it was to solve it.
 fn proposed(error: f64, iterations: u32) -> f64 {
-    let most = f64::from(2 * MOST_ITERATIONS);
+    let most = f64::from(2 * MAX_ITERATIONS);
     let safety = SAFETY * (most + 1.0) / (most + f64::from(iterations));
     let growth = safety / error.powf(0.25);
     if growth.is_nan() {
@@ -315,7 +319,7 @@ fn proposed(error: f64, iterations: u32) -> f64 {
     growth.clamp(GROWTH.1, GROWTH.0)
 }
 
-fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<f64> {
+fn rates_at<S: System + ?Sized>(watched: &WatchedSystem<'_, S>, point: &Point) -> Vec<f64> {
     let mut rates = vec![0.0; point.y.len()];
     watched.rates(point.t, &point.y, &mut rates);
     rates
@@ -323,7 +327,7 @@ fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<
 
 /// The Jacobian at a point. A derivative without a value, as that of a root at zero, is replaced by 0:
 /// Newton's method then contracts less, and the step is shortened if it does not.
-fn jacobian<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> DMatrix<f64> {
+fn jacobian<S: System + ?Sized>(watched: &WatchedSystem<'_, S>, point: &Point) -> DMatrix<f64> {
     let states = point.y.len();
     let mut entries = vec![0.0; states * states];
     watched.jacobian(point.t, &point.y, &mut entries);

@@ -1,7 +1,7 @@
 //! Checks of a simulation request.
 
 use super::error::SolveError;
-use super::settings::{LOOSEST_TOLERANCE, Settings, TIGHTEST_TOLERANCE};
+use super::settings::{MAX_TOLERANCE, MIN_TOLERANCE, Settings};
 use super::system::System;
 
 /// Rejects an invalid request: lengths, order, ranges, and rates at the start.
@@ -13,11 +13,11 @@ pub fn check<S: System + ?Sized>(
     settings: &Settings,
 ) -> Result<(), SolveError> {
     let refuse = |problem: String| Err(SolveError::Request { problem });
-    if initial.is_empty() || initial.len() != system.states() {
+    if initial.is_empty() || initial.len() != system.state_count() {
         return refuse(format!(
             "the initial state has {} entries, but the system has {} states",
             initial.len(),
-            system.states()
+            system.state_count()
         ));
     }
     if let Some(index) = initial.iter().position(|y| !y.is_finite()) {
@@ -35,9 +35,9 @@ pub fn check<S: System + ?Sized>(
             "sample times must ascend from {begin} s to at most {end} s"
         ));
     }
-    if !(TIGHTEST_TOLERANCE..=LOOSEST_TOLERANCE).contains(&settings.tolerance) {
+    if !(MIN_TOLERANCE..=MAX_TOLERANCE).contains(&settings.tolerance) {
         return refuse(format!(
-            "the tolerance {} must be between {TIGHTEST_TOLERANCE:e} and {LOOSEST_TOLERANCE}",
+            "the tolerance {} must be between {MIN_TOLERANCE:e} and {MAX_TOLERANCE}",
             settings.tolerance
         ));
     }
@@ -52,10 +52,10 @@ pub fn check<S: System + ?Sized>(
 
 /// Rejects rates at the start that are not finite.
 fn check_rates<S: System + ?Sized>(system: &S, t: f64, y: &[f64]) -> Result<(), SolveError> {
-    let mut rates = vec![0.0; system.states()];
+    let mut rates = vec![0.0; system.state_count()];
     system.rates(t, y, &mut rates);
     match rates.iter().position(|rate| !rate.is_finite()) {
-        Some(state) => Err(match system.indefinite(t, y) {
+        Some(state) => Err(match system.find_indefinite_coordinate(t, y) {
             Some(coordinate) => SolveError::NotPositiveDefinite { t, coordinate },
             None => SolveError::NotFinite { t, state },
         }),

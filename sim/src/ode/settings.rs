@@ -1,22 +1,22 @@
 //! Method, tolerance and limits of a simulation.
 
 /// Size that a component has until it moves, as a fraction of its typical size.
-pub const UNMOVED_PART: f64 = 1e-9;
+pub const UNMOVED_SIZE_FRACTION: f64 = 1e-9;
 
 /// Smallest size of a component for finite differences, as a fraction of its typical size.
-const DIFFERENCE_PART: f64 = 1e-3;
+const MIN_DIFFERENCE_SIZE_FRACTION: f64 = 1e-3;
 
 /// Returns the step of a forward difference with respect to a component, from its value and
 /// typical size.
 pub fn difference_step(value: f64, typical_size: f64) -> f64 {
-    f64::EPSILON.sqrt() * value.abs().max(DIFFERENCE_PART * typical_size)
+    f64::EPSILON.sqrt() * value.abs().max(MIN_DIFFERENCE_SIZE_FRACTION * typical_size)
 }
 
 /// Smallest tolerance; below it, rounding dominates the error estimate.
-pub(super) const TIGHTEST_TOLERANCE: f64 = 1e-14;
+pub(super) const MIN_TOLERANCE: f64 = 1e-14;
 
 /// Largest tolerance.
-pub(super) const LOOSEST_TOLERANCE: f64 = 1e-1;
+pub(super) const MAX_TOLERANCE: f64 = 1e-1;
 
 /// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use super::error::SolveError;
 use super::magnitudes::Magnitudes;
 pub use super::point::Point;
 use super::system::System;
-use super::watch::Watched;
+use super::watch::WatchedSystem;
 
 /// Parts of a step that may be refused; see [`in_parts`].
 const MOST_REFUSED: u32 = 50;
@@ -28,10 +28,10 @@ pub trait Stepper: Sized {
     fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self;
 
     /// Where the next step begins.
-    fn here(&self) -> &Point;
+    fn current_point(&self) -> &Point;
 
     /// Where the last step began.
-    fn last(&self) -> &Point;
+    fn step_start(&self) -> &Point;
 
     /// The length of the next step, s.
     fn step(&self) -> f64;
@@ -45,7 +45,7 @@ pub trait Stepper: Sized {
 
     /// Goes on from a state that replaces the one here and differs from it by errors of the last step.
     fn correct(&mut self, y: Vec<f64>) {
-        let t = self.here().t;
+        let t = self.current_point().t;
         self.restart(Point { t, y }, self.step());
     }
 
@@ -62,7 +62,7 @@ pub trait Stepper: Sized {
     /// jump. If it is accepted the method stands at the new point.
     fn advance<S: System + ?Sized>(
         &mut self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError>;
 
@@ -71,8 +71,11 @@ pub trait Stepper: Sized {
 
     /// The point that a step of exactly `length` s leads to, whatever its error; `None` if the step
     /// overflows or leaves the domain of the rates.
-    fn trial<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, length: f64)
-    -> Option<Point>;
+    fn trial<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        length: f64,
+    ) -> Option<Point>;
 
     /// The state at time `t` (s) inside the last step by interpolation, without an evaluation; `None` if this
     /// method made none to here.
@@ -80,14 +83,18 @@ pub trait Stepper: Sized {
 
     /// Returns true if interpolation inside the last step is as accurate as the step: one that
     /// stability keeps short ends where it should, and may swing in between.
-    fn tells_interior<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> bool {
+    fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
         let _ = watched;
         true
     }
 
     /// The state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no
     /// step to there meets the tolerance.
-    fn inside<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>, t: f64) -> Option<Vec<f64>>;
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>>;
 
     /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
     /// without relying on where the steps before led; what has to be solved for is as accurate as in
@@ -95,7 +102,7 @@ pub trait Stepper: Sized {
     /// [`Stepper::trial`].
     fn single_step<S: System + ?Sized>(
         &self,
-        watched: &Watched<'_, S>,
+        watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
     ) -> Option<Point>;
@@ -105,7 +112,7 @@ pub trait Stepper: Sized {
 /// at a time, and returns nothing where it must be shorter. Parts are halves of halves, so that they
 /// add up exactly. The step ends early after a part of which `is_enough` is true; `None` if
 /// parts get too short.
-pub fn in_parts(
+pub fn split_step(
     start: &Point,
     length: f64,
     mut step: impl FnMut(&Point, f64, f64) -> Option<Point>,
@@ -139,19 +146,19 @@ pub fn in_parts(
 }
 
 /// Why a method refused to go on from a point with this step (s).
-pub fn refusal<S: System + ?Sized>(
-    watched: &Watched<'_, S>,
+pub fn rejection_error<S: System + ?Sized>(
+    watched: &WatchedSystem<'_, S>,
     from: &Point,
     step: f64,
 ) -> SolveError {
     let t = from.t;
-    match (watched.indefinite(), watched.not_finite()) {
+    match (watched.indefinite_coordinate(), watched.non_finite_state()) {
         (Some(coordinate), _) => SolveError::NotPositiveDefinite { t, coordinate },
         (None, Some(state)) => SolveError::NotFinite { t, state },
         (None, None) => SolveError::StepTooSmall {
             t,
             step,
-            state: watched.fastest(t, &from.y),
+            state: watched.fastest_state(t, &from.y),
         },
     }
 }

@@ -36,7 +36,7 @@ pub struct Pace {
 }
 
 /// Where a simulation stands.
-pub struct Standing<'a> {
+pub struct Progress<'a> {
     /// The time, s.
     pub t: f64,
     /// The state.
@@ -46,7 +46,7 @@ pub struct Standing<'a> {
     /// Steps so far, refused ones included, and the most there may be.
     pub steps: (u64, u64),
     /// The most that there may be where stability keeps them short.
-    pub most_if_stiff: u64,
+    pub max_steps_if_stiff: u64,
     /// The end, s.
     pub end: f64,
 }
@@ -64,10 +64,10 @@ impl Pace {
     ///
     /// # Errors
     /// If the system is stiff, and there would be no end within the limit on steps.
-    pub fn look<S: System + ?Sized>(
+    pub fn check<S: System + ?Sized>(
         &mut self,
         system: &S,
-        standing: &Standing<'_>,
+        standing: &Progress<'_>,
     ) -> Result<(), SolveError> {
         let (t, (steps, most)) = (standing.t, standing.steps);
         let done = steps - self.last.1;
@@ -76,7 +76,7 @@ impl Pace {
         }
         let needed = (standing.end - t) / (t - self.last.0) * done as f64;
         self.last = (t, steps);
-        let most = most.min(standing.most_if_stiff);
+        let most = most.min(standing.max_steps_if_stiff);
         if needed < most.saturating_sub(steps) as f64 {
             self.hopeless = 0;
             return Ok(());
@@ -121,7 +121,7 @@ impl Fastest {
 }
 
 /// What is fastest where the simulation stands.
-fn fastest<S: System + ?Sized>(system: &S, standing: &Standing<'_>) -> Option<Fastest> {
+fn fastest<S: System + ?Sized>(system: &S, standing: &Progress<'_>) -> Option<Fastest> {
     let (t, y) = (standing.t, standing.y);
     let sizes: Vec<f64> = y.iter().map(|y| y.abs().max(standing.step)).collect();
     let mut base = vec![0.0; y.len()];

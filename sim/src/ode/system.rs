@@ -9,7 +9,7 @@ pub struct ObservedStep<'s> {
     /// Time (s) and state at the end, before any jump at a breakpoint.
     pub end: (f64, &'s [f64]),
     /// Returns the state at a time (s) inside the step; `None` if it is not available.
-    pub inside: &'s mut dyn FnMut(f64, Interior) -> Option<Vec<f64>>,
+    pub state_inside: &'s mut dyn FnMut(f64, Interior) -> Option<Vec<f64>>,
 }
 
 /// Method for states inside a step.
@@ -18,13 +18,13 @@ pub enum Interior {
     /// Interpolation, without evaluations of the rates.
     Interpolated,
     /// A shorter step from the same start, if that is more accurate.
-    Resolved,
+    Recomputed,
 }
 
 /// A system y' = f(t, y) whose right-hand side is smooth between switching surfaces.
 pub trait System {
     /// Returns the number of states.
-    fn states(&self) -> usize;
+    fn state_count(&self) -> usize;
 
     /// Writes y' at time `t` and state `y` to `out`; all have [`System::states`] entries.
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]);
@@ -32,7 +32,7 @@ pub trait System {
     /// Returns the typical sizes of the states, [`System::states`] entries in the units of the
     /// states. Solvers compare states near 0 with them.
     fn typical_sizes(&self) -> Vec<f64> {
-        vec![1.0; self.states()]
+        vec![1.0; self.state_count()]
     }
 
     /// Writes the derivatives of the rates with respect to the state at time `t` and state `y` to
@@ -54,7 +54,7 @@ pub trait System {
     /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
     /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
     /// the system does not check.
-    fn indefinite(&self, _t: f64, _y: &[f64]) -> Option<usize> {
+    fn find_indefinite_coordinate(&self, _t: f64, _y: &[f64]) -> Option<usize> {
         None
     }
 
@@ -72,18 +72,18 @@ pub trait System {
 
     /// Changes `y` after an event: `before` (time and state) is on the near side of the switching
     /// surface, `t` and `y` are just beyond it. Impacts and tangent vectors jump here.
-    fn cross(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
+    fn apply_event(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
 
     /// Fixes the sides of surfaces that may hold a motion, so that the rates continue smoothly
     /// across them: -1, 1, or 0 (unknown) per switching function. `None` restores the rates of the
     /// side on which the state is. A system may ignore it.
-    fn keep_sides(&self, _sides: Option<&[f64]>) {}
+    fn fix_sides(&self, _sides: Option<&[f64]>) {}
 
     /// Updates sticking at `t` and `y`, where inputs may jump. Returns the switching functions
     /// whose surfaces began or ceased to hold the motion since the last call. The boolean is true
     /// if the motion came from the negative side, or leaves to the positive side. The sign of such
     /// a function need not change.
-    fn caught_or_let_go(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
+    fn update_sticking(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
         Vec::new()
     }
 
@@ -97,8 +97,8 @@ pub trait System {
 }
 
 impl<S: System + ?Sized> System for &S {
-    fn states(&self) -> usize {
-        (**self).states()
+    fn state_count(&self) -> usize {
+        (**self).state_count()
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
@@ -121,8 +121,8 @@ impl<S: System + ?Sized> System for &S {
         (**self).guards(t, y, out);
     }
 
-    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
-        (**self).indefinite(t, y)
+    fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
+        (**self).find_indefinite_coordinate(t, y)
     }
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
@@ -133,16 +133,16 @@ impl<S: System + ?Sized> System for &S {
         (**self).next_breakpoint(t)
     }
 
-    fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
-        (**self).cross(before, t, y);
+    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+        (**self).apply_event(before, t, y);
     }
 
-    fn keep_sides(&self, sides: Option<&[f64]>) {
-        (**self).keep_sides(sides);
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        (**self).fix_sides(sides);
     }
 
-    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        (**self).caught_or_let_go(t, y)
+    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        (**self).update_sticking(t, y)
     }
 
     fn is_observing(&self) -> bool {

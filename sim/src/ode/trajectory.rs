@@ -13,13 +13,13 @@ pub struct Switch {
 
 /// Solver statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct SolverStatistics {
     /// Number of accepted steps.
     pub steps: u64,
     /// Number of steps rejected by the error estimate.
-    pub rejected: u64,
+    pub rejected_steps: u64,
     /// Number of trial steps for samples and for the approach to switching surfaces.
-    pub trials: u64,
+    pub trial_steps: u64,
     /// Number of evaluations of the right-hand side.
     pub evaluations: u64,
 }
@@ -32,9 +32,9 @@ pub struct Trajectory {
     /// State at each sample.
     pub states: Vec<Vec<f64>>,
     /// State at the end of the simulated time.
-    pub last: Vec<f64>,
+    pub final_state: Vec<f64>,
     /// Events, in order of time.
     pub switches: Vec<Switch>,
     /// Solver statistics.
-    pub work: Work,
+    pub statistics: SolverStatistics,
 }

@@ -7,14 +7,14 @@ use std::cell::{Cell, RefCell};
 use differential_equations::ode::ODE;
 
 use super::point::Point;
-use super::settings::UNMOVED_PART;
+use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 
 /// The side of every switching surface: -1, 1, or 0 where a step begins on it.
 pub type Regime = Vec<f64>;
 
 /// A system, the regime the present step began in and what its trials ran into.
-pub struct Watched<'a, S: System + ?Sized> {
+pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
     regime: RefCell<Regime>,
     guards: RefCell<Vec<f64>>,
@@ -25,7 +25,7 @@ pub struct Watched<'a, S: System + ?Sized> {
     evaluations: Cell<u64>,
 }
 
-impl<'a, S: System + ?Sized> Watched<'a, S> {
+impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Watches `system`, which starts at `t` and `y`.
     pub fn new(system: &'a S, t: f64, y: &[f64]) -> Self {
         let watched = Self {
@@ -38,19 +38,19 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
             indefinite: Cell::new(None),
             evaluations: Cell::new(0),
         };
-        watched.enter(t, y);
+        watched.enter_regime(t, y);
         watched
     }
 
     /// Forgets what earlier trials ran into.
-    pub fn reset(&self) {
+    pub fn forget_trials(&self) {
         self.crossed.set(None);
         self.not_finite.set(None);
     }
 
     /// Lets trials see times before `t` only: at a breakpoint the right-hand side may
     /// jump, and a step that ends there belongs to the time before.
-    pub fn see_until(&self, t: f64) {
+    pub fn limit_time(&self, t: f64) {
         self.horizon.set(t);
     }
 
@@ -61,23 +61,23 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     }
 
     /// The switching function whose side a trial since [`Watched::reset`] left.
-    pub fn crossed(&self) -> Option<usize> {
+    pub fn crossed_guard(&self) -> Option<usize> {
         self.crossed.get()
     }
 
     /// The state variable whose rate was not finite in a trial since the reset.
-    pub fn not_finite(&self) -> Option<usize> {
+    pub fn non_finite_state(&self) -> Option<usize> {
         self.not_finite.get()
     }
 
     /// The coordinate without positive inertia at a state that a trial has come to since the
     /// last [`Watched::arrive`].
-    pub fn indefinite(&self) -> Option<usize> {
+    pub fn indefinite_coordinate(&self) -> Option<usize> {
         self.indefinite.get()
     }
 
     /// Forgets what trials beyond the next point ran into: the motion has come there.
-    pub fn arrive(&self) {
+    pub fn forget_later_trials(&self) {
         self.indefinite.set(None);
     }
 
@@ -94,7 +94,8 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
             self.not_finite.set(Some(state));
             if self.indefinite.get().is_none() {
-                self.indefinite.set(self.system.indefinite(t, y));
+                self.indefinite
+                    .set(self.system.find_indefinite_coordinate(t, y));
             }
         }
     }
@@ -113,7 +114,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     }
 
     /// Notices if a trial state lies on another side of a surface, without its rates.
-    pub fn look(&self, t: f64, y: &[f64]) {
+    pub fn check_sides(&self, t: f64, y: &[f64]) {
         let mut guards = self.guards.borrow_mut();
         if guards.is_empty() || self.crossed.get().is_some() {
             return;
@@ -136,7 +137,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     }
 
     /// The switching functions at `t` and `y`.
-    pub fn guards_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
+    pub fn evaluate_guards(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
         self.system.guards(t, y, &mut guards);
         guards
@@ -144,12 +145,12 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
     /// By how much the rounding of `y` changes the switching functions there.
     pub fn guard_roundings(&self, t: f64, y: &[f64]) -> Vec<f64> {
-        let here = self.guards_at(t, y);
+        let here = self.evaluate_guards(t, y);
         let mut roundings = vec![0.0; here.len()];
         let mut beside = y.to_vec();
         for (place, entry) in y.iter().enumerate() {
             beside[place] = entry.next_up();
-            let guards = self.guards_at(t, &beside);
+            let guards = self.evaluate_guards(t, &beside);
             beside[place] = *entry;
             for (rounding, (guard, here)) in roundings.iter_mut().zip(guards.iter().zip(&here)) {
                 *rounding += (guard - here).abs();
@@ -159,8 +160,8 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     }
 
     /// The same as [`Watched::guards_at`] where nothing jumps yet at the end of a step; see [`Watched::see_until`].
-    pub fn guards_seen(&self, t: f64, y: &[f64]) -> Vec<f64> {
-        self.guards_at(self.seen(t), y)
+    pub fn evaluate_guards_before(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        self.evaluate_guards(self.seen(t), y)
     }
 
     /// Returns true if switching function `guard` with value `value` is beyond its surface.
@@ -170,8 +171,8 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
     /// Makes the regime that of `t` and `y`, and returns the functions that changed
     /// sign. A function that is exactly 0 keeps the side it came from.
-    pub fn enter(&self, t: f64, y: &[f64]) -> Vec<usize> {
-        let guards = self.guards_at(t, y);
+    pub fn enter_regime(&self, t: f64, y: &[f64]) -> Vec<usize> {
+        let guards = self.evaluate_guards(t, y);
         let mut regime = self.regime.borrow_mut();
         let mut changed = Vec::new();
         for (index, (side, guard)) in regime.iter_mut().zip(guards).enumerate() {
@@ -188,21 +189,21 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
     /// Has the system change what jumps between a point on the near side of a surface and one just
     /// beyond it.
-    pub fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
-        self.system.cross(before, t, y);
+    pub fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+        self.system.apply_event(before, t, y);
     }
 
     /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
     /// [`System::keep_sides`].
-    pub fn keep_sides(&self, keep: bool) {
+    pub fn fix_sides(&self, keep: bool) {
         let regime = self.regime.borrow();
-        self.system.keep_sides(keep.then_some(regime.as_slice()));
+        self.system.fix_sides(keep.then_some(regime.as_slice()));
     }
 
     /// The switching functions whose surfaces have caught the motion or let it go; see
     /// [`System::caught_or_let_go`].
-    pub fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        self.system.caught_or_let_go(t, y)
+    pub fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        self.system.update_sticking(t, y)
     }
 
     /// Returns true if the system observes steps.
@@ -220,16 +221,16 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.system.observe_step(&mut ObservedStep {
             start: (start.t, &start.y),
             end: (self.seen(end.t), &end.y),
-            inside,
+            state_inside: inside,
         });
     }
 
     /// The state variable that changes fastest at `t` and `y`, in parts of its size.
-    pub fn fastest(&self, t: f64, y: &[f64]) -> usize {
+    pub fn fastest_state(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
         let sizes = self.system.typical_sizes();
-        let size = |index: usize| y[index].abs().max(UNMOVED_PART * sizes[index]);
+        let size = |index: usize| y[index].abs().max(UNMOVED_SIZE_FRACTION * sizes[index]);
         let speed = |index: usize| rates[index].abs() / size(index);
         let all = 0..y.len();
         all.max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
@@ -242,9 +243,9 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     }
 }
 
-impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
+impl<S: System + ?Sized> ODE<f64, Vec<f64>> for WatchedSystem<'_, S> {
     fn diff(&self, t: f64, y: &Vec<f64>, out: &mut Vec<f64>) {
         self.rates(t, y, out);
-        self.look(t, y);
+        self.check_sides(t, y);
     }
 }

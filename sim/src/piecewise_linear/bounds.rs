@@ -17,16 +17,16 @@ use super::event_evaluation::Local;
 /// What a step does to a function.
 pub(super) enum Verdict {
     /// It keeps its limits.
-    Safe,
+    WithinLimits,
     /// It crosses a limit, and that once.
     Crossing { upper: bool },
     /// Nothing is certain.
-    Unknown,
+    Undecided,
 }
 
 /// What can be said of a function between two limits over the next `length` s.
 #[inline(always)]
-pub(super) fn over(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
+pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
     let [value, rate, second, third] = local.derivatives;
     let h = length;
     let (a, b) = (rate * h, 0.5 * second * h * h);
@@ -86,7 +86,7 @@ impl Bounds {
         let [down, up] = [lower.map(|c| -c), *upper];
         let (safe_below, safe_above) = (room.is_kept(0, &down), room.is_kept(1, &up));
         if safe_below && safe_above {
-            return Verdict::Safe;
+            return Verdict::WithinLimits;
         }
         if safe_above && room.is_crossed(0, upper) {
             return Verdict::Crossing { upper: false };
@@ -94,7 +94,7 @@ impl Bounds {
         if safe_below && room.is_crossed(1, &lower.map(|c| -c)) {
             return Verdict::Crossing { upper: true };
         }
-        Verdict::Unknown
+        Verdict::Undecided
     }
 }
 

@@ -14,12 +14,12 @@ pub(super) struct Clock {
 
 impl Clock {
     /// This time exactly.
-    pub fn at(time: f64) -> Self {
+    pub fn new(time: f64) -> Self {
         Self { time, rest: 0.0 }
     }
 
     /// Later by `step` s.
-    pub fn plus(self, step: f64) -> Self {
+    pub fn advanced_by(self, step: f64) -> Self {
         let (sum, error) = two_sum(self.time, step);
         let (time, rest) = two_sum(sum, error + self.rest);
         Self { time, rest }
@@ -31,7 +31,7 @@ impl Clock {
     }
 
     /// How far away a later time is, s.
-    pub fn until(self, later: f64) -> f64 {
+    pub fn time_until(self, later: f64) -> f64 {
         (later - self.time) - self.rest
     }
 
@@ -51,21 +51,21 @@ mod tests {
 
     #[test]
     fn million_steps_do_not_drift() {
-        let mut clock = Clock::at(0.0);
+        let mut clock = Clock::new(0.0);
         for _ in 0..1_000_000 {
-            clock = clock.plus(0.1);
+            clock = clock.advanced_by(0.1);
         }
         // 0.1 as a floating-point number, a million times.
         let wanted = 100_000.0 + 1e6 * (0.1 - 0.1);
-        assert!(clock.until(wanted).abs() < 1e-11, "{clock:?}");
+        assert!(clock.time_until(wanted).abs() < 1e-11, "{clock:?}");
         // The number 0.1 is too large by 5.55e-18.
-        assert!((clock.until(wanted) + 5.551_115e-12).abs() < 1e-16);
+        assert!((clock.time_until(wanted) + 5.551_115e-12).abs() < 1e-16);
     }
 
     #[test]
     fn phases_are_as_accurate_as_time() {
         let rate = 10.0 * std::f64::consts::PI;
-        let clock = Clock::at(12_345.678);
+        let clock = Clock::new(12_345.678);
         let (product, error) = two_product(rate, 12_345.678);
         let turn = 2.0 * std::f64::consts::PI;
         // Same angle, reduced before the rounding error is added.

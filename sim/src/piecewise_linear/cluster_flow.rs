@@ -5,7 +5,7 @@ use nalgebra::{Complex, DVector};
 
 use super::event_evaluation::{Local, ROUNDING};
 use super::event_function::{monomial, monomials};
-use super::forced::{DERIVATIVES, integrals};
+use super::forced_integrals::{DERIVATIVES, integrals};
 use super::regime::Cluster;
 
 /// A cluster in one flow.

@@ -63,7 +63,7 @@ pub(super) struct Decomposition {
 
 /// Why a matrix could not be decomposed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Failure {
+pub(super) enum DecompositionError {
     /// It holds infinite numbers or none.
     NotFinite,
     /// The eigenvalue iteration did not converge.
@@ -73,21 +73,21 @@ pub(super) enum Failure {
 impl Decomposition {
     /// The parts of a square matrix whose state begins with so many positions and as many rates, on which forces act as fast as `forcing`, 1/s. Real
     /// eigenvalues up to `slow` in magnitude, 1/s, go to the integrals.
-    pub fn of(
+    pub fn decompose(
         matrix: &DMatrix<f64>,
         degrees: usize,
         forcing: f64,
         slow: f64,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, DecompositionError> {
         if matrix.iter().any(|entry| !entry.is_finite()) {
-            return Err(Failure::NotFinite);
+            return Err(DecompositionError::NotFinite);
         }
         let unfelt = |state: &usize| matrix.column(*state).iter().all(|entry| *entry == 0.0);
         let (pure, felt): (Vec<usize>, Vec<usize>) = (0..matrix.ncols()).partition(unfelt);
         let inner = matrix.select_columns(&felt).select_rows(&felt);
         let outer = matrix.select_columns(&felt).select_rows(&pure);
-        let mut schur = SchurForm::of(&inner, time_scale(matrix, degrees, &felt))
-            .ok_or(Failure::NotConverged)?;
+        let mut schur = SchurForm::decompose(&inner, time_scale(matrix, degrees, &felt))
+            .ok_or(DecompositionError::NotConverged)?;
         let near_zero = near_zero(&schur.eigenvalues(), forcing, slow);
         schur.sort_by_key(near_zero.iter().map(|near| usize::from(!near)).collect());
         let zeros = near_zero.iter().filter(|near| **near).count();
@@ -99,9 +99,9 @@ impl Decomposition {
             }
             found = found
                 .merged(&schur, &refinement.inseparable)
-                .ok_or(Failure::NotConverged)?;
+                .ok_or(DecompositionError::NotConverged)?;
         }
-        Err(Failure::NotConverged)
+        Err(DecompositionError::NotConverged)
     }
 }
 
@@ -183,7 +183,8 @@ mod tests {
     }
 
     fn check(matrix: &DMatrix<f64>, tolerance: f64) -> Decomposition {
-        let found = Decomposition::of(matrix, matrix.nrows() / 2, 0.0, 0.0).expect("decomposes");
+        let found =
+            Decomposition::decompose(matrix, matrix.nrows() / 2, 0.0, 0.0).expect("decomposes");
         let (back, identity) = composed(&found);
         let size = matrix.nrows();
         assert!((identity - DMatrix::identity(size, size)).norm() < tolerance);
@@ -236,8 +237,8 @@ mod tests {
         let mut matrix = DMatrix::zeros(2, 2);
         matrix[(1, 0)] = f64::NAN;
         assert_eq!(
-            Decomposition::of(&matrix, matrix.nrows() / 2, 0.0, 0.0).err(),
-            Some(Failure::NotFinite)
+            Decomposition::decompose(&matrix, matrix.nrows() / 2, 0.0, 0.0).err(),
+            Some(DecompositionError::NotFinite)
         );
     }
 }

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Where a motion stands when cells are decided.
 #[derive(Clone, Copy)]
-pub(super) struct Standing<'a> {
+pub(super) struct StateAt<'a> {
     pub state: &'a [f64],
     pub inputs: &'a [f64],
     pub phases: &'a [Complex<f64>],
@@ -23,7 +23,7 @@ pub(super) struct Standing<'a> {
 
 /// What asks for a decision.
 #[derive(Clone, Copy)]
-pub(super) enum Asking<'a> {
+pub(super) enum DecisionCause<'a> {
     /// A motion that begins.
     Start,
     /// Inputs that changed, or a function that a jump led over its limit, in the regime with
@@ -44,13 +44,13 @@ impl Propagator {
     pub(super) fn settle(
         &mut self,
         cells: &mut [Cell],
-        asking: Asking<'_>,
-        standing: Standing<'_>,
+        asking: DecisionCause<'_>,
+        standing: StateAt<'_>,
     ) {
         for _ in 0..=cells.len() {
             let before = cells.to_vec();
             for family in 0..cells.len() {
-                if self.dependent[family] || matches!(asking, Asking::Start) {
+                if self.dependent[family] || matches!(asking, DecisionCause::Start) {
                     cells[family] = self.decided(family, cells, asking, standing);
                 }
             }
@@ -61,7 +61,7 @@ impl Propagator {
     }
 
     /// Decides only those that have one value throughout the regime with these cells.
-    pub(super) fn settle_resting(&mut self, cells: &mut [Cell], standing: Standing<'_>) {
+    pub(super) fn settle_resting(&mut self, cells: &mut [Cell], standing: StateAt<'_>) {
         for _ in 0..=cells.len() {
             let before = cells.to_vec();
             for family in 0..cells.len() {
@@ -99,8 +99,8 @@ impl Propagator {
         &mut self,
         family: usize,
         cells: &[Cell],
-        asking: Asking<'_>,
-        standing: Standing<'_>,
+        asking: DecisionCause<'_>,
+        standing: StateAt<'_>,
     ) -> Cell {
         let present = cells[family];
         let here = self.outline(cells);
@@ -109,9 +109,9 @@ impl Propagator {
             return cell;
         }
         let before = match asking {
-            Asking::Start => None,
-            Asking::Jump(before) => Some(before),
-            Asking::Crossing(crossing) => {
+            DecisionCause::Start => None,
+            DecisionCause::Jump(before) => Some(before),
+            DecisionCause::Crossing(crossing) => {
                 if crossing.family == family {
                     return present;
                 }
@@ -143,7 +143,7 @@ impl Propagator {
     }
 
     /// Where the rates on both sides of a threshold lead a function that is on it.
-    fn led(&mut self, family: usize, rank: usize, cells: &[Cell], standing: Standing<'_>) -> Cell {
+    fn led(&mut self, family: usize, rank: usize, cells: &[Cell], standing: StateAt<'_>) -> Cell {
         let mut with = |cell: Cell| {
             let mut cells = cells.to_vec();
             cells[family] = cell;

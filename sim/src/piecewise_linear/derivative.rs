@@ -1,7 +1,7 @@
 //! Rates at one state, as computed by the exact solver.
 
 use super::clock::Clock;
-use super::dependents::{Asking, Standing};
+use super::dependents::{DecisionCause, StateAt};
 use super::error::ExactError;
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
@@ -22,21 +22,26 @@ impl Propagator {
     ///
     /// # Errors
     /// A number of states or inputs that differs from the model's.
-    pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Rates, ExactError> {
+    pub fn evaluate_rates(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Rates, ExactError> {
         if state.len() != self.states || inputs.len() < self.inputs {
             let problem = format!("expected {} states and {} inputs", self.states, self.inputs);
             return Err(SolveError::Request { problem }.into());
         }
         let inputs = &inputs[..self.inputs];
-        let phases = self.phases_at(Clock::at(t));
-        let standing = Standing {
+        let phases = self.phases_at(Clock::new(t));
+        let standing = StateAt {
             state,
             inputs,
             phases: &phases,
         };
         let cells = if self.has_dependents() {
             let mut cells = vec![Cell::Between(0); self.families.len()];
-            self.settle(&mut cells, Asking::Start, standing);
+            self.settle(&mut cells, DecisionCause::Start, standing);
             cells
         } else {
             self.cells_at(state, inputs, &phases).0

@@ -27,7 +27,7 @@ pub enum ExactError {
     /// The eigenvalue iteration of a regime did not converge.
     NotConverged,
     /// A surface on which the rates are not linear holds the motion.
-    Held {
+    Sticking {
         /// Time, s.
         t: f64,
         /// Index of the switching function.
@@ -41,14 +41,14 @@ impl ExactError {
     /// Returns the time reached, s; `None` if the simulation had not started.
     pub fn time(&self) -> Option<f64> {
         match self {
-            Self::Held { t, .. } => Some(*t),
+            Self::Sticking { t, .. } => Some(*t),
             Self::Stopped(error) => error.time(),
             _ => None,
         }
     }
 
     /// Returns the message with cause, time, place and cure.
-    pub fn named(&self, names: &Names<'_>) -> String {
+    pub fn format_named(&self, names: &Names<'_>) -> String {
         match self {
             Self::NotLinear { formula } => format!(
                 "the model is not piecewise linear, because of `{formula}`; use the general solver \
@@ -64,26 +64,26 @@ impl ExactError {
             Self::NotFinite => "a coefficient of the equations of motion is not finite: check \
                  for a mass, inertia or length of zero, or a parameter that is far too large"
                 .to_owned(),
-            Self::NotPositiveDefinite => crate::ode::NOT_POSITIVE.to_owned(),
+            Self::NotPositiveDefinite => crate::ode::NOT_POSITIVE_DEFINITE_MESSAGE.to_owned(),
             Self::NegativeHalfWidth => {
                 "the half-width of a dead zone is negative; expected 0 or more".to_owned()
             }
             Self::NotConverged => "the eigenvalue iteration of the equations of motion did not \
                  converge; use the general solver (--solver rk), which needs no eigenvalues"
                 .to_owned(),
-            Self::Held { t, guard } => format!(
+            Self::Sticking { t, guard } => format!(
                 "at t = {t:?} s the motion sticks on the switching surface on which {}, with forces that are not \
                  linear there; the exact solver supports sticking with a constant friction level only",
-                names.surface(*guard)
+                names.surface_condition(*guard)
             ),
-            Self::Stopped(error) => error.named(names),
+            Self::Stopped(error) => error.format_named(names),
         }
     }
 }
 
 impl fmt::Display for ExactError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.named(&Names::default()))
+        f.write_str(&self.format_named(&Names::default()))
     }
 }
 

@@ -87,7 +87,7 @@ impl EventEvaluation {
         self.safe_until = f64::NEG_INFINITY;
         self.summed_up_at = f64::NAN;
         self.slack = None;
-        (self.start, self.start_size) = event_function.at(given);
+        (self.start, self.start_size) = event_function.evaluate(given);
         let polynomial = &event_function.polynomial;
         self.rate_size = polynomial.rate_size(causes);
         self.fourth = polynomial.terms(simd, causes, coefficients, &mut self.terms);

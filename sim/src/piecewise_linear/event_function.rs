@@ -5,7 +5,7 @@
 use eomgen_codegen::program::affine::AffineRows;
 use nalgebra::{Complex, DVector};
 
-use super::forced::factorial;
+use super::forced_integrals::factorial;
 use super::integrals::{Integrals, Polynomial};
 use super::modes::Modes;
 use super::regime::Cluster;
@@ -185,7 +185,7 @@ impl EventFunction {
 
     /// The value at the start of a motion, and the sum of its terms' magnitudes: `given` is
     /// the state, a unit constant, the inputs, and sine and cosine of each phase.
-    pub fn at(&self, given: &[f64]) -> (f64, f64) {
+    pub fn evaluate(&self, given: &[f64]) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0_f64);
         for (place, factor) in &self.felt {
             let term = factor * given[*place];

@@ -14,7 +14,8 @@ use super::event_evaluation::{EventEvaluation, Local, ROUNDING};
 use super::kernels::{self, Amplitudes};
 use super::regime::Regime;
 use super::simd_vectors::{
-    LITTLE, SimdVector, SplitComplex, numbers, numbers_mut, simd_vectors, terms_of_expm1,
+    MAX_SMALL_ARGUMENT, SimdVector, SplitComplex, numbers, numbers_mut, simd_vectors,
+    terms_of_expm1,
 };
 use super::step_table::Step;
 
@@ -171,7 +172,7 @@ impl Flow {
         let fastest = regime.modes.magnitude.last().copied().unwrap_or(0.0);
         let mut rest = time;
         for step in &regime.step_table.steps {
-            if fastest * rest.abs() <= LITTLE || rest <= 0.0 {
+            if fastest * rest.abs() <= MAX_SMALL_ARGUMENT || rest <= 0.0 {
                 break;
             }
             if step.length <= rest {
@@ -179,7 +180,7 @@ impl Flow {
                 rest -= step.length;
             }
         }
-        if fastest * rest.abs() <= LITTLE {
+        if fastest * rest.abs() <= MAX_SMALL_ARGUMENT {
             self.advance_little(simd, &regime.modes.rates, rest, fastest);
         } else {
             self.advance(simd, &SplitComplex::expm1(&regime.modes.rate, rest));
@@ -204,14 +205,14 @@ impl Flow {
     /// The state a time after the start, s.
     pub fn state_at(&mut self, regime: &Regime, tau: f64, out: &mut [f64]) {
         dispatch!(Level::new(), simd => {
-            self.go_to(simd, regime, tau);
+            self.advance_to(simd, regime, tau);
             self.state(simd, regime, out);
         });
     }
 
     /// Goes to a time after the start, where nothing but the state will be asked for.
     #[inline(always)]
-    pub fn go_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
+    pub fn advance_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
         self.rewind(regime);
         self.tau = 0.0;
         if tau == regime.step_table.window {

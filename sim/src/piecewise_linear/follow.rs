@@ -58,7 +58,7 @@ impl<'s> Samples<'s> {
 
     /// How long after the segment's beginning the next sample is, s, if it is within.
     pub fn next_in(&self, segment: &Segment<'_>) -> Option<f64> {
-        let after = segment.start.until(self.next()?);
+        let after = segment.start.time_until(self.next()?);
         (after <= segment.tau).then_some(after)
     }
 

@@ -10,7 +10,7 @@ use fearless_simd::Simd;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition;
-use super::forced::reciprocal;
+use super::forced_integrals::reciprocal;
 use super::kernels;
 use super::modes::Forcing;
 use super::simd_vectors::{SimdVector, numbers, pack, simd_vectors};

@@ -13,40 +13,40 @@ use crate::ode::SolveError;
 
 /// Request for Lyapunov exponents.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lyapunov {
+pub struct LyapunovRequest {
     /// Time before the first measurement, s. The tangent vectors align in its second half.
     pub transient: f64,
     /// Time between two measurements, s.
     pub interval: f64,
     /// Number of measurements.
-    pub intervals: usize,
+    pub interval_count: usize,
     /// Number of exponents, the largest first.
-    pub exponents: usize,
+    pub exponent_count: usize,
 }
 
 /// Measured growth of tangent vectors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Growth {
+pub struct LyapunovGrowth {
     /// Time between two measurements, s.
     pub interval: f64,
     /// Growth exponents ln(|v_after| / |v_before|) of the intervals, for each tangent vector.
     /// Their means divided by the interval are the Lyapunov exponents, 1/s, the largest first.
-    pub growths: Vec<Vec<f64>>,
+    pub growth_exponents: Vec<Vec<f64>>,
     /// State at the end of every interval.
-    pub section: Vec<Vec<f64>>,
+    pub interval_states: Vec<Vec<f64>>,
     /// Number of events over the whole time.
     pub switches: u64,
 }
 
 /// A motion with tangent vectors, which can be continued.
-pub struct Carried {
+pub struct MotionWithTangents {
     motion: Motion,
     frame: Frame,
 }
 
-impl Carried {
+impl MotionWithTangents {
     /// Returns ln(|v_after| / |v_before|) of each tangent vector over the last interval.
-    pub fn growth(&self) -> &[f64] {
+    pub fn growth_exponents(&self) -> &[f64] {
         &self.frame.growth
     }
 
@@ -56,8 +56,8 @@ impl Carried {
     }
 
     /// Returns the number of events up to now.
-    pub fn switches(&self) -> u64 {
-        self.motion.switches()
+    pub fn switch_count(&self) -> u64 {
+        self.motion.switch_count()
     }
 }
 
@@ -68,18 +68,18 @@ impl Propagator {
     /// # Errors
     /// Same as [`Propagator::start`], or a number of weights that differs from the number of
     /// states.
-    pub fn carried(
+    pub fn start_with_tangent(
         &mut self,
         initial: &[f64],
         t: f64,
         inputs: &HeldInputs,
         weights: &[f64],
-    ) -> Result<Carried, ExactError> {
+    ) -> Result<MotionWithTangents, ExactError> {
         if weights.len() != self.states || weights.iter().any(|w| !(*w >= 0.0 && w.is_finite())) {
             let problem = format!("expected {} weights of 0 or more", self.states);
             return Err(SolveError::Request { problem }.into());
         }
-        Ok(Carried {
+        Ok(MotionWithTangents {
             motion: self.start(t, initial, inputs)?,
             frame: Frame::new(weights, 1),
         })
@@ -89,13 +89,13 @@ impl Propagator {
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`].
-    pub fn carry(
+    pub fn continue_to(
         &mut self,
-        carried: &mut Carried,
+        carried: &mut MotionWithTangents,
         end: f64,
         inputs: &HeldInputs,
     ) -> Result<(), ExactError> {
-        let Carried { motion, frame } = carried;
+        let MotionWithTangents { motion, frame } = carried;
         frame.growth.fill(0.0);
         self.follow_until(motion, end, inputs, frame)?;
         frame.orthonormalise();
@@ -107,16 +107,18 @@ impl Propagator {
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`], or an invalid request.
-    pub fn lyapunov(
+    pub fn measure_lyapunov(
         &mut self,
         initial: &[f64],
         t: f64,
         inputs: &HeldInputs,
-        request: &Lyapunov,
-    ) -> Result<Growth, ExactError> {
+        request: &LyapunovRequest,
+    ) -> Result<LyapunovGrowth, ExactError> {
         request.check()?;
-        let felt = self.felt_states();
-        let wanted = request.exponents.min(felt.iter().filter(|f| **f).count());
+        let felt = self.influential_states();
+        let wanted = request
+            .exponent_count
+            .min(felt.iter().filter(|f| **f).count());
         let mut motion = self.start(t, initial, inputs)?;
         let weights: Vec<f64> = felt.iter().map(|felt| f64::from(u8::from(*felt))).collect();
         let mut nobody = Frame::new(&weights, 0);
@@ -126,35 +128,39 @@ impl Propagator {
             inputs,
             &mut nobody,
         )?;
-        let mut carried = Carried {
+        let mut carried = MotionWithTangents {
             motion,
             frame: Frame::new(&weights, wanted),
         };
         let measured_from = t + request.transient;
-        self.carry(&mut carried, measured_from, inputs)?;
-        let mut growths = vec![Vec::with_capacity(request.intervals); wanted];
-        let mut section = Vec::with_capacity(request.intervals);
-        for index in 1..=request.intervals {
+        self.continue_to(&mut carried, measured_from, inputs)?;
+        let mut growths = vec![Vec::with_capacity(request.interval_count); wanted];
+        let mut section = Vec::with_capacity(request.interval_count);
+        for index in 1..=request.interval_count {
             let end = measured_from + index as f64 * request.interval;
-            self.carry(&mut carried, end, inputs)?;
-            for (all, growth) in growths.iter_mut().zip(carried.growth()) {
+            self.continue_to(&mut carried, end, inputs)?;
+            for (all, growth) in growths.iter_mut().zip(carried.growth_exponents()) {
                 all.push(*growth);
             }
             section.push(carried.state().to_vec());
         }
-        Ok(Growth {
+        Ok(LyapunovGrowth {
             interval: request.interval,
-            growths,
-            section,
-            switches: carried.switches(),
+            growth_exponents: growths,
+            interval_states: section,
+            switches: carried.switch_count(),
         })
     }
 }
 
-impl Lyapunov {
+impl LyapunovRequest {
     fn check(&self) -> Result<(), SolveError> {
         let times = self.transient >= 0.0 && self.interval > 0.0;
-        if times && self.transient.is_finite() && self.interval.is_finite() && self.intervals > 0 {
+        if times
+            && self.transient.is_finite()
+            && self.interval.is_finite()
+            && self.interval_count > 0
+        {
             return Ok(());
         }
         Err(SolveError::Request {

@@ -22,7 +22,7 @@
 //!
 //! The module [`crate::ode`] simulates all other models.
 
-mod adjacent;
+mod adjacent_regimes;
 mod blocks;
 mod bounds;
 mod clock;
@@ -39,7 +39,7 @@ mod event_evaluation;
 mod event_function;
 mod flow;
 mod follow;
-mod forced;
+mod forced_integrals;
 mod integrals;
 mod invariant;
 mod kernels;
@@ -57,16 +57,16 @@ mod schur;
 mod search;
 mod simd_vectors;
 mod simulate;
+mod simultaneous_surfaces;
 mod sliding;
-mod standing_on;
 mod step_table;
 mod switching;
 mod tangent;
 mod transition;
-mod visited;
+mod visited_regimes;
 
 pub use error::ExactError;
-pub use lyapunov::{Carried, Growth, Lyapunov};
+pub use lyapunov::{LyapunovGrowth, LyapunovRequest, MotionWithTangents};
 pub use model::PiecewiseLinear;
 pub use neighbours::Sensitivities;
 pub use propagator::{Motion, Propagator};

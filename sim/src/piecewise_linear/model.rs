@@ -24,7 +24,7 @@ impl PiecewiseLinear {
     ///
     /// # Errors
     /// A model that is not piecewise linear, or that cannot be derived.
-    pub fn of(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
+    pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
         // The node in the way is named while its graph is still there.
@@ -56,7 +56,7 @@ impl PiecewiseLinear {
     ///
     /// # Errors
     /// Other independent parameters, or matrices that are not finite.
-    pub fn propagator(&self, model: &Model) -> Result<Propagator, ExactError> {
+    pub fn propagator_for_model(&self, model: &Model) -> Result<Propagator, ExactError> {
         if !independent(model)
             .map(|(name, _)| name)
             .eq(self.independent.iter().map(String::as_str))
@@ -70,7 +70,7 @@ impl PiecewiseLinear {
             .parameter_values()
             .map_err(|error| ExactError::Model(error.diagnostic().message))?;
         let values: Vec<f64> = independent(model).map(|(_, place)| all[place]).collect();
-        self.at(&values)
+        self.propagator_at(&values)
     }
 
     /// Returns a propagator at these values of the independent parameters, SI, in the order of the
@@ -78,7 +78,7 @@ impl PiecewiseLinear {
     ///
     /// # Errors
     /// Matrices that are not finite, or a dead zone with a negative half-width.
-    pub fn at(&self, values: &[f64]) -> Result<Propagator, ExactError> {
+    pub fn propagator_at(&self, values: &[f64]) -> Result<Propagator, ExactError> {
         Propagator::new(self.evaluator(values))
     }
 
@@ -91,7 +91,7 @@ impl PiecewiseLinear {
     }
 
     /// Returns the names of the independent parameters, in the order of their values.
-    pub fn parameters(&self) -> &[String] {
+    pub fn parameter_names(&self) -> &[String] {
         &self.independent
     }
 }

@@ -25,7 +25,7 @@ impl Propagator {
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`].
-    pub fn neighbours(
+    pub fn simulate_with_derivatives(
         &mut self,
         initial: &[f64],
         span: (f64, f64),

@@ -3,7 +3,7 @@
 
 use eomgen_codegen::program::affine::AffineSystem;
 
-use super::dependents::Standing;
+use super::dependents::StateAt;
 use super::derivative::Rates;
 use super::event_function::Linear;
 use super::parallel_guards::Cell;
@@ -78,7 +78,7 @@ impl Outline {
     }
 
     /// The rate of a function that is due to the state's, and what rounding may make of it.
-    pub fn rate(&self, function: &Linear, standing: Standing<'_>) -> (f64, f64) {
+    pub fn rate(&self, function: &Linear, standing: StateAt<'_>) -> (f64, f64) {
         let Rates { values, sizes } = self.rates(standing);
         let factors = function.state.iter();
         let rate = factors.clone().zip(values).map(|(a, b)| a * b).sum();
@@ -87,8 +87,8 @@ impl Outline {
     }
 
     /// The rates of the state.
-    pub fn rates(&self, standing: Standing<'_>) -> Rates {
-        let Standing {
+    pub fn rates(&self, standing: StateAt<'_>) -> Rates {
+        let StateAt {
             state,
             inputs,
             phases,

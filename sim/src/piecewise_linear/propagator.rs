@@ -8,17 +8,17 @@ use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
-use super::dependents::{Asking, Standing};
+use super::dependents::{DecisionCause, StateAt};
 use super::error::ExactError;
 use super::event_function::Linear;
 use super::flow::Flow;
 use super::outline::Outline;
 use super::parallel_guards::{Cell, ParallelGuards, families};
 use super::regime::Regime;
-use super::search::{Effort, Found, jumped_over, search};
+use super::search::{Effort, Found, find_jumped_function, search};
 use super::switching::switched_rate;
 use super::transition::{Limit, Transition};
-use super::visited::VisitedRegime;
+use super::visited_regimes::VisitedRegime;
 use crate::inputs::HeldInputs;
 use crate::ode::{SolveError, Switch};
 
@@ -153,7 +153,7 @@ impl Motion {
     }
 
     /// Returns the number of events up to now.
-    pub fn switches(&self) -> u64 {
+    pub fn switch_count(&self) -> u64 {
         self.switches
     }
 }
@@ -195,12 +195,12 @@ impl Propagator {
     }
 
     /// Returns the number of states.
-    pub fn states(&self) -> usize {
+    pub fn state_count(&self) -> usize {
         self.states
     }
 
     /// Returns the number of regimes entered up to now.
-    pub fn regimes(&self) -> usize {
+    pub fn regime_count(&self) -> usize {
         self.regimes.len()
     }
 
@@ -225,7 +225,7 @@ impl Propagator {
         for visited in &mut self.regimes {
             visited.step = 0;
         }
-        let clock = Clock::at(t);
+        let clock = Clock::new(t);
         let regime = self.regime_at(clock, state, held(inputs, t, self.inputs))?;
         Ok(Motion {
             clock,
@@ -261,7 +261,7 @@ impl Propagator {
         let now = motion.time();
         let breakpoint = inputs.next_change(now).filter(|next| *next < end);
         let target = breakpoint.unwrap_or(end);
-        let remaining = motion.clock.until(target);
+        let remaining = motion.clock.time_until(target);
         self.check_window(motion, remaining)?;
         let values = held(inputs, now, self.inputs);
         let VisitedRegime {
@@ -279,16 +279,16 @@ impl Propagator {
         });
         let reached = match found {
             Found::Nothing if length < remaining => {
-                motion.clock = start.plus(length);
+                motion.clock = start.advanced_by(length);
                 false
             }
             Found::Nothing => {
-                motion.clock = Clock::at(target);
+                motion.clock = Clock::new(target);
                 motion.jumped = breakpoint.map(|_| Jumped::Any);
                 breakpoint.is_none()
             }
             Found::Limit { .. } => {
-                motion.clock = start.plus(flow.tau);
+                motion.clock = start.advanced_by(flow.tau);
                 false
             }
         };
@@ -344,12 +344,12 @@ impl Propagator {
         }
         let mut cells = self.regimes[motion.regime].cells.clone();
         let before = self.outline(&cells);
-        let standing = Standing {
+        let standing = StateAt {
             state: &motion.state,
             inputs: held(inputs, motion.time(), self.inputs),
             phases: &motion.phases,
         };
-        self.settle(&mut cells, Asking::Jump(before), standing);
+        self.settle(&mut cells, DecisionCause::Jump(before), standing);
         motion.regime = self.regime(&cells, motion.time())?;
         Ok(())
     }
@@ -364,7 +364,7 @@ impl Propagator {
     ) -> Result<(), ExactError> {
         let before = motion.regime;
         let values = held(inputs, motion.time(), self.inputs);
-        let standing = Standing {
+        let standing = StateAt {
             state: &motion.state,
             inputs: values,
             phases: &motion.phases,
@@ -455,7 +455,9 @@ fn go_on<S: Simd>(
         motion.at_once = 0;
     }
     let jump = match motion.jumped.take() {
-        Some(jumped) => jumped_over(simd, flow, regime, |family| jumped.may_be(family, cells)),
+        Some(jumped) => {
+            find_jumped_function(simd, flow, regime, |family| jumped.may_be(family, cells))
+        }
         None => None,
     };
     let found = match jump {
@@ -464,7 +466,7 @@ fn go_on<S: Simd>(
     };
     motion.departing.retain(|family| flow.is_departing(*family));
     if found == Found::Nothing {
-        flow.go_to(simd, regime, length);
+        flow.advance_to(simd, regime, length);
     }
     flow.state(simd, regime, &mut motion.state);
     (found, jump.is_some())
@@ -472,6 +474,6 @@ fn go_on<S: Simd>(
 
 /// The inputs in force from a time on, as many as the model has.
 fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
-    let all = inputs.held_at(t);
+    let all = inputs.last_sample(t);
     &all[..count.min(all.len())]
 }

@@ -6,11 +6,11 @@
 use eomgen_codegen::program::affine::AffineSystem;
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::decomposition::{Decomposition, Failure, Part};
+use super::decomposition::{Decomposition, DecompositionError, Part};
 use super::event_function::{EventFunction, Limits, Linear};
 use super::integrals::Integrals;
 use super::modes::{Forcing, Modes, project};
-use super::simd_vectors::Packed;
+use super::simd_vectors::PackedMatrix;
 use super::step_table::StepTable;
 
 /// A forcing frequency closer to an eigenvalue than this part of it is resonant: the forced
@@ -55,9 +55,9 @@ pub(super) struct Regime {
     pub clusters: Vec<Cluster>,
     /// Coordinates from a state, a unit constant, the inputs, and sine and cosine of each
     /// phase; those of a free motion from a state alone.
-    pub coordinates: Packed,
+    pub coordinates: PackedMatrix,
     /// A state from coordinates, without what is constant.
-    pub states: Packed,
+    pub states: PackedMatrix,
     /// What is evaluation.
     pub event_functions: Vec<EventFunction>,
     pub step_table: StepTable,
@@ -70,15 +70,15 @@ impl Regime {
         system: AffineSystem,
         events: Vec<(Linear, Limits)>,
         slow: f64,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, DecompositionError> {
         let states = system.states;
         let matrix = DMatrix::from_row_slice(states, states, &system.rates.state);
         let frequencies: Vec<f64> = system.phases.iter().map(|phase| phase[0]).collect();
         let highest = frequencies.iter().map(|f| f.abs()).fold(0.0, f64::max);
-        let decomposition = Decomposition::of(&matrix, system.degrees, highest, slow)?;
+        let decomposition = Decomposition::decompose(&matrix, system.degrees, highest, slow)?;
         let forcing = Forcing::of(&system);
         if !forcing.is_finite() || frequencies.iter().any(|f| !f.is_finite()) {
-            return Err(Failure::NotFinite);
+            return Err(DecompositionError::NotFinite);
         }
         let (simple, clustered) = divide(decomposition.parts, &frequencies);
         let mut modes = Modes::new(&simple, &forcing, &frequencies, states);
@@ -194,7 +194,7 @@ impl Layout {
 
     /// What a state, a unit constant, the inputs, and sines and cosines make up: a mode's
     /// amplitude is what is left of the state without what is held and forced.
-    fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> Packed {
+    fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> PackedMatrix {
         let column = |matrix: &DMatrix<f64>, state: usize| matrix.column(state).clone_owned();
         let mut columns: Vec<Vec<f64>> = (0..modes.rows.ncols())
             .map(|state| {
@@ -218,17 +218,17 @@ impl Layout {
                 columns.push(column);
             }
         }
-        Packed::of(4 * self.vectors, columns.len(), |row, column| {
+        PackedMatrix::of(4 * self.vectors, columns.len(), |row, column| {
             columns[column][row]
         })
     }
 
     /// What coordinates make up of a state; those that are `still` stay where they are, without
     /// rounding.
-    fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> Packed {
+    fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> PackedMatrix {
         let states = modes.columns.nrows();
         let width = 2 * self.modes + integrals.size;
-        Packed::of(states, width, |state, column| {
+        PackedMatrix::of(states, width, |state, column| {
             let (kind, place) = (column / self.modes.max(1), column % self.modes.max(1));
             match kind {
                 _ if still[state] => 0.0,

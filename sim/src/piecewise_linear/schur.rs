@@ -3,7 +3,7 @@
 use eomgen_analysis::qr_iteration::schur_form;
 use nalgebra::{Complex, DMatrix};
 
-use crate::balancing::{LARGEST, balance};
+use crate::balancing::{MAX_ENTRY_PER_S, balance};
 
 /// A = D Q T Q^H D^-1 with T upper triangular, Q unitary and D diagonal.
 pub(super) struct SchurForm {
@@ -18,7 +18,7 @@ pub(super) struct SchurForm {
 impl SchurForm {
     /// The Schur form of a square matrix, or nothing if the iteration does not converge.
     /// `scale`: a first guess of D, powers of two.
-    pub fn of(matrix: &DMatrix<f64>, scale: Vec<f64>) -> Option<Self> {
+    pub fn decompose(matrix: &DMatrix<f64>, scale: Vec<f64>) -> Option<Self> {
         let size = matrix.nrows();
         if size == 0 {
             return Some(Self {
@@ -27,7 +27,7 @@ impl SchurForm {
                 scale: Vec::new(),
             });
         }
-        if !matrix.iter().all(|entry| entry.abs() < LARGEST) {
+        if !matrix.iter().all(|entry| entry.abs() < MAX_ENTRY_PER_S) {
             return None;
         }
         let scale = balance(matrix, scale);
@@ -119,7 +119,7 @@ mod tests {
         for (row, column, entry) in entries {
             matrix[(row, column)] = entry;
         }
-        let form = SchurForm::of(&matrix, vec![1.0; 5]).expect("another basis");
+        let form = SchurForm::decompose(&matrix, vec![1.0; 5]).expect("another basis");
         assert!(residual(&matrix, &form) < 1e-14);
         let mut turns: Vec<f64> = form.eigenvalues().iter().map(|e| e.im).collect();
         turns.sort_by(f64::total_cmp);
@@ -135,7 +135,7 @@ mod tests {
         let matrix = DMatrix::from_fn(size, size, |i, j| {
             ((7 * i + 3 * j * j + 1) % 11) as f64 - 5.0 + if i == j { 0.5 * i as f64 } else { 0.0 }
         });
-        let mut form = SchurForm::of(&matrix, vec![1.0; size]).expect("converges");
+        let mut form = SchurForm::decompose(&matrix, vec![1.0; size]).expect("converges");
         // A hundred roundings of a matrix of size 9.
         assert!(residual(&matrix, &form) < 1e-14);
         let before = form.eigenvalues();

@@ -10,7 +10,7 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::bounds::{Verdict, over};
+use super::bounds::{Verdict, classify_step};
 use super::event_evaluation::Local;
 use super::event_function::Limits;
 use super::flow::Flow;
@@ -194,11 +194,11 @@ fn step<S: Simd>(
             event_function,
             step,
             #[inline(always)]
-            |local| over(local, [limits.low, limits.high], length),
+            |local| classify_step(local, [limits.low, limits.high], length),
         );
         match verdict {
-            Verdict::Safe => flow.note_safe(event_function, until),
-            Verdict::Unknown => return Outcome::Halve,
+            Verdict::WithinLimits => flow.note_safe(event_function, until),
+            Verdict::Undecided => return Outcome::Halve,
             Verdict::Crossing { upper } => {
                 let guess = flow.local(
                     regime,
@@ -292,7 +292,7 @@ fn reached(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found>
 /// A limit that a jump led over: of an input, or of the function itself when another
 /// one switched; of those families that may have jumped.
 #[inline(always)]
-pub(super) fn jumped_over<S: Simd>(
+pub(super) fn find_jumped_function<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,

@@ -115,13 +115,13 @@ pub(super) fn numbers_mut(vectors: &mut [SimdVector]) -> &mut [f64] {
 
 /// A real matrix whose rows stand in SIMD vectors, for products with vectors.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Packed {
+pub(super) struct PackedMatrix {
     columns: usize,
     /// SIMD vector of rows by SIMD vector of rows, in each the columns one after the other.
     entries: Vec<SimdVector>,
 }
 
-impl Packed {
+impl PackedMatrix {
     /// A matrix from its entries.
     pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let entries = (0..simd_vectors(rows)).flat_map(|simd_vector| {
@@ -183,7 +183,7 @@ pub(super) fn expm1(z: Complex<f64>) -> Complex<f64> {
 }
 
 /// The largest argument of [`kernels::advance_little`].
-pub(super) const LITTLE: f64 = 1.0;
+pub(super) const MAX_SMALL_ARGUMENT: f64 = 1.0;
 
 /// How many terms it needs for arguments up to this: the first term left out is below 5e-19
 /// of the sum.
@@ -210,7 +210,15 @@ mod tests {
             Complex::new(-9.0, 0.0),
         ];
         let pairs = SplitComplex::of(&rates);
-        for argument in [1e-5, 1e-4, -1e-3, 1.0 / 64.0, -0.1, 0.25, -LITTLE] {
+        for argument in [
+            1e-5,
+            1e-4,
+            -1e-3,
+            1.0 / 64.0,
+            -0.1,
+            0.25,
+            -MAX_SMALL_ARGUMENT,
+        ] {
             let time = argument / 63.0;
             // A unit amplitude moves by its expm1.
             let start = [SimdVector::new([1.0; 4]), SimdVector::ZERO];
@@ -242,7 +250,7 @@ mod tests {
     fn packed_matrices_multiply() {
         for (rows, columns) in [(1, 3), (4, 2), (7, 5), (9, 1), (12, 4), (3, 0)] {
             let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
-            let packed = Packed::of(rows, columns, entry);
+            let packed = PackedMatrix::of(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
             let mut out = vec![SimdVector::new([1.0; 4]); simd_vectors(rows)];
             dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));

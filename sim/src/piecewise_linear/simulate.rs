@@ -75,9 +75,9 @@ impl Propagator {
         trajectory.times = recorder.samples.times;
         trajectory.states = recorder.samples.states;
         trajectory.switches = recorder.switches;
-        trajectory.last = motion.state().to_vec();
-        trajectory.work.steps = motion.effort.steps;
-        trajectory.work.trials = motion.effort.newton;
+        trajectory.final_state = motion.state().to_vec();
+        trajectory.statistics.steps = motion.effort.steps;
+        trajectory.statistics.trial_steps = motion.effort.newton;
         ended
     }
 }
@@ -104,8 +104,8 @@ impl Recorder<'_, '_> {
         let end = state_after(segment.tau);
         let mut step = ObservedStep {
             start: (begin, segment.state),
-            end: (segment.start.plus(segment.tau).time(), &end),
-            inside: &mut |t, _| Some(state_after((t - begin).clamp(0.0, segment.tau))),
+            end: (segment.start.advanced_by(segment.tau).time(), &end),
+            state_inside: &mut |t, _| Some(state_after((t - begin).clamp(0.0, segment.tau))),
         };
         observer(&mut step, segment.is_held);
     }
@@ -117,7 +117,7 @@ impl Follow for Recorder<'_, '_> {
         while let Some(after) = self.samples.next_in(segment) {
             self.samples.take_in(segment, after, flow);
         }
-        (self.progress)(segment.start.plus(segment.tau).time());
+        (self.progress)(segment.start.advanced_by(segment.tau).time());
     }
 
     fn switched(&mut self, change: &Change<'_>) {

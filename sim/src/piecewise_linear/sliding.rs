@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::event_function::Linear;
 use super::parallel_guards::{Cell, ParallelGuards};
-use crate::sliding_modes::DEPENDENT;
+use crate::sliding_modes::MIN_SINGULAR_VALUE_FRACTION;
 
 /// What is left of a jump that is constant on its surface, relative.
 const ROUNDING: f64 = 1e-11;
@@ -169,7 +169,7 @@ fn inverted(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
         return None;
     }
     let values = projected.singular_values();
-    let smallest = DEPENDENT * values.max();
+    let smallest = MIN_SINGULAR_VALUE_FRACTION * values.max();
     if values.min() > smallest {
         return Some((projected.clone().try_inverse()?, false));
     }

@@ -9,7 +9,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Propagator {
     /// Which states any rate or any switching function feels.
-    pub(super) fn felt_states(&mut self) -> Vec<bool> {
+    pub(super) fn influential_states(&mut self) -> Vec<bool> {
         let guards = self.evaluator.guard_count();
         let mut felt = vec![false; self.states];
         // What needs several sides at once is felt between them.

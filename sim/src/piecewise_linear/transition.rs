@@ -1,7 +1,7 @@
 //! Through a surface: into the regime beyond it, or onto it where the rates lead back.
 
 use super::coincidence::{Crossing, coincident_rank};
-use super::dependents::{Asking, Standing};
+use super::dependents::{DecisionCause, StateAt};
 use super::error::ExactError;
 use super::event_function::Linear;
 use super::parallel_guards::Cell;
@@ -57,7 +57,7 @@ impl Propagator {
     pub(super) fn transition(
         &mut self,
         limit: &Limit,
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Result<Transition, ExactError> {
         if self.has_dependents() {
             let after = self.adjacent_with_dependents(limit, standing)?;
@@ -79,13 +79,13 @@ impl Propagator {
             moves_others: adjacent.moves_others,
         };
         if adjacent.meets_others
-            && let Some(cells) = self.decided_together(limit, standing)
+            && let Some(cells) = self.decide_together(limit, standing)
         {
             transition.after = self.regime(&cells, limit.t)?;
             transition.saltation = None;
             transition.moves_others = true;
         } else if adjacent.jumps && !limit.by_jump {
-            let Standing {
+            let StateAt {
                 state,
                 inputs,
                 phases,
@@ -110,7 +110,7 @@ impl Propagator {
     fn adjacent_with_dependents(
         &mut self,
         limit: &Limit,
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Result<usize, ExactError> {
         let family = limit.family;
         let cells = self.regimes[limit.before].cells.clone();
@@ -125,16 +125,16 @@ impl Propagator {
         let mut after = cells.clone();
         after[family] = cells[family].adjacent(limit.upper);
         if limit.by_jump {
-            self.settle(&mut after, Asking::Jump(outline), standing);
+            self.settle(&mut after, DecisionCause::Jump(outline), standing);
             return self.regime(&after, limit.t);
         }
-        self.settle(&mut after, Asking::Crossing(&crossing), standing);
+        self.settle(&mut after, DecisionCause::Crossing(&crossing), standing);
         if matches!(cells[family], Cell::Between(_))
             && self.leads_back(limit, &crossing, &after, standing)
         {
             let held = self.held(limit, &crossing, &cells, standing);
             let (t, guard) = (limit.t, self.families[family].ranks[rank][0]);
-            let held = held.ok_or(ExactError::Held { t, guard })?;
+            let held = held.ok_or(ExactError::Sticking { t, guard })?;
             return self.regime(&held, limit.t);
         }
         self.regime(&after, limit.t)
@@ -147,7 +147,7 @@ impl Propagator {
         limit: &Limit,
         crossing: &Crossing,
         after: &[Cell],
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> bool {
         let after = self.outline(after);
         let (here, _) = self.rate_in(crossing.outline, &crossing.function, standing);
@@ -162,7 +162,7 @@ impl Propagator {
         limit: &Limit,
         crossing: &Crossing,
         cells: &[Cell],
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
         let others = (0..cells.len())
             .rev()
@@ -195,7 +195,7 @@ impl Propagator {
         &self,
         outline: usize,
         function: &Linear,
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> (f64, f64) {
         let (rate, rounding) = self.outlines[outline].rate(function, standing);
         (

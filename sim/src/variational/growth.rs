@@ -1,19 +1,19 @@
 //! Growth of a tangent vector over intervals.
 
-use super::beside::Beside;
+use super::tangent_system::TangentSystem;
 use crate::ode::{Settings, SolveError, System, Trajectory, simulate};
 
-const LOOKS: usize = 64;
+const SIZE_SAMPLES: usize = 64;
 
 /// Largest shrinkage exponent of a vector over one piece of an interval. The solver's error is
 /// relative to the largest length, so it remains a small fraction of the last one.
-const MOST_SHRINKAGE: f64 = 4.0;
+const MAX_SHRINKAGE_EXPONENT: f64 = 4.0;
 
-const MOST_PIECES: u32 = 4096;
+const MAX_PIECES: u32 = 4096;
 
 /// Times of the measurements of growth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretches {
+pub struct MeasurementTimes {
     /// Time before the first measurement, s. The vector aligns in its second half.
     pub transient: f64,
     /// Time between two measurements, s.
@@ -24,9 +24,9 @@ pub struct Stretches {
 
 /// Measured growth of a tangent vector.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Growths {
+pub struct GrowthMeasurements {
     /// Growth exponents ln(|v_after| / |v_before|) of the intervals.
-    pub growths: Vec<f64>,
+    pub growth_exponents: Vec<f64>,
     /// Number of events over the whole time.
     pub switches: u64,
 }
@@ -38,7 +38,7 @@ pub enum GrowthError {
     Motion(SolveError),
     /// At this time, s, the motion crosses several switching surfaces at once or touches one, so
     /// neighbouring motions do not remain close.
-    Together(f64),
+    SimultaneousCrossing(f64),
     /// The length of the vector underflowed or overflowed.
     NoLength,
 }
@@ -59,14 +59,14 @@ impl From<SolveError> for GrowthError {
 /// # Errors
 /// A motion that cannot be simulated, neighbouring motions that do not remain close, invalid
 /// times, or no state with an influence.
-pub fn growths<S: System + ?Sized>(
+pub fn measure_growth<S: System + ?Sized>(
     system: &S,
     initial: &[f64],
     felt: &[bool],
-    stretches: &Stretches,
+    stretches: &MeasurementTimes,
     settings: &Settings,
-) -> Result<Growths, GrowthError> {
-    let Stretches {
+) -> Result<GrowthMeasurements, GrowthError> {
+    let MeasurementTimes {
         transient,
         interval,
         intervals,
@@ -82,21 +82,22 @@ pub fn growths<S: System + ?Sized>(
         let problem = problem.to_owned();
         return Err(SolveError::Request { problem }.into());
     }
-    let mut carried = Carried::new(system, initial, felt, settings);
-    carried.settle(0.5 * transient)?;
+    let mut carried = MotionWithTangent::new(system, initial, felt, settings);
+    carried.simulate_motion(0.5 * transient)?;
     let turns = (0.5 * transient / interval).ceil();
     for turn in 1..=turns as usize {
-        carried.follow(0.5 * transient * (1.0 + turn as f64 / turns))?;
+        carried.simulate_interval(0.5 * transient * (1.0 + turn as f64 / turns))?;
     }
-    let growths = (1..=intervals).map(|index| carried.follow(transient + index as f64 * interval));
-    Ok(Growths {
-        growths: growths.collect::<Result<_, _>>()?,
+    let growths =
+        (1..=intervals).map(|index| carried.simulate_interval(transient + index as f64 * interval));
+    Ok(GrowthMeasurements {
+        growth_exponents: growths.collect::<Result<_, _>>()?,
         switches: carried.switches,
     })
 }
 
 /// A motion with a tangent vector of length 1.
-struct Carried<'a, S: System + ?Sized> {
+struct MotionWithTangent<'a, S: System + ?Sized> {
     system: &'a S,
     felt: &'a [bool],
     settings: Settings,
@@ -108,7 +109,7 @@ struct Carried<'a, S: System + ?Sized> {
     switches: u64,
 }
 
-impl<'a, S: System + ?Sized> Carried<'a, S> {
+impl<'a, S: System + ?Sized> MotionWithTangent<'a, S> {
     /// Starts with the first unit vector of the states that count, turned slightly towards the
     /// others.
     fn new(system: &'a S, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
@@ -131,64 +132,67 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
             pieces: 1,
             switches: 0,
         };
-        let length = carried.length();
+        let length = carried.tangent_length();
         carried.v.iter_mut().for_each(|v| *v /= length);
         carried
     }
 
-    fn settle(&mut self, end: f64) -> Result<(), GrowthError> {
+    fn simulate_motion(&mut self, end: f64) -> Result<(), GrowthError> {
         if end <= self.t {
             return Ok(());
         }
-        let samples: Vec<f64> = (0..=LOOKS)
-            .map(|look| end * look as f64 / LOOKS as f64)
+        let samples: Vec<f64> = (0..=SIZE_SAMPLES)
+            .map(|look| end * look as f64 / SIZE_SAMPLES as f64)
             .collect();
         let span = (self.t, end);
         let quiet = &mut |_: f64| {};
         let motion = simulate(self.system, &self.y, span, &samples, &self.settings, quiet)?;
-        motion.states.iter().for_each(|state| self.note(state));
-        self.y = self.reckon(motion);
+        motion
+            .states
+            .iter()
+            .for_each(|state| self.raise_sizes(state));
+        self.y = self.count_work(motion);
         self.t = end;
         Ok(())
     }
 
     /// Simulates motion and vector until `end`, s, and returns the growth exponent of the vector.
-    fn follow(&mut self, end: f64) -> Result<f64, GrowthError> {
+    fn simulate_interval(&mut self, end: f64) -> Result<f64, GrowthError> {
         let (begin, mut growth, mut least) = (self.t, 0.0, 0.0_f64);
         for piece in 1..=self.pieces {
             let until = match piece == self.pieces {
                 true => end,
                 false => begin + (end - begin) * f64::from(piece) / f64::from(self.pieces),
             };
-            let grown = self.piece(until)?;
+            let grown = self.simulate_piece(until)?;
             least = least.min(grown);
             growth += grown;
         }
-        let finer = (-least / MOST_SHRINKAGE).ceil().max(1.0) as u32;
-        self.pieces = self.pieces.saturating_mul(finer).min(MOST_PIECES);
+        let finer = (-least / MAX_SHRINKAGE_EXPONENT).ceil().max(1.0) as u32;
+        self.pieces = self.pieces.saturating_mul(finer).min(MAX_PIECES);
         Ok(growth)
     }
 
-    fn piece(&mut self, end: f64) -> Result<f64, GrowthError> {
+    fn simulate_piece(&mut self, end: f64) -> Result<f64, GrowthError> {
         if end <= self.t {
             return Ok(0.0);
         }
         let states = self.y.len();
-        let beside = Beside::new(self.system, self.sizes.clone());
+        let beside = TangentSystem::new(self.system, self.sizes.clone());
         let (start, span) = ([&*self.y, &*self.v].concat(), (self.t, end));
         let motion = simulate(&beside, &start, span, &[], &self.settings, &mut |_| {})?;
-        if let Some(t) = beside.together() {
-            return Err(GrowthError::Together(t));
+        if let Some(t) = beside.simultaneous_crossing_time() {
+            return Err(GrowthError::SimultaneousCrossing(t));
         }
-        let mut last = self.reckon(motion);
+        let mut last = self.count_work(motion);
         self.v = last.split_off(states);
-        self.note(&last);
+        self.raise_sizes(&last);
         self.y = last;
         self.t = end;
         for (v, felt) in self.v.iter_mut().zip(self.felt) {
             *v = if *felt { *v } else { 0.0 };
         }
-        let length = self.length();
+        let length = self.tangent_length();
         if !(length > 0.0 && length.is_finite()) {
             return Err(GrowthError::NoLength);
         }
@@ -196,23 +200,23 @@ impl<'a, S: System + ?Sized> Carried<'a, S> {
         Ok(length.ln())
     }
 
-    fn length(&self) -> f64 {
+    fn tangent_length(&self) -> f64 {
         self.v.iter().map(|v| v * v).sum::<f64>().sqrt()
     }
 
-    fn note(&mut self, state: &[f64]) {
+    fn raise_sizes(&mut self, state: &[f64]) {
         for (size, y) in self.sizes.iter_mut().zip(state) {
             *size = size.max(y.abs());
         }
     }
 
     /// Counts steps and events of a motion and returns its last state.
-    fn reckon(&mut self, motion: Trajectory) -> Vec<f64> {
-        let work = motion.work;
-        let steps = work.steps + work.rejected + work.trials;
+    fn count_work(&mut self, motion: Trajectory) -> Vec<f64> {
+        let work = motion.statistics;
+        let steps = work.steps + work.rejected_steps + work.trial_steps;
         self.settings.max_steps = self.settings.max_steps.saturating_sub(steps);
         self.switches += motion.switches.len() as u64;
-        motion.last
+        motion.final_state
     }
 }
 
@@ -228,7 +232,7 @@ mod tests {
     }
 
     impl System for Struck {
-        fn states(&self) -> usize {
+        fn state_count(&self) -> usize {
             2
         }
 
@@ -265,15 +269,15 @@ mod tests {
             force: 0.0,
         };
         let period = std::f64::consts::TAU / (1.0_f64 - 0.15 * 0.15).sqrt();
-        let stretches = Stretches {
+        let stretches = MeasurementTimes {
             transient: 2.0,
             interval: period,
             intervals: 5,
         };
         let settings = Settings::default();
-        let found = growths(&system, &[0.1, 0.0], &FELT, &stretches, &settings)?;
+        let found = measure_growth(&system, &[0.1, 0.0], &FELT, &stretches, &settings)?;
         // A vector returns to its direction after half a period.
-        for growth in found.growths {
+        for growth in found.growth_exponents {
             assert!((growth / period + 0.15).abs() < 1e-8, "{growth}");
         }
         Ok(())
@@ -287,14 +291,14 @@ mod tests {
                 damper,
                 force,
             };
-            let stretches = Stretches {
+            let stretches = MeasurementTimes {
                 transient: 0.0,
                 interval: 10.0,
                 intervals: 1,
             };
             let settings = Settings::with_tolerance(1e-12);
             let start = [0.1, 0.4];
-            let found = growths(&system, &start, &FELT, &stretches, &settings)?;
+            let found = measure_growth(&system, &start, &FELT, &stretches, &settings)?;
             assert!(found.switches > 1, "{damper}");
             let (small, norm) = (1e-6, 1.0_f64.hypot(0.05));
             let end = |side: f64| {
@@ -304,10 +308,10 @@ mod tests {
                 ];
                 simulate(&system, &moved, (0.0, 10.0), &[], &settings, &mut |_| {})
             };
-            let (above, below) = (end(1.0)?.last, end(-1.0)?.last);
+            let (above, below) = (end(1.0)?.final_state, end(-1.0)?.final_state);
             let apart = f64::hypot(above[0] - below[0], above[1] - below[1]);
             let growth = (apart / (2.0 * small)).ln();
-            let found = found.growths[0];
+            let found = found.growth_exponents[0];
             assert!(
                 (found - growth).abs() < 1e-5,
                 "{damper} {force}: {found} for {growth}"

@@ -6,9 +6,9 @@
 //! the growth of its length (Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9-30).
 //! [`piecewise_linear`](crate::piecewise_linear) has an exact version for piecewise-linear models.
 
-mod beside;
 mod growth;
 mod saltation;
+mod tangent_system;
 
-pub use beside::Beside;
-pub use growth::{GrowthError, Growths, Stretches, growths};
+pub use growth::{GrowthError, GrowthMeasurements, MeasurementTimes, measure_growth};
+pub use tangent_system::TangentSystem;

@@ -4,10 +4,10 @@ use crate::ode::System;
 
 /// Width of finite differences relative to the size of a state: wide compared with the rounding of
 /// a switching function, narrow compared with its curvature.
-const STEP: f64 = 1e-3;
+const DIFFERENCE_FRACTION: f64 = 1e-3;
 
 /// Largest relative difference of times that belong to the same surface, written twice.
-const SAME: f64 = 1e-6;
+const MAX_TIME_DIFFERENCE_FRACTION: f64 = 1e-6;
 
 pub(super) struct Surfaces<'a, S: System + ?Sized> {
     pub system: &'a S,
@@ -16,7 +16,7 @@ pub(super) struct Surfaces<'a, S: System + ?Sized> {
 }
 
 impl<S: System + ?Sized> Surfaces<'_, S> {
-    fn at(&self, t: f64, y: &[f64]) -> Vec<f64> {
+    fn evaluate(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
         self.system.guards(t, y, &mut guards);
         guards
@@ -31,17 +31,20 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
                 .collect()
         };
         let (late, soon) = (t + time, t - time);
-        let mut rows = vec![quotient((self.at(late, y), self.at(soon, y)), late - soon)];
+        let mut rows = vec![quotient(
+            (self.evaluate(late, y), self.evaluate(soon, y)),
+            late - soon,
+        )];
         let mut moved = y.to_vec();
         for state in 0..y.len() {
             let size = self.sizes[state].max(y[state].abs());
             // A state that has been 0 up to now has the size of its unit.
-            let step = STEP * if size > 0.0 { size } else { 1.0 };
+            let step = DIFFERENCE_FRACTION * if size > 0.0 { size } else { 1.0 };
             let (high, low) = (y[state] + step, y[state] - step);
             moved[state] = high;
-            let above = self.at(t, &moved);
+            let above = self.evaluate(t, &moved);
             moved[state] = low;
-            let below = self.at(t, &moved);
+            let below = self.evaluate(t, &moved);
             moved[state] = y[state];
             rows.push(quotient((above, below), high - low));
         }
@@ -52,14 +55,17 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
 /// Returns the delay (s) with which the neighbour at the distance `v` reaches the surface between
 /// two points; `from` are the rates on the near side. `None` if there are several surfaces with
 /// different delays, or if the motion only touches the surface.
-pub(super) fn delay<S: System + ?Sized>(
+pub(super) fn find_delay<S: System + ?Sized>(
     surfaces: &Surfaces<'_, S>,
     (before, near): (f64, &[f64]),
     (t, beyond): (f64, &[f64]),
     from: &[f64],
     v: &[f64],
 ) -> Option<f64> {
-    let (near, far) = (surfaces.at(before, near), surfaces.at(t, beyond));
+    let (near, far) = (
+        surfaces.evaluate(before, near),
+        surfaces.evaluate(t, beyond),
+    );
     // The shortest time in which a state changes by its size, to resolve a dependence of surfaces
     // on time.
     let times = from.iter().zip(surfaces.sizes);
@@ -67,7 +73,7 @@ pub(super) fn delay<S: System + ?Sized>(
     let time = times
         .map(|(rate, size)| size / rate.abs())
         .fold(1.0, f64::min);
-    let derivatives = surfaces.derivatives(t, beyond, STEP * time);
+    let derivatives = surfaces.derivatives(t, beyond, DIFFERENCE_FRACTION * time);
     let crossed = (0..near.len()).filter(|guard| near[*guard] * far[*guard] < 0.0);
     let mut delays = crossed.map(|guard| {
         let by = |row: usize| derivatives[row][guard];
@@ -78,6 +84,7 @@ pub(super) fn delay<S: System + ?Sized>(
         -along(v) / (by(0) + along(from))
     });
     let first = delays.next()?;
-    let agree = delays.all(|delay| (delay - first).abs() <= SAME * first.abs());
+    let agree =
+        delays.all(|delay| (delay - first).abs() <= MAX_TIME_DIFFERENCE_FRACTION * first.abs());
     (agree && first.is_finite()).then_some(first)
 }

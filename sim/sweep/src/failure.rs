@@ -34,7 +34,7 @@ impl From<SolveError> for Failure {
             SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
                 Self::NotFinite
             }
-            SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => Self::Switching,
+            SolveError::Sticking { .. } | SolveError::TooManySwitches { .. } => Self::Switching,
             _ => Self::Limit,
         }
     }
@@ -44,7 +44,7 @@ impl From<ExactError> for Failure {
     fn from(error: ExactError) -> Self {
         match error {
             ExactError::Stopped(error) => error.into(),
-            ExactError::Held { .. } => Self::Switching,
+            ExactError::Sticking { .. } => Self::Switching,
             ExactError::NotConverged => Self::Limit,
             ExactError::NotLinear { .. } | ExactError::Constrained | ExactError::Impacts => {
                 Self::Undefined
@@ -61,7 +61,7 @@ impl From<GrowthError> for Failure {
     fn from(error: GrowthError) -> Self {
         match error {
             GrowthError::Motion(error) => error.into(),
-            GrowthError::Together(_) => Self::Switching,
+            GrowthError::SimultaneousCrossing(_) => Self::Switching,
             GrowthError::NoLength => Self::Undefined,
         }
     }

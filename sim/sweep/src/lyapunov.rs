@@ -11,8 +11,8 @@ use crate::window::{Times, Window};
 use eomgen_analysis::exponent::{MIN_GROWTHS, mean_exponent};
 use eomgen_compiled_model::{CompiledModel, DrivenModel, Instance};
 use eomgen_sim::ode::Settings;
-use eomgen_sim::piecewise_linear::Lyapunov as Request;
-use eomgen_sim::variational::{Growths, Stretches, growths};
+use eomgen_sim::piecewise_linear::LyapunovRequest as Request;
+use eomgen_sim::variational::{GrowthMeasurements, MeasurementTimes, measure_growth};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -107,7 +107,10 @@ impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let stretches = self.times.stretches(&instance)?;
-        let Growths { growths, switches } = match self.model.piecewise_linear() {
+        let GrowthMeasurements {
+            growth_exponents: growths,
+            switches,
+        } = match self.model.piecewise_linear() {
             Ok(_) => exact_growth(&instance, &stretches)?,
             Err(_) => variational_growth(&instance, &stretches)?,
         };
@@ -123,18 +126,21 @@ impl Worker for &Lyapunov<'_> {
     }
 }
 
-fn exact_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+fn exact_growth(
+    instance: &Instance<'_>,
+    stretches: &MeasurementTimes,
+) -> Result<GrowthMeasurements, Failure> {
     let request = Request {
         transient: stretches.transient,
         interval: stretches.interval,
-        intervals: stretches.intervals,
-        exponents: 1,
+        interval_count: stretches.intervals,
+        exponent_count: 1,
     };
     let (mut propagator, inputs) = (instance.propagator()?, instance.default_inputs());
-    let growth = propagator.lyapunov(instance.initial_state(), 0.0, &inputs, &request)?;
-    Ok(Growths {
-        growths: growth
-            .growths
+    let growth = propagator.measure_lyapunov(instance.initial_state(), 0.0, &inputs, &request)?;
+    Ok(GrowthMeasurements {
+        growth_exponents: growth
+            .growth_exponents
             .into_iter()
             .next()
             .ok_or(Failure::Undefined)?,
@@ -142,7 +148,10 @@ fn exact_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growth
     })
 }
 
-fn variational_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+fn variational_growth(
+    instance: &Instance<'_>,
+    stretches: &MeasurementTimes,
+) -> Result<GrowthMeasurements, Failure> {
     let (evaluator, inputs) = (
         RefCell::new(instance.evaluator()?),
         instance.default_inputs(),
@@ -154,7 +163,7 @@ fn variational_growth(instance: &Instance<'_>, stretches: &Stretches) -> Result<
         instance.influential_states()?,
         Settings::with_tolerance(TOLERANCE),
     );
-    Ok(growths(
+    Ok(measure_growth(
         &system,
         instance.initial_state(),
         &felt,

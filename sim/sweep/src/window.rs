@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::Instance;
 use eomgen_model_spec::model::Model;
-use eomgen_sim::variational::Stretches;
+use eomgen_sim::variational::MeasurementTimes;
 
 use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
@@ -89,16 +89,16 @@ impl Times {
     }
 
     /// Returns the intervals of growth: once per period, or over the second half of the time.
-    pub fn stretches(&self, instance: &Instance<'_>) -> Result<Stretches, Failure> {
+    pub fn stretches(&self, instance: &Instance<'_>) -> Result<MeasurementTimes, Failure> {
         Ok(match self {
-            Self::Until(end) => Stretches {
+            Self::Until(end) => MeasurementTimes {
                 transient: 0.5 * end,
                 interval: 0.5 * end / GROWTH_INTERVALS as f64,
                 intervals: GROWTH_INTERVALS,
             },
             Self::Periods(frequency, span) => {
                 let period = frequency.period(instance)?;
-                Stretches {
+                MeasurementTimes {
                     transient: span.transient as f64 * period,
                     interval: period,
                     intervals: span.periods,

@@ -12,7 +12,7 @@ struct Oscillator {
 }
 
 impl System for Oscillator {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         2
     }
 
@@ -64,7 +64,7 @@ fn contact_shorter_than_step_is_detected() {
             let motion = swing(method, tolerance, wall, stiffness, until);
             let case = format!("{method:?} at {tolerance:e}, {depth:e} beyond the wall");
             assert_eq!(motion.switches.len(), 2 * SWINGS as usize, "{case}");
-            let off = motion.last[0].abs();
+            let off = motion.final_state[0].abs();
             assert!(tolerance > 1e-12 || off < 1e-6, "{case}: {off:e}");
         }
     }
@@ -83,10 +83,10 @@ fn grazing_contact_conserves_energy() {
         for stiffness in [1e4_f64, 1e5, 1e6] {
             for wall in walls.clone() {
                 let motion = swing(method, tolerance, wall, stiffness, 40.0);
-                let (x, v) = (motion.last[0], motion.last[1]);
+                let (x, v) = (motion.final_state[0], motion.final_state[1]);
                 let depth = (x - wall).max(0.0);
                 let energy = 0.5 * (v * v + x * x + stiffness * depth * depth);
-                let errors = motion.work.steps as f64
+                let errors = motion.statistics.steps as f64
                     + 2.0 * motion.switches.len() as f64 * stiffness.sqrt();
                 assert!(
                     (energy - 0.5).abs() < errors * tolerance,
@@ -106,10 +106,16 @@ fn swing_short_of_wall_has_no_contact() {
             let motion = swing(method, 1e-9, 1.0 + gap, 1e6, until);
             let case = format!("{method:?}, {gap:e} before the wall");
             assert!(motion.switches.is_empty(), "{case}");
-            assert!((motion.last[0] - free.last[0]).abs() < 1e-7, "{case}");
+            assert!(
+                (motion.final_state[0] - free.final_state[0]).abs() < 1e-7,
+                "{case}"
+            );
         }
         let far = swing(method, 1e-9, 1.01, 1e6, until);
-        assert_eq!(far.work.evaluations, free.work.evaluations, "{method:?}");
+        assert_eq!(
+            far.statistics.evaluations, free.statistics.evaluations,
+            "{method:?}"
+        );
     }
 }
 
@@ -121,7 +127,7 @@ impl FarWall {
 }
 
 impl System for FarWall {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         2
     }
 
@@ -164,7 +170,7 @@ fn wall_is_crossed_if_motion_is_below_rounding_of_position() {
         let entered = 500.0 * before;
         let decayed = (-100.0 * (1e-3 - before)).exp();
         let expected = 5.0 + (entered - 5.0) * decayed;
-        let error = (motion.last[1] - expected).abs();
+        let error = (motion.final_state[1] - expected).abs();
         assert!(error < 1e-6, "{method:?} {distance}: {error}");
     }
 }

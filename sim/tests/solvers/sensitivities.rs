@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::piecewise_linear::{Lyapunov, PiecewiseLinear};
+use eomgen_sim::piecewise_linear::{LyapunovRequest, PiecewiseLinear};
 
 fn model(text_or_name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -20,7 +20,7 @@ fn values(model: &Model, exact: &PiecewiseLinear) -> Vec<f64> {
     let all = model.parameter_values().expect("values");
     let place = |name: &String| model.parameters.iter().position(|p| p.name == *name);
     exact
-        .parameters()
+        .parameter_names()
         .iter()
         .map(|name| all[place(name).expect("known")])
         .collect()
@@ -40,16 +40,16 @@ fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, 
 #[test]
 fn initial_state_derivatives_match_difference_quotients() {
     let model = model("planetary_arm.toml");
-    let exact = PiecewiseLinear::of(&model, &[1]).expect("piecewise linear");
+    let exact = PiecewiseLinear::derive(&model, &[1]).expect("piecewise linear");
     let values = values(&model, &exact);
     let initial = model.initial_state(&[1]).expect("initial state");
     let (none, samples) = (HeldInputs::zero(0), [0.02, 0.06]);
     for state in [0, 3, 4, 6] {
         let mut direction = vec![0.0; initial.len()];
         direction[state] = 1.0;
-        let mut propagator = exact.at(&values).expect("a propagator");
+        let mut propagator = exact.propagator_at(&values).expect("a propagator");
         let found = propagator
-            .neighbours(&initial, (0.0, 0.06), &samples, &none, vec![direction])
+            .simulate_with_derivatives(&initial, (0.0, 0.06), &samples, &none, vec![direction])
             .expect("sensitivities");
         // Steps well above the rounding of a trajectory and well below the effect of an event:
         // positions in m, rates in m/s.
@@ -61,7 +61,7 @@ fn initial_state_derivatives_match_difference_quotients() {
         let shifted = |sign: f64| {
             let mut start = initial.clone();
             start[state] += sign * step;
-            let mut propagator = exact.at(&values).expect("a propagator");
+            let mut propagator = exact.propagator_at(&values).expect("a propagator");
             propagator
                 .simulate(&start, (0.0, 0.06), &samples, &none, &mut |_| {})
                 .expect("a trajectory")
@@ -85,20 +85,20 @@ fn lyapunov_exponents_of_damped_oscillator_equal_its_decay() {
                 [forces]\nextra = { on = \"x\", value = \"F*sin(omega*t) - c*dot(x)\" }\n";
     let source = eomgen_model_spec::source::Source::new("mass.toml", text);
     let model = eomgen_model_spec::check(source).expect("right").model;
-    let exact = PiecewiseLinear::of(&model, &[]).expect("linear");
-    let mut propagator = exact.propagator(&model).expect("a propagator");
-    let request = Lyapunov {
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("linear");
+    let mut propagator = exact.propagator_for_model(&model).expect("a propagator");
+    let request = LyapunovRequest {
         transient: 20.0,
         interval: 2.0,
-        intervals: 400,
-        exponents: 2,
+        interval_count: 400,
+        exponent_count: 2,
     };
     let growth = propagator
-        .lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
+        .measure_lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
         .expect("exponents");
     // Both exponents are -c/(2 m), up to the rotation of a vector within the last interval divided
     // by the whole time.
-    for growths in &growth.growths {
+    for growths in &growth.growth_exponents {
         let mean = growths.iter().sum::<f64>() / (growths.len() as f64 * growth.interval);
         assert!((mean + 0.2).abs() < 5e-3, "{mean}");
     }

@@ -24,12 +24,12 @@ fn error_follows_tolerance_and_work_follows_order() {
     let mut evaluations = Vec::new();
     for tolerance in [1e-5, 1e-9, 1e-13] {
         let trajectory = run(&system, &[1.0], 20.0, tolerance).expect("a trajectory");
-        let error = (trajectory.last[0] - 20.0_f64.sin().exp()).abs();
+        let error = (trajectory.final_state[0] - 20.0_f64.sin().exp()).abs();
         // Each step errs by at most twice the tolerance times e, and y grows by at most e^2.
-        let steps = trajectory.work.steps as f64;
+        let steps = trajectory.statistics.steps as f64;
         let bound = 2.0 * tolerance * steps * 3.0_f64.exp();
         assert!(error < bound, "{error:e} at {tolerance:e}");
-        evaluations.push(trajectory.work.evaluations as f64);
+        evaluations.push(trajectory.statistics.evaluations as f64);
     }
     // Order 8: four more digits need 10^(4/8) = 3.2 times the steps.
     for pair in evaluations.windows(2) {
@@ -65,8 +65,8 @@ fn samples_are_as_accurate_as_steps_and_do_not_change_them() {
         );
     }
     let without = run(&system, &[0.0, 1.0], 10.0, 1e-12).expect("a trajectory");
-    assert_eq!(with.last, without.last);
-    assert_eq!(with.last, with.states[1000]);
+    assert_eq!(with.final_state, without.final_state);
+    assert_eq!(with.final_state, with.states[1000]);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn small_and_large_components_have_equal_relative_accuracy() {
     };
     let last = run(&smooth(4, rates), &[1e-6, 0.0, 1.0, 0.0], 2.0 * PI, 1e-10)
         .expect("a trajectory")
-        .last;
+        .final_state;
     let relative = [last[0] / 1e-6 - 1.0, last[2] - 1.0];
     assert!((relative[0] - relative[1]).abs() < 1e-14, "{relative:?}");
 }
@@ -101,14 +101,14 @@ fn dead_zone_oscillator_keeps_its_period() {
     // A few thousand steps of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-10 * speed;
     assert!(
-        (trajectory.last[1] - speed).abs() < drift,
+        (trajectory.final_state[1] - speed).abs() < drift,
         "{:?}",
-        trajectory.last
+        trajectory.final_state
     );
     assert!(
-        trajectory.last[0].abs() < drift * cycles * period,
+        trajectory.final_state[0].abs() < drift * cycles * period,
         "{:?}",
-        trajectory.last
+        trajectory.final_state
     );
 }
 
@@ -126,9 +126,9 @@ fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
     }
     // Two dozen steps of 1e-11.
     assert!(
-        (trajectory.last[0] - 0.6).abs() < 1e-9,
+        (trajectory.final_state[0] - 0.6).abs() < 1e-9,
         "{:?}",
-        trajectory.last
+        trajectory.final_state
     );
 }
 
@@ -136,7 +136,7 @@ fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
 fn sticking_without_support_is_an_error() {
     // It turns at pi and stops at 2 pi, at which the spring force is below the friction.
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, 1e-9).expect_err("it stops");
-    let SolveError::Caught { t, guard: 0 } = error else {
+    let SolveError::Sticking { t, guard: 0 } = error else {
         panic!("{error:?}")
     };
     assert!((t - 2.0 * PI).abs() < 1e-6, "{t}");
@@ -145,7 +145,7 @@ fn sticking_without_support_is_an_error() {
         is_speed,
     };
     let said = |surface: Surface| {
-        error.named(&Names {
+        error.format_named(&Names {
             surfaces: &[surface],
             ..Names::default()
         })
@@ -172,11 +172,11 @@ fn no_step_crosses_a_breakpoint() {
     let trajectory = run(&staircase, &[0.0], 1.0, 1e-9).expect("a trajectory");
     // Constant rates are integrated exactly up to rounding.
     assert!(
-        (trajectory.last[0] - 4.5).abs() < 1e-14,
+        (trajectory.final_state[0] - 4.5).abs() < 1e-14,
         "{:?}",
-        trajectory.last
+        trajectory.final_state
     );
-    assert_eq!(trajectory.work.rejected, 0);
+    assert_eq!(trajectory.statistics.rejected_steps, 0);
 }
 
 #[test]
@@ -186,16 +186,16 @@ fn stiff_system_is_slow_but_no_error() {
     let trajectory = run(&system, &[1.0], 2.0, 1e-6).expect("a trajectory");
     // A few thousand steps at the limit of stability, about 6/2e4 long.
     assert!(
-        (5_000..20_000).contains(&trajectory.work.steps),
+        (5_000..20_000).contains(&trajectory.statistics.steps),
         "{:?}",
-        trajectory.work
+        trajectory.statistics
     );
     // The lag of cos t is (sin t)/2e4; plus the tolerance.
     let followed = 2.0_f64.cos() + 2.0_f64.sin() / 2e4;
     assert!(
-        (trajectory.last[0] - followed).abs() < 1e-5,
+        (trajectory.final_state[0] - followed).abs() < 1e-5,
         "{:?}",
-        trajectory.last
+        trajectory.final_state
     );
 }
 
@@ -315,7 +315,7 @@ fn rows_before_a_stop_are_kept() {
         assert!(found.times.len() >= 99 && found.times.len() == found.states.len());
         assert_eq!(found.times, samples[..found.times.len()]);
         assert!((found.states[98][0] * 0.02 - 1.0).abs() < 1e-6);
-        assert!(found.last[0] > 1e5 && found.work.steps > 10);
+        assert!(found.final_state[0] > 1e5 && found.statistics.steps > 10);
     }
 }
 
@@ -380,15 +380,15 @@ fn fast_vibration_is_not_stiff() {
 fn stiff_system_with_few_steps_is_not_stopped() {
     let system = smooth(1, |t, y, out| out[0] = -1e6 * (y[0] - t.cos()));
     let found = run(&system, &[1.0], 1.0, 1e-9).expect("an end");
-    assert!(found.work.steps > 65_536 * 2);
-    assert!((found.last[0] - 1.0_f64.cos()).abs() < 1e-5);
+    assert!(found.statistics.steps > 65_536 * 2);
+    assert!((found.final_state[0] - 1.0_f64.cos()).abs() < 1e-5);
 }
 
 /// A system whose mass matrix is not positive definite beyond y = 1.
 struct Indefinite;
 
 impl System for Indefinite {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         2
     }
 
@@ -397,7 +397,7 @@ impl System for Indefinite {
         out[1] = if y[0] < 1.0 { 0.0 } else { f64::NAN };
     }
 
-    fn indefinite(&self, _: f64, y: &[f64]) -> Option<usize> {
+    fn find_indefinite_coordinate(&self, _: f64, y: &[f64]) -> Option<usize> {
         (y[0] >= 1.0).then_some(1)
     }
 }
@@ -452,19 +452,19 @@ fn rows_between_steps_meet_tolerance_without_evaluations() {
             found.expect("a trajectory")
         };
         let (with, without) = (at(&rows), at(&[]));
-        assert_eq!(with.work, without.work);
-        assert_eq!(with.last, without.last);
+        assert_eq!(with.statistics, without.statistics);
+        assert_eq!(with.final_state, without.final_state);
         let errors = with.times.iter().zip(&with.states);
         let errors = errors.map(|(t, state)| (state[0] - t.sin().exp()).abs());
         let worst = errors.fold(0.0, f64::max);
         // Errors of the steps add up and grow by e^2.
-        let bound = 2.0_f64.exp() * with.work.steps as f64 * tolerance;
+        let bound = 2.0_f64.exp() * with.statistics.steps as f64 * tolerance;
         assert!(worst < bound, "{worst:e} at {tolerance:e}");
         let ends = (1..=100).map(|k| {
             let t = 0.1 * f64::from(k);
             let settings = Settings::with_tolerance(tolerance);
             let found = simulate(&system, &[1.0, 0.0], (0.0, t), &[], &settings, &mut |_| {});
-            (found.expect("a trajectory").last[0] - t.sin().exp()).abs()
+            (found.expect("a trajectory").final_state[0] - t.sin().exp()).abs()
         });
         let ends = ends.fold(0.0, f64::max);
         // One order less than at the ends of the longest steps.
@@ -472,7 +472,7 @@ fn rows_between_steps_meet_tolerance_without_evaluations() {
             worst < 20.0 * ends,
             "{worst:e} and {ends:e} at {tolerance:e}"
         );
-        longest = f64::max(longest, 10.0 / with.work.steps as f64);
+        longest = f64::max(longest, 10.0 / with.statistics.steps as f64);
     }
     // Many rows per step.
     assert!(longest > 0.2, "{longest}");
@@ -503,11 +503,11 @@ fn samples_near_surface_are_as_accurate_as_steps() {
             let error = state[0] - wanted(*t);
             assert!(error.abs() < 2e-8, "{error:e} at {t}");
         }
-        found.work
+        found.statistics
     };
     // Most steps that resolve a swing allow interpolation.
     let work = of(&swinging(0.0, 1.0), [1.0, 0.0], &|t| t.cos());
-    assert!(work.trials < samples.len() as u64 / 10, "{work:?}");
+    assert!(work.trial_steps < samples.len() as u64 / 10, "{work:?}");
     // Steps limited by stability, for x = 2 exp(-10 t) - exp(-20 t), are accurate at their ends
     // and may oscillate between.
     let decay = |t: f64| 2.0 * (-10.0 * t).exp() - (-20.0 * t).exp();

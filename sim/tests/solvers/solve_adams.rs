@@ -29,7 +29,11 @@ fn error_and_order_follow_tolerance() {
         let until = 20.0 * PI;
         let trajectory =
             run(&oscillator, &[0.0, 1.0], until, &adams(tolerance)).expect("a trajectory");
-        let Trajectory { last, work, .. } = trajectory;
+        let Trajectory {
+            final_state: last,
+            statistics: work,
+            ..
+        } = trajectory;
         let error = last[0].hypot(last[1] - 1.0);
         println!("{tolerance:e}: {error:e}, {work:?}");
         // Errors add up in an undamped oscillator.
@@ -63,8 +67,8 @@ fn interpolated_states_meet_tolerance_without_evaluations() {
         assert!(error.abs() < 1e-8, "at {t}: {error:e}");
     }
     let without = run(&system, &[1.0], 10.0, &settings).expect("a trajectory");
-    assert_eq!(with.last, without.last);
-    assert_eq!(with.work.evaluations, without.work.evaluations);
+    assert_eq!(with.final_state, without.final_state);
+    assert_eq!(with.statistics.evaluations, without.statistics.evaluations);
 }
 
 #[test]
@@ -75,7 +79,7 @@ fn dead_zone_oscillator_keeps_its_period() {
     let system = dead_zone(b, frequency);
     let trajectory =
         run(&system, &[0.0, speed], cycles * period, &adams(1e-12)).expect("a trajectory");
-    println!("{:?} {:?}", trajectory.last, trajectory.work);
+    println!("{:?} {:?}", trajectory.final_state, trajectory.statistics);
     assert_eq!(trajectory.switches.len(), 200);
     let first = trajectory.switches[0];
     assert!(first.guard == 0 && first.to_positive);
@@ -83,8 +87,8 @@ fn dead_zone_oscillator_keeps_its_period() {
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
     // About ten thousand steps of 1e-12, as a drift of the speed over the whole time.
     let drift = 1e-8 * speed;
-    assert!((trajectory.last[1] - speed).abs() < drift);
-    assert!(trajectory.last[0].abs() < drift * cycles * period);
+    assert!((trajectory.final_state[1] - speed).abs() < drift);
+    assert!(trajectory.final_state[0].abs() < drift * cycles * period);
 }
 
 #[test]
@@ -99,7 +103,7 @@ fn dry_friction_turns_at_known_points_until_it_sticks() {
         assert!(error.abs() < 1e-8, "turn {number} is late by {error:e}");
     }
     let error = run(&dry_friction(0.3), &[1.0, 0.0], 100.0, &adams(1e-9)).expect_err("it stops");
-    let SolveError::Caught { t, guard: 0 } = error else {
+    let SolveError::Sticking { t, guard: 0 } = error else {
         panic!("{error:?}")
     };
     assert!((t - 2.0 * PI).abs() < 1e-6, "{t}");
@@ -119,7 +123,10 @@ fn no_step_or_history_crosses_a_breakpoint() {
     };
     let trajectory = run(&ramps, &[0.0], 1.0, &adams(1e-9)).expect("a trajectory");
     // The sum of n (2 n + 1)/200 for n = 0 .. 9; linear rates are integrated exactly.
-    assert!((trajectory.last[0] - 3.075).abs() < 1e-13, "{trajectory:?}");
+    assert!(
+        (trajectory.final_state[0] - 3.075).abs() < 1e-13,
+        "{trajectory:?}"
+    );
 }
 
 #[test]
@@ -146,7 +153,7 @@ fn stiff_system_is_slow_but_no_error() {
     let trajectory = run(&system, &[1.0], 1.0, &adams(1e-6)).expect("a trajectory");
     // The lag of cos t is (sin t)/1e4; plus the tolerance.
     let followed = 1.0_f64.cos() + 1.0_f64.sin() / 1e4;
-    assert!((trajectory.last[0] - followed).abs() < 1e-5);
+    assert!((trajectory.final_state[0] - followed).abs() < 1e-5);
     // Steps of 1/1e4 to 2/1e4.
-    assert!((5_000..20_000).contains(&trajectory.work.steps));
+    assert!((5_000..20_000).contains(&trajectory.statistics.steps));
 }

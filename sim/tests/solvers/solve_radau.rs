@@ -17,7 +17,7 @@ struct Stiff<R, J> {
 }
 
 impl<R: Fn(f64, &[f64], &mut [f64]), J: Fn(f64, &[f64], &mut [f64])> System for Stiff<R, J> {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         self.states
     }
 
@@ -118,11 +118,11 @@ fn van_der_pol_matches_test_set() {
     for (tolerance, most) in [(1e-6, 5_000), (1e-8, 12_000), (1e-10, 35_000)] {
         let found = run(&van_der_pol(1e-6), &[2.0, 0.0], &[2.0], &radau(tolerance));
         let found = found.expect("an end");
-        for (y, reference) in found.last.iter().zip(reference) {
+        for (y, reference) in found.final_state.iter().zip(reference) {
             let error = (y / reference - 1.0).abs();
             assert!(error < 10.0 * tolerance, "{error:e} at {tolerance:e}");
         }
-        let evaluations = found.work.evaluations;
+        let evaluations = found.statistics.evaluations;
         assert!(evaluations < most, "{evaluations} at {tolerance:e}");
     }
 }
@@ -146,8 +146,8 @@ fn rows_of_stiff_systems_meet_tolerance_without_evaluations() {
         let error = worst(&found, 1, |t| t.cos() + 1e-7 * t.sin());
         assert!(error < 3.0 * tolerance, "{error:e} at {tolerance:e}");
         let without = run(&system, &[1.0, 1.0], &[10.0], &radau(tolerance)).expect("an end");
-        assert_eq!(without.work.evaluations, found.work.evaluations);
-        assert_eq!(without.last, found.last);
+        assert_eq!(without.statistics.evaluations, found.statistics.evaluations);
+        assert_eq!(without.final_state, found.final_state);
     }
 }
 
@@ -161,10 +161,10 @@ fn steps_have_order_5_and_error_estimates_order_3() {
     let end = [20.0 * PI];
     let at = |tolerance| run(&system, &[1.0, 0.0], &end, &radau(tolerance)).expect("an end");
     let (rough, fine) = (at(1e-5), at(1e-9));
-    let steps = (fine.work.steps as f64 / rough.work.steps as f64).log10();
+    let steps = (fine.statistics.steps as f64 / rough.statistics.steps as f64).log10();
     // Ten times the steps per four digits of tolerance give five digits.
     assert!((0.8..1.2).contains(&steps), "{steps}");
-    let error = |found: &Trajectory| (found.last[0] - 1.0).hypot(found.last[1]);
+    let error = |found: &Trajectory| (found.final_state[0] - 1.0).hypot(found.final_state[1]);
     let order = (error(&rough) / error(&fine)).log10() / steps;
     assert!((4.5..6.0).contains(&order), "order {order}");
     assert!(error(&fine) < 1e-9);
@@ -193,16 +193,20 @@ fn smoothed_dry_friction_needs_few_evaluations() {
     let (friction, speed) = (2.0, 1e-6);
     let system = smoothed_friction(friction, speed);
     let found = run(&system, &[1.0, 0.0], &[10.0], &radau(1e-10)).expect("an end");
-    assert!(found.work.evaluations < 10_000, "{:?}", found.work);
+    assert!(
+        found.statistics.evaluations < 10_000,
+        "{:?}",
+        found.statistics
+    );
     // At rest it creeps at the speed at which the smoothed friction balances the weight.
-    let creep = -speed * (9.81 * found.last[0].sin() / friction).atanh();
-    assert!((found.last[1] - creep).abs() < 1e-2 * creep.abs());
+    let creep = -speed * (9.81 * found.final_state[0].sin() / friction).atanh();
+    assert!((found.final_state[1] - creep).abs() < 1e-2 * creep.abs());
     // Before the rest, compared with the explicit method of order 8; after it only creep.
     let rests = 2.5;
     let explicit = Settings::with_tolerance(1e-10);
     let until = |settings| run(&system, &[1.0, 0.0], &[rests], settings).expect("an end");
     let (explicit, implicit) = (until(&explicit), until(&radau(1e-10)));
-    let error = (implicit.last[0] / explicit.last[0] - 1.0).abs();
+    let error = (implicit.final_state[0] / explicit.final_state[0] - 1.0).abs();
     assert!(error < 1e-6, "{error:e}");
 }
 
@@ -238,7 +242,11 @@ fn loudspeaker_with_small_inductance_matches_matrix_exponential() {
         )
     };
     let found = run(&system, &[0.0; 4], &grid(0.1, 10), &radau(1e-9)).expect("an end");
-    assert!(found.work.evaluations < 30_000, "{:?}", found.work);
+    assert!(
+        found.statistics.evaluations < 30_000,
+        "{:?}",
+        found.statistics
+    );
     // Matrix exponentials over hundredths of a second, with the voltage as a fifth, constant
     // state.
     let mut augmented = nalgebra::Matrix5::<f64>::zeros();
@@ -294,7 +302,7 @@ fn nearly_rigid_contact_conserves_energy() {
     let system = falls_on(frequency * frequency, 0.0);
     let found = run(&system, &[height, 0.0], &[10.0 * period], &radau(1e-10)).expect("an end");
     assert_eq!(found.switches.len(), 20);
-    let error = (found.last[0] / height - 1.0).abs();
+    let error = (found.final_state[0] / height - 1.0).abs();
     assert!(error < 1e-6, "{error:e}");
     let first = found.switches[0].t * g / speed - 1.0;
     assert!(first.abs() < 1e-12, "{first:e}");
@@ -305,8 +313,12 @@ fn fall_on_stiff_damper_ends_at_rest() {
     // The contact creeps back within spring/damper = 1e-4 s; the speed decays within 1e-6 s.
     let system = falls_on(1e10, 1e6);
     let found = run(&system, &[0.1, 0.0], &[1.0], &radau(1e-9)).expect("an end");
-    assert!((found.last[0] + 9.81e-10).abs() < 1e-13);
-    assert!(found.work.evaluations < 10_000, "{:?}", found.work);
+    assert!((found.final_state[0] + 9.81e-10).abs() < 1e-13);
+    assert!(
+        found.statistics.evaluations < 10_000,
+        "{:?}",
+        found.statistics
+    );
     let explicit = Settings {
         max_steps: 20_000,
         ..Settings::with_tolerance(1e-9)

@@ -177,16 +177,18 @@ fn equations(more: &str) -> PiecewiseLinear {
     let source = Source::new("drive.toml", drive(more));
     let checked =
         eomgen_model_spec::check(source).unwrap_or_else(|e| panic!("{}", e.render(false)));
-    PiecewiseLinear::of(&checked.model, &[]).expect("a piecewise-linear model")
+    PiecewiseLinear::derive(&checked.model, &[]).expect("a piecewise-linear model")
 }
 
 /// Returns the state at the end and the number of events.
 fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, usize) {
-    let mut propagator = equations.at(&drive.values()).expect("a propagator");
+    let mut propagator = equations
+        .propagator_at(&drive.values())
+        .expect("a propagator");
     let none = HeldInputs::zero(0);
     let found = propagator.simulate(&[0.0; 4], (0.0, until), &[], &none, &mut |_| {});
     let found = found.unwrap_or_else(|error| panic!("{drive:?}: {error}"));
-    (found.last, found.switches.len())
+    (found.final_state, found.switches.len())
 }
 
 /// Asserts that the time stepping converges to the exact motion. The largest difference, relative

@@ -1,7 +1,7 @@
 //! Adapter from the evaluator of a derived program to [`Variant`].
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_sim::ode::NOT_POSITIVE;
+use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 
 use crate::variant::Variant;
 
@@ -43,7 +43,7 @@ impl Variant for Derived {
         rates: &mut [f64],
     ) -> Result<(), String> {
         if !self.evaluator.pivots_are_positive() {
-            return Err(NOT_POSITIVE.to_owned());
+            return Err(NOT_POSITIVE_DEFINITE_MESSAGE.to_owned());
         }
         self.evaluator.rates(point(time, state, inputs), rates);
         Ok(())

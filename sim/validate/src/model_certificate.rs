@@ -127,7 +127,7 @@ fn scaled_rates(
     state: &[f64],
     inputs: &[f64],
 ) -> Result<ScaledRates, String> {
-    let found = propagator.rates(time, state, inputs);
+    let found = propagator.evaluate_rates(time, state, inputs);
     let found = found.map_err(|error| error.to_string())?;
     Ok(ScaledRates {
         rates: found.values,

@@ -309,7 +309,7 @@ fn general_solver_takes_same_steps_with_machine_code() {
             simulate(&system, &initial, span, &samples, &settings, &mut |_| {}).expect("a motion")
         });
         assert_eq!(interpreted.states, compiled.states, "{name}");
-        assert_eq!(interpreted.last, compiled.last, "{name}");
+        assert_eq!(interpreted.final_state, compiled.final_state, "{name}");
     }
 }
 

@@ -154,7 +154,7 @@ fn shipped_specifications_pass_at_declared_order() {
             may_skip.extend(["guards", "regime_kernels"]);
         }
         let orders = vec![order; model.fields.len()];
-        if PiecewiseLinear::of(&model, &orders).is_err() {
+        if PiecewiseLinear::derive(&model, &orders).is_err() {
             may_skip.push("exact_derivative");
         }
         // The references of `two_link_arm` cover the rigid links only.

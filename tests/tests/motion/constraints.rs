@@ -637,7 +637,7 @@ fn multipliers_equal_joint_forces() {
         .unwrap();
     let mut evaluator = run.evaluator().unwrap();
     let mut observables = vec![0.0; evaluator.program().observables.len()];
-    let inputs = &inputs.at(0.0);
+    let inputs = &inputs.evaluate(0.0);
     let point = Point {
         t: 0.0,
         state: &state,

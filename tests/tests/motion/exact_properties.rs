@@ -310,7 +310,7 @@ fn radau_matches_best_solver_on_shipped_models() {
         let (found, expected) = (by(Solver::Radau), by(reference));
         assert_eq!(found.switches.len(), expected.switches.len(), "{name}");
         let off = difference(&found.states, &expected.states, 1e-9);
-        println!("{name}: {off:e}, {:?}", found.work);
+        println!("{name}: {off:e}, {:?}", found.statistics);
         assert!(off < 1e-6, "{name}: {off:e}");
     }
 }

@@ -147,9 +147,9 @@ fn compare(order: usize, b: f64, until: f64) -> Comparison {
 fn simulate_exactly(reference: &Reference, until: f64) -> Trajectory {
     let model = model(reference.case);
     let orders = vec![reference.case.order; model.fields.len()];
-    let derived = PiecewiseLinear::of(&model, &orders).expect("linear between its switches");
-    let mut propagator = derived.propagator(&model).expect("matrices");
-    let rest = vec![0.0; propagator.states()];
+    let derived = PiecewiseLinear::derive(&model, &orders).expect("linear between its switches");
+    let mut propagator = derived.propagator_for_model(&model).expect("matrices");
+    let rest = vec![0.0; propagator.state_count()];
     let none = HeldInputs::zero(0);
     let trajectory = propagator.simulate(&rest, (0.0, until), &reference.times, &none, &mut |_| {});
     trajectory.expect("a trajectory")

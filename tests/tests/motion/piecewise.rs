@@ -98,9 +98,9 @@ fn ball_on_floor_defined_by_minimum_matches_general_solver() {
         let motion = compare_and_simulate(&ball(pad), 2.0);
         assert_eq!(motion.switches.len(), 6, "{pad}");
         assert!(
-            (motion.last[0] - 0.2426).abs() < 5e-5,
+            (motion.final_state[0] - 0.2426).abs() < 5e-5,
             "{pad}: {}",
-            motion.last[0]
+            motion.final_state[0]
         );
     }
 }
@@ -281,7 +281,7 @@ fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<
 fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut Tally) {
     let mut propagator = subject.propagator().expect("a piecewise linear model");
     for sample in samples {
-        let found = propagator.rates(sample.t, &sample.state, &[sample.input]);
+        let found = propagator.evaluate_rates(sample.t, &sample.state, &[sample.input]);
         let found = found.expect("rates").values;
         let size = sample.rates.iter().fold(1.0, |m: f64, r| m.max(r.abs()));
         for (found, expected) in found.iter().zip(&sample.rates) {
@@ -310,7 +310,7 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
     };
     let exact = match exact {
         Ok(exact) => exact,
-        Err(ExactError::Held { .. }) => {
+        Err(ExactError::Sticking { .. }) => {
             tally.refused += 1;
             return;
         }

@@ -22,7 +22,7 @@ pub(super) fn write_json(
     let rows = stretch
         .times
         .iter()
-        .flat_map(|t| inputs.held_at(*t))
+        .flat_map(|t| inputs.last_sample(*t))
         .copied();
     let piece = |piece: &ExcerptWindow| {
         let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);

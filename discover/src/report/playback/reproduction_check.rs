@@ -106,7 +106,7 @@ fn seen(
         let point = Point {
             t: *t,
             state,
-            inputs: inputs.held_at(*t),
+            inputs: inputs.last_sample(*t),
         };
         model
             .measured
@@ -114,7 +114,7 @@ fn seen(
     }
     let shooting = best.training_shooting(problem);
     let sensors = shooting.sensor_values(&best.train.estimate.theta);
-    let work = trajectory.work.steps + trajectory.work.rejected;
+    let work = trajectory.statistics.steps + trajectory.statistics.rejected_steps;
     Some((
         shooting.apply_sensors(&output_times, &sensors, &quantities),
         work,

@@ -1,6 +1,6 @@
 //! Energy balance of a motion, step by step.
 
-use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_PART};
+use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_SIZE_FRACTION};
 
 use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
 use super::{Audit, Energies, EnergyAndPower, Imbalance};
@@ -61,7 +61,7 @@ impl Auditor {
             driven_contacts,
             sizes: typical_sizes
                 .iter()
-                .map(|size| UNMOVED_PART * size)
+                .map(|size| UNMOVED_SIZE_FRACTION * size)
                 .collect(),
             energy: None,
             pending_energy: 0.0,
@@ -150,7 +150,7 @@ impl Auditor {
         let (mut work, mut tolerance) = (f64::NAN, f64::NAN);
         for (interior, panels) in [
             (Interior::Interpolated, MAX_PANELS),
-            (Interior::Resolved, MAX_RESOLVED_PANELS),
+            (Interior::Recomputed, MAX_RESOLVED_PANELS),
         ] {
             let uncertainty;
             (work, uncertainty) =
@@ -161,7 +161,7 @@ impl Auditor {
             }
             // Part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
-            if let Some(state) = (step.inside)(middle, interior) {
+            if let Some(state) = (step.state_inside)(middle, interior) {
                 let inside = self.find_allowed_change(energies, factor, &[(middle, &state)], &[]);
                 allowed = allowed.max(inside);
                 tolerance = allowed + uncertainty;

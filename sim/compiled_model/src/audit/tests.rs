@@ -26,7 +26,7 @@ fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit
         let mut step = ObservedStep {
             start: (t, &start),
             end: (next, &end),
-            inside: &mut |t, _| Some(state(t).to_vec()),
+            state_inside: &mut |t, _| Some(state(t).to_vec()),
         };
         auditor.audit_step(&mut step, energies);
     }

@@ -28,7 +28,7 @@ impl Auditor {
         let (begin, end) = (step.start.0, step.end.0);
         let middle = 0.5 * (begin + end);
         let mean = 0.5 * (first.power + last.power);
-        match (step.inside)(middle, Interior::Interpolated) {
+        match (step.state_inside)(middle, Interior::Interpolated) {
             Some(state) => {
                 let power = self.evaluate(energies, (middle, &state)).power;
                 ((mean + 2.0 * power) / 3.0 * (end - begin), true)
@@ -52,7 +52,7 @@ impl Auditor {
             let mut sum = 0.0;
             for (node, weight) in GAUSS_NODES_AND_WEIGHTS {
                 let t = begin + length * (from + width * node);
-                let state = (step.inside)(t, interior)?;
+                let state = (step.state_inside)(t, interior)?;
                 self.audit.evaluations += 1;
                 sum += weight * width * length * energies(t, &state).power;
             }

@@ -107,7 +107,7 @@ fn motor_releases_pendulum_until_it_sticks_again() {
         let settings = [("T_0", torque), ("omega", omega)];
         for solver in GENERAL {
             let motion = simulated(&model, &settings, &[0.0, 6.0], solver);
-            machine.comes_to(([1.0], [0.0]), 6.0, &motion.trajectory.last, 5e-5);
+            machine.comes_to(([1.0], [0.0]), 6.0, &motion.trajectory.final_state, 5e-5);
         }
     }
 }
@@ -150,7 +150,7 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
         let model = of_text(&text.replace("initial = 1,", &format!("{initial},")));
         for solver in GENERAL {
             let motion = simulated(&model, &[("T_c", level)], &[0.0, 30.0], solver);
-            let (last, switches) = (&motion.trajectory.last, &motion.trajectory.switches);
+            let (last, switches) = (&motion.trajectory.final_state, &motion.trajectory.switches);
             let stop = turns.last().copied().unwrap_or(0.0);
             assert!(
                 (last[0] - stop).abs() < 1e-7,
@@ -204,7 +204,7 @@ fn belt_with_falling_friction_sticks_and_slips() {
     };
     for solver in GENERAL {
         let motion = simulated(&model, &[], &[0.0, 2.0], solver);
-        machine.comes_to(([0.0], [0.0]), 2.0, &motion.trajectory.last, 2e-5);
+        machine.comes_to(([0.0], [0.0]), 2.0, &motion.trajectory.final_state, 2e-5);
     }
     let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
     assert_eq!(motion.solver, Solver::Rk);
@@ -252,7 +252,12 @@ fn cart_and_pole_with_friction_match_time_stepping() {
         ];
         for solver in GENERAL {
             let motion = simulated(&model, &settings, &[0.0, 3.0], solver);
-            machine.comes_to(([0.0, 0.6], [0.0; 2]), 3.0, &motion.trajectory.last, 1e-4);
+            machine.comes_to(
+                ([0.0, 0.6], [0.0; 2]),
+                3.0,
+                &motion.trajectory.final_state,
+                1e-4,
+            );
         }
     }
 }
@@ -482,11 +487,14 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
     };
     for solver in [Solver::Rk, Solver::Radau] {
         let motion = simulated(&model, &[], &[0.0, 6.0], solver);
-        let [x, y] = [motion.trajectory.last[0], motion.trajectory.last[1]];
+        let [x, y] = [
+            motion.trajectory.final_state[0],
+            motion.trajectory.final_state[1],
+        ];
         let angle = x.atan2(-y);
         let start = 0.8_f64.atan2(0.6);
         machine.comes_to(([start], [0.0]), 6.0, &[angle, 0.0], 1e-4);
-        assert!(motion.trajectory.last[2].abs() < 1e-10);
+        assert!(motion.trajectory.final_state[2].abs() < 1e-10);
     }
     // A disc with a brake on an elastic shaft, whose modes continue to vibrate.
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");

@@ -278,7 +278,7 @@ fn rows_with_several_frictions_match_time_stepping() {
             }
         }
         if seed <= 24 {
-            let apart = difference(&row.stepped(until, 30_000), &motion.last);
+            let apart = difference(&row.stepped(until, 30_000), &motion.final_state);
             assert!(apart < 2e-3, "{seed}: {apart:e}");
         }
     }

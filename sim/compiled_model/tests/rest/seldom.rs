@@ -59,7 +59,7 @@ fn short_pulses_move_resting_mass() {
     let each = 3.02 / 2.0 * 2.0 * 0.99_f64.acos() / omega;
     for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
         let motion = simulated(&model, &[], &[0.0, until], solver);
-        let speed = motion.trajectory.last[1];
+        let speed = motion.trajectory.final_state[1];
         let wanted = each * f64::from(turns);
         assert!((speed - wanted).abs() < 1e-9, "{solver}: {speed} {wanted}");
     }

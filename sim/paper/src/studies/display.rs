@@ -108,7 +108,7 @@ fn sample_with_rate(
 ) -> Result<(Record, Vec<f64>), StudyError> {
     let mut propagator = arm.propagator(case)?;
     let end = times.last().copied().unwrap_or_default();
-    let initial = vec![0.0; propagator.states()];
+    let initial = vec![0.0; propagator.state_count()];
     let none = HeldInputs::zero(0);
     let trajectory = propagator.simulate(&initial, (0.0, end), times, &none, &mut |_| {})?;
     let record = Record::from_states(times, &trajectory.states, &arm.lengths(case));

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use eomgen_analysis::exponent::{Exponent, mean_exponent};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::piecewise_linear::{Carried, Propagator};
+use eomgen_sim::piecewise_linear::{MotionWithTangents, Propagator};
 
 use super::arm::{Case, ConversionFactors};
 use super::error::StudyError;
@@ -22,7 +22,7 @@ const ALIGNMENT_PERIODS: usize = 5;
 
 /// Motion with a tangent vector, once per forcing period.
 pub(super) struct TangentMotion {
-    carried: Carried,
+    carried: MotionWithTangents,
     begin: f64,
     period: f64,
     /// Logarithm of the growth of the vector over each period.
@@ -41,7 +41,8 @@ impl TangentMotion {
     ) -> Result<Self, StudyError> {
         let first = run.states.first().cloned().unwrap_or_default();
         let weights = weights(case, lengths);
-        let carried = propagator.carried(&first, run.begin, &HeldInputs::zero(0), &weights)?;
+        let carried =
+            propagator.start_with_tangent(&first, run.begin, &HeldInputs::zero(0), &weights)?;
         Ok(Self {
             carried,
             begin: run.begin,
@@ -60,8 +61,8 @@ impl TangentMotion {
         let none = HeldInputs::zero(0);
         for period in self.growths.len() + 1..=periods {
             let end = self.begin + period as f64 * self.period;
-            propagator.carry(&mut self.carried, end, &none)?;
-            self.growths.extend(self.carried.growth());
+            propagator.continue_to(&mut self.carried, end, &none)?;
+            self.growths.extend(self.carried.growth_exponents());
             self.states.push(self.carried.state().to_vec());
         }
         Ok(())

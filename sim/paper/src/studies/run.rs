@@ -31,12 +31,12 @@ impl Run {
     ) -> Result<Self, StudyError> {
         let step = case.period() / samples as f64;
         let begin = (waited * samples) as f64 * step;
-        let initial = vec![0.0; propagator.states()];
+        let initial = vec![0.0; propagator.state_count()];
         let none = HeldInputs::zero(0);
         let transient = propagator.simulate(&initial, (0.0, begin), &[], &none, &mut |_| {})?;
         Ok(Self {
             times: vec![begin],
-            states: vec![transient.last],
+            states: vec![transient.final_state],
             begin,
             switches: 0,
             samples,

@@ -50,7 +50,7 @@ fn arm_follows_the_reference_trajectory() {
         worst[0],
         worst[1],
         trajectory.switches.len(),
-        trajectory.work
+        trajectory.statistics
     );
     // Required accuracy of a simulation at this tolerance.
     assert!(worst[0] < 1e-8 && worst[1] < 1e-8, "{worst:?}");
@@ -73,7 +73,10 @@ fn adams_matches_runge_kutta_on_the_arm() {
     let guards = |trajectory: &Trajectory| -> Vec<usize> {
         trajectory.switches.iter().map(|s| s.guard).collect()
     };
-    println!("{:?} {:?}", with_adams.work, with_runge_kutta.work);
+    println!(
+        "{:?} {:?}",
+        with_adams.statistics, with_runge_kutta.statistics
+    );
     assert!(with_adams.switches.len() > 20);
     assert_eq!(guards(&with_adams), guards(&with_runge_kutta));
     let times = with_adams.switches.iter().zip(&with_runge_kutta.switches);
@@ -81,7 +84,11 @@ fn adams_matches_runge_kutta_on_the_arm() {
         // Deflections agree to 1e-9 m, and surfaces are crossed at about 0.01 m/s.
         assert!((one.t - other.t).abs() < 1e-7, "{one:?} {other:?}");
     }
-    let deflections = with_adams.last.iter().zip(&with_runge_kutta.last).take(2);
+    let deflections = with_adams
+        .final_state
+        .iter()
+        .zip(&with_runge_kutta.final_state)
+        .take(2);
     for (one, other) in deflections {
         println!("{:e}", one - other);
         assert!((one - other).abs() < 1e-9, "{one} {other}");

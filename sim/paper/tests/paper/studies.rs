@@ -175,7 +175,7 @@ fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64>
     let none = HeldInputs::zero(0);
     let mut follow = |state: &[f64], span: (f64, f64)| {
         let followed = propagator.simulate(state, span, &[], &none, &mut |_| {});
-        followed.unwrap().last
+        followed.unwrap().final_state
     };
     let quarter = |count: usize| count as f64 * case.period() / 4.0;
     let mut here = follow(&[0.0; 14], (0.0, quarter(4 * transient)));

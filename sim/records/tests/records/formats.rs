@@ -617,7 +617,7 @@ fn given_motion_has_rates() {
         let record = &dataset.train[0];
         for (place, t) in record.times.iter().enumerate() {
             // Three inputs, then coordinates, rates and second rates of both.
-            let row = record.inputs.held_at(*t);
+            let row = record.inputs.last_sample(*t);
             assert_eq!(row.len(), 3 + 6);
             let (sine, cosine) = (3.0 * t).sin_cos();
             let (a, b) = ((1.3 * t).sin_cos(), (3.1 * t).sin_cos());
@@ -649,8 +649,8 @@ fn given_speed_is_integrated_from_initial_position() {
     let dataset = along(&given).unwrap_or_else(|refusal| panic!("{refusal}"));
     let record = &dataset.train[0];
     for (place, t) in record.times.iter().enumerate().skip(1) {
-        let row = record.inputs.held_at(*t);
-        let before = record.inputs.held_at(record.times[place - 1]);
+        let row = record.inputs.last_sample(*t);
+        let before = record.inputs.last_sample(record.times[place - 1]);
         // Columns of y, y_dot and y_ddot.
         let [y, rate, second] = [4, 6, 8].map(|column| (before[column], row[column]));
         let angle = angle(place, 0.0);
@@ -851,7 +851,7 @@ fn prescribed_motion_without_record_is_at_rest() {
         .iter()
         .map(|input| input.name.as_str())
         .collect();
-    let held = dataset.train[0].inputs.held_at(1.0);
+    let held = dataset.train[0].inputs.last_sample(1.0);
     for (name, value) in names.iter().zip(held) {
         let rest = if *name == "l" { 7.0 } else { 0.0 };
         assert_eq!(*value, rest, "{name}");

@@ -237,21 +237,21 @@ impl<S: System> SectionSystem<'_, S> {
                 .collect();
             self.surface.set_turn(&state);
             let motion = simulate(self, &state, span, &samples, &settings, &mut |_| {})?;
-            let work = motion.work;
-            let steps = work.steps + work.rejected + work.trials;
+            let work = motion.statistics;
+            let steps = work.steps + work.rejected_steps + work.trial_steps;
             settings.max_steps = settings.max_steps.saturating_sub(steps);
             if count() > transient {
                 between.extend(motion.states);
             }
-            state = motion.last;
+            state = motion.final_state;
         }
         Ok(between)
     }
 }
 
 impl<S: System> System for SectionSystem<'_, S> {
-    fn states(&self) -> usize {
-        self.system.states()
+    fn state_count(&self) -> usize {
+        self.system.state_count()
     }
 
     fn typical_sizes(&self) -> Vec<f64> {
@@ -279,8 +279,8 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.guards(t, y, others);
     }
 
-    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
-        self.system.indefinite(t, y)
+    fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
+        self.system.find_indefinite_coordinate(t, y)
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
@@ -291,7 +291,7 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.project(t, y)
     }
 
-    fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
+    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
         let value = self.surface.next_value();
         if let Some(part) = self.surface.crossing.crossing_fraction(value, start, y) {
             let on = |from: f64, to: f64| from + part * (to - from);
@@ -300,15 +300,15 @@ impl<S: System> System for SectionSystem<'_, S> {
             self.found_crossings.borrow_mut().push(point);
         }
         self.surface.set_turn(y);
-        self.system.cross((before, start), t, y);
+        self.system.apply_event((before, start), t, y);
     }
 
-    fn keep_sides(&self, sides: Option<&[f64]>) {
+    fn fix_sides(&self, sides: Option<&[f64]>) {
         let others = sides.and_then(|sides| sides.split_last());
-        self.system.keep_sides(others.map(|(_, others)| others));
+        self.system.fix_sides(others.map(|(_, others)| others));
     }
 
-    fn caught_or_let_go(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        self.system.caught_or_let_go(t, y)
+    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
+        self.system.update_sticking(t, y)
     }
 }

@@ -16,7 +16,7 @@ where
     R: Fn(f64, &[f64], &mut [f64]),
     G: Fn(&[f64], &mut [f64]),
 {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         self.states
     }
 

@@ -1,7 +1,7 @@
 //! Properties of a flow: a continued motion equals the whole one, repeated requests give the same
 //! bits, and tangent vectors match difference quotients of motions.
 
-use eomgen_sim::piecewise_linear::Lyapunov;
+use eomgen_sim::piecewise_linear::LyapunovRequest;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 
@@ -49,11 +49,11 @@ fn continued_motion_equals_whole_motion() {
             let last = parts.last().expect("a state").clone();
             let part = run(&last, (pair[0], pair[1]), &[pair[1]]);
             assert_eq!(
-                part.states[0], part.last,
+                part.states[0], part.final_state,
                 "the sample at the end is the last state"
             );
             switches += part.switches.len();
-            parts.push(part.last);
+            parts.push(part.final_state);
         }
         let found = difference(&parts, &whole.states, 1e-6);
         println!("{name}: {found:.1e}, {} switches", whole.switches.len());
@@ -63,7 +63,7 @@ fn continued_motion_equals_whole_motion() {
             name == "rough" || switches == whole.switches.len(),
             "{name}"
         );
-        assert_eq!(whole.states.last(), Some(&whole.last));
+        assert_eq!(whole.states.last(), Some(&whole.final_state));
     }
 }
 
@@ -73,7 +73,7 @@ fn sampling_does_not_change_the_motion() {
         let none = subject.exact((0.0, 0.1), &[]);
         let many = subject.exact((0.0, 0.1), &grid(0.1, 1000));
         assert_eq!(none.switches, many.switches);
-        assert_eq!(none.last, many.last);
+        assert_eq!(none.final_state, many.final_state);
     }
 }
 
@@ -110,14 +110,14 @@ fn growth_of_difference_and_tangent(
     felt: &[usize],
 ) -> (f64, f64) {
     let mut propagator = subject.propagator().expect("a propagator");
-    let request = Lyapunov {
+    let request = LyapunovRequest {
         transient: 0.0,
         interval: until,
-        intervals: 1,
-        exponents: 1,
+        interval_count: 1,
+        exponent_count: 1,
     };
-    let growth = propagator.lyapunov(&subject.initial, 0.0, &subject.inputs, &request);
-    let growth = growth.expect("a growth").growths[0][0];
+    let growth = propagator.measure_lyapunov(&subject.initial, 0.0, &subject.inputs, &request);
+    let growth = growth.expect("a growth").growth_exponents[0][0];
     // Initial tangent vector: 1 for the first relevant state, 0.1/(1 + k) for the others.
     let mut direction = vec![0.0; subject.initial.len()];
     for (k, state) in felt.iter().enumerate() {
@@ -134,7 +134,7 @@ fn growth_of_difference_and_tangent(
             &subject.inputs,
             &mut |_| {},
         );
-        moved.expect("a motion").last
+        moved.expect("a motion").final_state
     };
     let (plus, minus) = (end(1.0), end(-1.0));
     let apart = felt

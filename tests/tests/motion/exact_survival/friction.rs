@@ -160,8 +160,8 @@ fn block_on_belt_matches_closed_form() {
     assert!((motion.switches[0].t - caught).abs() < 1e-14);
     assert!((motion.switches[1].t - free).abs() < 1e-13);
     let riding = subject([0.0, belt]).exact((0.0, 0.15), &[0.15]);
-    assert!(riding.switches.is_empty() && (riding.last[0] - 0.015).abs() < 1e-16);
-    assert_eq!(riding.last[1], belt);
+    assert!(riding.switches.is_empty() && (riding.final_state[0] - 0.015).abs() < 1e-16);
+    assert_eq!(riding.final_state[1], belt);
 }
 
 /// Returns two stacked blocks: T_1 against the ground, T_2 between them, the upper one pushed.
@@ -200,7 +200,7 @@ fn two_joints_can_stick_at_once() {
             .iter()
             .all(|y| y.iter().all(|y| y.abs() < 1e-13)),
         "{:?}",
-        at_rest.last
+        at_rest.final_state
     );
     // The motion with steep friction converges to that with true sticking.
     let steep = |v: &str| format!("(({v}) - deadzone({v}, eps))/eps");
@@ -257,7 +257,7 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
     println!(
         "chain: {found:.1e}, {} switches, at last {:?}",
         exact.switches.len(),
-        exact.last
+        exact.final_state
     );
     assert!(found < 1e-3, "{found:e}");
 }
@@ -289,9 +289,9 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
         let found = difference(&held.states, &heavy.states, 1e-3);
         println!("held, order {order}: {found:.1e}");
         assert!(
-            found < 1e-11 && held.last[0].abs() < 1e-15,
+            found < 1e-11 && held.final_state[0].abs() < 1e-15,
             "{found:e} {:e}",
-            held.last[0]
+            held.final_state[0]
         );
         assert!(held.switches.is_empty());
         // A hub that slides and sticks, compared with steep friction.

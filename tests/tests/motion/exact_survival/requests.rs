@@ -18,7 +18,7 @@ fn mass(m: f64) -> Subject {
 
 fn rejection(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
     match subject.try_exact(span, times) {
-        Ok(motion) => panic!("went to {:?}", motion.last),
+        Ok(motion) => panic!("went to {:?}", motion.final_state),
         Err(error) => {
             println!("{error}");
             error.to_string()
@@ -56,20 +56,20 @@ fn invalid_times_are_rejected() {
     }
     let still = subject.exact((0.5, 0.5), &[0.5, 0.5]);
     assert_eq!(still.states, vec![subject.initial.clone(); 2]);
-    assert_eq!(still.last, subject.initial);
+    assert_eq!(still.final_state, subject.initial);
     // The change over the shortest span is below one rounding.
     let short = subject.exact((0.0, 5e-324), &[0.0, 5e-324]);
-    assert!((short.last[0] - 0.01).abs() < 1e-17);
+    assert!((short.final_state[0] - 0.01).abs() < 1e-17);
     let late = subject.exact((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
     let early = subject.exact((0.0, 1.0), &[1.0]);
-    assert!((late.last[0] - early.last[0]).abs() < 1e-15);
+    assert!((late.final_state[0] - early.final_state[0]).abs() < 1e-15);
 }
 
 #[test]
 fn diverging_motions_are_rejected() {
     for state in [[1e308, 1e308], [1e200, 0.0], [0.0, -1e308]] {
         match mass(1.0).from(&state).try_exact((0.0, 10.0), &[10.0]) {
-            Ok(motion) => assert!(motion.last.iter().all(|y| y.is_finite())),
+            Ok(motion) => assert!(motion.final_state.iter().all(|y| y.is_finite())),
             Err(error) => println!("{error}"),
         }
     }
@@ -82,7 +82,7 @@ fn diverging_motions_are_rejected() {
         .potential("1/2*k*x^2");
     let subject = Subject::new(spec.model(), 0);
     let near = subject.exact((0.0, 0.1), &[0.1]);
-    assert!((near.last[0] / 100.0_f64.cosh() - 1.0).abs() < 1e-12);
+    assert!((near.final_state[0] / 100.0_f64.cosh() - 1.0).abs() < 1e-12);
     let message = rejection(&subject, (0.0, 100.0), &[100.0]);
     assert!(message.contains("diverged"), "{message}");
 }
@@ -130,7 +130,7 @@ fn extreme_parameters_of_arm_are_rejected_or_solved() {
         };
         let begun = std::time::Instant::now();
         match Subject::new(model, 4).try_exact((0.0, 1e-4), &[1e-4]) {
-            Ok(motion) => assert!(motion.last.iter().all(|y| y.is_finite())),
+            Ok(motion) => assert!(motion.final_state.iter().all(|y| y.is_finite())),
             Err(error) => println!("{name} = {value:e}: {error}"),
         }
         println!("{name} = {value:e}: {:?}", begun.elapsed());
@@ -153,7 +153,7 @@ fn sticking_with_variable_friction_is_rejected() {
         .force("x", "-mu*k*y*sign(dot(x))");
     match Subject::new(spec.model(), 0).try_exact((0.0, 1.0), &[1.0]) {
         Ok(_) => {}
-        Err(error @ ExactError::Held { .. }) => println!("{error}"),
+        Err(error @ ExactError::Sticking { .. }) => println!("{error}"),
         Err(error @ ExactError::Stopped(SolveError::TooManySwitches { .. })) => println!("{error}"),
         Err(error) => panic!("{error}"),
     }

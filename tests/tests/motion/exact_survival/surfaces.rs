@@ -75,7 +75,7 @@ fn ball_touching_ceiling_matches_closed_form() {
         let contact = 2.0 * ((hit / w).atan2(g / (w * w))) / w;
         let end = 2.0 * arrival + contact;
         let motion = Subject::new(spec.model(), 0).exact((0.0, end), &[end]);
-        let [x, v] = motion.last[..] else {
+        let [x, v] = motion.final_state[..] else {
             panic!("two states")
         };
         println!(
@@ -218,7 +218,7 @@ fn million_switches_match_closed_form() {
     let begun = Instant::now();
     let motion = subject.exact((0.0, until), &[until]);
     let taken = begun.elapsed();
-    let [x, speed] = motion.last[..] else {
+    let [x, speed] = motion.final_state[..] else {
         panic!("two states")
     };
     println!(
@@ -276,11 +276,13 @@ fn accumulating_switches_end() {
         let ended = Subject::new(spec.model(), 0).try_exact((0.0, 100.0), &[100.0]);
         println!(
             "dry {dry}: {:?} in {:?}",
-            ended.as_ref().map(|m| (m.last.clone(), m.switches.len())),
+            ended
+                .as_ref()
+                .map(|m| (m.final_state.clone(), m.switches.len())),
             begun.elapsed()
         );
         match ended {
-            Ok(motion) => assert!(motion.last.iter().all(|y| y.abs() < 1e-9)),
+            Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-9)),
             Err(error) => assert!(
                 matches!(
                     error,
@@ -303,11 +305,13 @@ fn accumulating_switches_end() {
     let ended = Subject::new(spec.model(), 0).try_exact((0.0, 50.0), &[50.0]);
     println!(
         "damper: {:?} in {:?}",
-        ended.as_ref().map(|m| (m.last.clone(), m.switches.len())),
+        ended
+            .as_ref()
+            .map(|m| (m.final_state.clone(), m.switches.len())),
         begun.elapsed()
     );
     match ended {
-        Ok(motion) => assert!(motion.last.iter().all(|y| y.abs() < 1e-4)),
+        Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-4)),
         Err(error) => assert!(
             matches!(
                 error,
@@ -355,8 +359,8 @@ fn samples_at_a_switch_match_closed_form() {
     for (count, end) in times.iter().enumerate() {
         for end in [end.next_down(), *end, end.next_up()] {
             let motion = subject.exact((0.0, end), &[0.5 * end, end, end]);
-            assert!((motion.last[0].abs() - 1.0).abs() < 1e-13, "{count}");
-            assert_eq!(motion.states[2], motion.last);
+            assert!((motion.final_state[0].abs() - 1.0).abs() < 1e-13, "{count}");
+            assert_eq!(motion.states[2], motion.final_state);
         }
     }
 }

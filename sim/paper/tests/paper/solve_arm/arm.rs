@@ -21,7 +21,7 @@ impl<const S: usize> Default for Arm<S> {
 }
 
 impl<const S: usize> System for Arm<S> {
-    fn states(&self) -> usize {
+    fn state_count(&self) -> usize {
         Equation22::<S>::STATES
     }
 

@@ -2,12 +2,12 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::saltation::{Surfaces, delay};
+use super::saltation::{Surfaces, find_delay};
 use crate::ode::System;
 
 /// Largest change of the rates over a surface, relative to the rates, that counts as none: at a
 /// kink the rates differ only by the change over the step.
-const NO_JUMP: f64 = 1e-9;
+const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
 
 /// A system with a tangent vector: its state is the state y of a system, then a vector v with v' =
 /// J(t, y) v, where J are the derivatives of the rates with respect to the state; 2 n numbers. On
@@ -20,7 +20,7 @@ const NO_JUMP: f64 = 1e-9;
 ///
 /// (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
 /// Springer 2004, section 7.3). The derivatives of g are finite differences.
-pub struct Beside<'s, S: System + ?Sized> {
+pub struct TangentSystem<'s, S: System + ?Sized> {
     system: &'s S,
     sizes: Vec<f64>,
     jacobian: RefCell<Vec<f64>>,
@@ -28,11 +28,11 @@ pub struct Beside<'s, S: System + ?Sized> {
     together: Cell<Option<f64>>,
 }
 
-impl<'s, S: System + ?Sized> Beside<'s, S> {
+impl<'s, S: System + ?Sized> TangentSystem<'s, S> {
     /// Adds a tangent vector to a system. `sizes` are magnitudes of its states for finite
     /// differences, 0 if unknown.
     pub fn new(system: &'s S, sizes: Vec<f64>) -> Self {
-        let states = system.states();
+        let states = system.state_count();
         Self {
             system,
             sizes,
@@ -43,30 +43,30 @@ impl<'s, S: System + ?Sized> Beside<'s, S> {
 
     /// Returns the time (s) at which the motion crossed several surfaces at once, if it did. There
     /// the order of the crossings, and thus v, is not determined.
-    pub fn together(&self) -> Option<f64> {
+    pub fn simultaneous_crossing_time(&self) -> Option<f64> {
         self.together.get()
     }
 
-    fn rates_of(&self, t: f64, y: &[f64]) -> Vec<f64> {
+    fn evaluate_rates(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
         rates
     }
 }
 
-impl<S: System + ?Sized> System for Beside<'_, S> {
-    fn states(&self) -> usize {
-        2 * self.system.states()
+impl<S: System + ?Sized> System for TangentSystem<'_, S> {
+    fn state_count(&self) -> usize {
+        2 * self.system.state_count()
     }
 
     fn typical_sizes(&self) -> Vec<f64> {
         let mut sizes = self.system.typical_sizes();
-        sizes.resize(self.states(), 1.0);
+        sizes.resize(self.state_count(), 1.0);
         sizes
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let states = self.system.states();
+        let states = self.system.state_count();
         let (y, v) = y.split_at(states);
         let (rates, tangent) = out.split_at_mut(states);
         self.system.rates(t, y, rates);
@@ -82,35 +82,40 @@ impl<S: System + ?Sized> System for Beside<'_, S> {
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.system.guards(t, &y[..self.system.states()], out);
+        self.system.guards(t, &y[..self.system.state_count()], out);
     }
 
-    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
-        self.system.indefinite(t, &y[..self.system.states()])
+    fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
+        self.system
+            .find_indefinite_coordinate(t, &y[..self.system.state_count()])
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
         self.system.next_breakpoint(t)
     }
 
-    fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
-        let states = self.system.states();
+    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
+        let states = self.system.state_count();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
         // The start of the step can be on the surface up to the last bit, where the rates of
         // either side are possible. So evaluate as far before it as the end is behind it.
         let mirrored = start.iter().zip(&*y).map(|(start, end)| 2.0 * start - end);
         let near: Vec<f64> = mirrored.collect();
         let near = (2.0 * before - t, &*near);
-        let (from, to) = (self.rates_of(near.0, near.1), self.rates_of(t, y));
+        let (from, to) = (
+            self.evaluate_rates(near.0, near.1),
+            self.evaluate_rates(t, y),
+        );
         let jump = |index: usize| to[index] - from[index];
-        let is_kink = (0..states)
-            .all(|index| jump(index).abs() <= NO_JUMP * from[index].abs().max(to[index].abs()));
+        let is_kink = (0..states).all(|index| {
+            jump(index).abs() <= MAX_KINK_JUMP_FRACTION * from[index].abs().max(to[index].abs())
+        });
         if !is_kink {
             let surfaces = Surfaces {
                 system: self.system,
                 sizes: &self.sizes,
             };
-            let delay = delay(&surfaces, near, (t, y), &from, v);
+            let delay = find_delay(&surfaces, near, (t, y), &from, v);
             match delay {
                 Some(delay) => v
                     .iter_mut()
@@ -119,6 +124,6 @@ impl<S: System + ?Sized> System for Beside<'_, S> {
                 None => self.together.set(Some(t)),
             }
         }
-        self.system.cross((before, start), t, y);
+        self.system.apply_event((before, start), t, y);
     }
 }

@@ -35,7 +35,7 @@ impl ExponentialIntegrator {
         let functions = &self.regimes[here].functions;
         out.find(force, (&self.surfaces, functions), (t, state, given));
         self.relate((here, sides), state, given, out)?;
-        self.regimes[here].bear(&mut out.force, &mut out.borne);
+        self.regimes[here].subtract_held(&mut out.force, &mut out.borne);
         Ok(())
     }
 
@@ -79,7 +79,7 @@ impl ExponentialIntegrator {
         self.own.extend_from_slice(sides);
         for ((side, function), moved) in self.own.iter_mut().zip(functions).zip(&remainder.moved) {
             if *moved != 0.0 && *side != Side::Held {
-                *side = Side::of(function.at(state, given));
+                *side = Side::of(function.evaluate(state, given));
             }
         }
         if self.own == sides {

@@ -6,12 +6,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dependents::Standing;
+use super::dependents::StateAt;
 use super::event_function::Linear;
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::transition::Limit;
-use crate::sliding_modes::{Arrival, Rates, Verdict, decide, least};
+use crate::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
 
 /// What is left of a function that follows from others, and of its threshold, relative.
 const FOLLOWS: f64 = 1e-10;
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A surface that a motion stands on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StoodOn {
+pub(super) struct SurfaceContact {
     pub family: usize,
     pub rank: usize,
     pub arrival: Arrival,
@@ -32,16 +32,16 @@ pub(super) struct StoodOn {
 
 impl Propagator {
     /// The surfaces that the motion stands on at a limit.
-    pub(super) fn met(&self, limit: &Limit) -> Vec<StoodOn> {
+    pub(super) fn surfaces_at_limit(&self, limit: &Limit) -> Vec<SurfaceContact> {
         let visited = &self.regimes[limit.before];
         let rank = limit.rank(visited.cells[limit.family]).0;
         let is_held = matches!(visited.cells[limit.family], Cell::On(_));
-        let mut met = vec![StoodOn {
+        let mut met = vec![SurfaceContact {
             family: limit.family,
             rank,
             arrival: Arrival {
                 side: limit.outward(),
-                is_overcome: is_held,
+                exceeds_limit: is_held,
             },
         }];
         for (family, cell) in visited.cells.iter().enumerate() {
@@ -53,9 +53,9 @@ impl Propagator {
                 };
                 let arrival = Arrival {
                     side,
-                    is_overcome: false,
+                    exceeds_limit: false,
                 };
-                met.push(StoodOn {
+                met.push(SurfaceContact {
                     family,
                     rank,
                     arrival,
@@ -92,9 +92,9 @@ impl Propagator {
                 let side = if above == rank { 1.0 } else { -1.0 };
                 let arrival = Arrival {
                     side,
-                    is_overcome: false,
+                    exceeds_limit: false,
                 };
-                met.push(StoodOn {
+                met.push(SurfaceContact {
                     family,
                     rank,
                     arrival,
@@ -106,31 +106,31 @@ impl Propagator {
 
     /// The cells beyond a limit where the motion stands on several surfaces; nothing where what they do is not
     /// told by the sum of what each of them does.
-    pub(super) fn decided_together(
+    pub(super) fn decide_together(
         &mut self,
         limit: &Limit,
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
-        let met = self.met(limit);
+        let met = self.surfaces_at_limit(limit);
         let cells = self.regimes[limit.before].cells.clone();
         self.decided_of(&met, cells, standing)
     }
 
     /// The cells of a motion that begins on the thresholds `tied` of families, in these cells but for them.
-    pub(super) fn begun_together(
+    pub(super) fn start_together(
         &mut self,
         cells: &[Cell],
         tied: &[(usize, usize)],
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
-        let met: Vec<StoodOn> = tied
+        let met: Vec<SurfaceContact> = tied
             .iter()
-            .map(|(family, rank)| StoodOn {
+            .map(|(family, rank)| SurfaceContact {
                 family: *family,
                 rank: *rank,
                 arrival: Arrival {
                     side: -1.0,
-                    is_overcome: false,
+                    exceeds_limit: false,
                 },
             })
             .collect();
@@ -139,9 +139,9 @@ impl Propagator {
 
     fn decided_of(
         &mut self,
-        met: &[StoodOn],
+        met: &[SurfaceContact],
         mut cells: Vec<Cell>,
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Option<Vec<Cell>> {
         let rates = self.rates_on(met, &cells, standing)?;
         let arrivals: Vec<Arrival> = met.iter().map(|on| on.arrival).collect();
@@ -149,8 +149,8 @@ impl Propagator {
         for (on, verdict) in met.iter().zip(verdicts) {
             cells[on.family] = match verdict {
                 Verdict::Holds(_) => Cell::On(on.rank),
-                Verdict::Bears(side) => Cell::Bearing(on.rank, side > 0.0),
-                Verdict::LetsGo(side) => Cell::Between(on.rank + usize::from(side > 0.0)),
+                Verdict::AtLimit(side) => Cell::Bearing(on.rank, side > 0.0),
+                Verdict::Releases(side) => Cell::Between(on.rank + usize::from(side > 0.0)),
             };
         }
         Some(cells)
@@ -159,9 +159,9 @@ impl Propagator {
     /// The rates of the functions of surfaces by their sides, the other families being in these cells.
     fn rates_on(
         &mut self,
-        met: &[StoodOn],
+        met: &[SurfaceContact],
         cells: &[Cell],
-        standing: Standing<'_>,
+        standing: StateAt<'_>,
     ) -> Option<Rates> {
         let mut low = cells.to_vec();
         for on in met {
@@ -227,7 +227,7 @@ fn combined(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector
     let count = functions.len();
     let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));
     let right = DVector::from_fn(count, |i, _| functions[i].dot(wanted));
-    let factors = least(products, right);
+    let factors = solve_least_squares(products, right);
     let terms = functions.iter().zip(&factors);
     let rest = terms.fold(wanted.clone(), |rest, (function, factor)| {
         rest - function * *factor

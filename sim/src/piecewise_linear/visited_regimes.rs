@@ -3,11 +3,11 @@
 
 use nalgebra::Complex;
 
-use super::adjacent::Adjacent;
+use super::adjacent_regimes::Adjacent;
 use super::clock::Clock;
 use super::coincidence::factor;
-use super::decomposition::Failure;
-use super::dependents::{Asking, Standing};
+use super::decomposition::DecompositionError;
+use super::dependents::{DecisionCause, StateAt};
 use super::error::ExactError;
 use super::event_function::{Limits, Linear};
 use super::parallel_guards::Cell;
@@ -48,10 +48,10 @@ impl Propagator {
                 if self.has_dependents()
                     && (0..cells.len()).any(|family| self.is_felt(cells, family))
                 {
-                    return Err(ExactError::Held { t, guard });
+                    return Err(ExactError::Sticking { t, guard });
                 }
                 let sliding = slide(&mut self.evaluator, &self.families, cells)
-                    .ok_or(ExactError::Held { t, guard })?;
+                    .ok_or(ExactError::Sticking { t, guard })?;
                 (sliding.system, sliding.parts)
             }
         };
@@ -84,8 +84,8 @@ impl Propagator {
             });
         }
         let regime = Regime::new(system, events, self.slow).map_err(|failure| match failure {
-            Failure::NotFinite => ExactError::NotFinite,
-            Failure::NotConverged => ExactError::NotConverged,
+            DecompositionError::NotFinite => ExactError::NotFinite,
+            DecompositionError::NotConverged => ExactError::NotConverged,
         })?;
         let adjacent = vec![[None; 2]; regime.event_functions.len()];
         self.regimes.push(VisitedRegime {
@@ -160,23 +160,23 @@ impl Propagator {
     ) -> Result<usize, ExactError> {
         let phases = self.phases_at(clock);
         if self.has_dependents() {
-            let standing = Standing {
+            let standing = StateAt {
                 state,
                 inputs,
                 phases: &phases,
             };
             let mut cells = vec![Cell::Between(0); self.families.len()];
-            self.settle(&mut cells, Asking::Start, standing);
+            self.settle(&mut cells, DecisionCause::Start, standing);
             return self.regime(&cells, clock.time());
         }
         let (mut cells, tied) = self.cells_at(state, inputs, &phases);
         if tied.len() > 1 {
-            let standing = Standing {
+            let standing = StateAt {
                 state,
                 inputs,
                 phases: &phases,
             };
-            if let Some(cells) = self.begun_together(&cells, &tied, standing) {
+            if let Some(cells) = self.start_together(&cells, &tied, standing) {
                 return self.regime(&cells, clock.time());
             }
         }

@@ -3,9 +3,9 @@
 use super::crossing::first_crossing;
 use super::release::Release;
 use super::remainder::Remainder;
-use super::remainder_at::AHEAD;
+use super::remainder_search::AHEAD;
 use super::surfaces::{Row, Side, dot};
-use super::tangents::{Reached, series};
+use super::tangents::{ReachedSurface, add_exponential_series};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
 /// Crossings within a step after which the rest of it is made without looking.
@@ -82,7 +82,7 @@ impl ExponentialIntegrator {
                 Event::Release(release) => {
                     let held = &self.regimes[motion.regime].held[release.place];
                     let released = (held.surface, release.to);
-                    self.let_go(motion, t, &[released], options)?;
+                    self.release_motion(motion, t, &[released], options)?;
                 }
             }
             self.crossings += 1;
@@ -101,7 +101,7 @@ impl ExponentialIntegrator {
         let functions = regime.functions.iter().zip(&motion.remainder.moved);
         for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
             if *side != Side::Held {
-                *side = Side::of(function.at(&motion.state, &motion.given) + moved);
+                *side = Side::of(function.evaluate(&motion.state, &motion.given) + moved);
             }
         }
         motion.regime = self.regime(&motion.sides)?;
@@ -140,7 +140,7 @@ impl ExponentialIntegrator {
             (&begin.1[..], remainder),
             (&motion.state[..], &motion.remainder),
         );
-        let release = self.first_release(motion, ends, rest);
+        let release = self.find_first_release(motion, ends, rest);
         crossings
             .chain(release.map(Event::Release))
             .min_by(|a, b| a.tau().total_cmp(&b.tau()))
@@ -151,7 +151,7 @@ impl ExponentialIntegrator {
         let regime = &self.regimes[motion.regime];
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
-        series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
+        add_exponential_series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
     }
 
     /// The rates where the motion stands.
@@ -182,7 +182,7 @@ impl ExponentialIntegrator {
         };
         let tau = event.tau();
         self.part(motion, tau);
-        let value = row.at(&motion.state, &motion.given) + offset + slope * tau;
+        let value = row.evaluate(&motion.state, &motion.given) + offset + slope * tau;
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
         let rate = dot(&row.state, &rates[..self.states]) + slope;
@@ -234,7 +234,7 @@ impl ExponentialIntegrator {
             self.differentiate(motion, t, &mut **force, slopes)?;
         }
         let regime = &self.regimes[motion.regime];
-        tangents.part(regime, tau, (t, &motion.state, inputs));
+        tangents.advance_part(regime, tau, (t, &motion.state, inputs));
         Ok(())
     }
 
@@ -317,14 +317,15 @@ impl ExponentialIntegrator {
                 None => function,
             };
             let by_parameter = self.regimes[before].by_parameter.iter();
-            let by_parameter = by_parameter
-                .map(|derivative| derivative.functions[surface].at(&motion.state, &motion.given));
-            let reached = Reached {
+            let by_parameter = by_parameter.map(|derivative| {
+                derivative.functions[surface].evaluate(&motion.state, &motion.given)
+            });
+            let reached = ReachedSurface {
                 gradient: &gradient,
                 by_parameter: &by_parameter.collect::<Vec<f64>>(),
                 rate: here,
             };
-            tangents.switch(&reached, &rates, &after);
+            tangents.apply_saltation(&reached, &rates, &after);
         }
         Ok(())
     }

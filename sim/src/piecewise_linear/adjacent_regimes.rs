@@ -64,7 +64,7 @@ impl Propagator {
             jumps,
             saltation,
             moves_others: held || self.moves_others(before, regime, family),
-            meets_others: (held || jumps) && self.met(limit).len() > 1,
+            meets_others: (held || jumps) && self.surfaces_at_limit(limit).len() > 1,
         };
         self.regimes[before].adjacent[event_function][usize::from(upper)] = Some(adjacent);
         Ok(adjacent)
