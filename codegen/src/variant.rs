@@ -11,7 +11,7 @@ use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
-use crate::mechanics::sliding::with_sides;
+use crate::mechanics::sliding::add_side_inputs;
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
 use crate::program::evaluator::{Evaluator, Point};
@@ -46,7 +46,7 @@ impl Variant {
         orders: &[usize],
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
-        let variant = Self::derive_to_read(model, orders, outputs)?;
+        let variant = Self::derive_for_report(model, orders, outputs)?;
         let checked = check_inertia(model, orders, &variant);
         checked.map_err(|diagnostic| Diagnostics::one(model.source.clone(), diagnostic))?;
         Ok(variant)
@@ -57,7 +57,7 @@ impl Variant {
     ///
     /// # Errors
     /// The errors of [`Variant::derive_with`], without those about inertia.
-    pub fn derive_to_read(
+    pub fn derive_for_report(
         model: &Model,
         orders: &[usize],
         outputs: &[Output],
@@ -135,7 +135,7 @@ pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>
         .parameter_values()
         .map_err(|error| found(error.diagnostic()))?;
     let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-    let sliding = with_sides(&mut equations);
+    let sliding = add_side_inputs(&mut equations);
     if sliding.is_empty() {
         return Ok(None);
     }

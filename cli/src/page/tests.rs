@@ -7,8 +7,8 @@ use super::*;
 
 fn line(name: &str, formula: &str) -> Line {
     Line {
-        name: Formula::named(name),
-        formula: Formula::named(formula),
+        name: Formula::from_name(name),
+        formula: Formula::from_name(formula),
     }
 }
 
@@ -22,13 +22,13 @@ fn report(text: &str) -> Report {
         state: vec![text.to_owned()],
         definitions: vec![line(text, text)],
         terms: vec![line(text, text)],
-        kinetic: Formula::named(text),
-        potential: Formula::named(text),
+        kinetic: Formula::from_name(text),
+        potential: Formula::from_name(text),
         shared: vec![line(text, text)],
         mass_matrix: vec![MassMatrixEntry {
-            row: Formula::named(text),
-            column: Formula::named(text),
-            formula: Formula::named(text),
+            row: Formula::from_name(text),
+            column: Formula::from_name(text),
+            formula: Formula::from_name(text),
         }],
         pivots: vec![line(text, text)],
         velocity_terms: vec![line(text, text)],
@@ -37,19 +37,19 @@ fn report(text: &str) -> Report {
         constraints: vec![line(text, text)],
         multipliers: vec![line(text, text)],
         coefficients: vec![CoefficientLine {
-            name: Formula::named(text),
-            formula: Formula::named(text),
+            name: Formula::from_name(text),
+            formula: Formula::from_name(text),
             values: vec![0.25; 10],
         }],
         accelerations: vec![line(text, text)],
-        guards: vec![Formula::named(text)],
+        guards: vec![Formula::from_name(text)],
         linearity: Sentence {
             text: "The model is not linear",
-            formula: Some(Formula::named(text)),
+            formula: Some(Formula::from_name(text)),
         },
         solution: Solution {
             dense_modes: false,
-            order: vec![Formula::named(text)],
+            order: vec![Formula::from_name(text)],
             interfaces: 1,
             operations: 101,
             dearest: 202,

@@ -63,7 +63,7 @@ const TWO_TO_54: f64 = (1_u64 << 54) as f64;
 /// Returns significand in `[1, 2)` and integral exponent of a positive finite `x = significand 2^exponent`,
 /// subnormals included; meaningless finite values for any other `x`.
 #[inline(always)]
-pub(crate) fn take_apart<R: Real>(x: R) -> (R, R) {
+pub(crate) fn split_exponent<R: Real>(x: R) -> (R, R) {
     let smallest_normal = R::constant(f64::MIN_POSITIVE);
     let raised = x * R::constant(TWO_TO_54);
     let normal = R::select_less(x, smallest_normal, raised, x);

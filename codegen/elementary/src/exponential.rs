@@ -71,7 +71,7 @@ pub fn exp_minus_one<R: Real>(x: R) -> R {
 pub fn sinh<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
     // With w = (e^|x| - 1)/4: sinh|x| = 2 (w + w/(1 + 4 w)).
-    let w = quarter_exp_minus_one(clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC)).normalised();
+    let w = quarter_exp_minus_one(clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC)).normalise();
     let four = R::constant(4.0);
     let growth = w.high * four;
     let denominator = exact_sum(one, growth);
@@ -96,7 +96,7 @@ pub fn cosh<R: Real>(x: R) -> R {
         low: R::constant(0.0),
     });
     // With w = e^|x|/4: cosh x = 2 (w + 1/(16 w)).
-    let w = ordered_sum(R::constant(1.0), r).plus_low(rest).normalised();
+    let w = ordered_sum(R::constant(1.0), r).plus_low(rest).normalise();
     let quarter = (k - R::constant(2.0)).power_of_two();
     let (high, low) = (w.high * quarter, w.low * quarter);
     let decaying = R::constant(0.0625) / high;
@@ -110,7 +110,7 @@ pub fn cosh<R: Real>(x: R) -> R {
 pub fn tanh<R: Real>(x: R) -> R {
     // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2). Above 22 it is 1 to the last bit.
     let doubled = clamp(x.abs(), 0.0, 22.0) * R::constant(2.0);
-    let w = quarter_exp_minus_one(doubled).normalised();
+    let w = quarter_exp_minus_one(doubled).normalise();
     let denominator = exact_sum(w.high, R::constant(0.5)).plus_low(w.low);
     odd_extension(x, quotient(w, denominator).round())
 }

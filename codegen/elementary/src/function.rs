@@ -107,8 +107,8 @@ impl Function {
     /// Returns the primitive operations of the function, with one output.
     pub fn kernel(self) -> Kernel {
         record(self.arity(), |arguments| match *arguments {
-            [first] => vec![self.of(first, first)],
-            [first, second] => vec![self.of(first, second)],
+            [first] => vec![self.apply_real(first, first)],
+            [first, second] => vec![self.apply_real(first, second)],
             _ => Vec::new(),
         })
     }
@@ -116,11 +116,11 @@ impl Function {
     /// Computes the value natively, with the same bits as the kernel. A missing argument is NaN.
     pub fn apply(self, arguments: &[f64]) -> f64 {
         let argument = |i: usize| arguments.get(i).copied().unwrap_or(f64::NAN);
-        self.of(argument(0), argument(1))
+        self.apply_real(argument(0), argument(1))
     }
 
     /// Calls the generic function; functions of one argument ignore the second.
-    fn of<R: Real>(self, first: R, second: R) -> R {
+    fn apply_real<R: Real>(self, first: R, second: R) -> R {
         match self {
             Function::Abs => crate::abs(first),
             Function::Sign => crate::sign(first),

@@ -99,7 +99,7 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
         base: select_pair(steep, constant_pair(HALF_PI), flat_base),
         direction: steep(-turned, turned),
     };
-    let (n, d) = comparable(steep(width, height), steep(height, width));
+    let (n, d) = scale_to_range(steep(width, height), steep(height, width));
     let value = angle.plus_arctan(n, d).copysign(y);
     let value = R::select_equal(x, x, value, x);
     R::select_equal(y, y, value, y)
@@ -197,18 +197,18 @@ impl<R: Real> Octant<R> {
 }
 
 /// Factor `2^-30`, for which three times the largest double stays finite.
-const DOWN: f64 = 1.0 / (1_u64 << 30) as f64;
+const SCALE_DOWN: f64 = 1.0 / (1_u64 << 30) as f64;
 /// Factor `2^120`, which makes any subnormal normal.
-const UP: f64 = (1_u128 << 120) as f64;
+const SCALE_UP: f64 = (1_u128 << 120) as f64;
 
 /// Scales `(n, d)`, `0 <= n <= d`, to a range in which products with small constants neither overflow nor
 /// lose bits. The ratio is unchanged; that of infinities becomes 1, that of zeros 0.
 #[inline(always)]
-fn comparable<R: Real>(n: R, d: R) -> (R, R) {
+fn scale_to_range<R: Real>(n: R, d: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let infinity = R::constant(f64::INFINITY);
-    let (huge, down) = (R::constant(1e300), R::constant(DOWN));
-    let (small, up) = (R::constant(1e-270), R::constant(UP));
+    let (huge, down) = (R::constant(1e300), R::constant(SCALE_DOWN));
+    let (small, up) = (R::constant(1e-270), R::constant(SCALE_UP));
     let scale = R::select_less(huge, d, down, R::select_less(d, small, up, one));
     let n_at_infinity = R::select_equal(n, infinity, one, zero);
     let d_scaled = R::select_equal(d, zero, one, d * scale);

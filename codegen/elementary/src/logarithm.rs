@@ -3,7 +3,7 @@
 //! `x = 2^k m` with `m` in `[sqrt(1/2), sqrt 2)`, `f = m - 1`, `s = f/(2 + f)`:
 //! `ln x = k ln 2 + 2 artanh s`.
 
-use crate::approximation::{polynomial, take_apart};
+use crate::approximation::{polynomial, split_exponent};
 use crate::exponential::{LN_2_HIGH, LN_2_LOW};
 use crate::pair::{Pair, exact_product, exact_square, ordered_sum, quotient};
 use crate::real::Real;
@@ -41,7 +41,7 @@ const ONE_THIRD: Pair<f64> = Pair {
 /// Largest error measured: 0.81 ulp.
 #[inline]
 pub fn ln<R: Real>(x: R) -> R {
-    let (k, m) = centred(x);
+    let (k, m) = centre_significand(x);
     let f = m - R::constant(1.0);
     let s = f / (R::constant(2.0) + f);
     let z = s * s;
@@ -58,7 +58,7 @@ pub fn ln<R: Real>(x: R) -> R {
 #[inline(always)]
 pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
     let one = R::constant(1.0);
-    let (k, m) = centred(x);
+    let (k, m) = centre_significand(x);
     let sum = m + one;
     let denominator = Pair {
         high: sum,
@@ -75,7 +75,7 @@ pub(crate) fn logarithm_pair<R: Real>(x: R) -> Pair<R> {
     let low = fraction.low * two + k * R::constant(LN_2_LOW);
     ordered_sum(k * R::constant(LN_2_HIGH), fraction.high * two)
         .plus_low(low)
-        .normalised()
+        .normalise()
 }
 
 /// Computes `artanh(s) - s` as a pair.
@@ -97,10 +97,10 @@ fn product<R: Real>(a: Pair<R>, b: Pair<R>) -> Pair<R> {
 
 /// Returns `(k, m)` with `x = 2^k m`, `m` in `(sqrt(1/2), sqrt 2]`.
 #[inline(always)]
-fn centred<R: Real>(x: R) -> (R, R) {
+fn centre_significand<R: Real>(x: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let root_two = R::constant(core::f64::consts::SQRT_2);
-    let (m, k) = take_apart(x);
+    let (m, k) = split_exponent(x);
     let raised = R::select_less(root_two, m, one, zero);
     let factor = R::select_less(root_two, m, R::constant(0.5), one);
     (k + raised, m * factor)

@@ -24,7 +24,7 @@ impl<R: Real> Pair<R> {
     /// Rounds the leading part from the whole value, after the low part has grown (but not beyond the leading
     /// part).
     #[inline(always)]
-    pub fn normalised(self) -> Self {
+    pub fn normalise(self) -> Self {
         ordered_sum(self.high, self.low)
     }
 
@@ -65,7 +65,7 @@ const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
 
 /// Splits `a` into halves of at most 26 bits each (Veltkamp); `|a| < 2^996`.
 #[inline(always)]
-fn halves<R: Real>(a: R) -> Pair<R> {
+fn split_halves<R: Real>(a: R) -> Pair<R> {
     let scaled = a * R::constant(SPLITTER);
     let high = scaled - (scaled - a);
     Pair {
@@ -77,7 +77,7 @@ fn halves<R: Real>(a: R) -> Pair<R> {
 /// Returns `a b` and its rounding error, exact without overflow and underflow.
 #[inline(always)]
 pub(crate) fn exact_product<R: Real>(a: R, b: R) -> Pair<R> {
-    let (x, y) = (halves(a), halves(b));
+    let (x, y) = (split_halves(a), split_halves(b));
     let high = a * b;
     let rest = ((x.high * y.high - high) + x.high * y.low) + x.low * y.high;
     Pair {
@@ -89,7 +89,7 @@ pub(crate) fn exact_product<R: Real>(a: R, b: R) -> Pair<R> {
 /// Returns `a^2` and its rounding error, exact without overflow and underflow.
 #[inline(always)]
 pub(crate) fn exact_square<R: Real>(a: R) -> Pair<R> {
-    let x = halves(a);
+    let x = split_halves(a);
     let high = a * a;
     let cross = x.high * x.low;
     Pair {

@@ -41,7 +41,7 @@ struct Key {
 }
 
 impl Key {
-    fn of(operation: Operation) -> Key {
+    fn new(operation: Operation) -> Key {
         let mut operands = Vec::new();
         operation.map_operands(|i| {
             operands.push(i);
@@ -64,7 +64,7 @@ impl Key {
 fn emit(operation: Operation) -> Traced {
     RECORDER.with_borrow_mut(|recorder| {
         let Recorder { operations, known } = recorder;
-        let index = *known.entry(Key::of(operation)).or_insert_with(|| {
+        let index = *known.entry(Key::new(operation)).or_insert_with(|| {
             operations.push(operation);
             operations.len() - 1
         });

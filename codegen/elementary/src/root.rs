@@ -3,7 +3,7 @@
 //! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, two Newton steps, one step with the exact
 //! remainder, and a final comparison of the exact remainder with half a unit in the last place.
 
-use crate::approximation::{nearest_integer, polynomial, take_apart};
+use crate::approximation::{nearest_integer, polynomial, split_exponent};
 use crate::pair::{Pair, exact_square};
 use crate::real::Real;
 
@@ -19,7 +19,7 @@ const INVERSE_ROOT: [f64; 7] = [
 ];
 
 /// Unit in the last place of a number in `[1, 2)`.
-const LAST_PLACE: f64 = f64::EPSILON;
+const UNIT_IN_LAST_PLACE: f64 = f64::EPSILON;
 
 /// Computes the square root, correctly rounded; NaN for negative arguments, `-0` for `-0`.
 #[inline]
@@ -37,7 +37,7 @@ pub fn sqrt<R: Real>(x: R) -> R {
 pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     let zero = R::constant(0.0);
     let centred = Centred::new(x);
-    let root = centred.root().normalised();
+    let root = centred.root().normalise();
     let high = R::select_less(zero, x, root.high * centred.scale, x);
     Pair {
         high: R::select_less(x, zero, R::constant(f64::NAN), high),
@@ -56,7 +56,7 @@ impl<R: Real> Centred<R> {
     #[inline(always)]
     fn new(x: R) -> Self {
         let half = R::constant(0.5);
-        let (significand, exponent) = take_apart(x);
+        let (significand, exponent) = split_exponent(x);
         let halved = nearest_integer(exponent * half - R::constant(0.25));
         let odd = exponent - (halved + halved);
         let m = significand * (odd + R::constant(1.0));
@@ -86,7 +86,7 @@ impl<R: Real> Centred<R> {
     #[inline(always)]
     fn rounded_root(&self) -> R {
         let root = self.root().round();
-        let last_place = R::constant(LAST_PLACE);
+        let last_place = R::constant(UNIT_IN_LAST_PLACE);
         let threshold = root * last_place;
         let left = self.remainder(root);
         let not_above = R::select_less(-threshold, left, root, root - last_place);

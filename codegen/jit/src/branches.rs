@@ -6,7 +6,7 @@ use cranelift_codegen::ir::condcodes::FloatCC;
 use eomgen_elementary::{Kernel, Operation};
 
 /// Smallest number of operations in an arm with a branch.
-const WORTH: usize = 8;
+const MIN_ARM_OPERATIONS: usize = 8;
 
 /// Arm of the selection with this index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +40,8 @@ impl Branches {
                 continue;
             };
             for (root, taken) in [(choice.then, true), (choice.otherwise, false)] {
-                let members = alone(kernel, &users, selection, root);
-                if members.len() >= WORTH {
+                let members = exclusive_operations(kernel, &users, selection, root);
+                if members.len() >= MIN_ARM_OPERATIONS {
                     for member in members {
                         owners[member].get_or_insert(Arm { selection, taken });
                     }
@@ -51,14 +51,19 @@ impl Branches {
         Self { owners }
     }
 
-    pub(crate) fn at(&self, selection: usize) -> bool {
+    pub(crate) fn is_branch(&self, selection: usize) -> bool {
         let mut arms = self.owners.iter().flatten();
         arms.any(|arm| arm.selection == selection)
     }
 }
 
 /// Returns the operations with no other use than `root`, an arm of `selection`.
-fn alone(kernel: &Kernel, users: &[Vec<usize>], selection: usize, root: usize) -> Vec<usize> {
+fn exclusive_operations(
+    kernel: &Kernel,
+    users: &[Vec<usize>],
+    selection: usize,
+    root: usize,
+) -> Vec<usize> {
     let mut inside = vec![false; selection];
     for place in (0..=root).rev() {
         inside[place] = if place == root {

@@ -8,7 +8,7 @@ use crate::lanes::Lanes;
 use crate::stage::Writer;
 
 /// Kernel under construction.
-struct Written<'k> {
+struct WrittenValues<'k> {
     kernel: &'k Kernel,
     branches: &'k Branches,
     /// Arguments, in both lanes.
@@ -25,18 +25,18 @@ impl Writer<'_, '_, '_> {
         branches: &Branches,
         arguments: &[Value],
     ) -> Value {
-        let mut written = Written {
+        let mut written = WrittenValues {
             kernel,
             branches,
             arguments,
             values: vec![arguments[0]; kernel.operations.len()],
         };
-        self.owned_by(&mut written, None);
-        self.known(&written, kernel.outputs[0])
+        self.write_operations_of(&mut written, None);
+        self.computed_value(&written, kernel.outputs[0])
     }
 
     /// Writes the operations of an arm, or those of no arm.
-    fn owned_by(&mut self, written: &mut Written<'_>, owner: Option<Arm>) {
+    fn write_operations_of(&mut self, written: &mut WrittenValues<'_>, owner: Option<Arm>) {
         for place in 0..written.kernel.operations.len() {
             let operation = written.kernel.operations[place];
             if written.branches.owners[place] != owner
@@ -45,10 +45,12 @@ impl Writer<'_, '_, '_> {
                 continue;
             }
             let value = match Choice::of(operation) {
-                Some(choice) if written.branches.at(place) => self.branch(written, place, &choice),
+                Some(choice) if written.branches.is_branch(place) => {
+                    self.branch(written, place, &choice)
+                }
                 _ => {
                     operation.map_operands(|operand| {
-                        written.values[operand] = self.known(written, operand);
+                        written.values[operand] = self.computed_value(written, operand);
                         operand
                     });
                     let values = &written.values;
@@ -60,30 +62,35 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Returns a computed value. Literals are read again: one read in an arm is unknown outside.
-    fn known(&mut self, written: &Written<'_>, place: usize) -> Value {
+    fn computed_value(&mut self, written: &WrittenValues<'_>, place: usize) -> Value {
         match written.kernel.operations[place] {
             Operation::Constant(number) => self.literal(number, Lanes::Two),
             _ => written.values[place],
         }
     }
 
-    fn branch(&mut self, written: &mut Written<'_>, selection: usize, choice: &Choice) -> Value {
+    fn branch(
+        &mut self,
+        written: &mut WrittenValues<'_>,
+        selection: usize,
+        choice: &Choice,
+    ) -> Value {
         let [then, otherwise, after] = [(); 3].map(|()| self.builder.create_block());
         let result = self.builder.append_block_param(after, types::F64X2);
         let [left, right] = [choice.left, choice.right].map(|side| {
-            let side = self.known(written, side);
-            self.ins().extractlane(side, 0)
+            let side = self.computed_value(written, side);
+            self.instructions().extractlane(side, 0)
         });
-        let holds = self.ins().fcmp(choice.condition, left, right);
-        self.ins().brif(holds, then, &[], otherwise, &[]);
+        let holds = self.instructions().fcmp(choice.condition, left, right);
+        self.instructions().brif(holds, then, &[], otherwise, &[]);
         for (block, root, taken) in [
             (then, choice.then, true),
             (otherwise, choice.otherwise, false),
         ] {
             self.builder.switch_to_block(block);
-            self.owned_by(written, Some(Arm { selection, taken }));
-            let value = self.known(written, root);
-            self.ins().jump(after, &[BlockArg::from(value)]);
+            self.write_operations_of(written, Some(Arm { selection, taken }));
+            let value = self.computed_value(written, root);
+            self.instructions().jump(after, &[BlockArg::from(value)]);
         }
         self.builder.switch_to_block(after);
         result

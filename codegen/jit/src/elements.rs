@@ -3,7 +3,7 @@
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Value, types};
 use eomgen_codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 
-use crate::lanes::{Array, At, Lanes, SHORT, pairs};
+use crate::lanes::{Array, ElementRef, Lanes, MAX_REGISTER_VECTOR, pairs};
 use crate::stage::Writer;
 
 /// Returns the flags of a memory access; every address is inside the caller's memory.
@@ -22,17 +22,18 @@ fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
 }
 
 impl Writer<'_, '_, '_> {
-    pub fn load(&mut self, array: Array, at: At) -> Value {
-        let address = self.moved(array.base, at);
+    pub fn load(&mut self, array: Array, at: ElementRef) -> Value {
+        let address = self.offset_address(array.base, at);
         let offset = self.bytes(array.start + at.element);
         let flags = flags(at.lanes, array.constant);
-        self.ins().load(at.lanes.kind(), flags, address, offset)
+        self.instructions()
+            .load(at.lanes.kind(), flags, address, offset)
     }
 
-    pub fn store(&mut self, value: Value, array: Array, at: At) {
-        let address = self.moved(array.base, at);
+    pub fn store(&mut self, value: Value, array: Array, at: ElementRef) {
+        let address = self.offset_address(array.base, at);
         let offset = self.bytes(array.start + at.element);
-        self.ins()
+        self.instructions()
             .store(flags(at.lanes, false), value, address, offset);
     }
 
@@ -41,9 +42,9 @@ impl Writer<'_, '_, '_> {
         (numbers * 8) as i32
     }
 
-    fn moved(&mut self, base: Value, at: At) -> Value {
+    fn offset_address(&mut self, base: Value, at: ElementRef) -> Value {
         match at.moving {
-            Some(moving) => self.ins().iadd(base, moving),
+            Some(moving) => self.instructions().iadd(base, moving),
             None => base,
         }
     }
@@ -51,16 +52,16 @@ impl Writer<'_, '_, '_> {
     /// Returns a literal in every lane.
     pub fn literal(&mut self, value: f64, lanes: Lanes) -> Value {
         if lanes == Lanes::One && value.to_bits() == 0 {
-            return self.ins().f64const(0.0);
+            return self.instructions().f64const(0.0);
         }
         let array = Array {
             base: self.call.memory,
             start: self.shared.first_constant() + self.shared.constants.place(value),
             constant: true,
         };
-        let at = At {
+        let at = ElementRef {
             lanes,
-            ..At::one(0)
+            ..ElementRef::single(0)
         };
         self.load(array, at)
     }
@@ -76,13 +77,13 @@ impl Writer<'_, '_, '_> {
 
     /// Binds a number, in one lane and in both.
     pub fn bind(&mut self, id: ValueId, value: Value) {
-        let both = self.ins().splat(types::F64X2, value);
+        let both = self.instructions().splat(types::F64X2, value);
         self.numbers.insert(id, value);
         self.broadcast.insert(id, both);
     }
 
     /// Returns an element of a value; a scalar is repeated.
-    pub fn element(&mut self, id: ValueId, at: At) -> Value {
+    pub fn element(&mut self, id: ValueId, at: ElementRef) -> Value {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, at.lanes);
         }
@@ -91,12 +92,12 @@ impl Writer<'_, '_, '_> {
         }
         match self.array(id) {
             Some(array) => self.load(array, at),
-            None => self.computed(id, at),
+            None => self.compute_element(id, at),
         }
     }
 
     /// Computes an element from those of the operands.
-    pub fn computed(&mut self, id: ValueId, at: At) -> Value {
+    pub fn compute_element(&mut self, id: ValueId, at: ElementRef) -> Value {
         let lanes = at.lanes;
         let of = |writer: &mut Self, operand: ValueId| writer.element(operand, at);
         let both = |writer: &mut Self, operands: [ValueId; 2]| operands.map(|id| of(writer, id));
@@ -111,7 +112,7 @@ impl Writer<'_, '_, '_> {
             }
             Op::Subtract(a, b) => {
                 let [a, b] = both(self, [a, b]);
-                self.ins().fsub(a, b)
+                self.instructions().fsub(a, b)
             }
             Op::Multiply(a, b) => {
                 let [a, b] = both(self, [a, b]);
@@ -119,7 +120,7 @@ impl Writer<'_, '_, '_> {
             }
             Op::Divide(a, b) => {
                 let [a, b] = both(self, [a, b]);
-                self.ins().fdiv(a, b)
+                self.instructions().fdiv(a, b)
             }
             Op::Power(a, b) => {
                 let operands = both(self, [a, b]);
@@ -143,12 +144,12 @@ impl Writer<'_, '_, '_> {
                 self.pivot_reciprocal(a, lanes)
             }
             // Leaves and matrix operations, which `stage` must bind.
-            other => self.misplaced(id, &other, lanes),
+            other => self.misplaced_value(id, &other, lanes),
         }
     }
 
     /// Records a value that cannot be computed by elements, so that the compilation fails.
-    fn misplaced(&mut self, id: ValueId, op: &Op, lanes: Lanes) -> Value {
+    fn misplaced_value(&mut self, id: ValueId, op: &Op, lanes: Lanes) -> Value {
         let place = id.index();
         self.defect = Some(format!(
             "value {place}, {op:?}, cannot be computed by elements"
@@ -159,13 +160,13 @@ impl Writer<'_, '_, '_> {
     /// Computes a + b.
     pub fn add(&mut self, a: Value, b: Value) -> Value {
         let (a, b) = self.load_last(a, b);
-        self.ins().fadd(a, b)
+        self.instructions().fadd(a, b)
     }
 
     /// Computes a b.
     pub fn multiply(&mut self, a: Value, b: Value) -> Value {
         let (a, b) = self.load_last(a, b);
-        self.ins().fmul(a, b)
+        self.instructions().fmul(a, b)
     }
 
     /// Orders two operands so that one read from memory is last: it is then read when it is used and occupies
@@ -182,28 +183,28 @@ impl Writer<'_, '_, '_> {
     /// Flips the sign bit.
     pub fn negate(&mut self, a: Value, lanes: Lanes) -> Value {
         match lanes {
-            Lanes::One => self.ins().fneg(a),
+            Lanes::One => self.instructions().fneg(a),
             Lanes::Two => {
                 let sign = self.literal(-0.0, lanes);
-                self.ins().bxor(a, sign)
+                self.instructions().bxor(a, sign)
             }
         }
     }
 
     /// Computes a vector into memory.
     pub fn fill(&mut self, id: ValueId, array: Array, length: usize) {
-        self.each(length, |writer, at| {
-            let value = writer.computed(id, at);
+        self.loop_over_elements(length, |writer, at| {
+            let value = writer.compute_element(id, at);
             writer.store(value, array, at);
         });
     }
 
     /// Computes a vector of at most [`SHORT`] elements into registers.
     pub fn keep(&mut self, id: ValueId, length: usize) {
-        debug_assert!(length <= SHORT);
+        debug_assert!(length <= MAX_REGISTER_VECTOR);
         let mut registers = Vec::new();
-        self.each(length, |writer, at| {
-            registers.push(writer.computed(id, at));
+        self.loop_over_elements(length, |writer, at| {
+            registers.push(writer.compute_element(id, at));
         });
         self.registers.insert(id, registers);
     }
@@ -215,13 +216,13 @@ impl Writer<'_, '_, '_> {
         let first = length.min(PARTIAL_SUMS);
         let mut partial: Vec<Value> = pairs(0, first).map(|at| self.element(vector, at)).collect();
         let turns = length / PARTIAL_SUMS - usize::from(length >= PARTIAL_SUMS);
-        partial = self.turns(turns, PARTIAL_SUMS, partial, |writer, moving, partial| {
+        partial = self.loop_turns(turns, PARTIAL_SUMS, partial, |writer, moving, partial| {
             let pairs = (0..PARTIAL_SUMS).step_by(2).zip(partial);
             pairs
                 .map(|(element, sum)| {
-                    let at = At::two(Some(moving), PARTIAL_SUMS + element);
+                    let at = ElementRef::pair(Some(moving), PARTIAL_SUMS + element);
                     let element = writer.element(vector, at);
-                    writer.ins().fadd(*sum, element)
+                    writer.instructions().fadd(*sum, element)
                 })
                 .collect()
         });
@@ -229,11 +230,11 @@ impl Writer<'_, '_, '_> {
             let element = self.element(vector, at);
             let sum = &mut partial[at.element % PARTIAL_SUMS / 2];
             *sum = match at.lanes {
-                Lanes::Two => self.ins().fadd(*sum, element),
+                Lanes::Two => self.instructions().fadd(*sum, element),
                 Lanes::One => {
-                    let first = self.ins().extractlane(*sum, 0);
+                    let first = self.instructions().extractlane(*sum, 0);
                     let first = self.add(first, element);
-                    self.ins().insertlane(*sum, first, 0)
+                    self.instructions().insertlane(*sum, first, 0)
                 }
             };
         }
@@ -247,9 +248,9 @@ impl Writer<'_, '_, '_> {
             sums.push(match at.lanes {
                 Lanes::One => *register,
                 Lanes::Two => {
-                    let left = self.ins().extractlane(*register, 0);
-                    let right = self.ins().extractlane(*register, 1);
-                    self.ins().fadd(left, right)
+                    let left = self.instructions().extractlane(*register, 0);
+                    let right = self.instructions().extractlane(*register, 1);
+                    self.instructions().fadd(left, right)
                 }
             });
         }
@@ -257,7 +258,7 @@ impl Writer<'_, '_, '_> {
             sums = sums
                 .chunks(2)
                 .map(|neighbours| match *neighbours {
-                    [left, right] => self.ins().fadd(left, right),
+                    [left, right] => self.instructions().fadd(left, right),
                     _ => neighbours[0],
                 })
                 .collect();

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 use eomgen_codegen::program::Arguments;
-use eomgen_codegen::program::evaluator::{Law, law};
+use eomgen_codegen::program::evaluator::{PiecewiseFunction, piecewise_function};
 use eomgen_elementary::{Function as Elementary, Kernel, Operation};
 use eomgen_model_spec::model::Function;
 
@@ -28,10 +28,10 @@ impl Writer<'_, '_, '_> {
     /// Computes a function of the expression language.
     pub fn call(&mut self, function: Function, arguments: Arguments<Value>, lanes: Lanes) -> Value {
         match arguments {
-            Arguments::One(one) => self.in_two_lanes(one, lanes, |writer, [a]| {
+            Arguments::One(one) => self.combine_lanes(one, lanes, |writer, [a]| {
                 writer.law(function, [a, a], &[a], lanes)
             }),
-            Arguments::Two(two) => self.in_two_lanes(two, lanes, |writer, two| {
+            Arguments::Two(two) => self.combine_lanes(two, lanes, |writer, two| {
                 writer.law(function, two, &two, lanes)
             }),
         }
@@ -45,55 +45,57 @@ impl Writer<'_, '_, '_> {
         arguments: &[Value],
         lanes: Lanes,
     ) -> Value {
-        match law(function) {
-            Law::Elementary(elementary) => self.elementary(elementary, arguments, lanes),
-            Law::Deadzone => self.deadzone(p, b),
-            Law::Contact => self.contact(p, b),
-            Law::Above => self.above(p),
+        match piecewise_function(function) {
+            PiecewiseFunction::Elementary(elementary) => {
+                self.elementary(elementary, arguments, lanes)
+            }
+            PiecewiseFunction::Deadzone => self.deadzone(p, b),
+            PiecewiseFunction::Contact => self.contact(p, b),
+            PiecewiseFunction::Above => self.above(p),
         }
     }
 
     /// Computes a^b.
     pub fn power(&mut self, base_and_exponent: [Value; 2], lanes: Lanes) -> Value {
-        self.in_two_lanes(base_and_exponent, lanes, |writer, both| {
+        self.combine_lanes(base_and_exponent, lanes, |writer, both| {
             writer.elementary(Elementary::Pow, &both, lanes)
         })
     }
 
     /// Computes the square root of one number if a > 0, else NaN.
     pub fn positive_root(&mut self, a: Value) -> Value {
-        self.in_two_lanes([a], Lanes::One, |writer, [a]| {
+        self.combine_lanes([a], Lanes::One, |writer, [a]| {
             let root = writer.elementary(Elementary::Sqrt, &[a], Lanes::One);
-            writer.where_positive(a, root)
+            writer.select_if_positive(a, root)
         })
     }
 
     /// Computes 1/a if a > 0, else NaN.
     pub fn pivot_reciprocal(&mut self, a: Value, lanes: Lanes) -> Value {
-        self.in_two_lanes([a], lanes, |writer, [a]| {
+        self.combine_lanes([a], lanes, |writer, [a]| {
             let one = writer.literal(1.0, Lanes::Two);
-            let reciprocal = writer.ins().fdiv(one, a);
-            writer.where_positive(a, reciprocal)
+            let reciprocal = writer.instructions().fdiv(one, a);
+            writer.select_if_positive(a, reciprocal)
         })
     }
 
     /// Computes `if a > b { then } else { otherwise }`.
     pub fn select(&mut self, operands: [Value; 4], lanes: Lanes) -> Value {
-        self.in_two_lanes(operands, lanes, |writer, [a, b, then, otherwise]| {
+        self.combine_lanes(operands, lanes, |writer, [a, b, then, otherwise]| {
             let mask = writer.compare(FloatCC::GreaterThan, a, b);
-            writer.ins().bitselect(mask, then, otherwise)
+            writer.instructions().bitselect(mask, then, otherwise)
         })
     }
 
-    fn where_positive(&mut self, a: Value, value: Value) -> Value {
+    fn select_if_positive(&mut self, a: Value, value: Value) -> Value {
         let zero = self.literal(0.0, Lanes::Two);
         let nan = self.literal(f64::NAN, Lanes::Two);
         let mask = self.compare(FloatCC::GreaterThan, a, zero);
-        self.ins().bitselect(mask, value, nan)
+        self.instructions().bitselect(mask, value, nan)
     }
 
     /// Runs `body` on two lanes; a single number is in both.
-    fn in_two_lanes<const N: usize>(
+    fn combine_lanes<const N: usize>(
         &mut self,
         arguments: [Value; N],
         lanes: Lanes,
@@ -102,25 +104,25 @@ impl Writer<'_, '_, '_> {
         if lanes == Lanes::Two {
             return body(self, arguments);
         }
-        let both = arguments.map(|argument| self.ins().splat(types::F64X2, argument));
+        let both = arguments.map(|argument| self.instructions().splat(types::F64X2, argument));
         let value = body(self, both);
-        self.ins().extractlane(value, 0)
+        self.instructions().extractlane(value, 0)
     }
 
     /// Sets all bits of a lane if the comparison is true.
     fn compare(&mut self, condition: FloatCC, a: Value, b: Value) -> Value {
-        let mask = self.ins().fcmp(condition, a, b);
+        let mask = self.instructions().fcmp(condition, a, b);
         self.as_numbers(mask)
     }
 
     fn as_numbers(&mut self, bits: Value) -> Value {
         let flags = MemFlagsData::new();
-        self.ins().bitcast(types::F64X2, flags, bits)
+        self.instructions().bitcast(types::F64X2, flags, bits)
     }
 
     fn as_bits(&mut self, numbers: Value) -> Value {
         let flags = MemFlagsData::new();
-        self.ins().bitcast(types::I64X2, flags, numbers)
+        self.instructions().bitcast(types::I64X2, flags, numbers)
     }
 
     fn bits(&mut self, bits: u64) -> Value {
@@ -130,33 +132,33 @@ impl Writer<'_, '_, '_> {
     /// Computes f_k of Eq. (7).
     fn deadzone(&mut self, p: Value, b: Value) -> Value {
         let sign = self.bits(SIGN);
-        let minus_b = self.ins().bxor(b, sign);
+        let minus_b = self.instructions().bxor(b, sign);
         let above = self.compare(FloatCC::GreaterThan, p, b);
-        let held = self.ins().bitselect(above, b, p);
+        let held = self.instructions().bitselect(above, b, p);
         let below = self.compare(FloatCC::GreaterThan, minus_b, held);
-        let held = self.ins().bitselect(below, minus_b, held);
-        self.ins().fsub(p, held)
+        let held = self.instructions().bitselect(below, minus_b, held);
+        self.instructions().fsub(p, held)
     }
 
     /// Computes the indicator of |p| > b, Eq. (8).
     fn contact(&mut self, p: Value, b: Value) -> Value {
         let [above, below] = self.beyond(p, b);
-        let either = self.ins().bor(above, below);
+        let either = self.instructions().bor(above, below);
         let one = self.literal(1.0, Lanes::Two);
-        self.ins().band(either, one)
+        self.instructions().band(either, one)
     }
 
     fn above(&mut self, p: Value) -> Value {
         let zero = self.literal(0.0, Lanes::Two);
         let one = self.literal(1.0, Lanes::Two);
         let positive = self.compare(FloatCC::GreaterThan, p, zero);
-        self.ins().band(positive, one)
+        self.instructions().band(positive, one)
     }
 
     /// Returns the masks of p > b and of p < -b.
     fn beyond(&mut self, p: Value, b: Value) -> [Value; 2] {
         let sign = self.bits(SIGN);
-        let minus_b = self.ins().bxor(b, sign);
+        let minus_b = self.instructions().bxor(b, sign);
         [
             self.compare(FloatCC::GreaterThan, p, b),
             self.compare(FloatCC::LessThan, p, minus_b),
@@ -200,16 +202,16 @@ impl Writer<'_, '_, '_> {
             O::Input(place) => inputs[place],
             O::Constant(value) => self.literal(value, Lanes::Two),
             O::Add(a, b) => self.add(value(a), value(b)),
-            O::Sub(a, b) => self.ins().fsub(value(a), value(b)),
+            O::Sub(a, b) => self.instructions().fsub(value(a), value(b)),
             O::Mul(a, b) => self.multiply(value(a), value(b)),
-            O::Div(a, b) => self.ins().fdiv(value(a), value(b)),
+            O::Div(a, b) => self.instructions().fdiv(value(a), value(b)),
             O::Neg(a) => self.negate(value(a), Lanes::Two),
             O::Abs(a) => self.magnitude(value(a)),
             O::CopySign { magnitude, sign } => {
                 let magnitude = self.magnitude(value(magnitude));
                 let mask = self.bits(SIGN);
-                let sign = self.ins().band(value(sign), mask);
-                self.ins().bor(magnitude, sign)
+                let sign = self.instructions().band(value(sign), mask);
+                self.instructions().bor(magnitude, sign)
             }
             O::SelectLess {
                 left,
@@ -218,7 +220,8 @@ impl Writer<'_, '_, '_> {
                 otherwise,
             } => {
                 let mask = self.compare(FloatCC::LessThan, value(left), value(right));
-                self.ins().bitselect(mask, value(then), value(otherwise))
+                self.instructions()
+                    .bitselect(mask, value(then), value(otherwise))
             }
             O::SelectEqual {
                 left,
@@ -227,41 +230,42 @@ impl Writer<'_, '_, '_> {
                 otherwise,
             } => {
                 let mask = self.compare(FloatCC::Equal, value(left), value(right));
-                self.ins().bitselect(mask, value(then), value(otherwise))
+                self.instructions()
+                    .bitselect(mask, value(then), value(otherwise))
             }
             O::PowerOfTwo(a) => {
                 let aligner = self.literal(ALIGNER + 1023.0, Lanes::Two);
-                let sum = self.ins().fadd(value(a), aligner);
+                let sum = self.instructions().fadd(value(a), aligner);
                 let bits = self.as_bits(sum);
-                let bits = self.ins().ishl_imm_u(bits, 52);
+                let bits = self.instructions().ishl_imm_u(bits, 52);
                 self.as_numbers(bits)
             }
             O::Exponent(a) => self.exponent(value(a)),
             O::Significand(a) => {
                 let mantissa = self.bits(MANTISSA);
                 let one = self.literal(1.0, Lanes::Two);
-                let field = self.ins().band(value(a), mantissa);
-                self.ins().bor(field, one)
+                let field = self.instructions().band(value(a), mantissa);
+                self.instructions().bor(field, one)
             }
         }
     }
 
     fn magnitude(&mut self, a: Value) -> Value {
         let mask = self.bits(!SIGN);
-        self.ins().band(a, mask)
+        self.instructions().band(a, mask)
     }
 
     /// Converts the exponent field exactly to a number, through the mantissa of 2^52.
     fn exponent(&mut self, a: Value) -> Value {
         let bits = self.as_bits(a);
-        let field = self.ins().ushr_imm_u(bits, 52);
+        let field = self.instructions().ushr_imm_u(bits, 52);
         let field = self.as_numbers(field);
         let mask = self.bits(EXPONENT);
-        let field = self.ins().band(field, mask);
+        let field = self.instructions().band(field, mask);
         let aligner = self.literal(ALIGNER, Lanes::Two);
-        let shifted = self.ins().bor(field, aligner);
-        let number = self.ins().fsub(shifted, aligner);
+        let shifted = self.instructions().bor(field, aligner);
+        let number = self.instructions().fsub(shifted, aligner);
         let bias = self.literal(1023.0, Lanes::Two);
-        self.ins().fsub(number, bias)
+        self.instructions().fsub(number, bias)
     }
 }

@@ -3,7 +3,7 @@
 use cranelift_codegen::ir::{Type, Value, types};
 
 /// Largest length of an unrolled vector in registers: it uses four of the sixteen registers.
-pub const SHORT: usize = 8;
+pub const MAX_REGISTER_VECTOR: usize = 8;
 
 /// Number of neighbouring elements in one register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Lanes {
 
 /// One element, or two neighbouring ones.
 #[derive(Clone, Copy, Debug)]
-pub struct At {
+pub struct ElementRef {
     /// Bytes that a loop adds.
     pub moving: Option<Value>,
     /// Element in the first turn of the loop.
@@ -23,9 +23,9 @@ pub struct At {
     pub lanes: Lanes,
 }
 
-impl At {
+impl ElementRef {
     /// Refers to one element.
-    pub fn one(element: usize) -> Self {
+    pub fn single(element: usize) -> Self {
         Self {
             moving: None,
             element,
@@ -34,7 +34,7 @@ impl At {
     }
 
     /// Refers to an element and the next one.
-    pub fn two(moving: Option<Value>, element: usize) -> Self {
+    pub fn pair(moving: Option<Value>, element: usize) -> Self {
         Self {
             moving,
             element,
@@ -44,12 +44,12 @@ impl At {
 }
 
 /// Returns the elements `from..to` in pairs, with a single one at the end if the count is odd.
-pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
+pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = ElementRef> {
     (from..to).step_by(2).map(move |element| {
         if element + 1 < to {
-            At::two(None, element)
+            ElementRef::pair(None, element)
         } else {
-            At::one(element)
+            ElementRef::single(element)
         }
     })
 }

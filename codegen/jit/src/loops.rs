@@ -3,30 +3,38 @@
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 
-use crate::lanes::{At, SHORT, pairs};
+use crate::lanes::{ElementRef, MAX_REGISTER_VECTOR, pairs};
 use crate::stage::Writer;
 
 /// Number of elements in a turn of a loop.
-const TURN: usize = 4;
+const ELEMENTS_PER_TURN: usize = 4;
 
 impl Writer<'_, '_, '_> {
     /// Writes `step` for the elements `0..length`.
-    pub fn each(&mut self, length: usize, mut step: impl FnMut(&mut Self, At)) {
-        let turns = if length > SHORT { length / TURN } else { 0 };
-        self.turns(turns, TURN, Vec::new(), |writer, moving, _| {
-            for element in (0..TURN).step_by(2) {
-                step(writer, At::two(Some(moving), element));
+    pub fn loop_over_elements(
+        &mut self,
+        length: usize,
+        mut step: impl FnMut(&mut Self, ElementRef),
+    ) {
+        let turns = if length > MAX_REGISTER_VECTOR {
+            length / ELEMENTS_PER_TURN
+        } else {
+            0
+        };
+        self.loop_turns(turns, ELEMENTS_PER_TURN, Vec::new(), |writer, moving, _| {
+            for element in (0..ELEMENTS_PER_TURN).step_by(2) {
+                step(writer, ElementRef::pair(Some(moving), element));
             }
             Vec::new()
         });
-        for at in pairs(turns * TURN, length) {
+        for at in pairs(turns * ELEMENTS_PER_TURN, length) {
             step(self, at);
         }
     }
 
     /// Writes a loop of `turns` turns over `turn` elements each, which carries pairs of numbers. An argument
     /// of `body` is the number of bytes passed so far.
-    pub fn turns(
+    pub fn loop_turns(
         &mut self,
         turns: usize,
         turn: usize,
@@ -44,14 +52,16 @@ impl Writer<'_, '_, '_> {
             .collect();
         let zero = self.index(0);
         let enter = arguments(zero, &first);
-        self.ins().jump(head, &enter);
+        self.instructions().jump(head, &enter);
         self.builder.switch_to_block(head);
         let carried = body(self, moving, &carried);
-        let next = self.ins().iadd_imm_u(moving, (turn * 8) as i64);
+        let next = self.instructions().iadd_imm_u(moving, (turn * 8) as i64);
         let bound = (turns * turn * 8) as i64;
-        let again = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, next, bound);
+        let again = self
+            .instructions()
+            .icmp_imm_u(IntCC::UnsignedLessThan, next, bound);
         let back = arguments(next, &carried);
-        self.ins().brif(again, head, &back, exit, &[]);
+        self.instructions().brif(again, head, &back, exit, &[]);
         self.builder.switch_to_block(exit);
         carried
     }
@@ -73,15 +83,15 @@ impl Writer<'_, '_, '_> {
             })
             .collect();
         let enter = arguments(from, first);
-        self.ins().jump(head, &enter);
+        self.instructions().jump(head, &enter);
         self.builder.switch_to_block(head);
-        let more = self.ins().icmp(IntCC::SignedLessThan, index, to);
-        self.ins().brif(more, inside, &[], exit, &[]);
+        let more = self.instructions().icmp(IntCC::SignedLessThan, index, to);
+        self.instructions().brif(more, inside, &[], exit, &[]);
         self.builder.switch_to_block(inside);
         let after = body(self, index, &carried);
-        let next = self.ins().iadd_imm_u(index, 1);
+        let next = self.instructions().iadd_imm_u(index, 1);
         let back = arguments(next, &after);
-        self.ins().jump(head, &back);
+        self.instructions().jump(head, &back);
         self.builder.switch_to_block(exit);
         carried
     }
@@ -98,7 +108,7 @@ impl Writer<'_, '_, '_> {
     }
 
     pub fn index(&mut self, value: usize) -> Value {
-        self.ins().iconst(types::I64, value as i64)
+        self.instructions().iconst(types::I64, value as i64)
     }
 }
 

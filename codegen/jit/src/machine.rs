@@ -65,7 +65,7 @@ pub struct Machine {
 /// A processor architecture that Cranelift does not support, a program that is too large, and a value that
 /// cannot be computed in its place.
 pub fn compile(program: &Program) -> Result<Machine, CompileError> {
-    let places = Places::of(program);
+    let places = Places::new(program);
     let mut shared = Shared {
         program,
         places: &places,
@@ -211,7 +211,7 @@ impl Machine {
 }
 
 impl MachineCode for Machine {
-    fn room(&self) -> &[f64] {
+    fn initial_memory(&self) -> &[f64] {
         &self.room
     }
 

@@ -5,7 +5,7 @@ use cranelift_codegen::ir::{InstBuilder, Value, types};
 use eomgen_codegen::program::{Extent, Op, ScaledValue, ValueId};
 
 use crate::lanes::Array;
-use crate::lanes::{At, Lanes};
+use crate::lanes::{ElementRef, Lanes};
 use crate::stage::Writer;
 
 /// Matrix in memory, row by row; a scalar is repeated.
@@ -19,7 +19,7 @@ struct Matrix {
 impl Writer<'_, '_, '_> {
     /// Computes a matrix operation into its place.
     pub fn matrix_operation(&mut self, id: ValueId) {
-        let out = self.shaped(id, self.place(id));
+        let out = self.matrix_of_shape(id, self.place(id));
         match &self.program.value(id).op {
             Op::Apply {
                 matrix,
@@ -48,7 +48,7 @@ impl Writer<'_, '_, '_> {
         }
     }
 
-    fn shaped(&self, id: ValueId, array: Array) -> Matrix {
+    fn matrix_of_shape(&self, id: ValueId, array: Array) -> Matrix {
         let (rows, columns) = match self.program.value(id).extent {
             Extent::Matrix(rows, columns) => (rows, columns),
             other => (other.length(), 1),
@@ -62,29 +62,31 @@ impl Writer<'_, '_, '_> {
 
     fn matrix(&self, id: ValueId) -> Matrix {
         let array = self.array(id).unwrap_or_else(|| self.place(id));
-        self.shaped(id, array)
+        self.matrix_of_shape(id, array)
     }
 
     /// Returns element (row, column), in one lane or with its right neighbour.
-    fn entry(&mut self, matrix: Matrix, row: Value, column: At) -> Value {
+    fn entry(&mut self, matrix: Matrix, row: Value, column: ElementRef) -> Value {
         let array = self.row(matrix, row);
         self.load(array, column)
     }
 
     fn row(&mut self, matrix: Matrix, row: Value) -> Array {
-        let bytes = self.ins().imul_imm_u(row, (matrix.columns * 8) as i64);
-        let base = self.ins().iadd(matrix.array.base, bytes);
+        let bytes = self
+            .instructions()
+            .imul_imm_u(row, (matrix.columns * 8) as i64);
+        let base = self.instructions().iadd(matrix.array.base, bytes);
         Array {
             base,
             ..matrix.array
         }
     }
 
-    fn indexed(&mut self, index: Value) -> At {
-        let moving = self.ins().imul_imm_u(index, 8);
-        At {
+    fn element_at(&mut self, index: Value) -> ElementRef {
+        let moving = self.instructions().imul_imm_u(index, 8);
+        ElementRef {
             moving: Some(moving),
-            ..At::one(0)
+            ..ElementRef::single(0)
         }
     }
 
@@ -93,12 +95,12 @@ impl Writer<'_, '_, '_> {
         if self.program.value(id).extent == Extent::Scalar {
             return self.number(id, lanes);
         }
-        let at = self.indexed(index);
+        let at = self.element_at(index);
         let array = self.matrix(id).array;
         let value = self.load(array, at);
         match lanes {
             Lanes::One => value,
-            Lanes::Two => self.ins().splat(types::F64X2, value),
+            Lanes::Two => self.instructions().splat(types::F64X2, value),
         }
     }
 
@@ -112,7 +114,7 @@ impl Writer<'_, '_, '_> {
         let zero = self.literal(0.0, lanes);
         let sums = self.count(count, &[zero], |writer, index, sums| {
             let summand = summand(writer, index);
-            vec![writer.ins().fadd(sums[0], summand)]
+            vec![writer.instructions().fadd(sums[0], summand)]
         });
         sums[0]
     }
@@ -120,11 +122,11 @@ impl Writer<'_, '_, '_> {
     fn apply(&mut self, out: Matrix, matrix: ValueId, transposed: bool, vector: ValueId) {
         let matrix = self.matrix(matrix);
         if transposed {
-            self.each(out.rows, |writer, at| {
+            self.loop_over_elements(out.rows, |writer, at| {
                 let total = writer.sum(matrix.rows, at.lanes, |writer, g| {
                     let entry = writer.entry(matrix, g, at);
                     let factor = writer.vector_element(vector, g, at.lanes);
-                    writer.ins().fmul(entry, factor)
+                    writer.instructions().fmul(entry, factor)
                 });
                 writer.store(total, out.array, at);
             });
@@ -133,12 +135,12 @@ impl Writer<'_, '_, '_> {
         self.count(out.rows, &[], |writer, i, _| {
             let row = writer.row(matrix, i);
             let total = writer.sum(matrix.columns, Lanes::One, |writer, c| {
-                let at = writer.indexed(c);
+                let at = writer.element_at(c);
                 let entry = writer.load(row, at);
                 let factor = writer.vector_element(vector, c, Lanes::One);
-                writer.ins().fmul(entry, factor)
+                writer.instructions().fmul(entry, factor)
             });
-            let at = writer.indexed(i);
+            let at = writer.element_at(i);
             writer.store(total, out.array, at);
             Vec::new()
         });
@@ -148,15 +150,15 @@ impl Writer<'_, '_, '_> {
         let (left, right) = (self.matrix(left), self.matrix(right));
         self.count(out.rows, &[], |writer, r, _| {
             let row = writer.row(out, r);
-            let place = writer.indexed(r);
-            writer.each(out.columns, |writer, at| {
+            let place = writer.element_at(r);
+            writer.loop_over_elements(out.columns, |writer, at| {
                 let total = writer.sum(left.rows, at.lanes, |writer, g| {
                     let entry = writer.entry(left, g, place);
                     let factor = writer.vector_element(weight, g, Lanes::One);
-                    let weighted = writer.ins().fmul(entry, factor);
-                    let weighted = writer.in_lanes(weighted, at.lanes);
+                    let weighted = writer.instructions().fmul(entry, factor);
+                    let weighted = writer.broadcast(weighted, at.lanes);
                     let other = writer.entry(right, g, at);
-                    writer.ins().fmul(weighted, other)
+                    writer.instructions().fmul(weighted, other)
                 });
                 writer.store(total, row, at);
             });
@@ -164,22 +166,22 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    fn in_lanes(&mut self, number: Value, lanes: Lanes) -> Value {
+    fn broadcast(&mut self, number: Value, lanes: Lanes) -> Value {
         match lanes {
             Lanes::One => number,
-            Lanes::Two => self.ins().splat(types::F64X2, number),
+            Lanes::Two => self.instructions().splat(types::F64X2, number),
         }
     }
 
     fn gram_diagonal(&mut self, out: Matrix, [left, weight, right]: [ValueId; 3]) {
         let (left, right) = (self.matrix(left), self.matrix(right));
-        self.each(out.rows, |writer, at| {
+        self.loop_over_elements(out.rows, |writer, at| {
             let total = writer.sum(left.rows, at.lanes, |writer, g| {
                 let entry = writer.entry(left, g, at);
                 let factor = writer.vector_element(weight, g, at.lanes);
-                let weighted = writer.ins().fmul(entry, factor);
+                let weighted = writer.instructions().fmul(entry, factor);
                 let other = writer.entry(right, g, at);
-                writer.ins().fmul(weighted, other)
+                writer.instructions().fmul(weighted, other)
             });
             writer.store(total, out.array, at);
         });
@@ -192,17 +194,17 @@ impl Writer<'_, '_, '_> {
         outer: &[(ValueId, ValueId)],
         matrices: &[ScaledValue],
     ) {
-        self.each(out.rows * out.columns, |writer, at| {
+        self.loop_over_elements(out.rows * out.columns, |writer, at| {
             let zero = writer.literal(0.0, at.lanes);
             writer.store(zero, out.array, at);
         });
         if let Some(diagonal) = diagonal {
             self.count(out.columns, &[], |writer, r, _| {
                 let row = writer.row(out, r);
-                let at = writer.indexed(r);
+                let at = writer.element_at(r);
                 let zero = writer.literal(0.0, Lanes::One);
                 let element = writer.vector_element(diagonal, r, Lanes::One);
-                let sum = writer.ins().fadd(zero, element);
+                let sum = writer.instructions().fadd(zero, element);
                 writer.store(sum, row, at);
                 Vec::new()
             });
@@ -213,17 +215,17 @@ impl Writer<'_, '_, '_> {
         self.count(out.rows, &[], |writer, r, _| {
             let row = writer.row(out, r);
             writer.count(out.columns, &[], |writer, c, _| {
-                let at = writer.indexed(c);
+                let at = writer.element_at(c);
                 let mut sum = writer.load(row, at);
                 for (u, v) in outer {
                     let u = writer.vector_element(*u, r, Lanes::One);
                     let v = writer.vector_element(*v, c, Lanes::One);
-                    let product = writer.ins().fmul(u, v);
-                    sum = writer.ins().fadd(sum, product);
+                    let product = writer.instructions().fmul(u, v);
+                    sum = writer.instructions().fadd(sum, product);
                 }
                 for scaled in matrices {
-                    let product = writer.scaled(scaled, r, c);
-                    sum = writer.ins().fadd(sum, product);
+                    let product = writer.scaled_entry(scaled, r, c);
+                    sum = writer.instructions().fadd(sum, product);
                 }
                 writer.store(sum, row, at);
                 Vec::new()
@@ -233,15 +235,15 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Computes (row_r * matrix_rc) * column_c.
-    fn scaled(&mut self, scaled: &ScaledValue, r: Value, c: Value) -> Value {
+    fn scaled_entry(&mut self, scaled: &ScaledValue, r: Value, c: Value) -> Value {
         let matrix = self.matrix(scaled.matrix);
         let (row, column) = if scaled.transposed { (c, r) } else { (r, c) };
-        let at = self.indexed(column);
+        let at = self.element_at(column);
         let entry = self.entry(matrix, row, at);
         let left = self.vector_element(scaled.row, r, Lanes::One);
         let right = self.vector_element(scaled.column, c, Lanes::One);
-        let product = self.ins().fmul(left, entry);
-        self.ins().fmul(product, right)
+        let product = self.instructions().fmul(left, entry);
+        self.instructions().fmul(product, right)
     }
 
     /// Computes L of L L^T = matrix row by row; the upper part of its place is always 0.
@@ -249,20 +251,20 @@ impl Writer<'_, '_, '_> {
         let matrix = self.matrix(matrix);
         self.count(out.rows, &[], |writer, r, _| {
             let (row, given) = (writer.row(out, r), writer.row(matrix, r));
-            let diagonal = writer.indexed(r);
+            let diagonal = writer.element_at(r);
             let zero = writer.index(0);
             writer.range((zero, r), &[], |writer, c, _| {
                 let column = writer.row(out, c);
-                let at = writer.indexed(c);
+                let at = writer.element_at(c);
                 let rest = writer.load(given, at);
-                let rest = writer.less_products(rest, (zero, c), (row, column));
+                let rest = writer.subtract_products(rest, (zero, c), (row, column));
                 let pivot = writer.load(column, at);
-                let entry = writer.ins().fdiv(rest, pivot);
+                let entry = writer.instructions().fdiv(rest, pivot);
                 writer.store(entry, row, at);
                 Vec::new()
             });
             let rest = writer.load(given, diagonal);
-            let rest = writer.less_products(rest, (zero, r), (row, row));
+            let rest = writer.subtract_products(rest, (zero, r), (row, row));
             let root = writer.positive_root(rest);
             writer.store(root, row, diagonal);
             Vec::new()
@@ -270,17 +272,17 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Computes rest - left_k right_k for every k in order.
-    fn less_products(
+    fn subtract_products(
         &mut self,
         rest: Value,
         bounds: (Value, Value),
         (left, right): (Array, Array),
     ) -> Value {
         let rests = self.range(bounds, &[rest], |writer, k, rests| {
-            let at = writer.indexed(k);
+            let at = writer.element_at(k);
             let (left, right) = (writer.load(left, at), writer.load(right, at));
-            let product = writer.ins().fmul(left, right);
-            vec![writer.ins().fsub(rests[0], product)]
+            let product = writer.instructions().fmul(left, right);
+            vec![writer.instructions().fsub(rests[0], product)]
         });
         rests[0]
     }
@@ -290,7 +292,7 @@ impl Writer<'_, '_, '_> {
         let given = given.then(|| self.matrix(right));
         let factor = self.matrix(factor);
         self.count(out.columns, &[], |writer, column, _| {
-            let column = writer.indexed(column);
+            let column = writer.element_at(column);
             let first = writer.index(0);
             let size = writer.index(factor.rows);
             writer.count(factor.rows, &[], |writer, r, _| {
@@ -304,8 +306,8 @@ impl Writer<'_, '_, '_> {
             });
             writer.count(factor.rows, &[], |writer, behind, _| {
                 let last = writer.index(factor.rows - 1);
-                let r = writer.ins().isub(last, behind);
-                let next = writer.ins().iadd_imm_u(r, 1);
+                let r = writer.instructions().isub(last, behind);
+                let next = writer.instructions().iadd_imm_u(r, 1);
                 let rest = writer.entry(out, r, column);
                 let of = |_: &mut Self, k| (k, r);
                 writer.substitute(out, factor, (r, column), rest, (next, size), of);
@@ -320,22 +322,22 @@ impl Writer<'_, '_, '_> {
         &mut self,
         out: Matrix,
         factor: Matrix,
-        (r, column): (Value, At),
+        (r, column): (Value, ElementRef),
         rest: Value,
         bounds: (Value, Value),
         of: impl Fn(&mut Self, Value) -> (Value, Value),
     ) {
         let rests = self.range(bounds, &[rest], |writer, k, rests| {
             let (row, place) = of(writer, k);
-            let at = writer.indexed(place);
+            let at = writer.element_at(place);
             let entry = writer.entry(factor, row, at);
             let known = writer.entry(out, k, column);
-            let product = writer.ins().fmul(entry, known);
-            vec![writer.ins().fsub(rests[0], product)]
+            let product = writer.instructions().fmul(entry, known);
+            vec![writer.instructions().fsub(rests[0], product)]
         });
-        let at = self.indexed(r);
+        let at = self.element_at(r);
         let pivot = self.entry(factor, r, at);
-        let solved = self.ins().fdiv(rests[0], pivot);
+        let solved = self.instructions().fdiv(rests[0], pivot);
         let row = self.row(out, r);
         self.store(solved, row, column);
     }

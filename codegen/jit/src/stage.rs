@@ -18,7 +18,7 @@ use eomgen_model_spec::ids::FieldId;
 
 use crate::branches::Branches;
 use crate::constants::Constants;
-use crate::lanes::{Array, At, Lanes, SHORT};
+use crate::lanes::{Array, ElementRef, Lanes, MAX_REGISTER_VECTOR};
 use crate::plan::{Plan, Task, is_elementwise};
 
 /// Data shared by the functions of a program.
@@ -104,7 +104,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         }
     }
 
-    pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'f> {
+    pub(crate) fn instructions(&mut self) -> FuncInstBuilder<'_, 'f> {
         self.builder.ins()
     }
 
@@ -188,7 +188,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             start,
             constant: true,
         };
-        Some(self.load(array, At::one(0)))
+        Some(self.load(array, ElementRef::single(0)))
     }
 
     /// Returns the array of a value that is in memory.
@@ -249,12 +249,12 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
                 self.matrix_operation(id);
                 self.stored.insert(id);
                 if value.extent == Extent::Scalar {
-                    let number = self.load(self.place(id), At::one(0));
+                    let number = self.load(self.place(id), ElementRef::single(0));
                     self.bind(id, number);
                 }
             }
             _ if value.extent == Extent::Scalar => {
-                let number = self.computed(id, At::one(0));
+                let number = self.compute_element(id, ElementRef::single(0));
                 self.bind_and_store(id, number);
             }
             _ => self.vector(id, length),
@@ -266,14 +266,14 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         if self.plan.task != Task::Prepare && self.plan.wanted.contains(&id) {
             let number = self.number(id, Lanes::One);
             let place = self.place(id);
-            self.store(number, place, At::one(0));
+            self.store(number, place, ElementRef::single(0));
         }
     }
 
     fn copy_vector(&mut self, id: ValueId, length: usize) {
         if self.plan.roots.contains(&id) && self.plan.wanted.contains(&id) {
             let place = self.place(id);
-            self.each(length, |writer, at| {
+            self.loop_over_elements(length, |writer, at| {
                 let value = writer.element(id, at);
                 writer.store(value, place, at);
             });
@@ -284,7 +284,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         self.bind(id, number);
         if self.plan.wanted.contains(&id) {
             let place = self.place(id);
-            self.store(number, place, At::one(0));
+            self.store(number, place, ElementRef::single(0));
             self.stored.insert(id);
         }
     }
@@ -298,10 +298,10 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             return;
         }
         let place = self.place(id);
-        if length <= SHORT && self.plan.task != Task::Prepare {
+        if length <= MAX_REGISTER_VECTOR && self.plan.task != Task::Prepare {
             self.keep(id, length);
             if wanted {
-                self.each(length, |writer, at| {
+                self.loop_over_elements(length, |writer, at| {
                     let value = writer.element(id, at);
                     writer.store(value, place, at);
                 });
@@ -326,7 +326,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             start: 0,
             constant: false,
         };
-        self.each(degrees, |writer, at| {
+        self.loop_over_elements(degrees, |writer, at| {
             let velocity = writer.load(velocities, at);
             writer.store(velocity, out, at);
         });
@@ -334,16 +334,16 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         for (row, id) in scalars.iter().enumerate() {
             let number = self.number(*id, Lanes::One);
             out.start = degrees + row;
-            self.store(number, out, At::one(0));
+            self.store(number, out, ElementRef::single(0));
         }
         for (place, id) in self.program.first_order_rates.iter().enumerate() {
             let number = self.number(*id, Lanes::One);
             out.start = 2 * degrees + place;
-            self.store(number, out, At::one(0));
+            self.store(number, out, ElementRef::single(0));
         }
         for (field, id) in FieldId::first(modal.len()).zip(modal) {
             out.start = degrees + self.program.mode_offset(field);
-            self.each(self.program.fields[field].order, |writer, at| {
+            self.loop_over_elements(self.program.fields[field].order, |writer, at| {
                 let value = writer.element(*id, at);
                 writer.store(value, out, at);
             });

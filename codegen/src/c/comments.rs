@@ -1,6 +1,6 @@
 //! Documentation as C comments. Text from a specification cannot end a comment.
 
-use super::names::of_item;
+use super::names::item_name;
 use crate::program::Program;
 
 pub(super) fn comment(lines: &[String]) -> String {
@@ -18,7 +18,7 @@ pub(super) fn comment(lines: &[String]) -> String {
 }
 
 /// Splits the generator's documentation into lines; links in brackets become C names.
-pub(super) fn linked(program: &Program, lines: &str) -> Vec<String> {
+pub(super) fn resolve_links(program: &Program, lines: &str) -> Vec<String> {
     let mut text = String::with_capacity(lines.len());
     let mut rest = lines;
     while let Some((before, after)) = rest.split_once("[`") {
@@ -26,7 +26,7 @@ pub(super) fn linked(program: &Program, lines: &str) -> Vec<String> {
             break;
         };
         text.push_str(before);
-        text.push_str(&format!("`{}`", of_item(program, item)));
+        text.push_str(&format!("`{}`", item_name(program, item)));
         rest = after;
     }
     text.push_str(rest);

@@ -5,15 +5,15 @@ use super::expression::{initialiser, number};
 use super::functions::functions;
 use super::header::{documentation, header, lists};
 use super::jacobians;
-use super::names::{WORDS, named};
+use super::names::{WORDS, fill_template};
 use super::regimes::regime;
 use super::stages::definition;
-use super::types::filling;
+use super::types::fill_functions;
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
-    EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, nonzeros, observables, rates,
-    rates_in_regime, requested, stage_roots,
+    EmitError, EmitResult, File, RequiredFunctions, Stage, guards, jacobian_stage, mass_matrix,
+    observables, rates, rates_in_regime, requested_stages, stage_roots,
 };
 
 /// C files of a program.
@@ -31,8 +31,8 @@ pub struct Files {
 /// A name of the program that is a word of C or C++.
 pub fn emit(program: &Program) -> Result<Files, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let mut needed = Needed::default();
-    let filling = filling(&file, &mut needed)?;
+    let mut needed = RequiredFunctions::default();
+    let filling = fill_functions(&file, &mut needed)?;
     let stages = stages(&file, &mut needed)?;
     let header = header(&file, &stages)?;
     let mut defined = filling;
@@ -56,15 +56,15 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
     })
 }
 
-fn stages(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+fn stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
     let mut stages = vec![rates(file, needed)?];
     stages.extend(observables(file, needed)?);
     stages.push(guards(file, needed)?);
     stages.push(mass_matrix(file, needed)?);
     stages.extend(rates_in_regime(file, needed)?);
-    stages.extend(requested(file, needed)?);
+    stages.extend(requested_stages(file, needed)?);
     for jacobian in &file.program.outputs.jacobians {
-        stages.push(nonzeros(file, jacobian, needed)?);
+        stages.push(jacobian_stage(file, jacobian, needed)?);
     }
     Ok(stages)
 }
@@ -72,7 +72,7 @@ fn stages(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
 /// Writes the first lines of the source. Clang contracts by default and obeys the pragma; gcc needs its
 /// option.
 fn opening(program: &Program) -> String {
-    named(
+    fill_template(
         program,
         &"#include \"HEADER\"\n\
          #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
@@ -86,7 +86,7 @@ fn opening(program: &Program) -> String {
     )
 }
 
-fn tables(file: &File<'_>) -> Emitted<String> {
+fn tables(file: &File<'_>) -> EmitResult<String> {
     let program = file.program;
     let mut roots = stage_roots(program);
     roots.extend(&program.pivots);
@@ -116,7 +116,7 @@ fn tables(file: &File<'_>) -> Emitted<String> {
             other => (format!("[{}]", other.length()), initialiser(&values)),
         };
         text += &comment(std::slice::from_ref(&table.doc));
-        let head = named(
+        let head = fill_template(
             program,
             &format!("static const NAME_real NAME_{name}{extents}"),
         );

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::sine_and_cosine::{SineAndCosine, partner};
+use super::sine_and_cosine::{SineAndCosine, find_pair};
 use eomgen_elementary::ROUNDING_ALIGNER;
 
 use crate::program::{PARTIAL_SUMS, Program};
@@ -52,7 +52,7 @@ impl Writer {
             if together.contains(&place) {
                 continue;
             }
-            match partner(&statements[place..]) {
+            match find_pair(&statements[place..]) {
                 Some((ahead, sine_and_cosine)) => {
                     together.insert(place + ahead);
                     text += &self.sine_and_cosine(&sine_and_cosine);
@@ -68,7 +68,7 @@ impl Writer {
         let declared = format!("{} {sine}, {cosine};\n", self.real);
         let argument = self.expression(both.argument);
         declared
-            + &self.called(
+            + &self.call_function(
                 "sin_cos",
                 &[argument, format!("&{sine}"), format!("&{cosine}")],
             )
@@ -77,7 +77,7 @@ impl Writer {
     fn statement(&self, statement: &Statement) -> String {
         let real = &self.real;
         match statement {
-            Statement::Let(name, value) => self.bound(name, value),
+            Statement::Let(name, value) => self.write_definition(name, value),
             Statement::Zeros(name, lengths) => self.zeros(name, lengths),
             Statement::Flag(name) => format!("int {name} = 1;\n"),
             Statement::Assign(place, value) => {
@@ -87,7 +87,7 @@ impl Writer {
                 index,
                 length,
                 lines,
-            } => looped(index, *length, &self.statements(lines)),
+            } => write_loop(index, *length, &self.statements(lines)),
             Statement::Sum {
                 name,
                 length,
@@ -96,7 +96,9 @@ impl Writer {
             Statement::Cholesky { name, matrix, rows } => {
                 let declared = format!("{real} {name}[{rows}][{rows}];\n");
                 let matrix = self.matrix(matrix);
-                declared + &self.called("cholesky", &[rows.to_string(), matrix, first_entry(name)])
+                declared
+                    + &self
+                        .call_function("cholesky", &[rows.to_string(), matrix, first_entry(name)])
             }
             Statement::CholeskySolve {
                 name,
@@ -108,7 +110,7 @@ impl Writer {
         }
     }
 
-    pub(super) fn bound(&self, name: &str, value: &Expression) -> String {
+    pub(super) fn write_definition(&self, name: &str, value: &Expression) -> String {
         let value = self.expression(value);
         assignment(&format!("const {} {name}", self.real), &value)
     }
@@ -130,9 +132,9 @@ impl Writer {
         let count = length.min(PARTIAL_SUMS);
         let mut text = format!("{real} {parts}[{count}];\n");
         let first = assignment(&format!("{parts}[i]"), &self.expression(element));
-        text += &looped("i", count, &first);
+        text += &write_loop("i", count, &first);
         // C adds from left to right, so a sum needs parentheses.
-        let element = self.at(element, Level::Product);
+        let element = self.write_at_level(element, Level::Product);
         let blocks = length / PARTIAL_SUMS;
         let added = |first: &str, part: &str| {
             let at = format!("const int i = {first};\n");
@@ -144,9 +146,9 @@ impl Writer {
         // One block is written without a loop over blocks: gcc then vectorises the partial sums.
         if blocks == 2 {
             let first = format!("{PARTIAL_SUMS} + k");
-            text += &looped("k", PARTIAL_SUMS, &added(&first, "k"));
+            text += &write_loop("k", PARTIAL_SUMS, &added(&first, "k"));
         } else if blocks > 2 {
-            let inner = looped("k", PARTIAL_SUMS, &added("first + k", "k"));
+            let inner = write_loop("k", PARTIAL_SUMS, &added("first + k", "k"));
             let head = format!(
                 "for (int first = {PARTIAL_SUMS}; first < {}; first += {PARTIAL_SUMS}) {{",
                 blocks * PARTIAL_SUMS
@@ -156,7 +158,7 @@ impl Writer {
         let rest = length - blocks * PARTIAL_SUMS;
         if blocks > 0 && rest > 0 {
             let first = format!("{} + k", blocks * PARTIAL_SUMS);
-            text += &looped("k", rest, &added(&first, "k"));
+            text += &write_loop("k", rest, &added(&first, "k"));
         }
         let terms = (0..count).map(|place| format!("{parts}[{place}]"));
         text + &assignment(&format!("const {real} {name}"), &in_pairs(terms.collect()))
@@ -182,30 +184,30 @@ impl Writer {
         let (filled, right) = match (right, columns) {
             (Array::Filled(value, length), _) => {
                 let line = assignment(&format!("{name}[i]"), &self.expression(value));
-                (looped("i", *length, &line), name.to_owned())
+                (write_loop("i", *length, &line), name.to_owned())
             }
             (matrix, Some(_)) => (String::new(), self.matrix(matrix)),
             (vector, None) => (String::new(), self.array(vector)),
         };
         let arguments = [rows.to_string(), count.to_string(), factor, right, solution];
-        declared + &filled + &self.called("cholesky_solve", &arguments)
+        declared + &filled + &self.call_function("cholesky_solve", &arguments)
     }
 
-    fn called(&self, function: &str, arguments: &[String]) -> String {
+    fn call_function(&self, function: &str, arguments: &[String]) -> String {
         call(&format!("{}{function}", self.prefix), arguments) + ";\n"
     }
 
     /// Writes an expression without outer parentheses.
     pub(super) fn expression(&self, expression: &Expression) -> String {
-        self.leveled(expression).0
+        self.write_with_level(expression).0
     }
 
     fn expressions(&self, expressions: &[Expression]) -> Vec<String> {
         expressions.iter().map(|e| self.expression(e)).collect()
     }
 
-    fn at(&self, expression: &Expression, level: Level) -> String {
-        let (text, own) = self.leveled(expression);
+    fn write_at_level(&self, expression: &Expression, level: Level) -> String {
+        let (text, own) = self.write_with_level(expression);
         if own < level {
             format!("({text})")
         } else {
@@ -213,17 +215,20 @@ impl Writer {
         }
     }
 
-    fn leveled(&self, expression: &Expression) -> (String, Level) {
+    fn write_with_level(&self, expression: &Expression) -> (String, Level) {
         let text = match expression {
             Expression::Number(value) => return self.number(*value),
             Expression::Name(name) => name.clone(),
-            Expression::Element(Array::Filled(value, _), _) => return self.leveled(value),
+            Expression::Element(Array::Filled(value, _), _) => return self.write_with_level(value),
             Expression::Element(array, indices) => self.array(array) + &brackets(indices),
             Expression::Field(structure, name) => field(*structure, name),
-            Expression::Shared(coefficient) => return self.leveled(coefficient),
+            Expression::Shared(coefficient) => return self.write_with_level(coefficient),
             Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
             Expression::Negate(a) => {
-                return (format!("-{}", self.at(a, Level::Atom)), Level::Negation);
+                return (
+                    format!("-{}", self.write_at_level(a, Level::Atom)),
+                    Level::Negation,
+                );
             }
             Expression::Call("chosen", parts) => self.conditional(parts),
             Expression::Call(name, parts) => self.function(name, parts),
@@ -233,12 +238,20 @@ impl Writer {
             Expression::Positive(place) => format!("((regime >> {place}) & 1)"),
             Expression::Greater(parts) => {
                 let [a, b] = &**parts;
-                let text = infix(">", self.at(a, Level::Sum), self.at(b, Level::Sum));
+                let text = infix(
+                    ">",
+                    self.write_at_level(a, Level::Sum),
+                    self.write_at_level(b, Level::Sum),
+                );
                 return (text, Level::Comparison);
             }
             Expression::And(parts) => {
                 let [a, b] = &**parts;
-                let text = infix("&&", self.at(a, Level::And), self.at(b, Level::Comparison));
+                let text = infix(
+                    "&&",
+                    self.write_at_level(a, Level::And),
+                    self.write_at_level(b, Level::Comparison),
+                );
                 return (text, Level::And);
             }
             Expression::True => "1".to_owned(),
@@ -254,7 +267,7 @@ impl Writer {
     }
 
     fn binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
-        if let Some(x) = rounded(operator, a, b) {
+        if let Some(x) = rounding_operand(operator, a, b) {
             let function = format!("{}nearest_integer", self.prefix);
             return (call(&function, &[self.expression(x)]), Level::Atom);
         }
@@ -264,14 +277,25 @@ impl Writer {
             Operator::Multiply => ("*", Level::Product, Level::Negation),
             Operator::Divide => ("/", Level::Product, Level::Negation),
         };
-        (infix(sign, self.at(a, level), self.at(b, right)), level)
+        (
+            infix(
+                sign,
+                self.write_at_level(a, level),
+                self.write_at_level(b, right),
+            ),
+            level,
+        )
     }
 
     /// Writes `[a, b, then, otherwise]`: `then` if the comparison of a and b is true, else `otherwise`.
     fn choice(&self, comparison: &str, parts: &[Expression]) -> String {
         match parts {
             [a, b, then, otherwise] => {
-                let condition = infix(comparison, self.at(a, Level::Sum), self.at(b, Level::Sum));
+                let condition = infix(
+                    comparison,
+                    self.write_at_level(a, Level::Sum),
+                    self.write_at_level(b, Level::Sum),
+                );
                 ternary(
                     &condition,
                     &self.expression(then),
@@ -393,7 +417,11 @@ fn index_text(index: &Index) -> String {
 
 /// Returns x if the difference is the rounding x + c - c. It is written as a call, because compilers that may
 /// reorder sums remove both operations.
-fn rounded<'e>(operator: Operator, a: &'e Expression, b: &Expression) -> Option<&'e Expression> {
+fn rounding_operand<'e>(
+    operator: Operator,
+    a: &'e Expression,
+    b: &Expression,
+) -> Option<&'e Expression> {
     let aligner = |e: &Expression| matches!(e, Expression::Number(n) if *n == ROUNDING_ALIGNER);
     match (operator, a) {
         (Operator::Subtract, Expression::Binary(Operator::Add, x, added)) => {
@@ -408,7 +436,7 @@ pub(super) fn call(name: &str, arguments: &[String]) -> String {
     format!("{name}({FLOW}{ZERO}{}{CLOSE})", arguments.join(&separator))
 }
 
-pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
+pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
     let head = format!("for (int {index} = 0; {index} < {length}; ++{index}) {{");
     block(&head, lines, "}")
 }

@@ -2,27 +2,27 @@
 
 use super::comments::comment;
 use super::expression::Writer;
-use super::names::named;
+use super::names::fill_template;
 use crate::program::Program;
 use crate::statements::layout::block;
-use crate::statements::{KernelStatements, Needed, describe_elementary};
+use crate::statements::{KernelStatements, RequiredFunctions, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 
-pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> String {
+pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &str) -> String {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
         elementary.insert(Elementary::Sqrt);
     }
     let mut text = String::new();
     for function in elementary {
-        let call = named(program, &format!("NAME_{}(", function.name()));
+        let call = fill_template(program, &format!("NAME_{}(", function.name()));
         // A sine or cosine that all stages compute as a pair needs no separate function.
         let paired = matches!(function, Elementary::Sin | Elementary::Cos);
         if !paired || stages.contains(&call) {
             text += &elementary_function(program, function);
         }
     }
-    if stages.contains(&named(program, "NAME_sin_cos(")) {
+    if stages.contains(&fill_template(program, "NAME_sin_cos(")) {
         text += &sine_and_cosine(program);
     }
     for (needed, item) in [
@@ -30,26 +30,26 @@ pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> Str
         (needed.contact, CONTACT),
         (needed.above, ABOVE),
         (needed.deadzone_on_side, DEADZONE_ON_SIDE),
-        (needed.touching, TOUCHING),
-        (needed.either, EITHER),
+        (needed.contact_on_side, TOUCHING),
+        (needed.outside_zero_interval, EITHER),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
         (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
     ] {
         if needed {
-            text += &named(program, item);
+            text += &fill_template(program, item);
         }
     }
     let mut primitives = String::new();
     for (name, item) in PRIMITIVES {
-        let call = named(program, &format!("NAME_{name}("));
+        let call = fill_template(program, &format!("NAME_{name}("));
         if text.contains(&call) || stages.contains(&call) {
-            primitives += &named(program, item);
+            primitives += &fill_template(program, item);
         }
     }
     if primitives.is_empty() {
         return text;
     }
-    named(program, BITS) + &primitives + &text
+    fill_template(program, BITS) + &primitives + &text
 }
 
 /// Writes an elementary function, computed in double precision and rounded to the type of numbers.
@@ -87,8 +87,12 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
     );
     let outer = format!("static NAME_real NAME_{name}({}) {{", typed("NAME_real"));
     comment(&[describe_elementary(function).to_owned()])
-        + &block(&named(program, &head), &lines, "}")
-        + &block(&named(program, &outer), &named(program, &rounded), "}")
+        + &block(&fill_template(program, &head), &lines, "}")
+        + &block(
+            &fill_template(program, &outer),
+            &fill_template(program, &rounded),
+            "}",
+        )
 }
 
 /// Writes the joint function of sine and cosine, with the same bits as the separate functions.
@@ -97,14 +101,14 @@ fn sine_and_cosine(program: &Program) -> String {
     let writer = Writer::double(program);
     let mut lines = writer.statements(&kernel.computed);
     for (name, value) in ["sine", "cosine"].iter().zip(kernel.values()) {
-        lines += &named(
+        lines += &fill_template(
             program,
             &format!("*{name} = (NAME_real)({});\n", writer.expression(value)),
         );
     }
     let head = "static void NAME_sin_cos(double x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {";
     comment(&["Sine and cosine for |x| up to 1e9, NaN beyond.".to_owned()])
-        + &block(&named(program, head), &lines, "}")
+        + &block(&fill_template(program, head), &lines, "}")
 }
 
 const BITS: &str = "\

@@ -1,14 +1,14 @@
 //! Header of the emitted C: sizes, names, structures, declarations.
 
-use super::comments::{comment, linked};
+use super::comments::{comment, resolve_links};
 use super::jacobians;
-use super::names::named;
+use super::names::fill_template;
 use super::regimes::{REGIME, regime_head};
 use super::stages::declaration;
 use super::types;
 use super::types::structures;
 use crate::program::Program;
-use crate::statements::{Emitted, File, Stage};
+use crate::statements::{EmitResult, File, Stage};
 
 /// Returns title and origin of a file, by lines.
 pub(super) fn documentation(program: &Program) -> Vec<String> {
@@ -52,10 +52,10 @@ fn notes(program: &Program) -> Vec<String> {
     lines
 }
 
-pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
+pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> EmitResult<String> {
     let program = file.program;
     let mut text = comment(&notes(program));
-    text += &named(
+    text += &fill_template(
         program,
         "#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
@@ -71,7 +71,7 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
         text += &declaration(program, stage);
     }
     if program.outputs.regimes.is_some() {
-        text += &comment(&linked(program, REGIME));
+        text += &comment(&resolve_links(program, REGIME));
         text += &format!("{};\n", regime_head(program, false));
     }
     text += &jacobians::declarations(program);
@@ -111,7 +111,7 @@ fn sizes(file: &File<'_>) -> String {
         ("FIELDS", program.fields.len(), "Number of flexible fields."),
     ] {
         text += &comment(&[doc.to_owned()]);
-        text += &named(program, &format!("#define NAME_{name} {count}\n"));
+        text += &fill_template(program, &format!("#define NAME_{name} {count}\n"));
     }
     for (name, value, doc) in [
         (
@@ -126,7 +126,7 @@ fn sizes(file: &File<'_>) -> String {
         ),
     ] {
         text += &comment(&[doc.to_owned()]);
-        text += &named(program, &format!("#define NAME_{name} \"{value}\"\n"));
+        text += &fill_template(program, &format!("#define NAME_{name} \"{value}\"\n"));
     }
     for (head, _, doc) in lists(program) {
         text += &comment(&[doc.to_owned()]);
@@ -180,7 +180,7 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
             elements.push("0".to_owned());
         }
         let head = format!("const char *const NAME_{name}[{}]", elements.len());
-        lists.push((named(program, &head), elements, doc));
+        lists.push((fill_template(program, &head), elements, doc));
     }
     let mut orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
     if orders.is_empty() {
@@ -188,6 +188,6 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
     }
     let head = format!("const int NAME_orders[{}]", orders.len());
     let doc = "Modal truncation order of each field.";
-    lists.push((named(program, &head), orders, doc));
+    lists.push((fill_template(program, &head), orders, doc));
     lists
 }

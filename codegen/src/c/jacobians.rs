@@ -2,8 +2,8 @@
 
 use super::comments::comment;
 use super::expression::initialiser;
-use super::names::named;
-use super::stages::{GIVEN, head, nested, passed_on};
+use super::names::fill_template;
+use super::stages::{GIVEN, call_stage, head, nest_lines};
 use crate::program::{Jacobian, Output, Program, ValueId};
 use crate::statements::layout::block;
 
@@ -22,7 +22,7 @@ pub(super) fn declarations(program: &Program) -> String {
         text += &format!("{}{};\n", comment(&lines), places_head(program, jacobian));
     }
     if has_linearisation(program) {
-        text += &named(program, LINEARISATION);
+        text += &fill_template(program, LINEARISATION);
         text += &comment(&["Linearisation about a point.".to_owned()]);
         text += &format!("{};\n", linearise_head(program, false));
     }
@@ -37,7 +37,7 @@ pub(super) fn sizes(program: &Program) -> String {
         );
         let name = jacobian.name.to_uppercase();
         let macro_line = format!("#define NAME_{name}_NONZEROS {}\n", jacobian.nonzeros());
-        comment(&[line]) + &named(program, &macro_line)
+        comment(&[line]) + &fill_template(program, &macro_line)
     };
     program.outputs.jacobians.iter().map(size).collect()
 }
@@ -47,7 +47,7 @@ fn has_linearisation(program: &Program) -> bool {
 }
 
 fn places_head(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
-    named(
+    fill_template(
         program,
         &format!(
             "void NAME_{}_places(int *rows, int *columns)",
@@ -66,7 +66,7 @@ pub(super) fn definitions(program: &Program) -> String {
     if program.outputs.jacobians.is_empty() {
         return String::new();
     }
-    let mut text = named(program, PLACES);
+    let mut text = fill_template(program, PLACES);
     for jacobian in &program.outputs.jacobians {
         text += &blocks(program, jacobian);
         let call = format!(
@@ -75,10 +75,10 @@ pub(super) fn definitions(program: &Program) -> String {
             jacobian.entries.len()
         );
         let head = places_head(program, jacobian);
-        text += &block(&format!("{head} {{"), &named(program, &call), "}");
+        text += &block(&format!("{head} {{"), &fill_template(program, &call), "}");
     }
     if has_linearisation(program) {
-        text += &named(program, DENSE);
+        text += &fill_template(program, DENSE);
         let head = linearise_head(program, true);
         text += &block(&format!("{head} {{"), &linearise(program), "}");
     }
@@ -103,12 +103,16 @@ fn blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
         jacobian.name,
         blocks.len()
     );
-    format!("{} = {};\n", named(program, &head), initialiser(&blocks))
+    format!(
+        "{} = {};\n",
+        fill_template(program, &head),
+        initialiser(&blocks)
+    )
 }
 
 fn linearise(program: &Program) -> String {
-    let mut lines = passed_on(program, "rates_into", "about->rates");
-    lines += &passed_on(program, "observables", "about->observables");
+    let mut lines = call_stage(program, "rates_into", "about->rates");
+    lines += &call_stage(program, "observables", "about->observables");
     for (matrix, name) in [
         ("A", "rates_by_state"),
         ("B", "rates_by_inputs"),
@@ -123,9 +127,9 @@ fn linearise(program: &Program) -> String {
         } else {
             ""
         };
-        let mut inner = named(program, &format!("NAME_real nonzeros[{room}]{none};\n"));
-        inner += &passed_on(program, name, "nonzeros");
-        inner += &named(
+        let mut inner = fill_template(program, &format!("NAME_real nonzeros[{room}]{none};\n"));
+        inner += &call_stage(program, name, "nonzeros");
+        inner += &fill_template(
             program,
             &format!(
                 "NAME_dense(NAME_{name}_blocks, {}, nonzeros, {}, {}, &about->{matrix}[0][0]);\n",
@@ -134,7 +138,7 @@ fn linearise(program: &Program) -> String {
                 jacobian.columns.max(1)
             ),
         );
-        lines += &nested("{", &inner, "}");
+        lines += &nest_lines("{", &inner, "}");
     }
     lines
 }

@@ -139,12 +139,12 @@ pub(super) const WORDS: Words = Words {
 };
 
 /// Replaces `NAME_` in a template by the model's name and `_`.
-pub(super) fn named(program: &Program, template: &str) -> String {
+pub(super) fn fill_template(program: &Program, template: &str) -> String {
     template.replace("NAME_", &format!("{}_", program.name))
 }
 
 /// Returns the C name of an item of the emitted Rust.
-pub(super) fn of_item(program: &Program, item: &str) -> String {
+pub(super) fn item_name(program: &Program, item: &str) -> String {
     let name = match item {
         "Coefficients::positive_definite" => return "positive_definite".to_owned(),
         "rates_into" => "rates",

@@ -1,7 +1,7 @@
 //! Function for the number of a state's regime. The rates in a regime are an ordinary stage.
 
-use super::names::named;
-use super::stages::{GIVEN, head, passed_on};
+use super::names::fill_template;
+use super::stages::{GIVEN, call_stage, head};
 use crate::program::{Program, SURFACES_OF_A_REGIME};
 use crate::statements::File;
 use crate::statements::layout::block;
@@ -25,7 +25,7 @@ pub(super) fn regime(file: &File<'_>) -> String {
         let unused = GIVEN.map(|(_, name)| format!("(void){name};\n")).concat();
         return block(&head, &(unused + "return 0;\n"), "}");
     }
-    let declared = named(
+    let declared = fill_template(
         program,
         "NAME_real guards[NAME_GUARDS];\nuint32_t regime = 0;\n",
     );
@@ -35,7 +35,7 @@ pub(super) fn regime(file: &File<'_>) -> String {
     );
     block(
         &head,
-        &(declared + &passed_on(program, "guards", "guards") + &set),
+        &(declared + &call_stage(program, "guards", "guards") + &set),
         "}",
     )
 }

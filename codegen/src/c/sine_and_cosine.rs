@@ -10,12 +10,12 @@ pub(super) struct SineAndCosine<'s> {
 }
 
 /// Returns the distance to the partner of the first statement, if that names a sine or a cosine.
-pub(super) fn partner(statements: &[Statement]) -> Option<(usize, SineAndCosine<'_>)> {
+pub(super) fn find_pair(statements: &[Statement]) -> Option<(usize, SineAndCosine<'_>)> {
     let (first, rest) = statements.split_first()?;
-    let (function, name, argument) = turned(first)?;
+    let (function, name, argument) = sine_or_cosine(first)?;
     let mut rest = rest.iter().enumerate();
     rest.find_map(|(place, statement)| {
-        let (other, other_name, other_argument) = turned(statement)?;
+        let (other, other_name, other_argument) = sine_or_cosine(statement)?;
         if other == function || other_argument != argument {
             return None;
         }
@@ -33,7 +33,7 @@ pub(super) fn partner(statements: &[Statement]) -> Option<(usize, SineAndCosine<
 }
 
 /// Returns function, name and argument of a named sine or cosine.
-fn turned(statement: &Statement) -> Option<(&'static str, &str, &Expression)> {
+fn sine_or_cosine(statement: &Statement) -> Option<(&'static str, &str, &Expression)> {
     match statement {
         Statement::Let(name, Expression::Call(function @ ("sin" | "cos"), arguments)) => {
             Some((*function, name, arguments.first()?))

@@ -1,11 +1,11 @@
 //! Stages as functions: declarations for the header, definitions for the source.
 
-use super::comments::{comment, linked};
-use super::expression::{Writer, assignment, call, looped, place_text};
-use super::names::{named, of_item};
+use super::comments::{comment, resolve_links};
+use super::expression::{Writer, assignment, call, place_text, write_loop};
+use super::names::{fill_template, item_name};
 use crate::program::Program;
 use crate::statements::layout::{BLOCK, CLOSE, DEEPER, SHALLOWER, SPACE, ZERO, ZERO_OUT, block};
-use crate::statements::{Argument, Expression, Index, Outcome, Place, Size, Stage, Used};
+use crate::statements::{Argument, Expression, Index, Outcome, Place, Size, Stage, UsedNames};
 
 /// Returns type and name of each argument of a stage; arrays by their first element.
 fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
@@ -56,13 +56,13 @@ pub(super) fn head(
         } else {
             ""
         };
-        named(program, &format!("{of}{restricted}{name}"))
+        fill_template(program, &format!("{of}{restricted}{name}"))
     });
     let typed: Vec<String> = typed.collect();
     let separator = format!(",{SPACE}");
     format!(
         "{}({BLOCK}{ZERO}{}{ZERO_OUT}{CLOSE})",
-        named(program, result) + &of_item(program, name),
+        fill_template(program, result) + &item_name(program, name),
         typed.join(&separator)
     )
 }
@@ -75,7 +75,7 @@ fn result(stage: &Stage) -> &'static str {
 }
 
 pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
-    let mut lines = linked(program, &stage.doc);
+    let mut lines = resolve_links(program, &stage.doc);
     lines.extend(stage.list.iter().cloned());
     let result = (result(stage), stage.name);
     comment(&lines) + &head(program, result, &arguments(stage), false) + ";\n"
@@ -85,7 +85,7 @@ pub(super) fn definition(program: &Program, stage: Stage) -> String {
     let arguments = arguments(&stage);
     let head = head(program, (result(&stage), stage.name), &arguments, true);
     let writer = Writer::new(program);
-    let mut used = Used::by(&stage.outcome);
+    let mut used = UsedNames::from_outcome(&stage.outcome);
     let written = used.retain(stage.written);
     let computed = used.retain(stage.computed);
     let mut lines = String::new();
@@ -108,14 +108,14 @@ pub(super) fn definition(program: &Program, stage: Stage) -> String {
             };
             places.map(put).collect()
         }
-        Outcome::Array(name, size) => zeroed(program, name, size),
+        Outcome::Array(name, size) => zero_array(program, name, size),
         Outcome::MassMatrix => {
             let degrees = program.degrees_of_freedom();
             let entry = Place::new("values", ["i", "j"].map(Index::Variable));
             let zero = assignment(&place_text(&entry), "0");
-            looped("i", degrees, &looped("j", degrees, &zero))
+            write_loop("i", degrees, &write_loop("j", degrees, &zero))
         }
-        Outcome::ArrayAndInputs(_) => zeroed(program, "product", &Size::States),
+        Outcome::ArrayAndInputs(_) => zero_array(program, "product", &Size::States),
     };
     lines += &writer.statements(&written);
     if let Outcome::ArrayAndInputs(values) = &stage.outcome {
@@ -126,12 +126,12 @@ pub(super) fn definition(program: &Program, stage: Stage) -> String {
     block(&format!("{head} {{"), &lines, "}")
 }
 
-fn zeroed(program: &Program, name: &str, size: &Size) -> String {
+fn zero_array(program: &Program, name: &str, size: &Size) -> String {
     let length = length(program, size);
     if length == 0 {
         return format!("(void){name};\n");
     }
-    looped("i", length, &assignment(&format!("{name}[i]"), "0"))
+    write_loop("i", length, &assignment(&format!("{name}[i]"), "0"))
 }
 
 fn length(program: &Program, size: &Size) -> usize {
@@ -155,13 +155,13 @@ fn length(program: &Program, size: &Size) -> usize {
 }
 
 /// Writes the call of another stage with the same arguments.
-pub(super) fn passed_on(program: &Program, stage: &str, written: &str) -> String {
+pub(super) fn call_stage(program: &Program, stage: &str, written: &str) -> String {
     let given = GIVEN.iter().map(|(_, name)| *name).chain([written]);
     let arguments: Vec<String> = given.map(str::to_owned).collect();
-    call(&of_item(program, stage), &arguments) + ";\n"
+    call(&item_name(program, stage), &arguments) + ";\n"
 }
 
 /// Returns `lines` between an opening and a closing line.
-pub(super) fn nested(opening: &str, lines: &str, closing: &str) -> String {
+pub(super) fn nest_lines(opening: &str, lines: &str, closing: &str) -> String {
     format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
 }

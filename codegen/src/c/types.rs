@@ -1,15 +1,17 @@
 //! Structures of the emitted C, with units, and the functions that fill them.
 
 use super::comments::comment;
-use super::expression::{Writer, assignment, looped, number};
-use super::names::named;
-use super::stages::{head, nested};
+use super::expression::{Writer, assignment, number, write_loop};
+use super::names::fill_template;
+use super::stages::{head, nest_lines};
 use crate::program::describe::describe_value;
 use crate::program::{Extent, Program, Quantity};
 use crate::statements::layout::block;
-use crate::statements::{Emitted, File, Needed, Prepared, Used, preparation, quantity_line};
+use crate::statements::{
+    EmitResult, File, PreparedValue, RequiredFunctions, UsedNames, preparation, quantity_line,
+};
 
-pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
+pub(super) fn structures(file: &File<'_>) -> EmitResult<String> {
     let program = file.program;
     let mut fields = String::new();
     for parameter in &program.parameters {
@@ -30,7 +32,7 @@ pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
         };
         let name = &file.field_names[id];
         fields += &comment(&[describe_value(program, *id)]);
-        fields += &named(program, &format!("NAME_real {name}{extents};\n"));
+        fields += &fill_template(program, &format!("NAME_real {name}{extents};\n"));
     }
     let mut lines = vec![
         "1 if all prepared pivots of the mass matrix are positive and finite, else 0. If it is 0,"
@@ -56,14 +58,14 @@ fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
     } else {
         fields
     };
-    let closing = named(file.program, &format!("}} NAME_{name};"));
-    comment(&[doc.to_owned()]) + &nested("typedef struct {", &fields, &closing)
+    let closing = fill_template(file.program, &format!("}} NAME_{name};"));
+    comment(&[doc.to_owned()]) + &nest_lines("typedef struct {", &fields, &closing)
 }
 
-fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
+fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
     let name = file.words.identifier(&quantity.name)?;
     let doc = comment(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
-    Ok(doc + &named(file.program, &format!("NAME_real {name};\n")))
+    Ok(doc + &fill_template(file.program, &format!("NAME_real {name};\n")))
 }
 
 /// Function that fills a structure: name, arguments by type and name, documentation.
@@ -108,12 +110,15 @@ const FILLING: [Filling; 4] = [
 pub(super) fn declarations(program: &Program) -> String {
     let declared = FILLING.map(|(name, arguments, doc)| {
         let head = head(program, ("void ", name), arguments, false);
-        comment(&[named(program, doc)]) + &format!("{head};\n")
+        comment(&[fill_template(program, doc)]) + &format!("{head};\n")
     });
     declared.concat()
 }
 
-pub(super) fn filling(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
+pub(super) fn fill_functions(
+    file: &File<'_>,
+    needed: &mut RequiredFunctions,
+) -> EmitResult<String> {
     let program = file.program;
     let [defaults, parameters, inputs, prepare] =
         FILLING.map(|(name, arguments, _)| head(program, ("void ", name), arguments, true));
@@ -122,7 +127,7 @@ pub(super) fn filling(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
         let target = format!("parameters->{}", parameter.quantity.name);
         lines += &assignment(&target, &format!("R({})", number(parameter.value)));
     }
-    let mut text = filled(&defaults, "parameters->none = 0;\n", lines);
+    let mut text = write_function(&defaults, "parameters->none = 0;\n", lines);
     let names = program.parameters.iter().map(|p| p.quantity.name.as_str());
     text += &from_array(&parameters, "parameters", names);
     let names = program.inputs.iter().map(|input| input.name.as_str());
@@ -135,10 +140,10 @@ fn from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) ->
         .enumerate()
         .map(|(place, name)| assignment(&format!("{of}->{name}"), &format!("numbers[{place}]")));
     let none = format!("(void)numbers;\n{of}->none = 0;\n");
-    filled(head, &none, lines.collect())
+    write_function(head, &none, lines.collect())
 }
 
-fn filled(head: &str, none: &str, lines: String) -> String {
+fn write_function(head: &str, none: &str, lines: String) -> String {
     let lines = if lines.is_empty() {
         none.to_owned()
     } else {
@@ -147,10 +152,10 @@ fn filled(head: &str, none: &str, lines: String) -> String {
     block(&format!("{head} {{"), &lines, "}")
 }
 
-fn prepared(file: &File<'_>, head: &str, needed: &mut Needed) -> Emitted<String> {
+fn prepared(file: &File<'_>, head: &str, needed: &mut RequiredFunctions) -> EmitResult<String> {
     let program = file.program;
     let prepared = preparation(file, needed)?;
-    let mut used = Used::by_preparation(&prepared);
+    let mut used = UsedNames::from_preparation(&prepared);
     let writer = Writer::new(program);
     let computed = used.retain(prepared.computed);
     let mut lines = String::new();
@@ -161,16 +166,16 @@ fn prepared(file: &File<'_>, head: &str, needed: &mut Needed) -> Emitted<String>
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
         let target = format!("coefficients->{}", file.field_names[id]);
         lines += &match (coefficient, program.value(*id).extent) {
-            (Prepared::Number(value), _) => assignment(&target, &writer.expression(value)),
-            (Prepared::Numbers(array), Extent::Matrix(rows, columns)) => {
+            (PreparedValue::Number(value), _) => assignment(&target, &writer.expression(value)),
+            (PreparedValue::Numbers(array), Extent::Matrix(rows, columns)) => {
                 let from = writer.array(array);
                 let copy = assignment(&format!("{target}[i][j]"), &format!("{from}[i][j]"));
-                looped("i", rows, &looped("j", columns, &copy))
+                write_loop("i", rows, &write_loop("j", columns, &copy))
             }
-            (Prepared::Numbers(array), extent) => {
+            (PreparedValue::Numbers(array), extent) => {
                 let from = writer.array(array);
                 let copy = assignment(&format!("{target}[i]"), &format!("{from}[i]"));
-                looped("i", extent.length(), &copy)
+                write_loop("i", extent.length(), &copy)
             }
         };
     }

@@ -8,35 +8,35 @@ use eomgen_model_spec::variant::ModelError;
 
 use super::dependence::dependent_combination;
 use super::projection::{Place, project};
-use super::rows::{ConstraintGeometry, positive};
+use super::rows::{ConstraintGeometry, positive_or_one};
 use super::vectors::norm;
 
 /// Largest remainder of a dependent row, relative to the row's largest length. The projection reaches a state
 /// to about 1e-6.
-const DEPENDENT: f64 = 1e-5;
+const MAX_DEPENDENT_REMAINDER: f64 = 1e-5;
 
 /// Smallest change of the scaled rows from the initial state to the start of another projection.
-const CHANGE: f64 = 0.1;
+const MIN_ROW_CHANGE: f64 = 0.1;
 
 /// Smallest relative change of a coordinate; smaller ones are hidden by rounding.
-const LEAST_MOVE: f64 = 1e-2;
+const MIN_RELATIVE_MOVE: f64 = 1e-2;
 
 /// Number of states tested in addition to the initial one.
 const OTHER_STATES: u64 = 4;
 
 /// First distance from the initial state, in the metric of the inertias; each next one is four times larger.
 const FIRST_MOVE: f64 = 1e-12;
-const MOVES: i32 = 40;
+const MOVE_COUNT: i32 = 40;
 
 /// Smallest factor of a named constraint, relative to the largest factor.
-const TAKES_PART: f64 = 1e-3;
+const MIN_RELATIVE_FACTOR: f64 = 1e-3;
 
 /// Constraints contradict each other if the residual of their combination exceeds this fraction of the
 /// largest residual.
-const CONTRADICTION: f64 = 0.1;
+const MIN_RELATIVE_RESIDUAL: f64 = 0.1;
 
 /// Residuals below this fraction of the initial ones are rounding errors.
-const KEPT: f64 = 1e-6;
+const MAX_ROUNDING_RESIDUAL: f64 = 1e-6;
 
 /// Rejects constraints that depend on each other at every tested state near the initial one, or that no state
 /// satisfies. `orders` are the truncation orders of the fields.
@@ -64,7 +64,7 @@ pub(crate) fn check_independence(
         return Ok(());
     };
     for seed in 0..OTHER_STATES {
-        let moved = search.moved(state, seed);
+        let moved = search.move_state(state, seed);
         match search.dependence(&moved) {
             Some(other) => found = other,
             None => return Ok(()),
@@ -101,14 +101,14 @@ impl Search<'_> {
         for (largest, residual) in self.largest.iter_mut().zip(residuals) {
             *largest = residual.abs().max(*largest);
         }
-        let scales: Vec<f64> = self.scales.iter().copied().map(positive).collect();
+        let scales: Vec<f64> = self.scales.iter().copied().map(positive_or_one).collect();
         let state = project(self.rows, at(from), &self.holonomic, &scales);
         let scaled = self.scaled_rows(&state);
-        let parts = dependent_combination(&scaled, DEPENDENT)?;
+        let parts = dependent_combination(&scaled, MAX_DEPENDENT_REMAINDER)?;
         let scaled = parts.iter().zip(&self.scales);
         Some(Dependence {
             factors: scaled
-                .map(|(part, scale)| part / positive(*scale))
+                .map(|(part, scale)| part / positive_or_one(*scale))
                 .collect(),
             parts,
             residuals: self.rows.residuals(at(&state).point()),
@@ -121,19 +121,20 @@ impl Search<'_> {
         let mut rows = self.rows.rows(Place { state, inputs }.point());
         for (row, scale) in rows.iter_mut().zip(&mut self.scales) {
             *scale = scale.max(norm(row));
-            row.iter_mut().for_each(|entry| *entry /= positive(*scale));
+            row.iter_mut()
+                .for_each(|entry| *entry /= positive_or_one(*scale));
         }
         rows
     }
 
     /// Returns a state at which the rows differ from those at `state`, in a direction given by `seed`;
     /// `state` itself if the rows are constant.
-    fn moved(&mut self, state: &[f64], seed: u64) -> Vec<f64> {
+    fn move_state(&mut self, state: &[f64], seed: u64) -> Vec<f64> {
         let inputs = self.inputs;
         let inertia = self.rows.inertia(Place { state, inputs }.point());
         let here = self.scaled_rows(state);
         let mut moved = state.to_vec();
-        for power in 0..MOVES {
+        for power in 0..MOVE_COUNT {
             let length = FIRST_MOVE * 4.0_f64.powi(power);
             for (degree, inertia) in inertia.iter().enumerate() {
                 let part = symmetric(seed, degree as u64);
@@ -145,8 +146,8 @@ impl Search<'_> {
             let parts = moved.iter().zip(state);
             let is_seen = parts
                 .filter(|(_, from)| **from != 0.0)
-                .all(|(to, from)| (to - from).abs() > LEAST_MOVE * from.abs() || to == from);
-            if change > CHANGE && is_seen {
+                .all(|(to, from)| (to - from).abs() > MIN_RELATIVE_MOVE * from.abs() || to == from);
+            if change > MIN_ROW_CHANGE && is_seen {
                 return moved;
             }
         }
@@ -178,14 +179,14 @@ impl Dependence {
             .iter()
             .fold(0.0_f64, |most, part| most.max(part.abs()));
         let own = &model.constraints[last];
-        let others = (0..last).filter(|k| self.parts[*k].abs() > TAKES_PART * most);
+        let others = (0..last).filter(|k| self.parts[*k].abs() > MIN_RELATIVE_FACTOR * most);
         let others: Vec<&Constraint> = others.map(|k| &model.constraints[k]).collect();
         let names: Vec<String> = others
             .iter()
             .map(|other| format!("`{}`", other.name))
             .collect();
-        let apart = self.apart(last, began);
-        let (message, label, help) = words(own, &names.join(", "), apart);
+        let apart = self.combined_residual(last, began);
+        let (message, label, help) = message_parts(own, &names.join(", "), apart);
         let found = Diagnostic::error(message)
             .at(own.zero.span, label)
             .help(help);
@@ -197,7 +198,7 @@ impl Dependence {
 
     /// Returns the residual of the combination in the unit of the constraint `last` if the constraints
     /// contradict each other, that is, if the residual is no sum of vanishing residuals.
-    fn apart(&self, last: usize, began: &[f64]) -> Option<f64> {
+    fn combined_residual(&self, last: usize, began: &[f64]) -> Option<f64> {
         let part = |k: usize, residual: f64| self.factors[k] / self.factors[last] * residual;
         let all = 0..=last;
         let apart: f64 = all.clone().map(|k| part(k, self.residuals[k])).sum();
@@ -206,11 +207,13 @@ impl Dependence {
             parts.fold(0.0, f64::max)
         };
         let largest = most(&self.residuals);
-        (apart.abs() > CONTRADICTION * largest && largest > KEPT * most(began)).then_some(apart)
+        (apart.abs() > MIN_RELATIVE_RESIDUAL * largest
+            && largest > MAX_ROUNDING_RESIDUAL * most(began))
+        .then_some(apart)
     }
 }
 
-fn words(
+fn message_parts(
     own: &Constraint,
     others: &str,
     apart: Option<f64>,

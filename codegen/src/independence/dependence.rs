@@ -3,14 +3,14 @@
 use super::vectors::{dot, norm};
 
 /// Remainder of a vector, with the factors of the combination that produces it.
-struct Rest {
+struct Remainder {
     vector: Vec<f64>,
     parts: Vec<f64>,
     size: f64,
 }
 
-impl Rest {
-    fn take_away(&mut self, factor: f64, other: &Self) {
+impl Remainder {
+    fn subtract(&mut self, factor: f64, other: &Self) {
         let entries = self.vector.iter_mut().chain(&mut self.parts);
         for (entry, taken) in entries.zip(other.vector.iter().chain(&other.parts)) {
             *entry -= factor * taken;
@@ -27,11 +27,11 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
             .map(|k| f64::from(u8::from(k == place)))
             .collect()
     };
-    let mut rests: Vec<(usize, Rest)> = rows
+    let mut rests: Vec<(usize, Remainder)> = rows
         .iter()
         .enumerate()
         .map(|(place, row)| {
-            let rest = Rest {
+            let rest = Remainder {
                 vector: row.clone(),
                 parts: unit(place),
                 size: norm(row),
@@ -60,7 +60,7 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
                 let along = dot(&rest.vector, &chosen.vector);
                 // Constraints of different bodies share no coordinate.
                 if along != 0.0 {
-                    rest.take_away(along, &chosen);
+                    rest.subtract(along, &chosen);
                 }
             }
         }

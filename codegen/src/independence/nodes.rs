@@ -1,7 +1,7 @@
 //! Derivatives and residuals of the constraints of a model without fields, computed from graph nodes. No
 //! equations of motion are needed.
 
-use crate::independence::rows::{ConstraintGeometry, positive};
+use crate::independence::rows::{ConstraintGeometry, positive_or_one};
 use crate::mechanics::inertia::point::Point as NodePoint;
 use crate::mechanics::inertia::sweep::Velocities;
 use crate::mechanics::unsolved::Unsolved;
@@ -67,7 +67,7 @@ impl ConstraintGeometry for NodeGeometry<'_> {
         let values = self.values(&self.energy, point);
         let velocities = Velocities::new(&self.model.graph, &self.energy, &values);
         let diagonal = velocities.diagonal(self.coordinates).into_iter();
-        diagonal.map(positive).collect()
+        diagonal.map(positive_or_one).collect()
     }
 
     fn residuals(&mut self, point: Point<'_>) -> Vec<f64> {

@@ -6,7 +6,7 @@ use super::vectors::dot;
 use crate::program::evaluator::Point;
 
 /// Largest number of Newton steps. If rows depend on each other, a step only halves the residuals.
-const MOST_STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 
 /// Added to the diagonal of R R^T: directions with scaled rows shorter than its square root do not move.
 const DAMPING: f64 = 1e-12;
@@ -37,7 +37,7 @@ pub(super) fn project(
     scales: &[f64],
 ) -> Vec<f64> {
     let mut state = place.state.to_vec();
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let here = Place {
             state: &state,
             ..place

@@ -124,7 +124,7 @@ impl ConstraintRows {
         let mut mass = vec![0.0; degrees * degrees];
         self.evaluator.mass_matrix(point, &mut mass);
         let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
-        diagonal.map(positive).collect()
+        diagonal.map(positive_or_one).collect()
     }
 
     /// Returns the residuals of the constraints in SI units.
@@ -151,6 +151,6 @@ impl ConstraintGeometry for ConstraintRows {
 }
 
 /// Returns `size`, or 1 if it is not positive.
-pub(super) fn positive(size: f64) -> f64 {
+pub(super) fn positive_or_one(size: f64) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }

@@ -11,7 +11,7 @@ pub fn norm(vector: &[f64]) -> f64 {
 }
 
 /// Returns the largest magnitude; 0 without entries.
-pub fn largest<'e>(entries: impl IntoIterator<Item = &'e f64>) -> f64 {
+pub fn max_magnitude<'e>(entries: impl IntoIterator<Item = &'e f64>) -> f64 {
     let magnitudes = entries.into_iter().map(|entry| entry.abs());
     magnitudes.fold(0.0, f64::max)
 }

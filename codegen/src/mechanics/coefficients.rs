@@ -9,7 +9,7 @@ use eomgen_model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 
 use crate::mechanics::solve::Accelerations;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
-use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::modal_derivative::ModalDerivative;
@@ -47,14 +47,14 @@ pub enum EquationRow {
 }
 
 /// Derives the named coefficients in the order of the specification.
-pub fn named(
+pub fn derive_coefficients(
     translator: &mut Translator,
     accelerations: &Accelerations,
 ) -> Derived<Vec<NamedCoefficient>> {
     let model = translator.model;
     let mut found = Vec::with_capacity(model.coefficients.len());
     for coefficient in &model.coefficients {
-        let named = one(translator, accelerations, coefficient)?;
+        let named = derive_coefficient(translator, accelerations, coefficient)?;
         translator.push_coefficient(named.value);
         translator.graph.set_name(named.value, &named.name);
         found.push(named);
@@ -62,7 +62,7 @@ pub fn named(
     Ok(found)
 }
 
-fn one(
+fn derive_coefficient(
     translator: &mut Translator,
     accelerations: &Accelerations,
     coefficient: &Coefficient,
@@ -138,8 +138,8 @@ fn scale_factor(graph: &mut Graph, times: NodeId, factor: NodeId) -> NodeId {
 /// switching functions at 0. For `by` = 1, returns the row under these conditions.
 fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     if let Operation::ModeCoordinates(_) | Operation::ModeRates(_) = graph.operation(by) {
-        let at_rest = at_rest_except(graph, row, &[by]);
-        return by_modes(graph, at_rest, by);
+        let at_rest = evaluate_at_rest_except(graph, row, &[by]);
+        return derive_by_modes(graph, at_rest, by);
     }
     let factors: Vec<NodeId> = match graph.operation(by).clone() {
         Operation::Product(factors) => factors.iter().map(|(factor, _)| *factor).collect(),
@@ -148,13 +148,13 @@ fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     };
     let mut result = row;
     for &factor in &factors {
-        result = by_scalar(graph, result, factor);
+        result = derive_by_scalar(graph, result, factor);
     }
-    at_rest_except(graph, result, &[])
+    evaluate_at_rest_except(graph, result, &[])
 }
 
 /// Differentiates a row by modes: a vector for a coordinate's row, a matrix for the rows of modes.
-fn by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
+fn derive_by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     let Some(mut derivative) = ModalDerivative::new(graph, variable) else {
         return graph.zero();
     };
@@ -168,7 +168,7 @@ fn by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
 }
 
 /// Sets every coordinate, rate and switching function to 0, except those in `kept`.
-fn at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
+fn evaluate_at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
     let replacement = |graph: &mut Graph, node: NodeId| {
         if kept.contains(&node) || graph.dependence(node).is_parameter_only() {
             return Some(node);

@@ -53,7 +53,7 @@ impl Constraints {
             let moves = (row.nodes().iter())
                 .any(|entry| translator.graph.dependence(*entry).has(Dependence::RATE));
             if moves {
-                return Err(not_linear(constraint));
+                return Err(nonlinear_error(constraint));
             }
             constraints.rows.push(row);
             constraints.right.push(right);
@@ -92,7 +92,7 @@ fn nonholonomic(
     (row, right)
 }
 
-pub(crate) fn not_linear(constraint: &Constraint) -> DeriveError {
+pub(crate) fn nonlinear_error(constraint: &Constraint) -> DeriveError {
     DeriveError {
         span: constraint.zero.span,
         message: format!(

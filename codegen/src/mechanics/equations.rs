@@ -5,7 +5,7 @@
 use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::{MULTIPLIER, Model, ParameterValue, Term};
 
-use crate::mechanics::coefficients::{NamedCoefficient, named};
+use crate::mechanics::coefficients::{NamedCoefficient, derive_coefficients};
 use crate::mechanics::constraints::{Constraints, reaction_power};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
@@ -13,7 +13,7 @@ use crate::mechanics::impacts::{Impact, impacts};
 use crate::mechanics::kinetic::KineticRows;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
-use crate::mechanics::observed_rates::observed;
+use crate::mechanics::observed_rates::derive_observable;
 use crate::mechanics::rigid_tree::bodies::RigidBodies;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
@@ -88,16 +88,16 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let mut translator = Translator::new(model, orders);
     let derived_parameters = derived_parameters(&mut translator)?;
     let mut terms = Vec::new();
-    let kinetic = total_of(&mut translator, &model.kinetic, "T", &mut terms)?;
-    let potential = total_of(&mut translator, &model.potential, "V", &mut terms)?;
-    let dissipation = total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
+    let kinetic = sum_terms(&mut translator, &model.kinetic, "T", &mut terms)?;
+    let potential = sum_terms(&mut translator, &model.potential, "V", &mut terms)?;
+    let dissipation = sum_terms(&mut translator, &model.dissipation, "R", &mut terms)?;
     let variables = Variables::new(model, orders);
     let KineticRows {
         momenta,
         mass,
         velocity_terms,
         sweep,
-    } = KineticRows::cheapest(&mut translator.graph, &variables, kinetic, potential);
+    } = KineticRows::derive_cheapest(&mut translator.graph, &variables, kinetic, potential);
     name_mass_matrix(&mut translator.graph, model, &mass);
     let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
     let forces = variables.with_potential(&mut translator.graph, &applied, potential);
@@ -133,12 +133,12 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let observables = model
         .observables
         .iter()
-        .map(|o| observed(&mut translator, o, &accelerations.rows))
+        .map(|o| derive_observable(&mut translator, o, &accelerations.rows))
         .collect::<Derived<Vec<NodeId>>>()?;
     for (observable, node) in model.observables.iter().zip(&observables) {
         translator.graph.set_name(*node, &observable.name);
     }
-    let coefficients = named(&mut translator, &accelerations)?;
+    let coefficients = derive_coefficients(&mut translator, &accelerations)?;
     let mut moving = forces.nodes();
     moving.extend(velocity_terms.nodes());
     moving.extend(mass.scalars.iter().flatten());
@@ -154,7 +154,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
     // Last, so that no other equation shares its nodes.
-    let rigid_bodies = RigidBodies::of(&mut translator, &variables, &applied)?;
+    let rigid_bodies = RigidBodies::find(&mut translator, &variables, &applied)?;
     Ok(Equations {
         name: model.name.clone(),
         graph: translator.graph,
@@ -227,7 +227,7 @@ pub(crate) fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Opt
 }
 
 /// Returns the sum of terms; each term is named after `symbol` and itself.
-pub(crate) fn total_of(
+pub(crate) fn sum_terms(
     translator: &mut Translator,
     terms: &[Term],
     symbol: &str,

@@ -20,7 +20,7 @@ pub(crate) fn applied_forces(
     let drag = variables.gradient(&mut translator.graph, dissipation, GradientBy::Rates);
     let mut rows: Vec<(f64, RowNodes)> = vec![(-1.0, drag)];
     for force in &translator.model.forces {
-        let (value, on) = translated(translator, force)?;
+        let (value, on) = translate_force(translator, force)?;
         named.push(value);
         let mut gradient = variables.gradient(&mut translator.graph, on, GradientBy::Coordinates);
         for node in gradient.scalars.iter_mut().chain(&mut gradient.modal) {
@@ -35,7 +35,10 @@ pub(crate) fn applied_forces(
 ///
 /// # Errors
 /// A failed derivation, and an expression that contains a rate.
-pub(crate) fn translated(translator: &mut Translator, force: &Force) -> Derived<(NodeId, NodeId)> {
+pub(crate) fn translate_force(
+    translator: &mut Translator,
+    force: &Force,
+) -> Derived<(NodeId, NodeId)> {
     let value = translator.node(&force.value)?;
     // The name of a force can have another meaning in a formula.
     if eomgen_model_spec::reserved(&force.name).is_none() {
@@ -116,17 +119,17 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
 pub(crate) enum Surfaces {
     None,
     /// Surface p = 0, positive for p > 0.
-    One(NodeId),
+    Single(NodeId),
     /// Surface p = 0 as the node -p, positive for p < 0.
-    Turned(NodeId),
+    Negated(NodeId),
     /// Surfaces p = b and p = -b, positive above each.
-    Between {
+    TwoSided {
         above: NodeId,
         beyond: NodeId,
     },
     /// Surfaces at the ends of -b <= p <= b, within which p can remain for a whole regime. Each is positive
     /// on one outer side.
-    Outside {
+    OuterSides {
         above: NodeId,
         below: NodeId,
     },
@@ -136,9 +139,9 @@ impl Surfaces {
     pub fn all(self) -> impl Iterator<Item = NodeId> {
         let (first, second) = match self {
             Self::None => (None, None),
-            Self::One(surface) | Self::Turned(surface) => (Some(surface), None),
-            Self::Between { above, beyond } => (Some(above), Some(beyond)),
-            Self::Outside { above, below } => (Some(above), Some(below)),
+            Self::Single(surface) | Self::Negated(surface) => (Some(surface), None),
+            Self::TwoSided { above, beyond } => (Some(above), Some(beyond)),
+            Self::OuterSides { above, below } => (Some(above), Some(below)),
         };
         first.into_iter().chain(second)
     }
@@ -148,26 +151,26 @@ impl Surfaces {
 /// each side has its own surface, because the function has a separate value there.
 pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeId]) -> Surfaces {
     match (function, arguments) {
-        (Function::Contact, &[p, b]) if may_rest(graph, p) => {
+        (Function::Contact, &[p, b]) if can_be_constant(graph, p) => {
             let beyond = graph.add(p, b);
-            Surfaces::Outside {
+            Surfaces::OuterSides {
                 above: graph.subtract(p, b),
                 below: graph.negate(beyond),
             }
         }
-        (Function::Sign, &[p]) if may_rest(graph, p) => Surfaces::Outside {
+        (Function::Sign, &[p]) if can_be_constant(graph, p) => Surfaces::OuterSides {
             above: p,
             below: graph.negate(p),
         },
-        (Function::Deadzone | Function::Contact, &[p, b]) => Surfaces::Between {
+        (Function::Deadzone | Function::Contact, &[p, b]) => Surfaces::TwoSided {
             above: graph.subtract(p, b),
             beyond: graph.add(p, b),
         },
-        (Function::Min | Function::Max, &[a, b]) => Surfaces::One(graph.subtract(a, b)),
-        (Function::Above, &[p]) if begins_with_minus(graph, p) && !may_rest(graph, p) => {
-            Surfaces::Turned(graph.negate(p))
+        (Function::Min | Function::Max, &[a, b]) => Surfaces::Single(graph.subtract(a, b)),
+        (Function::Above, &[p]) if begins_with_minus(graph, p) && !can_be_constant(graph, p) => {
+            Surfaces::Negated(graph.negate(p))
         }
-        (Function::Abs | Function::Sign | Function::Above, &[p]) => Surfaces::One(p),
+        (Function::Abs | Function::Sign | Function::Above, &[p]) => Surfaces::Single(p),
         _ => Surfaces::None,
     }
 }
@@ -188,7 +191,7 @@ fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
 
 /// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
 /// function, or depends only on inputs, which can be constant.
-pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
+pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)
         .join(Dependence::STATE)

@@ -56,7 +56,7 @@ pub(crate) fn impacts(
         // At order 0 the distance of a field depends on no mode.
         let is_rigid = model.fields.is_empty();
         if is_rigid && gradient.nodes().iter().all(|entry| graph.is_zero(*entry)) {
-            return Err(moves_nothing(impact));
+            return Err(immovable_distance_error(impact));
         }
         let rate = along_motion(graph, distance);
         let of_rates = along_motion(graph, rate);
@@ -84,7 +84,7 @@ pub(crate) fn impacts(
 }
 
 /// Returns the error for a distance that no coordinate changes.
-pub(crate) fn moves_nothing(impact: &model::Impact) -> DeriveError {
+pub(crate) fn immovable_distance_error(impact: &model::Impact) -> DeriveError {
     DeriveError {
         span: impact.when.span,
         message: format!(

@@ -8,7 +8,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sweeps::{Momenta, Velocities};
 use crate::symbolic::association::shared_operations;
 use crate::symbolic::degree::is_quadratic_in_rates;
-use crate::symbolic::factor::cheaper;
+use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::trigonometry::with_sums_of_angles;
 
@@ -26,27 +26,30 @@ impl KineticRows {
     /// Returns the form with the fewest operations, counted together with the gradient of the potential.
     /// Models with fields have one form. Others also have the form of a sweep, and both forms of the
     /// quadratic form with sums of angles.
-    pub(crate) fn cheapest(
+    pub(crate) fn derive_cheapest(
         graph: &mut Graph,
         variables: &Variables,
         kinetic: NodeId,
         potential: NodeId,
     ) -> Self {
         let swept = match variables.fields {
-            0 => Self::swept(graph, variables, kinetic),
+            0 => Self::derive_by_sweep(graph, variables, kinetic),
             _ => None,
         };
         let Some(swept) = swept else {
-            return Self::differentiated(graph, variables, kinetic);
+            return Self::derive_by_differentiation(graph, variables, kinetic);
         };
         let beside = variables.gradient(graph, potential, GradientBy::Coordinates);
         let sweep = swept.sweep.clone();
-        let mut forms = vec![Self::differentiated(graph, variables, kinetic), swept];
+        let mut forms = vec![
+            Self::derive_by_differentiation(graph, variables, kinetic),
+            swept,
+        ];
         if is_quadratic_in_rates(graph, kinetic) {
             let entries = &forms[1].mass.scalars.clone();
             if let Some(other) = quadratic_form(graph, entries).filter(|other| *other != kinetic) {
-                forms.push(Self::differentiated(graph, variables, other));
-                forms.extend(Self::swept(graph, variables, other));
+                forms.push(Self::derive_by_differentiation(graph, variables, other));
+                forms.extend(Self::derive_by_sweep(graph, variables, other));
             }
         }
         let operations = |form: &Self| form.operations(graph, &beside.scalars);
@@ -57,12 +60,16 @@ impl KineticRows {
         best
     }
 
-    fn differentiated(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Self {
+    fn derive_by_differentiation(
+        graph: &mut Graph,
+        variables: &Variables,
+        kinetic: NodeId,
+    ) -> Self {
         let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
         let mass = variables.mass_matrix(graph, &momenta);
         let mut velocity_terms = variables.velocity_terms(graph, kinetic, &momenta);
         if variables.fields == 0 {
-            velocity_terms.scalars = cheaper(graph, velocity_terms.scalars);
+            velocity_terms.scalars = factor_if_cheaper(graph, velocity_terms.scalars);
         }
         Self {
             momenta,
@@ -72,15 +79,15 @@ impl KineticRows {
         }
     }
 
-    fn swept(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Option<Self> {
-        let velocities = Velocities::of(graph, kinetic)?;
+    fn derive_by_sweep(graph: &mut Graph, variables: &Variables, kinetic: NodeId) -> Option<Self> {
+        let velocities = Velocities::from_kinetic_energy(graph, kinetic)?;
         let size = variables.coordinates;
         let mut scalars = velocities.mass_matrix(graph, size)?;
         let momenta = velocities.momenta(graph, size);
         let rows = momenta.rates(graph, &|graph, _| graph.zero());
-        let rows = cheaper(graph, rows);
+        let rows = factor_if_cheaper(graph, rows);
         let upper = (0..size).flat_map(|row| scalars[row][row..].to_vec());
-        let entries = cheaper(graph, upper.collect());
+        let entries = factor_if_cheaper(graph, upper.collect());
         let places = (0..size).flat_map(|row| (row..size).map(move |column| (row, column)));
         for ((row, column), entry) in places.zip(entries) {
             scalars[row][column] = entry;
@@ -116,11 +123,11 @@ impl KineticRows {
 }
 
 /// Largest number of coordinates for which the quadratic form is expanded.
-const MOST_COORDINATES: usize = 4;
+const MAX_COORDINATES: usize = 4;
 
 /// Returns 1/2 q' M q' with sums of angles in the entries of M; `None` for too many coordinates.
 fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
-    if mass.len() > MOST_COORDINATES {
+    if mass.len() > MAX_COORDINATES {
         return None;
     }
     let rates: Vec<NodeId> = CoordinateId::first(mass.len())

@@ -7,9 +7,9 @@ use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::association::shared_operations;
-use crate::symbolic::differentiate::by_scalar;
-use crate::symbolic::expand::{MOST_EXPANSIONS, expand_once};
-use crate::symbolic::factor::cheaper;
+use crate::symbolic::differentiate::derive_by_scalar;
+use crate::symbolic::expand::{MAX_EXPANSIONS, expand_once};
+use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::operation_count::count_operations;
@@ -35,7 +35,7 @@ pub(crate) fn nonzero_gradient(
     });
     let mut found = Vec::new();
     for (place, variable) in variables.collect::<Vec<_>>() {
-        let derivative = by_scalar(graph, scalar, variable);
+        let derivative = derive_by_scalar(graph, scalar, variable);
         if !graph.is_zero(derivative) {
             found.push((place, derivative));
         }
@@ -63,7 +63,7 @@ impl Variables {
                     GradientBy::Coordinates => Operation::Coordinate(index),
                     GradientBy::Rates => Operation::Rate(index),
                 });
-                by_scalar(graph, scalar, variable)
+                derive_by_scalar(graph, scalar, variable)
             })
             .collect();
         let modal = FieldId::first(self.fields)
@@ -97,8 +97,8 @@ impl Variables {
         for row in 0..self.coordinates {
             let mut entries: Vec<NodeId> = scalars.iter().map(|above| above[row]).collect();
             for &rate in &rates[row..] {
-                let entry = by_scalar(graph, momenta.scalars[row], rate);
-                entries.push(cheaper_expansion(graph, entry));
+                let entry = derive_by_scalar(graph, momenta.scalars[row], rate);
+                entries.push(expand_if_cheaper(graph, entry));
             }
             scalars.push(entries);
         }
@@ -114,7 +114,7 @@ impl Variables {
             for (row, blocks) in FieldId::first(self.fields).zip(&mut modal) {
                 let rows = Space::Modes(row);
                 let momentum = momenta.modal[row];
-                blocks.push(derivative.of_elements(graph, momentum, rows));
+                blocks.push(derivative.element_jacobian(graph, momentum, rows));
             }
         }
         MassMatrix {
@@ -135,7 +135,7 @@ impl Variables {
         let mut row = |momentum: NodeId, slope: NodeId| {
             let rate = along_motion(graph, momentum);
             let difference = graph.combine_flat(&[(1.0, rate), (-1.0, slope)]);
-            cheaper_expansion(graph, difference)
+            expand_if_cheaper(graph, difference)
         };
         let scalars = momenta
             .scalars
@@ -160,7 +160,7 @@ impl Variables {
     ) -> RowNodes {
         let mut gradient = self.gradient(graph, potential, GradientBy::Coordinates);
         if self.fields == 0 {
-            gradient.scalars = cheapest_slopes(graph, gradient.scalars);
+            gradient.scalars = choose_cheapest_slopes(graph, gradient.scalars);
         }
         self.combine(graph, &[(1.0, applied.clone()), (-1.0, gradient)])
     }
@@ -205,12 +205,12 @@ impl Variables {
 
 /// Returns the gradient of a potential in the cheapest form: unchanged, with common factors, or expanded with
 /// collected terms.
-fn cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
+fn choose_cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
     let apart: Vec<NodeId> = slopes
         .iter()
         .map(|slope| with_sums_of_angles(graph, *slope))
         .collect();
-    let slopes = cheaper(graph, slopes);
+    let slopes = factor_if_cheaper(graph, slopes);
     if shared_operations(graph, &apart) < shared_operations(graph, &slopes) {
         apart
     } else {
@@ -221,11 +221,11 @@ fn cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
 /// Expands a node if that saves operations. In a velocity term, the rate of a momentum and the gradient of
 /// the kinetic energy share terms that cancel, often only inside products: d/dt(dv/dq') = dv/dq for the rate
 /// v of a function of coordinates.
-fn cheaper_expansion(graph: &mut Graph, term: NodeId) -> NodeId {
+fn expand_if_cheaper(graph: &mut Graph, term: NodeId) -> NodeId {
     let mut best = term;
     let mut operations = count_operations(graph, &[term]);
     let mut expanded = term;
-    for _ in 0..MOST_EXPANSIONS {
+    for _ in 0..MAX_EXPANSIONS {
         let Some(next) = expand_once(graph, expanded) else {
             break;
         };

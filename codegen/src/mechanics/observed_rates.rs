@@ -7,7 +7,7 @@ use crate::mechanics::translate::{DeriveError, Derived, Translator};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// Returns the node of an observable, or of the time derivative that it denotes.
-pub(crate) fn observed(
+pub(crate) fn derive_observable(
     translator: &mut Translator,
     observable: &Observable,
     accelerations: &RowNodes,
@@ -33,7 +33,7 @@ pub(crate) fn observed(
         );
     }
     for _ in 0..rate.times {
-        if jumps(&translator.graph, node) {
+        if can_jump(&translator.graph, node) {
             return refused(
                 format!(
                     "the time derivative of `{name}` is not defined at jumps of `{name}` or of its rate"
@@ -55,7 +55,7 @@ pub(crate) fn observed(
 }
 
 /// Returns true if a node can jump during the motion.
-fn jumps(graph: &Graph, node: NodeId) -> bool {
+fn can_jump(graph: &Graph, node: NodeId) -> bool {
     let is_jump = |id: &NodeId| {
         if graph.dependence(*id).is_parameter_only() {
             return false;

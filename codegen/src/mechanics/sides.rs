@@ -21,7 +21,7 @@ pub(crate) struct Sides {
 impl Sides {
     /// Replaces the switching functions in `roots` by polynomials in sides. `side` returns the leaf for the
     /// side of the guard with a given index, if it has one.
-    pub fn of(
+    pub fn replace_all(
         equations: &mut Equations,
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
@@ -32,7 +32,7 @@ impl Sides {
     /// Replaces only functions that jump. A continuous function has one value at its surface; off the
     /// surface, a wrong side can move the argument of another function out of its domain, for example in
     /// `sqrt(abs(p))`.
-    pub fn of_jumps(
+    pub fn replace_jumps(
         equations: &mut Equations,
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
@@ -98,11 +98,14 @@ impl Sides {
                     None => {
                         let turned = graph.subtract(b, a);
                         let side = parameter(graph, turned)?;
-                        opposite(graph, side)
+                        opposite_side(graph, side)
                     }
                 };
-                let (then, otherwise) = (self.inner(graph, then), self.inner(graph, otherwise));
-                Some(between(graph, side, then, otherwise))
+                let (then, otherwise) = (
+                    self.replace_in(graph, then),
+                    self.replace_in(graph, otherwise),
+                );
+                Some(blend_sides(graph, side, then, otherwise))
             }
             _ => None,
         }
@@ -120,30 +123,33 @@ impl Sides {
             .all()
             .map(|surface| parameter(graph, surface))
             .collect::<Option<Vec<NodeId>>>()?;
-        let inner: Vec<NodeId> = arguments.iter().map(|a| self.inner(graph, *a)).collect();
+        let inner: Vec<NodeId> = arguments
+            .iter()
+            .map(|a| self.replace_in(graph, *a))
+            .collect();
         if let (Function::Contact, &[_, b]) = (function, inner.as_slice()) {
             self.half_widths.push(b);
         }
-        if let (Surfaces::Outside { .. }, &[above, below]) = (surfaces, sides.as_slice()) {
+        if let (Surfaces::OuterSides { .. }, &[above, below]) = (surfaces, sides.as_slice()) {
             return match function {
                 Function::Contact => Some(graph.add(above, below)),
                 Function::Sign => Some(graph.subtract(above, below)),
                 _ => None,
             };
         }
-        if let (Surfaces::Turned(_), &[side]) = (surfaces, sides.as_slice()) {
-            return Some(opposite(graph, side));
+        if let (Surfaces::Negated(_), &[side]) = (surfaces, sides.as_slice()) {
+            return Some(opposite_side(graph, side));
         }
         Some(match (function, sides.as_slice(), inner.as_slice()) {
             (Function::Deadzone, &[above, beyond], &[p, b]) => {
                 self.half_widths.push(b);
                 let (upper, lower) = (graph.subtract(p, b), graph.add(p, b));
-                let below = opposite(graph, beyond);
+                let below = opposite_side(graph, beyond);
                 let (upper, lower) = (graph.multiply(above, upper), graph.multiply(below, lower));
                 graph.add(upper, lower)
             }
             (Function::Contact, &[above, beyond], _) => {
-                let below = opposite(graph, beyond);
+                let below = opposite_side(graph, beyond);
                 graph.add(above, below)
             }
             (Function::Sign, &[side], _) => sign(graph, side),
@@ -152,18 +158,18 @@ impl Sides {
                 let sign = sign(graph, side);
                 graph.multiply(sign, p)
             }
-            (Function::Max, &[side], &[a, b]) => between(graph, side, a, b),
-            (Function::Min, &[side], &[a, b]) => between(graph, side, b, a),
+            (Function::Max, &[side], &[a, b]) => blend_sides(graph, side, a, b),
+            (Function::Min, &[side], &[a, b]) => blend_sides(graph, side, b, a),
             _ => return None,
         })
     }
 
-    fn inner(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
+    fn replace_in(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         substitute(graph, id, &|_, _| None, &mut self.known)
     }
 }
 
-fn opposite(graph: &mut Graph, side: NodeId) -> NodeId {
+fn opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.subtract(one, side)
 }
@@ -174,8 +180,8 @@ fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
 }
 
 /// Returns side a + (1 - side) b, so that a side of 0 or 1 selects one term exactly.
-fn between(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
-    let other = opposite(graph, side);
+fn blend_sides(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
+    let other = opposite_side(graph, side);
     let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));
     graph.add(a, b)
 }

@@ -14,27 +14,27 @@ use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::forces::may_rest;
+use crate::mechanics::forces::can_be_constant;
 use crate::mechanics::outputs::{SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::Sides;
-use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
-pub fn may_hold(equations: &Equations) -> bool {
+pub fn can_hold_motion(equations: &Equations) -> bool {
     !guards_with_sides(equations).is_empty()
 }
 
 /// Makes the sides of surfaces that can hold the motion inputs, after those of the model, in the order of the
 /// surfaces. Returns an empty list if there is none; the equations are then unusable.
-pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId, RowNodes>> {
+pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<NodeId, RowNodes>> {
     let sliding = guards_with_sides(equations);
     let first = equations.inputs;
     let leaf = |side: usize| Operation::Input(InputId::new(first + side));
     let roots = roots(equations);
-    let mut known = Sides::of_jumps(equations, &roots, &|guard| {
+    let mut known = Sides::replace_jumps(equations, &roots, &|guard| {
         let mut places = sliding.iter();
         places.position(|(own, _)| *own == guard).map(leaf)
     })
@@ -53,7 +53,10 @@ pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId
     for (side, (guard, place)) in sliding.iter().enumerate() {
         let own = leaves[side];
         let by = |graph: &mut Graph, nodes: &[NodeId]| -> Vec<NodeId> {
-            nodes.iter().map(|id| by_scalar(graph, *id, own)).collect()
+            nodes
+                .iter()
+                .map(|id| derive_by_scalar(graph, *id, own))
+                .collect()
         };
         found.push(SlidingSurface {
             guard: *place,
@@ -65,7 +68,7 @@ pub(crate) fn with_sides(equations: &mut Equations) -> Vec<SlidingSurface<NodeId
             rate: rates[side],
             by_sides: leaves
                 .iter()
-                .map(|leaf| by_scalar(graph, rates[side], *leaf))
+                .map(|leaf| derive_by_scalar(graph, rates[side], *leaf))
                 .collect(),
             column: RowNodes {
                 scalars: by(graph, &accelerations.scalars),
@@ -105,7 +108,10 @@ fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
                 Function::Sign | Function::Abs | Function::Above | Function::Max | Function::Min
             ),
         };
-        if is_single && graph.dependence(guard.value).has(moves) && !may_rest(graph, guard.value) {
+        if is_single
+            && graph.dependence(guard.value).has(moves)
+            && !can_be_constant(graph, guard.value)
+        {
             found.push((index, place));
         }
         place += 1;

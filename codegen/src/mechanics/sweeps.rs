@@ -73,7 +73,7 @@ impl Momenta {
 
 impl Velocities {
     /// Finds the velocities of a kinetic energy; `None` if it does not depend on the rates.
-    pub(crate) fn of(graph: &mut Graph, kinetic: NodeId) -> Option<Self> {
+    pub(crate) fn from_kinetic_energy(graph: &mut Graph, kinetic: NodeId) -> Option<Self> {
         if !is_velocity(graph, kinetic) {
             return None;
         }
@@ -100,7 +100,7 @@ impl Velocities {
         let adjoint = graph.combine(&received);
         let mut partials = Vec::with_capacity(operands.len());
         for &operand in &operands {
-            let partial = partial(graph, node, &operands, operand);
+            let partial = partial_derivative(graph, node, &operands, operand);
             let part = graph.multiply(partial, adjoint);
             self.received.entry(operand).or_default().push((1.0, part));
             partials.push(partial);
@@ -172,7 +172,10 @@ impl Unit {
         for (place, index) in CoordinateId::first(coordinates).enumerate() {
             let variable = graph.intern(Operation::Coordinate(index));
             if moving.contains(&variable) {
-                found.push((place, partial(graph, self.node, &self.operands, variable)));
+                found.push((
+                    place,
+                    partial_derivative(graph, self.node, &self.operands, variable),
+                ));
             }
         }
         found
@@ -215,7 +218,7 @@ impl Unit {
                 .filter(|o| within.contains(o))
                 .collect();
             for &second in earlier.iter().filter(|second| within.contains(second)) {
-                let curvature = partial(graph, slope, &held, second);
+                let curvature = partial_derivative(graph, slope, &held, second);
                 let value = graph.multiply(curvature, self.adjoint);
                 if is_velocity(graph, value) {
                     return None;
@@ -313,7 +316,7 @@ fn rate_dependent_parts(graph: &Graph, node: NodeId) -> Vec<NodeId> {
 }
 
 /// Returns the derivative of a node by one operand, or by a coordinate, with the other operands held.
-fn partial(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
+fn partial_derivative(graph: &mut Graph, node: NodeId, held: &[NodeId], by: NodeId) -> NodeId {
     let (zero, one) = (graph.zero(), graph.one());
     let mut direction = Direction::default();
     // Without a seed, the derivatives of other operands are 0.

@@ -157,7 +157,7 @@ impl<'m> Translator<'m> {
                 Ok(self.binary(*operator, left, right))
             }
             ExprKind::Call(function, arguments) => {
-                let arguments = Arguments::of(self.nodes(arguments)?)
+                let arguments = Arguments::from_operands(self.nodes(arguments)?)
                     .ok_or_else(|| error(expr, "a function takes one or two arguments"))?;
                 Ok(self.graph.call(*function, arguments))
             }
@@ -166,7 +166,7 @@ impl<'m> Translator<'m> {
                 field,
                 value,
                 position,
-            } => self.at(*field, value, position),
+            } => self.translate_field_value(*field, value, position),
             ExprKind::Sum { field, summand } => {
                 let inner = self.node(summand)?;
                 Ok(self.graph.total_over(Space::Modes(*field), inner))
@@ -300,12 +300,17 @@ impl<'m> Translator<'m> {
         Ok(rates)
     }
 
-    fn at(&mut self, field: FieldId, value: &Expr, position: &Expr) -> Derived<NodeId> {
+    fn translate_field_value(
+        &mut self,
+        field: FieldId,
+        value: &Expr,
+        position: &Expr,
+    ) -> Derived<NodeId> {
         let function = self.field_function(field, value)?;
         let position = self.node(position)?;
         let domain = self.domain(field)?;
         function
-            .at(&mut self.graph, &domain, position)
+            .evaluate_at(&mut self.graph, &domain, position)
             .map_err(|m| error(value, m))
     }
 
@@ -341,7 +346,7 @@ impl<'m> Translator<'m> {
                 match field_atom(expr) {
                     Some(atom) => {
                         let domain = self.domain(field)?;
-                        domain.has(atom).map_err(|m| error(expr, m))?;
+                        domain.check_derivative(atom).map_err(|m| error(expr, m))?;
                         Ok(FieldFunction::atom(&mut self.graph, &domain, atom))
                     }
                     None => Ok(FieldFunction::constant(self.node(expr)?)),
@@ -349,7 +354,7 @@ impl<'m> Translator<'m> {
             }
             ExprKind::Negate(operand) => {
                 let inner = self.field_function(field, operand)?;
-                Ok(inner.scaled(&mut self.graph, -1.0))
+                Ok(inner.scale(&mut self.graph, -1.0))
             }
             ExprKind::Binary(operator, left, right) => {
                 let left_function = self.field_function(field, left)?;
@@ -382,7 +387,7 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
             Atom::Coordinates(derivative) => Some(Atom::Rates(derivative)),
             _ => None,
         },
-        ExprKind::Diff(inner, times) => Some(field_atom(inner)?.differentiated(*times)),
+        ExprKind::Diff(inner, times) => Some(field_atom(inner)?.derivative_of_order(*times)),
         _ => None,
     }
 }

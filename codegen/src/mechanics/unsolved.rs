@@ -6,10 +6,10 @@ use eomgen_model_spec::ids::{ConstraintId, StateId};
 use eomgen_model_spec::model::{CoefficientKind, Model};
 
 use crate::mechanics::coefficients::row_of;
-use crate::mechanics::constraints::not_linear;
-use crate::mechanics::equations::{derived_parameters, total_of};
-use crate::mechanics::forces::translated;
-use crate::mechanics::impacts::moves_nothing;
+use crate::mechanics::constraints::nonlinear_error;
+use crate::mechanics::equations::{derived_parameters, sum_terms};
+use crate::mechanics::forces::translate_force;
+use crate::mechanics::impacts::immovable_distance_error;
 use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
@@ -38,11 +38,11 @@ impl Unsolved {
         let mut translator = Translator::new(model, &[]);
         let mut terms = Vec::new();
         derived_parameters(&mut translator)?;
-        let kinetic = total_of(&mut translator, &model.kinetic, "T", &mut terms)?;
-        total_of(&mut translator, &model.potential, "V", &mut terms)?;
-        total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
+        let kinetic = sum_terms(&mut translator, &model.kinetic, "T", &mut terms)?;
+        sum_terms(&mut translator, &model.potential, "V", &mut terms)?;
+        sum_terms(&mut translator, &model.dissipation, "R", &mut terms)?;
         for force in &model.forces {
-            translated(&mut translator, force)?;
+            translate_force(&mut translator, force)?;
         }
         let constraints = translate_constraints(&mut translator)?;
         for state in StateId::first(model.states.len()) {
@@ -79,7 +79,7 @@ fn translate_constraints(translator: &mut Translator) -> Derived<Vec<ConstraintN
         let derivatives = nonzero_gradient(graph, residual, &by);
         let moves = |entry: &(usize, NodeId)| graph.dependence(entry.1).has(Dependence::RATE);
         if derivatives.iter().any(moves) {
-            return Err(not_linear(constraint));
+            return Err(nonlinear_error(constraint));
         }
         found.push(ConstraintNodes {
             residual,
@@ -125,7 +125,7 @@ pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
         // At order 0 the distance of a field can contain no modes.
         let is_rigid = model.fields.is_empty();
         if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
-            return Err(moves_nothing(impact));
+            return Err(immovable_distance_error(impact));
         }
     }
     Ok(())

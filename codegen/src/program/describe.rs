@@ -3,28 +3,28 @@
 use crate::program::{Op, Program, ValueId};
 
 /// Largest length of a formula in characters; longer ones are cut.
-const LONGEST: usize = 160;
+const MAX_FORMULA_LENGTH: usize = 160;
 
 /// Returns the formula of a value on one line.
 pub fn describe_value(program: &Program, id: ValueId) -> String {
     let text = formula(program, id, true, 0);
-    if text.len() <= LONGEST {
+    if text.len() <= MAX_FORMULA_LENGTH {
         return format!("`{text}`");
     }
-    let cut: String = text.chars().take(LONGEST).collect();
+    let cut: String = text.chars().take(MAX_FORMULA_LENGTH).collect();
     format!("`{cut}...`")
 }
 
 /// Largest depth of a formula; deeper parts are omitted, because shared nodes make a tree exponentially
 /// larger than its graph.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
     let value = program.value(id);
     if let (Some(name), false) = (&value.name, root) {
         return name.clone();
     }
-    if depth > DEEPEST {
+    if depth > MAX_DEPTH {
         return "...".to_owned();
     }
     let part = |id: ValueId| formula(program, id, false, depth + 1);

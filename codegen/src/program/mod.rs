@@ -21,8 +21,8 @@ mod value;
 pub use crate::mechanics::impacts::Impact;
 pub use crate::mechanics::outputs::SlidingSurface;
 pub use crate::mechanics::outputs::{
-    BlockPlace, Decided, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output, Outputs,
-    Products, SURFACES_OF_A_REGIME, Switch,
+    BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
+    Outputs, Products, SURFACES_OF_A_REGIME, Switch,
 };
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};

@@ -14,7 +14,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
 use crate::program::evaluator::Evaluator;
-use crate::symbolic::formula::{Formula, Reader, Shared};
+use crate::symbolic::formula::{Formula, Reader, SharedExpressions};
 use outline::Outline;
 pub use types::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use writer::Writer;
@@ -24,7 +24,7 @@ impl Report {
     pub fn new(model: &Model, equations: &Equations, evaluator: &Evaluator) -> Self {
         let graph = &equations.graph;
         let outline = Outline::new(model, equations);
-        let shared = Shared::among(graph, model, &outline.nodes());
+        let shared = SharedExpressions::find_shared(graph, model, &outline.nodes());
         let reader = Reader::new(graph, model, &shared);
         let writer = Writer {
             equations,
@@ -44,7 +44,7 @@ impl Report {
             potential: writer.sum_of_terms("V", &model.potential),
             shared: writer.shared(),
             mass_matrix: writer.mass_matrix(),
-            pivots: writer.named(&equations.accelerations.pivots),
+            pivots: writer.named_lines(&equations.accelerations.pivots),
             velocity_terms: writer.lines(&outline.velocity_terms),
             forces: writer.lines(&outline.forces),
             state_rates: writer.lines(&outline.state_rates),
@@ -66,11 +66,11 @@ impl Solution {
         Self {
             dense_modes: report.dense_modes,
             order: order
-                .map(|index| Formula::named(&model.coordinates[*index].name))
+                .map(|index| Formula::from_name(&model.coordinates[*index].name))
                 .collect(),
             interfaces: report.interfaces,
             operations: report.operations,
-            dearest: report.dearest,
+            dearest: report.most_expensive_operations,
         }
     }
 }

@@ -107,7 +107,7 @@ impl<'a> Outline<'a> {
         let definitions = self.model.definitions.iter();
         definitions
             .zip(&self.equations.definitions)
-            .filter_map(|(definition, node)| Some((Formula::named(&definition.name), (*node)?)))
+            .filter_map(|(definition, node)| Some((Formula::from_name(&definition.name), (*node)?)))
             .collect()
     }
 
@@ -116,12 +116,17 @@ impl<'a> Outline<'a> {
         let named = |symbol: &'static str, terms: &'a [Term]| {
             terms
                 .iter()
-                .map(move |term| Formula::named(&format!("{symbol}_{}", term.name)))
+                .map(move |term| Formula::from_name(&format!("{symbol}_{}", term.name)))
         };
         named("T", &model.kinetic)
             .chain(named("V", &model.potential))
             .chain(named("R", &model.dissipation))
-            .chain(model.forces.iter().map(|force| Formula::named(&force.name)))
+            .chain(
+                model
+                    .forces
+                    .iter()
+                    .map(|force| Formula::from_name(&force.name)),
+            )
             .zip(self.equations.terms.iter().copied())
             .collect()
     }
@@ -148,7 +153,7 @@ impl<'a> Outline<'a> {
     fn of_constraints(&self, prefix: &str, nodes: &[NodeId]) -> Vec<Shown> {
         let constraints = self.model.constraints.iter();
         constraints
-            .map(|constraint| Formula::named(&format!("{prefix}{}", constraint.name)))
+            .map(|constraint| Formula::from_name(&format!("{prefix}{}", constraint.name)))
             .zip(nodes.iter().copied())
             .collect()
     }

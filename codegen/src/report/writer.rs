@@ -58,11 +58,11 @@ impl Writer<'_> {
     /// Returns an energy as the sum of the names of its terms.
     pub fn sum_of_terms(&self, symbol: &str, terms: &[Term]) -> Formula {
         let names = terms.iter().map(|term| format!("{symbol}_{}", term.name));
-        Formula::sum(names.map(|name| Formula::named(&name)).collect())
+        Formula::sum(names.map(|name| Formula::from_name(&name)).collect())
     }
 
     /// Returns the nodes that have names, with their formulas.
-    pub fn named(&self, nodes: &[NodeId]) -> Vec<Line> {
+    pub fn named_lines(&self, nodes: &[NodeId]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
             let Some(name) = self.equations.graph.name(node) else {
@@ -96,7 +96,7 @@ impl Writer<'_> {
             .iter()
             .zip(&evaluator.program().coefficient_values)
             .map(|(coefficient, value)| CoefficientLine {
-                name: Formula::named(&coefficient.name),
+                name: Formula::from_name(&coefficient.name),
                 formula: self.reader.formula(coefficient.value),
                 values: if evaluator.program().value(*value).parameter_only {
                     evaluator.slice(*value).to_vec()
@@ -126,7 +126,7 @@ impl Writer<'_> {
                         Some(id) => self.reader.expression(id),
                         None => Formula::Number(1.0),
                     };
-                    let acceleration = times.times(Formula::Symbol(symbol));
+                    let acceleration = times.multiply(Formula::Symbol(symbol));
                     rows.push((factor.row, acceleration, vec![term]));
                 }
             }
@@ -146,15 +146,16 @@ impl Writer<'_> {
             |indices: &[Index]| Formula::Symbol(self.reader.symbol(name).with_indices(indices));
         match (graph.shape(value), graph.shape(by)) {
             (Shape::Vector(_), Shape::Vector(_)) => {
-                let product = indexed(&[Index::I]).times(multiplied);
+                let product = indexed(&[Index::I]).multiply(multiplied);
                 Formula::Total(Index::I, Box::new(product))
             }
             (Shape::Matrix(..), _) => {
-                let product = indexed(&[Index::I, Index::J]).times(multiplied.by_columns());
+                let product =
+                    indexed(&[Index::I, Index::J]).multiply(multiplied.split_by_columns());
                 Formula::Total(Index::J, Box::new(product))
             }
-            (Shape::Vector(_), _) => indexed(&[Index::I]).times(multiplied),
-            (Shape::Scalar, _) => indexed(&[]).times(multiplied),
+            (Shape::Vector(_), _) => indexed(&[Index::I]).multiply(multiplied),
+            (Shape::Scalar, _) => indexed(&[]).multiply(multiplied),
         }
     }
 }

@@ -18,8 +18,8 @@ use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::layout::block;
 use crate::statements::{
-    EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, observables, rates, requested,
-    stage_roots,
+    EmitError, EmitResult, File, RequiredFunctions, Stage, guards, mass_matrix, observables, rates,
+    requested_stages, stage_roots,
 };
 
 /// Form of the emitted file.
@@ -49,11 +49,11 @@ pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError
         ));
     }
     let file = File::new(program, &WORDS)?;
-    Ok(layout::source(&marked(&file, packaging)?))
+    Ok(layout::source(&write_marked_source(&file, packaging)?))
 }
 
-fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
-    let mut needed = Needed::default();
+fn write_marked_source(file: &File<'_>, packaging: Packaging) -> EmitResult<String> {
+    let mut needed = RequiredFunctions::default();
     let mut writer = Writer {
         lanes: for_lanes(file),
         ..Writer::default()
@@ -73,7 +73,7 @@ fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
     text += &function(guards(file, &mut needed)?, &mut writer);
     text += &function(mass_matrix(file, &mut needed)?, &mut writer);
     text += &regimes::regimes(file, &mut needed, &mut writer)?;
-    for stage in requested(file, &mut needed)? {
+    for stage in requested_stages(file, &mut needed)? {
         text += &function(stage, &mut writer);
     }
     text += &jacobians::jacobians(file, &mut needed, &mut writer)?;
@@ -125,7 +125,7 @@ fn documentation(file: &File<'_>) -> Vec<String> {
     ]
 }
 
-fn tables(file: &File<'_>) -> Emitted<String> {
+fn tables(file: &File<'_>) -> EmitResult<String> {
     let program = file.program;
     let mut roots = stage_roots(program);
     roots.extend(&program.pivots);

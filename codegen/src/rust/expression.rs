@@ -4,8 +4,8 @@ use super::literals::number;
 use crate::program::{Extent, PARTIAL_SUMS};
 use crate::statements::layout::block;
 use crate::statements::layout::{
-    BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN, FLOW_OUT, SPACE,
-    SPACE_OUT, ZERO,
+    BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FLOW, FLOW_EVEN, FLOW_OUT,
+    LAYOUT_BOUNDARY, SPACE, SPACE_OUT, ZERO,
 };
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
@@ -45,7 +45,7 @@ impl Writer {
 
     fn statement(&mut self, statement: &Statement) -> String {
         match statement {
-            Statement::Let(name, value) => self.bound(name, value),
+            Statement::Let(name, value) => self.write_definition(name, value),
             Statement::Zeros(name, lengths) => {
                 let lengths: Vec<String> = lengths.iter().map(usize::to_string).collect();
                 zeros(name, &lengths)
@@ -58,7 +58,7 @@ impl Writer {
                 index,
                 length,
                 lines,
-            } => looped(index, *length, &self.statements(lines)),
+            } => write_loop(index, *length, &self.statements(lines)),
             Statement::Sum {
                 name,
                 length,
@@ -95,21 +95,21 @@ impl Writer {
         }
     }
 
-    pub(super) fn bound(&mut self, name: &str, value: &Expression) -> String {
+    pub(super) fn write_definition(&mut self, name: &str, value: &Expression) -> String {
         assignment(&format!("let {name}"), self.expression(value)) + "\n"
     }
 
     /// Writes an expression without outer parentheses.
     pub(super) fn expression(&mut self, expression: &Expression) -> String {
-        self.leveled(expression).0
+        self.write_with_level(expression).0
     }
 
     pub(super) fn expressions(&mut self, expressions: &[Expression]) -> Vec<String> {
         expressions.iter().map(|e| self.expression(e)).collect()
     }
 
-    fn at(&mut self, expression: &Expression, level: Level) -> String {
-        let (text, own) = self.leveled(expression);
+    fn write_at_level(&mut self, expression: &Expression, level: Level) -> String {
+        let (text, own) = self.write_with_level(expression);
         if own < level {
             format!("({text})")
         } else {
@@ -117,7 +117,7 @@ impl Writer {
         }
     }
 
-    fn leveled(&mut self, expression: &Expression) -> (String, Level) {
+    fn write_with_level(&mut self, expression: &Expression) -> (String, Level) {
         let text = match expression {
             Expression::Number(value) => converted(&number(*value)),
             Expression::Name(name) => name.clone(),
@@ -126,7 +126,10 @@ impl Writer {
             Expression::Shared(coefficient) => call("C::read", &[self.expression(coefficient)]),
             Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
             Expression::Negate(a) => {
-                return (format!("-{}", self.at(a, Level::Atom)), Level::Negation);
+                return (
+                    format!("-{}", self.write_at_level(a, Level::Atom)),
+                    Level::Negation,
+                );
             }
             Expression::Call(name, arguments) => call(name, &self.expressions(arguments)),
             Expression::Select(parts) => call("T::select_greater", &self.expressions(&**parts)),
@@ -139,7 +142,11 @@ impl Writer {
             Expression::Greater(parts) => call("T::all_greater", &self.expressions(&**parts)),
             Expression::And(parts) => {
                 let [a, b] = &**parts;
-                let text = infix("&&", self.at(a, Level::And), self.at(b, Level::Atom));
+                let text = infix(
+                    "&&",
+                    self.write_at_level(a, Level::And),
+                    self.write_at_level(b, Level::Atom),
+                );
                 return (text, Level::And);
             }
             Expression::True => "true".to_owned(),
@@ -154,7 +161,7 @@ impl Writer {
             Operator::Multiply => ("*", Level::Product, Level::Negation),
             Operator::Divide => ("/", Level::Product, Level::Negation),
         };
-        let (a, b) = (self.at(a, level), self.at(b, right));
+        let (a, b) = (self.write_at_level(a, level), self.write_at_level(b, right));
         (infix(sign, a, b), level)
     }
 
@@ -206,13 +213,14 @@ impl Writer {
     /// Writes the call of a function that sums `length` elements i. The length is in the type of an array, so
     /// that the function knows it at compile time.
     fn sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
-        let (element, level) = self.leveled(element);
+        let (element, level) = self.write_with_level(element);
         let body = if level == Level::Atom && element.ends_with(')') {
             element
         } else {
             format!("{BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}")
         };
-        let closure = format!("{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}{body}{CLOSE}");
+        let closure =
+            format!("{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{LAYOUT_BOUNDARY}{body}{CLOSE}");
         call(function, &[format!("[(); {length}]"), closure])
     }
 }
@@ -264,11 +272,11 @@ fn index_text(index: &Index) -> String {
 pub(super) fn call(name: &str, arguments: &[String]) -> String {
     format!(
         "{name}({BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE})",
-        listed(arguments)
+        array_items(arguments)
     )
 }
 
-pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
+pub(super) fn write_loop(index: &str, length: usize, lines: &str) -> String {
     block(&format!("for {index} in 0..{length} {{"), lines, "}")
 }
 
@@ -279,11 +287,11 @@ fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -
 
 /// Writes an assignment; `target` can contain a declaration.
 pub(super) fn assignment(target: &str, value: impl std::fmt::Display) -> String {
-    format!("{target} = {FIRM}{value};")
+    format!("{target} = {LAYOUT_BOUNDARY}{value};")
 }
 
 /// Joins elements of an array or a call; those that do not fit on one line have one line each.
-fn listed(items: &[String]) -> String {
+fn array_items(items: &[String]) -> String {
     let mut text = String::new();
     for (place, item) in items.iter().enumerate() {
         if place > 0 {
@@ -299,7 +307,7 @@ pub(super) fn array(items: &[String]) -> String {
     if items.is_empty() {
         return "[]".to_owned();
     }
-    format!("[{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}]", listed(items))
+    format!("[{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}]", array_items(items))
 }
 
 pub(super) fn reference(array: String) -> String {

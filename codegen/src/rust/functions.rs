@@ -7,22 +7,25 @@ use super::piecewise::{
     ABOVE, CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING,
 };
 use super::slopes;
-use crate::statements::Needed;
+use crate::statements::RequiredFunctions;
 use eomgen_elementary::Function as Elementary;
 
 /// Writes the required functions.
-pub fn items(needed: &Needed, conversions: Conversions) -> String {
+pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
     let mut text = String::new();
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
         (needed.above, ABOVE),
         (needed.deadzone_on_side, DEADZONE_ON_SIDE),
-        (needed.touching, TOUCHING),
-        (needed.either, EITHER),
-        (needed.chosen, CHOSEN),
+        (needed.contact_on_side, TOUCHING),
+        (needed.outside_zero_interval, EITHER),
+        (needed.selection, CHOSEN),
         (
-            needed.deadzone_on_side || needed.touching || needed.either || needed.chosen,
+            needed.deadzone_on_side
+                || needed.contact_on_side
+                || needed.outside_zero_interval
+                || needed.selection,
             POSITIVE,
         ),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),

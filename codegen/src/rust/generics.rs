@@ -9,12 +9,12 @@ pub(super) fn for_lanes(file: &File<'_>) -> bool {
 }
 
 /// Returns the prefix of functions that emitted functions call.
-pub(super) fn inlined(file: &File<'_>) -> &'static str {
+pub(super) fn inlined_prefix(file: &File<'_>) -> &'static str {
     if for_lanes(file) { "inlined_" } else { "" }
 }
 
 /// Returns the type of the parameters, inputs or coefficients; it is generic if it contains a number.
-pub(super) fn generic(file: &File<'_>, name: &str) -> String {
+pub(super) fn type_with_generics(file: &File<'_>, name: &str) -> String {
     let numbers = match name {
         "Parameters" => file.program.parameters.len(),
         "Inputs" => file.program.inputs.len(),

@@ -4,16 +4,16 @@
 use super::expression::{Writer, array, assignment, call, reference};
 use super::literals::linked_doc;
 use super::signature::{Signature, stage_with};
-use super::stages::{function, passed_on};
+use super::stages::{call_stage, function};
 use super::types::literal;
 use crate::program::{Jacobian, Output, ValueId};
-use crate::statements::{Emitted, File, Needed, nonzeros};
+use crate::statements::{EmitResult, File, RequiredFunctions, jacobian_stage};
 
 pub(super) fn jacobians(
     file: &File<'_>,
-    needed: &mut Needed,
+    needed: &mut RequiredFunctions,
     writer: &mut Writer,
-) -> Emitted<String> {
+) -> EmitResult<String> {
     let outputs = &file.program.outputs;
     if outputs.jacobians.is_empty() {
         return Ok(String::new());
@@ -21,12 +21,12 @@ pub(super) fn jacobians(
     let mut text = String::new();
     for jacobian in &outputs.jacobians {
         text += &pattern(jacobian);
-        text += &function(file, &nonzeros(file, jacobian, needed)?, writer);
+        text += &function(file, &jacobian_stage(file, jacobian, needed)?, writer);
     }
     if outputs.kinds.contains(&Output::Linearisation) {
         text += LINEARISATION;
         let head = linked_doc("Linearisation about a point.");
-        let signature = Signature::of("linearise", "Linearisation<T>");
+        let signature = Signature::new("linearise", "Linearisation<T>");
         text += &stage_with(file, &head, &signature, &linearise(file));
     }
     Ok(text + PATTERN)
@@ -43,7 +43,7 @@ fn linearise(file: &File<'_>) -> String {
         "observables_by_inputs",
     ];
     let computed =
-        parts.map(|part| assignment(&format!("let {part}"), passed_on(file, part)) + "\n");
+        parts.map(|part| assignment(&format!("let {part}"), call_stage(file, part)) + "\n");
     let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
     let dense =
         fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));

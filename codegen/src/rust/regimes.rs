@@ -2,19 +2,19 @@
 //! every branch decided at compile time. One function serves all regimes, so that the source does not grow
 //! with their number.
 
-use super::expression::{Writer, assignment, looped};
+use super::expression::{Writer, assignment, write_loop};
 use super::literals::linked_doc;
 use super::signature::{Signature, stage_with};
-use super::stages::{function, passed_on};
+use super::stages::{call_stage, function};
 use crate::program::SURFACES_OF_A_REGIME;
 use crate::statements::layout::block;
-use crate::statements::{Emitted, File, Needed, rates_in_regime};
+use crate::statements::{EmitResult, File, RequiredFunctions, rates_in_regime};
 
 pub(super) fn regimes(
     file: &File<'_>,
-    needed: &mut Needed,
+    needed: &mut RequiredFunctions,
     writer: &mut Writer,
-) -> Emitted<String> {
+) -> EmitResult<String> {
     let Some(rates) = rates_in_regime(file, needed)? else {
         return Ok(String::new());
     };
@@ -31,8 +31,8 @@ fn regime(file: &File<'_>) -> String {
             "regime = regime | 1 << k;\n",
             "}",
         );
-        let guards = assignment("let guards", passed_on(file, "guards"));
-        let set = looped("k", bits, &set);
+        let guards = assignment("let guards", call_stage(file, "guards"));
+        let set = write_loop("k", bits, &set);
         format!("{guards}\nlet mut regime = 0;\n{set}regime\n")
     };
     let head = linked_doc(
@@ -40,5 +40,5 @@ fn regime(file: &File<'_>) -> String {
          them. Crossing a surface flips its bit. SIMD lanes must be in one regime: a bit is set\n\
          if it is set in all of them.",
     ) + "#[allow(unused_variables)]\n";
-    stage_with(file, &head, &Signature::of("regime", "u32"), &statements)
+    stage_with(file, &head, &Signature::new("regime", "u32"), &statements)
 }

@@ -1,7 +1,7 @@
 //! Heads of emitted functions with prepared coefficients.
 
 use super::expression::call;
-use super::generics::{for_lanes, generic, inlined};
+use super::generics::{for_lanes, inlined_prefix, type_with_generics};
 use crate::statements::File;
 use crate::statements::layout::block;
 use crate::statements::layout::{DEEPER, SHALLOWER};
@@ -18,7 +18,7 @@ pub(super) struct Signature<'a> {
 }
 
 impl<'a> Signature<'a> {
-    pub(super) fn of(name: &'a str, result: &'a str) -> Self {
+    pub(super) fn new(name: &'a str, result: &'a str) -> Self {
         Self {
             name,
             constant: "",
@@ -53,10 +53,10 @@ pub(super) fn stage_with(
              inputs: &{},\n\
              coefficients: &{coefficients},\n\
              {arguments}{SHALLOWER}){returned} {{",
-            generic(file, "Inputs"),
+            type_with_generics(file, "Inputs"),
         )
     };
-    let coefficients = generic(file, "Coefficients");
+    let coefficients = type_with_generics(file, "Coefficients");
     let whole = format!("{head}{}", signature(name, "T: Scalar", &coefficients));
     if !for_lanes(file) {
         return block(&whole, statements, "}");
@@ -71,8 +71,11 @@ pub(super) fn stage_with(
     ]
     .concat();
     let passed: Vec<String> = passed.into_iter().map(str::to_owned).collect();
-    let inlined = format!("{}{name}", inlined(file));
-    let call = call(&format!("{inlined}{}", given(file, constant)), &passed) + "\n";
+    let inlined = format!("{}{name}", inlined_prefix(file));
+    let call = call(
+        &format!("{inlined}{}", rate_arguments(file, constant)),
+        &passed,
+    ) + "\n";
     let allowed = head.lines().filter(|line| line.starts_with("#["));
     let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
     let inlined_head = format!(
@@ -90,7 +93,7 @@ pub(super) fn stage_with(
 }
 
 /// Returns the generic arguments in the call of a function for SIMD lanes.
-fn given(file: &File<'_>, constant: &str) -> String {
+fn rate_arguments(file: &File<'_>, constant: &str) -> String {
     let constants: Vec<&str> = constant
         .split(", ")
         .filter_map(|one| one.strip_prefix("const ")?.split(':').next())

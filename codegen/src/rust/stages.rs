@@ -1,11 +1,13 @@
 //! Stages as emitted functions.
 
 use super::expression::{Writer, array, assignment, call, zeros};
-use super::generics::{generic, inlined};
+use super::generics::{inlined_prefix, type_with_generics};
 use super::literals::{doc, linked_doc};
 use super::signature::{Signature, stage_with};
 use super::types::literal;
-use crate::statements::{Argument, Expression, File, ORDER, Outcome, Size, Stage, where_they_end};
+use crate::statements::{
+    Argument, Expression, File, Outcome, RATES_ORDER_DOC, Size, Stage, describe_rate_limits,
+};
 
 /// Writes the rates as a function that fills an array, and as one that returns an array, which it must fill
 /// with zeros first.
@@ -14,13 +16,13 @@ pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> St
         "let mut rates = [T::number(0.0); STATES];\n\
          {}rates_into(t, state, inputs, coefficients, &mut rates);\n\
          rates\n",
-        inlined(file)
+        inlined_prefix(file)
     );
     let lines = format!(
-        "Returns the rates of the state.\n\n{ORDER}{}",
-        where_they_end(file)
+        "Returns the rates of the state.\n\n{RATES_ORDER_DOC}{}",
+        describe_rate_limits(file)
     );
-    let signature = Signature::of("rates", "[T; STATES]");
+    let signature = Signature::new("rates", "[T; STATES]");
     function(file, written, writer) + &stage_with(file, &linked_doc(&lines), &signature, &call)
 }
 
@@ -46,7 +48,10 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
             }
             Argument::Direction => arguments += "direction: &[T; STATES],\n",
             Argument::InputDirection => {
-                arguments += &format!("input_direction: &{},\n", generic(file, "Inputs"));
+                arguments += &format!(
+                    "input_direction: &{},\n",
+                    type_with_generics(file, "Inputs")
+                );
             }
             Argument::PointDirection => arguments += "direction: &[T; POINT],\n",
             Argument::Weights => arguments += "weights: &[T; STATES],\n",
@@ -83,7 +88,7 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
         Outcome::ArrayAndInputs(values) => {
             statements += &(zeros("product", &["STATES".to_owned()]) + &written);
             statements += &(input_product(values, writer) + "(product, input_product)\n");
-            format!("([T; STATES], {})", generic(file, "Inputs"))
+            format!("([T; STATES], {})", type_with_generics(file, "Inputs"))
         }
     };
     let head = linked_doc(&stage.doc) + &doc(&stage.list) + unused;
@@ -118,7 +123,7 @@ fn length(size: &Size) -> String {
 }
 
 /// Writes the call of another stage with the same arguments.
-pub(super) fn passed_on(file: &File<'_>, stage: &str) -> String {
+pub(super) fn call_stage(file: &File<'_>, stage: &str) -> String {
     let arguments = ["t", "state", "inputs", "coefficients"].map(str::to_owned);
-    call(&format!("{}{stage}", inlined(file)), &arguments)
+    call(&format!("{}{stage}", inlined_prefix(file)), &arguments)
 }

@@ -1,18 +1,20 @@
 //! Emitted types: parameters, inputs, and the coefficients with their preparation.
 
 use super::expression::Writer;
-use super::generics::generic;
+use super::generics::type_with_generics;
 use super::literals::{doc, number};
 use crate::program::describe::describe_value;
 use crate::program::{Extent, Quantity};
 use crate::statements::layout::block;
 use crate::statements::layout::{CLOSE, FLOW_EVEN, SPACE};
-use crate::statements::{Emitted, File, Needed, Prepared, preparation, quantity_line};
+use crate::statements::{
+    EmitResult, File, PreparedValue, RequiredFunctions, preparation, quantity_line,
+};
 
 /// Largest number of characters of a struct literal on one line.
 const LITERAL_WIDTH: usize = 34;
 
-pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
+pub(super) fn parameters(file: &File<'_>) -> EmitResult<String> {
     let mut fields = String::new();
     let (mut defaults, mut casts) = (Vec::new(), Vec::new());
     for parameter in &file.program.parameters {
@@ -25,7 +27,7 @@ pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
         "/// Parameters of the model. `Default` has the values of the specification.\n\
          #[derive(Clone, Copy, Debug, PartialEq)]\n\
          pub struct Parameters{} {{",
-        declared(!casts.is_empty())
+        declared_type(!casts.is_empty())
     );
     let default = block("fn default() -> Self {", &literal("Self", &defaults), "}");
     Ok(block(&head, &fields, "}")
@@ -34,7 +36,7 @@ pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
         + &array_conversion(file, "Parameters", "PARAMETERS"))
 }
 
-pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
+pub(super) fn inputs(file: &File<'_>) -> EmitResult<String> {
     let mut fields = String::new();
     let mut zeros = Vec::new();
     for input in &file.program.inputs {
@@ -46,7 +48,7 @@ pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
         "/// Inputs at run time. `Default` is zero.\n\
          #[derive(Clone, Copy, Debug, {derived}PartialEq)]\n\
          pub struct Inputs{} {{",
-        declared(!zeros.is_empty())
+        declared_type(!zeros.is_empty())
     );
     let mut text = block(&head, &fields, "}");
     if !zeros.is_empty() {
@@ -70,16 +72,16 @@ fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
     let argument = if values.is_empty() { "_" } else { "numbers" };
     let opening = format!("fn from({argument}: [T; {count}]) -> Self {{");
     let body = block(&opening, &literal("Self", &values), "}");
-    let whole = generic(file, name);
+    let whole = type_with_generics(file, name);
     let head = format!("impl<T: Copy> From<[T; {count}]> for {whole} {{");
     block(&head, &body, "}")
 }
 
 pub(super) fn coefficients(
     file: &File<'_>,
-    needed: &mut Needed,
+    needed: &mut RequiredFunctions,
     writer: &mut Writer,
-) -> Emitted<String> {
+) -> EmitResult<String> {
     let prepared = preparation(file, needed)?;
     let statements = writer.statements(&prepared.computed);
     let mut fields = String::new();
@@ -88,8 +90,8 @@ pub(super) fn coefficients(
         let name = &file.field_names[id];
         fields.push_str(&doc(&[describe_value(file.program, *id)]));
         let value = match coefficient {
-            Prepared::Number(value) => writer.expression(value),
-            Prepared::Numbers(array) => writer.array(array),
+            PreparedValue::Number(value) => writer.expression(value),
+            PreparedValue::Numbers(array) => writer.array(array),
         };
         let (field_type, converted) = match file.program.value(*id).extent {
             Extent::Scalar => ("T".to_owned(), format!("T::number(self.{name})")),
@@ -125,7 +127,7 @@ pub(super) fn coefficients(
         "/// Values that depend only on the parameters: prepare once, use in every call.\n\
          #[derive(Clone, Copy, Debug, PartialEq)]\n\
          pub struct Coefficients{} {{",
-        declared(numbers)
+        declared_type(numbers)
     );
     casts.push("positive_definite: self.positive_definite".to_owned());
     let prepare = prepare(file, &(statements + &literal("Self", &values)));
@@ -145,7 +147,7 @@ pub(super) fn coefficients(
 /// Writes the function that prepares the coefficients. Without numeric coefficients, the parameters determine
 /// the type of numbers; without either, it is `f64`.
 fn prepare(file: &File<'_>, statements: &str) -> String {
-    let parameters = generic(file, "Parameters");
+    let parameters = type_with_generics(file, "Parameters");
     let (with_coefficients, with_parameters) =
         (!file.fields.is_empty(), !file.program.parameters.is_empty());
     let unused = if statements.contains("parameters") {
@@ -167,14 +169,14 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
     block(&opening, &format!("{declared}{statements}"), "}")
 }
 
-fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
+fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {
     let name = file.words.identifier(&quantity.name)?;
     let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
     Ok(format!("{docs}pub {name}: T,\n"))
 }
 
 /// Returns the type parameter of a struct that contains numbers.
-fn declared(numbers: bool) -> &'static str {
+fn declared_type(numbers: bool) -> &'static str {
     if numbers { "<T = f64>" } else { "" }
 }
 

@@ -2,7 +2,7 @@
 //! order that the program defines.
 
 use super::body::Body;
-use super::emit_error::{EmitError, Emitted};
+use super::emit_error::{EmitError, EmitResult};
 use super::expression::Expression;
 use super::index::Index;
 use super::statement::{Place, Statement};
@@ -11,8 +11,8 @@ use crate::program::{Extent, Op, ValueId};
 impl Body<'_> {
     /// Returns the loop that sums an element of a matrix-vector product or of a Gram matrix's diagonal, and
     /// the name of the vector.
-    pub(super) fn summed_element(&mut self, id: ValueId) -> Emitted<(Statement, String)> {
-        let name = self.names.of(self.program, id, "s")?;
+    pub(super) fn summed_element(&mut self, id: ValueId) -> EmitResult<(Statement, String)> {
+        let name = self.names.value_name(self.program, id, "s")?;
         let (summand, length) = match self.program.value(id).op.clone() {
             Op::Apply {
                 matrix,
@@ -43,10 +43,10 @@ impl Body<'_> {
                 let weighted = Expression::multiply(&left, &weight);
                 (Expression::multiply(&weighted, &right), nodes)
             }
-            _ => return Err(EmitError::misplaced(id, "is not a sum of products")),
+            _ => return Err(EmitError::misplaced_value(id, "is not a sum of products")),
         };
         let added = Statement::add_to(Place::new(&*name, [Index::Variable("i")]), &summand);
-        Ok((Statement::looped("k", length, vec![added]), name))
+        Ok((Statement::loop_over("k", length, vec![added]), name))
     }
 
     pub(super) fn matrix_size(&self, id: ValueId) -> (usize, usize) {
@@ -56,8 +56,13 @@ impl Body<'_> {
         }
     }
 
-    pub(super) fn matrix_step(&mut self, id: ValueId, rows: usize, columns: usize) -> Emitted<()> {
-        let name = self.names.of(self.program, id, "s")?;
+    pub(super) fn matrix_step(
+        &mut self,
+        id: ValueId,
+        rows: usize,
+        columns: usize,
+    ) -> EmitResult<()> {
+        let name = self.names.value_name(self.program, id, "s")?;
         match self.program.value(id).op.clone() {
             Op::Cholesky(matrix) => {
                 self.needed.cholesky = true;
@@ -83,10 +88,10 @@ impl Body<'_> {
                 let summand = Expression::multiply(&weighted, &right);
                 let place = Place::new(&*name, ["i", "j"].map(Index::Variable));
                 let added = Statement::add_to(place, &summand);
-                let inner = Statement::looped("k", nodes, vec![added]);
+                let inner = Statement::loop_over("k", nodes, vec![added]);
                 self.push(Statement::Zeros(name.clone(), vec![rows, columns]));
-                let row = Statement::looped("j", columns, vec![inner]);
-                self.push(Statement::each(rows, row));
+                let row = Statement::loop_over("j", columns, vec![inner]);
+                self.push(Statement::loop_over_elements(rows, row));
             }
             Op::CholeskySolve(factor, right) => {
                 self.needed.cholesky_of_matrix = true;
@@ -119,7 +124,7 @@ impl Body<'_> {
         block: &Op,
         (rows, columns): (usize, usize),
         place: &dyn Fn(&'static str, &'static str) -> Place,
-    ) -> Emitted<Statement> {
+    ) -> EmitResult<Statement> {
         let Op::Assemble {
             diagonal,
             outer,
@@ -157,8 +162,8 @@ impl Body<'_> {
             entries.push(Statement::add_to(place("i", "j"), &product));
         }
         if !entries.is_empty() {
-            statements.push(Statement::looped("j", columns, entries));
+            statements.push(Statement::loop_over("j", columns, entries));
         }
-        Ok(Statement::looped("i", rows, statements))
+        Ok(Statement::loop_over("i", rows, statements))
     }
 }

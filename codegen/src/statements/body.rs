@@ -5,11 +5,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::expression::{Array, Expression};
 use super::index::Index;
 use super::names::{Names, Words};
-use super::needed::Needed;
+use super::needed::RequiredFunctions;
 use super::sides::Switches;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
@@ -35,7 +35,7 @@ pub struct Body<'a> {
     pub(super) bound: HashMap<ValueId, String>,
     statements: Vec<Statement>,
     /// Functions that the statements call.
-    pub needed: &'a mut Needed,
+    pub needed: &'a mut RequiredFunctions,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,
     pub(super) switches: Switches,
@@ -52,9 +52,9 @@ impl<'a> Body<'a> {
         words: &'static Words,
         access: Access<'a>,
         roots: &[ValueId],
-        needed: &'a mut Needed,
+        needed: &'a mut RequiredFunctions,
         switches: Switches,
-    ) -> Emitted<Self> {
+    ) -> EmitResult<Self> {
         let mut body = Self {
             program,
             access,
@@ -103,7 +103,7 @@ impl<'a> Body<'a> {
     }
 
     /// Returns the statements added since the last call.
-    pub fn take(&mut self) -> Vec<Statement> {
+    pub fn take_statements(&mut self) -> Vec<Statement> {
         std::mem::take(&mut self.statements)
     }
 
@@ -119,22 +119,25 @@ impl<'a> Body<'a> {
 
     /// Adds a loop that assigns elements i of a vector.
     pub fn assign_each(&mut self, length: usize, place: Place, element: Expression) {
-        self.push(Statement::each(length, Statement::Assign(place, element)));
+        self.push(Statement::loop_over_elements(
+            length,
+            Statement::Assign(place, element),
+        ));
     }
 
     fn push_filled(&mut self, name: &str, length: usize, statement: Statement) {
         self.push(Statement::Zeros(name.to_owned(), vec![length]));
-        self.push(Statement::each(length, statement));
+        self.push(Statement::loop_over_elements(length, statement));
     }
 
-    fn bind(&mut self, id: ValueId, expression: Expression) -> Emitted<()> {
-        let name = self.names.of(self.program, id, "s")?;
+    fn bind(&mut self, id: ValueId, expression: Expression) -> EmitResult<()> {
+        let name = self.names.value_name(self.program, id, "s")?;
         self.push(Statement::Let(name.clone(), expression));
         self.bound.insert(id, name);
         Ok(())
     }
 
-    fn step(&mut self, id: ValueId) -> Emitted<()> {
+    fn step(&mut self, id: ValueId) -> EmitResult<()> {
         let value = self.program.value(id);
         let uses = self.uses.get(&id).copied().unwrap_or(0);
         match (&value.op, value.extent) {
@@ -181,10 +184,10 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn scalar_step(&mut self, id: ValueId, uses: usize) -> Emitted<()> {
+    fn scalar_step(&mut self, id: ValueId, uses: usize) -> EmitResult<()> {
         let value = self.program.value(id);
         if let Op::Total(vector) = value.op {
-            return self.total(id, vector);
+            return self.write_total(id, vector);
         }
         let expression = self.own_expression(id, None)?;
         let looped = self.in_loops.get(&id).copied().unwrap_or(false);
@@ -195,8 +198,8 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn total(&mut self, id: ValueId, vector: ValueId) -> Emitted<()> {
-        let name = self.names.of(self.program, id, "s")?;
+    fn write_total(&mut self, id: ValueId, vector: ValueId) -> EmitResult<()> {
+        let name = self.names.value_name(self.program, id, "s")?;
         let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
         if length > PARTIAL_SUMS {
@@ -213,7 +216,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    fn vector_step(&mut self, id: ValueId, uses: usize, length: usize) -> Emitted<()> {
+    fn vector_step(&mut self, id: ValueId, uses: usize, length: usize) -> EmitResult<()> {
         let elementwise = is_elementwise(&self.program.value(id).op);
         let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
         if elementwise && uses <= 1 && !as_array {
@@ -224,7 +227,7 @@ impl<'a> Body<'a> {
         }
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
             self.needed.cholesky = true;
-            let name = self.names.of(self.program, id, "s")?;
+            let name = self.names.value_name(self.program, id, "s")?;
             let factor = self.numbers(factor)?;
             let right = self.vector_array(vector, length)?;
             self.push(Statement::CholeskySolve {
@@ -239,7 +242,7 @@ impl<'a> Body<'a> {
         }
         if elementwise {
             let element = self.element(id)?;
-            let name = self.names.of(self.program, id, "s")?;
+            let name = self.names.value_name(self.program, id, "s")?;
             let place = Place::new(&*name, [Index::Variable("i")]);
             self.push_filled(&name, length, Statement::Assign(place, element));
             self.bound.insert(id, name);
@@ -261,7 +264,7 @@ impl<'a> Body<'a> {
     }
 
     /// Returns a vector as an array, copied if necessary; a scalar fills every element.
-    fn vector_array(&mut self, id: ValueId, length: usize) -> Emitted<Array> {
+    fn vector_array(&mut self, id: ValueId, length: usize) -> EmitResult<Array> {
         if self.program.value(id).extent == Extent::Scalar {
             return Ok(Array::Filled(Box::new(self.scalar(id)?), length));
         }
@@ -269,7 +272,7 @@ impl<'a> Body<'a> {
             return Ok(array);
         }
         let element = self.element(id)?;
-        let name = self.names.of(self.program, id, "s")?;
+        let name = self.names.value_name(self.program, id, "s")?;
         let place = Place::new(&*name, [Index::Variable("i")]);
         self.push_filled(&name, length, Statement::Assign(place, element));
         Ok(Array::Local(name))

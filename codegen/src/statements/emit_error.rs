@@ -18,7 +18,7 @@ pub enum EmitError {
 
 impl EmitError {
     /// Returns the error for a value of the wrong kind.
-    pub(super) fn misplaced(id: ValueId, kind: &str) -> Self {
+    pub(super) fn misplaced_value(id: ValueId, kind: &str) -> Self {
         Self::Value(format!("value {} {kind}", id.index()))
     }
 }
@@ -39,4 +39,4 @@ impl std::fmt::Display for EmitError {
 
 impl std::error::Error for EmitError {}
 
-pub(crate) type Emitted<T> = Result<T, EmitError>;
+pub(crate) type EmitResult<T> = Result<T, EmitError>;

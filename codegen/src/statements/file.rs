@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::body::{Access, Body};
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::names::{Names, Words};
-use super::needed::Needed;
+use super::needed::RequiredFunctions;
 use super::roots::coefficient_values;
 use super::sides::Switches;
 use crate::program::{Program, ValueId};
@@ -27,12 +27,12 @@ impl<'p> File<'p> {
     ///
     /// # Errors
     /// A name that is not an identifier in the language of `words`.
-    pub fn new(program: &'p Program, words: &'static Words) -> Emitted<Self> {
+    pub fn new(program: &'p Program, words: &'static Words) -> EmitResult<Self> {
         let mut names = Names::new(program, words);
         let fields = coefficient_values(program);
         let mut field_names = HashMap::new();
         for id in &fields {
-            field_names.insert(*id, names.of(program, *id, "c")?);
+            field_names.insert(*id, names.value_name(program, *id, "c")?);
         }
         Ok(Self {
             program,
@@ -55,8 +55,8 @@ impl<'p> File<'p> {
     pub(super) fn body<'b>(
         &'b self,
         roots: &[ValueId],
-        needed: &'b mut Needed,
-    ) -> Emitted<Body<'b>> {
+        needed: &'b mut RequiredFunctions,
+    ) -> EmitResult<Body<'b>> {
         self.body_in_regime(roots, needed, Switches::new())
     }
 
@@ -64,9 +64,9 @@ impl<'p> File<'p> {
     pub(super) fn body_in_regime<'b>(
         &'b self,
         roots: &[ValueId],
-        needed: &'b mut Needed,
+        needed: &'b mut RequiredFunctions,
         switches: Switches,
-    ) -> Emitted<Body<'b>> {
+    ) -> EmitResult<Body<'b>> {
         let access = Access::Coefficients(&self.field_names);
         Body::new(self.program, self.words, access, roots, needed, switches)
     }

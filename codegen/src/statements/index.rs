@@ -15,17 +15,17 @@ pub enum Index {
 
 impl Index {
     /// Returns `first + rest`.
-    pub fn after(first: usize, rest: impl Into<Self>) -> Self {
-        Self::Number(first).plus(rest)
+    pub fn from_first(first: usize, rest: impl Into<Self>) -> Self {
+        Self::Number(first).offset_by(rest)
     }
 
     /// Returns `self + other`.
-    pub fn plus(self, other: impl Into<Self>) -> Self {
+    pub fn offset_by(self, other: impl Into<Self>) -> Self {
         Self::Sum(Box::new(self), Box::new(other.into()))
     }
 
     /// Returns `count * other`.
-    pub fn times(count: usize, other: impl Into<Self>) -> Self {
+    pub fn from_multiple(count: usize, other: impl Into<Self>) -> Self {
         Self::Product(Box::new(Self::Number(count)), Box::new(other.into()))
     }
 }

@@ -43,15 +43,15 @@ pub struct KernelStatements {
 impl KernelStatements {
     /// Writes the kernel of `function` with these argument names.
     pub fn new(function: Elementary, arguments: &[&str]) -> Self {
-        Self::of(&function.kernel(), arguments)
+        Self::from_kernel(&function.kernel(), arguments)
     }
 
     /// Writes the kernel of the sine and the cosine, in this order.
     pub fn sine_and_cosine(argument: &str) -> Self {
-        Self::of(&sin_cos_kernel(), &[argument])
+        Self::from_kernel(&sin_cos_kernel(), &[argument])
     }
 
-    fn of(kernel: &Kernel, arguments: &[&str]) -> Self {
+    fn from_kernel(kernel: &Kernel, arguments: &[&str]) -> Self {
         let uses = uses(kernel);
         let mut expressions: Vec<Expression> = Vec::new();
         let mut computed = Vec::new();

@@ -41,7 +41,7 @@ pub const BRACE: char = '\u{14}';
 /// Nothing, or a line end that also ends the group's indentation, and a closing brace.
 pub const BRACE_OUT: char = '\u{15}';
 /// No line end; the text before it is laid out independently of the text after it.
-pub const FIRM: char = '\u{13}';
+pub const LAYOUT_BOUNDARY: char = '\u{13}';
 /// At the start of a line: indents this line and those after it by one more level.
 pub const DEEPER: char = '\u{f}';
 /// At the start of a line: indents this line and those after it by one level less.
@@ -289,7 +289,7 @@ impl Token<'_> {
             COMMA_OUT => ends(0, -INDENT, [",", ""]),
             BRACE => ends(0, 0, ["{", ""]),
             BRACE_OUT => ends(0, -INDENT, ["", "}"]),
-            FIRM => Self::Firm,
+            LAYOUT_BOUNDARY => Self::Firm,
             _ => Self::Close,
         }
     }

@@ -28,17 +28,19 @@ mod statement;
 mod used;
 
 pub use emit_error::EmitError;
-pub(crate) use emit_error::Emitted;
+pub(crate) use emit_error::EmitResult;
 pub(crate) use expression::{Array, Expression, Operator, Structure};
 pub(crate) use file::{File, quantity_line};
 pub(crate) use index::Index;
 pub(crate) use kernel::{KernelStatements, describe_elementary};
 pub(crate) use names::Words;
-pub(crate) use needed::Needed;
-pub(crate) use preparation::{Preparation, Prepared, preparation};
-pub(crate) use requested::{nonzeros, rates_in_regime, requested};
+pub(crate) use needed::RequiredFunctions;
+pub(crate) use preparation::{Preparation, PreparedValue, preparation};
+pub(crate) use requested::{jacobian_stage, rates_in_regime, requested_stages};
 pub(crate) use roots::stage_roots;
 pub(crate) use stage::{Argument, Outcome, Size, Stage};
-pub(crate) use stages::{ORDER, guards, mass_matrix, observables, rates, where_they_end};
+pub(crate) use stages::{
+    RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
+};
 pub(crate) use statement::{Place, Statement};
-pub(crate) use used::Used;
+pub(crate) use used::UsedNames;

@@ -72,7 +72,7 @@ impl Names {
     }
 
     /// Returns the name of a value: its preferred name if that is free, else `stem` with a number.
-    pub fn of(
+    pub fn value_name(
         &mut self,
         program: &Program,
         id: ValueId,

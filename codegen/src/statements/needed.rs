@@ -6,7 +6,7 @@ use eomgen_elementary::Function as Elementary;
 
 /// Functions that a file must define.
 #[derive(Clone, Debug, Default)]
-pub struct Needed {
+pub struct RequiredFunctions {
     /// Elementary functions.
     pub elementary: BTreeSet<Elementary>,
     /// f_k of Eq. (7).
@@ -18,11 +18,11 @@ pub struct Needed {
     /// f_k on a given side.
     pub deadzone_on_side: bool,
     /// Contact on a given side.
-    pub touching: bool,
+    pub contact_on_side: bool,
     /// Indicator for a function on either side of its zero interval.
-    pub either: bool,
+    pub outside_zero_interval: bool,
     /// Selection by a given condition.
-    pub chosen: bool,
+    pub selection: bool,
     /// Reciprocals of pivots.
     pub pivot_reciprocal: bool,
     /// Cholesky factorisation and solution.

@@ -2,34 +2,38 @@
 //! or prepared data.
 
 use super::body::{Access, Body};
-use super::emit_error::{EmitError, Emitted};
+use super::emit_error::{EmitError, EmitResult};
 use super::expression::{Array, Expression, Structure};
 use super::index::Index;
-use super::sides::of_side;
-use crate::program::evaluator::{Law, law};
+use super::sides::decide_by_regime;
+use crate::program::evaluator::{PiecewiseFunction, piecewise_function};
 use crate::program::{Argument, Extent, Op, Output, Program, ValueId, Variable};
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::model::Function;
 
 impl<'a> Body<'a> {
     /// Returns a scalar.
-    pub fn scalar(&mut self, id: ValueId) -> Emitted<Expression> {
+    pub fn scalar(&mut self, id: ValueId) -> EmitResult<Expression> {
         self.expression(id, None)
     }
 
     /// Returns element i of a vector, or a scalar.
-    pub fn element(&mut self, id: ValueId) -> Emitted<Expression> {
+    pub fn element(&mut self, id: ValueId) -> EmitResult<Expression> {
         self.element_at(id, "i")
     }
 
     /// Returns element `index` of a vector, or a scalar.
-    pub(super) fn element_at(&mut self, id: ValueId, index: &'static str) -> Emitted<Expression> {
+    pub(super) fn element_at(
+        &mut self,
+        id: ValueId,
+        index: &'static str,
+    ) -> EmitResult<Expression> {
         let scalar = self.program.value(id).extent == Extent::Scalar;
         self.expression(id, (!scalar).then_some(index))
     }
 
     /// Returns a scalar or an element of a vector, by name if it has one.
-    fn expression(&mut self, id: ValueId, index: Option<&'static str>) -> Emitted<Expression> {
+    fn expression(&mut self, id: ValueId, index: Option<&'static str>) -> EmitResult<Expression> {
         match (self.bound.get(&id), index) {
             (Some(name), Some(index)) => Ok(Expression::element(&**name, [index.into()])),
             (Some(name), None) => Ok(Expression::name(name)),
@@ -42,7 +46,7 @@ impl<'a> Body<'a> {
         &mut self,
         id: ValueId,
         index: Option<&'static str>,
-    ) -> Emitted<Expression> {
+    ) -> EmitResult<Expression> {
         if let Some(leaf) = self.leaf_or_coefficient(id, index)? {
             return Ok(leaf);
         }
@@ -54,14 +58,19 @@ impl<'a> Body<'a> {
                 let scalar = self.program.value(operand).extent == Extent::Scalar;
                 self.expression(operand, if scalar { None } else { index })
             })
-            .collect::<Emitted<Vec<_>>>()?;
-        match of_side(self.program, &self.switches, id, &operands, self.needed) {
+            .collect::<EmitResult<Vec<_>>>()?;
+        match decide_by_regime(self.program, &self.switches, id, &operands, self.needed) {
             Some(decided) => Ok(decided),
             None => self.operation(id, &op, &operands),
         }
     }
 
-    fn operation(&mut self, id: ValueId, op: &Op, operands: &[Expression]) -> Emitted<Expression> {
+    fn operation(
+        &mut self,
+        id: ValueId,
+        op: &Op,
+        operands: &[Expression],
+    ) -> EmitResult<Expression> {
         Ok(match (op, operands) {
             (Op::Negate(_), [a]) => Expression::negate(a),
             (Op::Add(..), [a, b]) => Expression::add(a, b),
@@ -81,25 +90,30 @@ impl<'a> Body<'a> {
                 Expression::Select(Box::new(parts))
             }
             (Op::Call(function, _), _) => self.call(*function, operands),
-            _ => return Err(EmitError::misplaced(id, "is not an elementwise operation")),
+            _ => {
+                return Err(EmitError::misplaced_value(
+                    id,
+                    "is not an elementwise operation",
+                ));
+            }
         })
     }
 
     fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
-        let name = match law(function) {
-            Law::Elementary(elementary) => {
+        let name = match piecewise_function(function) {
+            PiecewiseFunction::Elementary(elementary) => {
                 self.needed.elementary.insert(elementary);
                 elementary.name()
             }
-            Law::Deadzone => {
+            PiecewiseFunction::Deadzone => {
                 self.needed.deadzone = true;
                 "deadzone"
             }
-            Law::Contact => {
+            PiecewiseFunction::Contact => {
                 self.needed.contact = true;
                 "contact"
             }
-            Law::Above => {
+            PiecewiseFunction::Above => {
                 self.needed.above = true;
                 "above"
             }
@@ -112,18 +126,21 @@ impl<'a> Body<'a> {
         &self,
         id: ValueId,
         index: Option<&'static str>,
-    ) -> Emitted<Option<Expression>> {
+    ) -> EmitResult<Option<Expression>> {
         let value = self.program.value(id);
         let program = self.program;
         let of = |array: &str, first: usize| {
-            let index = index.ok_or_else(|| EmitError::misplaced(id, "is a vector"))?;
-            Ok(Expression::element(array, [Index::after(first, index)]))
+            let index = index.ok_or_else(|| EmitError::misplaced_value(id, "is a vector"))?;
+            Ok(Expression::element(
+                array,
+                [Index::from_first(first, index)],
+            ))
         };
         Ok(Some(match value.op {
             Op::Constant(value) => Expression::Number(value),
             Op::Time => Expression::name("t"),
             Op::Table(table) => {
-                let index = index.ok_or_else(|| EmitError::misplaced(id, "is a table"))?;
+                let index = index.ok_or_else(|| EmitError::misplaced_value(id, "is a table"))?;
                 Expression::Element(self.table(table)?, vec![index.into()])
             }
             Op::ModeCoordinates(field) => of("state", program.mode_offset(field))?,
@@ -165,7 +182,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    pub(super) fn leaf(&self, id: ValueId) -> Emitted<Expression> {
+    pub(super) fn leaf(&self, id: ValueId) -> EmitResult<Expression> {
         let program = self.program;
         let at = |array: &str, place: usize| Expression::element(array, [Index::Number(place)]);
         let field = |of: Structure, name: &str| {
@@ -188,7 +205,12 @@ impl<'a> Body<'a> {
                 argument_name(argument),
                 argument_place(program, argument, variable),
             ),
-            _ => return Err(EmitError::misplaced(id, "is not an argument of the stage")),
+            _ => {
+                return Err(EmitError::misplaced_value(
+                    id,
+                    "is not an argument of the stage",
+                ));
+            }
         })
     }
 
@@ -197,7 +219,7 @@ impl<'a> Body<'a> {
         &mut self,
         id: ValueId,
         indices: [&'static str; N],
-    ) -> Emitted<Expression> {
+    ) -> EmitResult<Expression> {
         let array = match self.program.value(id).op {
             Op::Table(place) => self.table(place)?,
             _ => self.numbers(id)?,
@@ -207,7 +229,7 @@ impl<'a> Body<'a> {
         Ok(if prepared { self.shared(entry) } else { entry })
     }
 
-    fn table(&self, place: usize) -> Emitted<Array> {
+    fn table(&self, place: usize) -> EmitResult<Array> {
         let table = &self.program.tables[place];
         let name = self.names.identifier(&table.name)?;
         Ok(Array::Table(name.to_owned(), table.extent))
@@ -221,7 +243,7 @@ impl<'a> Body<'a> {
     }
 
     /// Returns a vector or matrix as an array.
-    pub fn numbers(&mut self, id: ValueId) -> Emitted<Array> {
+    pub fn numbers(&mut self, id: ValueId) -> EmitResult<Array> {
         if let Some(name) = self.bound.get(&id) {
             return Ok(Array::local(name));
         }

@@ -1,18 +1,18 @@
 //! Preparation of the coefficients, which depend only on the parameters.
 
 use super::body::{Access, Body};
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::expression::{Array, Expression};
 use super::file::File;
 use super::index::Index;
-use super::needed::Needed;
+use super::needed::RequiredFunctions;
 use super::sides::Switches;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, ValueId};
 
 /// Coefficient.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Prepared {
+pub enum PreparedValue {
     /// Scalar.
     Number(Expression),
     /// Vector or matrix.
@@ -25,13 +25,13 @@ pub struct Preparation {
     /// Statements that compute the coefficients.
     pub computed: Vec<Statement>,
     /// Coefficients, in the order of [`File::fields`].
-    pub coefficients: Vec<Prepared>,
+    pub coefficients: Vec<PreparedValue>,
     /// Condition that all prepared pivots are positive and finite.
     pub positive_definite: Expression,
 }
 
 /// Builds the preparation of the coefficients of a file.
-pub fn preparation(file: &File<'_>, needed: &mut Needed) -> Emitted<Preparation> {
+pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Preparation> {
     let roots = file.fields.iter().chain(&file.program.pivots);
     let roots: Vec<ValueId> = roots.copied().collect();
     let access = Access::Prepare;
@@ -40,19 +40,19 @@ pub fn preparation(file: &File<'_>, needed: &mut Needed) -> Emitted<Preparation>
     let mut coefficients = Vec::new();
     for id in &file.fields {
         coefficients.push(match file.program.value(*id).extent {
-            Extent::Scalar => Prepared::Number(body.scalar(*id)?),
-            _ => Prepared::Numbers(body.numbers(*id)?),
+            Extent::Scalar => PreparedValue::Number(body.scalar(*id)?),
+            _ => PreparedValue::Numbers(body.numbers(*id)?),
         });
     }
     let positive_definite = pivot_check(file, &mut body)?;
     Ok(Preparation {
-        computed: body.take(),
+        computed: body.take_statements(),
         coefficients,
         positive_definite,
     })
 }
 
-fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> Emitted<Expression> {
+fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<Expression> {
     let mut check: Option<Expression> = None;
     for (place, id) in file.program.pivots.iter().enumerate() {
         let conditions = match file.program.value(*id).extent {

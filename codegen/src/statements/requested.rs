@@ -2,15 +2,17 @@
 //! Jacobians and the rates in a regime.
 
 use super::body::Body;
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::expression::Expression;
 use super::file::File;
 use super::index::Index;
-use super::needed::Needed;
+use super::needed::RequiredFunctions;
 use super::roots::entry_roots;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
-use super::stages::{ORDER, by_positions, guard_values, rates_of, where_they_end};
+use super::stages::{
+    RATES_ORDER_DOC, describe_by_positions, describe_rate_limits, guard_values, rates_stage,
+};
 use super::statement::{Place, Statement};
 use crate::program::{
     BlockPlace, Extent, GradientDerivative, Jacobian, JacobianBlock, Products, RowValues, ValueId,
@@ -18,7 +20,7 @@ use crate::program::{
 };
 
 /// Builds the requested stages, except Jacobians and rates in a regime.
-pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+pub fn requested_stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
     let outputs = &file.program.outputs;
     let mut stages = Vec::new();
     if let Some(rows) = &outputs.bias_forces {
@@ -56,31 +58,31 @@ fn forces(
     name: &'static str,
     doc: &str,
     rows: &RowValues,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let mut body = file.body(&rows.all(), needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     write_row_values(&mut body, "values", 0, rows)?;
     Ok(Stage {
         name,
-        doc: by_positions(file.program, doc),
+        doc: describe_by_positions(file.program, doc),
         list: Vec::new(),
         arguments: Vec::new(),
         outcome: Outcome::Array("values", Size::DegreesOfFreedom),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 fn jacobian_vector_product(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let degrees = file.program.degrees_of_freedom();
     let mut body = file.body(&products.forward_roots(), needed)?;
-    let computed = body.take();
-    let rate = Expression::element("direction", [Index::after(degrees, "i")]);
+    let computed = body.take_statements();
+    let rate = Expression::element("direction", [Index::from_first(degrees, "i")]);
     body.assign_each(degrees, Place::new("product", ["i".into()]), rate);
     write_row_values(&mut body, "product", degrees, &products.forward)?;
     for (index, id) in products.forward_first_order.iter().enumerate() {
@@ -96,28 +98,28 @@ fn jacobian_vector_product(
         arguments: vec![Argument::Direction, Argument::InputDirection],
         outcome: Outcome::Array("product", Size::States),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 fn vector_jacobian_product(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let program = file.program;
     let degrees = program.degrees_of_freedom();
     let roots: Vec<ValueId> = products.reverse.iter().map(|(_, id)| *id).collect();
     let mut body = file.body(&roots, needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     let weight = Expression::element("weights", ["i".into()]);
-    let place = Place::new("product", [Index::after(degrees, "i")]);
+    let place = Place::new("product", [Index::from_first(degrees, "i")]);
     body.assign_each(degrees, place, weight);
     let mut inputs = vec![Expression::Number(0.0); program.inputs.len()];
     for (variable, id) in &products.reverse {
         let place = program.variable_place(*variable);
         let at = || Place::new("product", [Index::Number(place)]);
-        let each = || Place::new("product", [Index::after(place, "i")]);
+        let each = || Place::new("product", [Index::from_first(place, "i")]);
         match variable {
             Variable::Input(index) => inputs[*index] = body.scalar(*id)?,
             // The product is by state and inputs.
@@ -137,7 +139,10 @@ fn vector_jacobian_product(
             Variable::ModeRates(field) => {
                 let value = body.element(*id)?;
                 let line = Statement::add_to(each(), &value);
-                body.push(Statement::each(program.fields[*field].order, line));
+                body.push(Statement::loop_over_elements(
+                    program.fields[*field].order,
+                    line,
+                ));
             }
         }
     }
@@ -154,19 +159,19 @@ fn vector_jacobian_product(
         arguments: vec![Argument::Weights],
         outcome: Outcome::ArrayAndInputs(named),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 fn product_by_parameters(
     file: &File<'_>,
     products: &Products<ValueId, RowValues>,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let entries = &products.by_parameters.entries;
     let roots: Vec<ValueId> = entries.iter().map(|entry| entry.value).collect();
     let mut body = file.body(&roots, needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     for entry in entries {
         let value = body.scalar(entry.value)?;
         body.assign(Place::new("product", [Index::Number(entry.column)]), value);
@@ -181,25 +186,25 @@ fn product_by_parameters(
         arguments: vec![Argument::Weights],
         outcome: Outcome::Array("product", Size::Parameters),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 fn gradient_derivative(
     file: &File<'_>,
     derivative: &GradientDerivative<ValueId>,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let roots: Vec<ValueId> = derivative.rows.iter().map(|row| row.value).collect();
     let mut body = file.body(&roots, needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     for row in &derivative.rows {
         let extent = body.program.value(row.value).extent;
         let value = body.element(row.value)?;
         if row.count == 1 && extent == Extent::Scalar {
             body.assign(Place::new("product", [Index::Number(row.first)]), value);
         } else {
-            let place = Place::new("product", [Index::after(row.first, "i")]);
+            let place = Place::new("product", [Index::from_first(row.first, "i")]);
             body.assign_each(row.count, place, value);
         }
     }
@@ -212,18 +217,18 @@ fn gradient_derivative(
         arguments: vec![Argument::Weights, Argument::PointDirection],
         outcome: Outcome::Array("product", Size::Point),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 /// Builds the stage that writes the structural nonzeros of a Jacobian, row by row.
-pub fn nonzeros(
+pub fn jacobian_stage(
     file: &File<'_>,
     jacobian: &Jacobian<ValueId>,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let mut body = file.body(&entry_roots(file.program, jacobian), needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
         write_entry(&mut body, entry, start, width)?;
     }
@@ -242,7 +247,7 @@ pub fn nonzeros(
         arguments: Vec::new(),
         outcome: Outcome::Array("values", Size::Nonzeros(jacobian.name)),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
@@ -252,13 +257,13 @@ fn write_entry(
     entry: &JacobianBlock<ValueId>,
     start: usize,
     width: usize,
-) -> Emitted<()> {
+) -> EmitResult<()> {
     let extent = body.program.value(entry.value).extent;
     if let (Extent::Matrix(..), false) = (extent, entry.diagonal) {
         let op = body.program.value(entry.value).op.clone();
         let place = |i: &'static str, j: &'static str| {
-            let row = Index::after(start, Index::times(width, i));
-            Place::new("values", [row.plus(j)])
+            let row = Index::from_first(start, Index::from_multiple(width, i));
+            Place::new("values", [row.offset_by(j)])
         };
         let loops = body.block_loops(&op, (entry.rows, entry.columns), &place)?;
         body.push(loops);
@@ -277,15 +282,18 @@ fn write_entry(
     let step = if stride == 1 {
         Index::Variable("i")
     } else {
-        Index::times(stride, "i")
+        Index::from_multiple(stride, "i")
     };
-    let place = Place::new("values", [Index::after(start, step)]);
+    let place = Place::new("values", [Index::from_first(start, step)]);
     body.assign_each(count, place, value);
     Ok(())
 }
 
 /// Builds the stage for the rates in a regime, if requested.
-pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<Stage>> {
+pub fn rates_in_regime(
+    file: &File<'_>,
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Option<Stage>> {
     let Some(switches) = &file.program.outputs.regimes else {
         return Ok(None);
     };
@@ -295,11 +303,11 @@ pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<S
     let doc = format!(
         "Rates of the state in a regime, written to `rates`. They equal those of [`rates_into`] if\n\
          [`regime`] is `REGIME` and half-widths are not negative. Outside the regime its equations\n\
-         are continued; on a surface they are those of the regime's side.\n\n{ORDER}{}",
-        where_they_end(file)
+         are continued; on a surface they are those of the regime's side.\n\n{RATES_ORDER_DOC}{}",
+        describe_rate_limits(file)
     );
     Ok(Some(Stage {
         arguments: vec![Argument::Regime],
-        ..rates_of(body, "rates_in_regime_into", doc)?
+        ..rates_stage(body, "rates_in_regime_into", doc)?
     }))
 }

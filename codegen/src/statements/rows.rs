@@ -1,7 +1,7 @@
 //! Assignment of one value for each row of the equations to an array.
 
 use super::body::Body;
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::index::Index;
 use super::statement::Place;
 use crate::program::RowValues;
@@ -13,7 +13,7 @@ pub(super) fn write_row_values(
     target: &str,
     first: usize,
     rows: &RowValues,
-) -> Emitted<()> {
+) -> EmitResult<()> {
     for (place, id) in rows.scalars.iter().enumerate() {
         let value = body.scalar(*id)?;
         body.assign(Place::new(target, [Index::Number(first + place)]), value);
@@ -22,7 +22,7 @@ pub(super) fn write_row_values(
         let order = body.program.fields[field].order;
         if order > 0 {
             let value = body.element(*id)?;
-            let place = Index::after(first + body.program.mode_offset(field), "i");
+            let place = Index::from_first(first + body.program.mode_offset(field), "i");
             body.assign_each(order, Place::new(target, [place]), value);
         }
     }

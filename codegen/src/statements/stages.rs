@@ -1,11 +1,11 @@
 //! Stages of every file: rates, observables, guards, mass matrix.
 
 use super::body::Body;
-use super::emit_error::Emitted;
+use super::emit_error::EmitResult;
 use super::expression::Expression;
 use super::file::{File, quantity_line};
 use super::index::Index;
-use super::needed::Needed;
+use super::needed::RequiredFunctions;
 use super::roots::mass_roots;
 use super::rows::write_row_values;
 use super::stage::{Outcome, Size, Stage};
@@ -14,7 +14,8 @@ use crate::program::{Extent, Op, Program, ValueId};
 use eomgen_model_spec::ids::FieldId;
 
 /// Documentation of the arguments and results of the rates.
-pub const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+pub const RATES_ORDER_DOC: &str =
+    "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
 
 const NOT_DEFINITE: &str = "\n\n\
     The mass matrix varies with the state. If it is not positive definite, rates of velocities are\n\
@@ -25,23 +26,23 @@ const BETWEEN_IMPACTS: &str = "\n\n\
     included.";
 
 /// Largest copy, in numbers, that every compiler unrolls: one cache line.
-const COPIED_AT_ONCE: usize = 8;
+const MAX_UNROLLED_COPY: usize = 8;
 
 /// Builds the stage of the rates.
-pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+pub fn rates(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let body = file.body(&file.program.rate_roots(), needed)?;
-    rates_of(
+    rates_stage(
         body,
         "rates_into",
         format!(
-            "Rates of the state, written to `rates`.\n\n{ORDER}{}",
-            where_they_end(file)
+            "Rates of the state, written to `rates`.\n\n{RATES_ORDER_DOC}{}",
+            describe_rate_limits(file)
         ),
     )
 }
 
 /// Describes the limits of the rates: an indefinite mass matrix and impacts.
-pub fn where_they_end(file: &File<'_>) -> String {
+pub fn describe_rate_limits(file: &File<'_>) -> String {
     let mut said = String::new();
     if file.program.may_lose_definiteness() {
         said += NOT_DEFINITE;
@@ -53,9 +54,13 @@ pub fn where_they_end(file: &File<'_>) -> String {
 }
 
 /// Builds a stage that writes the rates from a body that has their values.
-pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> Emitted<Stage> {
+pub(super) fn rates_stage(
+    mut body: Body<'_>,
+    name: &'static str,
+    doc: String,
+) -> EmitResult<Stage> {
     let degrees = body.program.degrees_of_freedom();
-    let computed = body.take();
+    let computed = body.take_statements();
     write_rates_of_positions(&mut body, degrees);
     let accelerations = &body.program.accelerations;
     write_row_values(&mut body, "rates", degrees, accelerations)?;
@@ -70,7 +75,7 @@ pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> E
         arguments: Vec::new(),
         outcome: Outcome::Rates,
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
@@ -81,17 +86,20 @@ fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
         let rate = Expression::element("state", [from]);
         Statement::Assign(Place::new("rates", [to]), rate)
     };
-    if degrees <= COPIED_AT_ONCE {
-        let line = copy("i".into(), Index::after(degrees, "i"));
-        body.push(Statement::each(degrees, line));
+    if degrees <= MAX_UNROLLED_COPY {
+        let line = copy("i".into(), Index::from_first(degrees, "i"));
+        body.push(Statement::loop_over_elements(degrees, line));
         return;
     }
-    let twice = || Index::times(2, "k");
+    let twice = || Index::from_multiple(2, "k");
     let lines = vec![
-        copy(twice(), Index::after(degrees, twice())),
-        copy(twice().plus(1), Index::after(degrees + 1, twice())),
+        copy(twice(), Index::from_first(degrees, twice())),
+        copy(
+            twice().offset_by(1),
+            Index::from_first(degrees + 1, twice()),
+        ),
     ];
-    body.push(Statement::looped("k", degrees / 2, lines));
+    body.push(Statement::loop_over("k", degrees / 2, lines));
     if degrees % 2 == 1 {
         let last = degrees - 1;
         body.push(copy(last.into(), (degrees + last).into()));
@@ -99,12 +107,12 @@ fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
 }
 
 /// Builds the stages of the observables, of the energy and of the power.
-pub fn observables(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+pub fn observables(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
     let program = file.program;
     let ids = &program.observable_values;
     let mut body = file.body(ids, needed)?;
     let values = ids.iter().map(|id| body.scalar(*id));
-    let values = values.collect::<Emitted<Vec<_>>>()?;
+    let values = values.collect::<EmitResult<Vec<_>>>()?;
     let lines = program.observables.iter().map(|observable| {
         let line = quantity_line(&observable.doc, &observable.unit, "");
         format!("- `{}`: {line}", observable.name)
@@ -115,7 +123,7 @@ pub fn observables(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> 
         list: lines.collect(),
         arguments: Vec::new(),
         outcome: Outcome::Observables(values),
-        computed: body.take(),
+        computed: body.take_statements(),
         written: Vec::new(),
     };
     let (energy, power) = (ids[ids.len() - 2], ids[ids.len() - 1]);
@@ -133,8 +141,8 @@ fn number(
     name: &'static str,
     line: &str,
     id: ValueId,
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let mut body = file.body(&[id], needed)?;
     let value = body.scalar(id)?;
     Ok(Stage {
@@ -143,13 +151,13 @@ fn number(
         list: Vec::new(),
         arguments: Vec::new(),
         outcome: Outcome::Number(value),
-        computed: body.take(),
+        computed: body.take_statements(),
         written: Vec::new(),
     })
 }
 
 /// Builds the stage of the switching functions.
-pub fn guards(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+pub fn guards(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let ids: Vec<ValueId> = file.program.guards.iter().map(|g| g.value).collect();
     let line = "Switching surfaces: the equations change when one of these changes sign.";
     guard_values(file, "guards", line, &ids, needed)
@@ -161,18 +169,18 @@ pub(super) fn guard_values(
     name: &'static str,
     line: &str,
     ids: &[ValueId],
-    needed: &mut Needed,
-) -> Emitted<Stage> {
+    needed: &mut RequiredFunctions,
+) -> EmitResult<Stage> {
     let program = file.program;
     let mut body = file.body(ids, needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     let mut place = 0;
     let mut list = Vec::new();
     for (guard, id) in program.guards.iter().zip(ids) {
         match program.value(guard.value).extent {
             Extent::Vector(length) => {
                 let value = body.element(*id)?;
-                let at = Place::new("values", [Index::after(place, "i")]);
+                let at = Place::new("values", [Index::from_first(place, "i")]);
                 body.assign_each(length, at, value);
                 place += length;
             }
@@ -191,15 +199,15 @@ pub(super) fn guard_values(
         arguments: Vec::new(),
         outcome: Outcome::Array("values", Size::Guards),
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
 /// Builds the stage of the mass matrix.
-pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+pub fn mass_matrix(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Stage> {
     let program = file.program;
     let mut body = file.body(&mass_roots(program), needed)?;
-    let computed = body.take();
+    let computed = body.take_statements();
     for (row, entries) in program.mass.scalars.iter().enumerate() {
         for (column, id) in entries.iter().enumerate() {
             if matches!(program.value(*id).op, Op::Constant(0.0)) {
@@ -213,7 +221,7 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     write_modal_blocks(file, &mut body)?;
     Ok(Stage {
         name: "mass_matrix",
-        doc: by_positions(
+        doc: describe_by_positions(
             program,
             "Mass matrix in the order of the first half of [`STATE_NAMES`].",
         ),
@@ -221,7 +229,7 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
         arguments: Vec::new(),
         outcome: Outcome::MassMatrix,
         computed,
-        written: body.take(),
+        written: body.take_statements(),
     })
 }
 
@@ -229,7 +237,7 @@ fn entry(row: impl Into<Index>, column: impl Into<Index>) -> Place {
     Place::new("values", [row.into(), column.into()])
 }
 
-fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
+fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<()> {
     let program = file.program;
     for (row, entries) in program.mass.coupling.iter().enumerate() {
         for (field, id) in FieldId::first(entries.len()).zip(entries) {
@@ -238,17 +246,17 @@ fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
                 continue;
             }
             let value = body.element(*id)?;
-            let place = || Index::after(program.mode_offset(field), "i");
+            let place = || Index::from_first(program.mode_offset(field), "i");
             let upper = entry(row, place());
             let lower = Statement::Assign(entry(place(), row), upper.value());
             let lines = vec![Statement::Assign(upper, value), lower];
-            body.push(Statement::looped("i", order, lines));
+            body.push(Statement::loop_over("i", order, lines));
         }
     }
     Ok(())
 }
 
-fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
+fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<()> {
     let program = file.program;
     let fields = FieldId::first(program.fields.len());
     for (row, blocks) in fields.clone().zip(&program.mass.modal) {
@@ -261,7 +269,10 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
             let first_row = program.mode_offset(row);
             let first_column = program.mode_offset(column);
             let place = |i: &'static str, j: &'static str| {
-                entry(Index::after(first_row, i), Index::after(first_column, j))
+                entry(
+                    Index::from_first(first_row, i),
+                    Index::from_first(first_column, j),
+                )
             };
             let loops = body.block_loops(&program.value(*id).op, (rows, columns), &place)?;
             body.push(loops);
@@ -272,7 +283,7 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
 
 /// Adapts a description that refers to the first half of the state: states of first order make the
 /// coordinates and modes less than half.
-pub(super) fn by_positions(program: &Program, doc: &str) -> String {
+pub(super) fn describe_by_positions(program: &Program, doc: &str) -> String {
     match program.first_order.is_empty() {
         true => doc.to_owned(),
         false => doc.replace("the first half of", "the coordinates and modes in"),

@@ -82,12 +82,12 @@ pub enum Statement {
 
 impl Statement {
     /// Builds a loop over i with one statement.
-    pub fn each(length: usize, statement: Self) -> Self {
-        Self::looped("i", length, vec![statement])
+    pub fn loop_over_elements(length: usize, statement: Self) -> Self {
+        Self::loop_over("i", length, vec![statement])
     }
 
     /// Builds a loop.
-    pub fn looped(index: &'static str, length: usize, lines: Vec<Self>) -> Self {
+    pub fn loop_over(index: &'static str, length: usize, lines: Vec<Self>) -> Self {
         Self::Loop {
             index,
             length,

@@ -3,19 +3,19 @@
 use std::collections::HashSet;
 
 use super::expression::{Array, Expression, Structure};
-use super::preparation::{Preparation, Prepared};
+use super::preparation::{Preparation, PreparedValue};
 use super::stage::Outcome;
 use super::statement::Statement;
 
 /// Names that statements read.
 #[derive(Debug, Default)]
-pub struct Used {
+pub struct UsedNames {
     names: HashSet<String>,
 }
 
-impl Used {
+impl UsedNames {
     /// Collects the names that an outcome reads and those of the arrays that it returns.
-    pub fn by(outcome: &Outcome) -> Self {
+    pub fn from_outcome(outcome: &Outcome) -> Self {
         let mut used = Self::default();
         for name in ["rates", "values", "product"] {
             used.names.insert(name.to_owned());
@@ -32,12 +32,12 @@ impl Used {
     }
 
     /// Collects the names that the coefficients read.
-    pub fn by_preparation(prepared: &Preparation) -> Self {
+    pub fn from_preparation(prepared: &Preparation) -> Self {
         let mut used = Self::default();
         for coefficient in &prepared.coefficients {
             match coefficient {
-                Prepared::Number(value) => used.expression(value),
-                Prepared::Numbers(array) => used.array(array),
+                PreparedValue::Number(value) => used.expression(value),
+                PreparedValue::Numbers(array) => used.array(array),
             }
         }
         used.expression(&prepared.positive_definite);
@@ -52,12 +52,12 @@ impl Used {
     /// Keeps the statements whose results are read by later statements or by the outcome.
     pub fn retain(&mut self, statements: Vec<Statement>) -> Vec<Statement> {
         let kept = statements.into_iter().rev();
-        let mut kept: Vec<Statement> = kept.filter_map(|one| self.keep(one)).collect();
+        let mut kept: Vec<Statement> = kept.filter_map(|one| self.filter_statement(one)).collect();
         kept.reverse();
         kept
     }
 
-    fn keep(&mut self, statement: Statement) -> Option<Statement> {
+    fn filter_statement(&mut self, statement: Statement) -> Option<Statement> {
         let written = match &statement {
             Statement::Let(name, _)
             | Statement::Zeros(name, _)
@@ -66,7 +66,7 @@ impl Used {
             | Statement::Cholesky { name, .. }
             | Statement::CholeskySolve { name, .. } => name,
             Statement::Assign(place, _) => &place.name,
-            Statement::Loop { .. } => return self.keep_loop(statement),
+            Statement::Loop { .. } => return self.filter_loop(statement),
         };
         if !self.names.contains(written) {
             return None;
@@ -84,7 +84,7 @@ impl Used {
         Some(statement)
     }
 
-    fn keep_loop(&mut self, statement: Statement) -> Option<Statement> {
+    fn filter_loop(&mut self, statement: Statement) -> Option<Statement> {
         let Statement::Loop {
             index,
             length,
@@ -94,7 +94,7 @@ impl Used {
             return Some(statement);
         };
         let lines = self.retain(lines);
-        (!lines.is_empty() && length > 0).then(|| Statement::looped(index, length, lines))
+        (!lines.is_empty() && length > 0).then(|| Statement::loop_over(index, length, lines))
     }
 
     fn expression(&mut self, expression: &Expression) {

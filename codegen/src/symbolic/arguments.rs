@@ -13,7 +13,7 @@ pub enum Arguments<T> {
 
 impl<T> Arguments<T> {
     /// Builds arguments from one or two operands; `None` for another number.
-    pub fn of(operands: Vec<T>) -> Option<Self> {
+    pub fn from_operands(operands: Vec<T>) -> Option<Self> {
         let operands = match <[T; 1]>::try_from(operands) {
             Ok(one) => return Some(Self::One(one)),
             Err(operands) => operands,

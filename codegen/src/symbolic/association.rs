@@ -37,7 +37,7 @@ pub(crate) struct Association {
 type ProductPowers = (u64, Vec<(NodeId, i32)>);
 
 /// Largest number of factors of a reordered product; longer ones have too many pairs to compare.
-pub(crate) const MOST_FACTORS: usize = 12;
+pub(crate) const MAX_FACTORS: usize = 12;
 
 /// Largest exponent of a reordered factor; higher powers use squaring.
 const LARGEST_EXPONENT: i32 = 3;
@@ -91,7 +91,7 @@ impl Association {
                 found.push((key, factors));
             }
         }
-        let mut sharing = Sharing::of(found.iter().map(|(_, factors)| factors.clone()).collect());
+        let mut sharing = Sharing::new(found.iter().map(|(_, factors)| factors.clone()).collect());
         sharing.run(&mut self.pairs);
         for ((key, before), after) in found.into_iter().zip(sharing.products) {
             if before != after {
@@ -143,14 +143,14 @@ impl Association {
             }
             factors.extend((0..exponent).map(|_| Factor::Node(id)));
         }
-        (2..=MOST_FACTORS)
+        (2..=MAX_FACTORS)
             .contains(&factors.len())
             .then_some(factors)
     }
 }
 
 /// Cost of a sine or a cosine in operations: they occur in pairs and wait for few operations.
-const TURN: usize = 20;
+const TRIG_COST: usize = 20;
 
 /// Counts the operations of scalar nodes per call with shared products. The count decides between two forms.
 pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
@@ -167,7 +167,7 @@ pub(crate) fn shared_operations(graph: &Graph, roots: &[NodeId]) -> usize {
                 let live = terms.len() - terms.iter().filter(prepared).count();
                 live - usize::from(live == terms.len())
             }
-            Operation::Call(Function::Sin | Function::Cos, _) => TURN,
+            Operation::Call(Function::Sin | Function::Cos, _) => TRIG_COST,
             Operation::Call(..) | Operation::Power(..) | Operation::Select { .. } => 1,
             _ => 0,
         }
@@ -217,13 +217,13 @@ struct Sharing {
 }
 
 impl Sharing {
-    fn of(products: Vec<Vec<Factor>>) -> Self {
+    fn new(products: Vec<Vec<Factor>>) -> Self {
         let mut sharing = Self {
             products,
             holders: HashMap::new(),
         };
         for place in 0..sharing.products.len() {
-            for pair in pairs_of(&sharing.products[place]) {
+            for pair in product_pairs(&sharing.products[place]) {
                 sharing.holders.entry(pair).or_default().insert(place);
             }
         }
@@ -264,7 +264,7 @@ impl Sharing {
 
     /// Replaces two factors of a product by their pair; returns the pairs that the product now contains.
     fn replace(&mut self, place: usize, pair: Pair, made: Factor) -> BTreeSet<Pair> {
-        for held in pairs_of(&self.products[place]) {
+        for held in product_pairs(&self.products[place]) {
             if let Some(holders) = self.holders.get_mut(&held) {
                 holders.remove(&place);
             }
@@ -276,7 +276,7 @@ impl Sharing {
             }
         }
         product.push(made);
-        let now = pairs_of(product);
+        let now = product_pairs(product);
         for held in &now {
             self.holders.entry(*held).or_default().insert(place);
         }
@@ -285,7 +285,7 @@ impl Sharing {
 }
 
 /// Returns every pair of factors in a product.
-fn pairs_of(product: &[Factor]) -> BTreeSet<Pair> {
+fn product_pairs(product: &[Factor]) -> BTreeSet<Pair> {
     let mut pairs = BTreeSet::new();
     for (place, &a) in product.iter().enumerate() {
         for &b in &product[..place] {

@@ -14,11 +14,11 @@ use crate::symbolic::node_map::NodeMap;
 /// Nodes that vary along a direction. The test precedes the formation of derivatives, because most of an
 /// expression is constant along most directions.
 #[derive(Default)]
-pub(super) struct Moving {
+pub(super) struct VariationTest {
     pub(super) known: NodeMap<NodeId, bool>,
 }
 
-impl Moving {
+impl VariationTest {
     /// Returns true if an operand of `id`, direct or indirect, varies. `leaf` decides for leaves and for
     /// other nodes that it recognises.
     pub(super) fn has(
@@ -56,13 +56,13 @@ pub struct Direction<'a> {
     seeds: Vec<NodeId>,
     /// True after the removal of seeds with the derivative 0.
     has_moving_seeds_alone: bool,
-    moving: Moving,
+    moving: VariationTest,
 }
 
 #[derive(Default)]
 pub(crate) struct KnownDerivatives {
     known: NodeMap<NodeId, NodeId>,
-    moving: Moving,
+    moving: VariationTest,
 }
 
 impl<'a> Direction<'a> {
@@ -109,7 +109,7 @@ impl<'a> Direction<'a> {
 
     /// Returns true if `id` can have a derivative other than 0. It does not evaluate tangents, which would
     /// change the order of nodes in the graph.
-    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
+    fn is_moving(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
         if !self.has_moving_seeds_alone {
             let moves = |seed: &NodeId| known.get(seed).is_some_and(|by| !graph.is_zero(*by));
@@ -135,7 +135,7 @@ impl<'a> Direction<'a> {
     }
 
     fn compute(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
-        if !self.moves(graph, id) {
+        if !self.is_moving(graph, id) {
             return graph.zero();
         }
         let operation = graph.operation(id).clone();
@@ -157,8 +157,10 @@ impl<'a> Direction<'a> {
                 matrix,
                 transposed,
                 vector,
-            } => self.applied(graph, matrix, transposed, vector),
-            Operation::CholeskySolve(factor, vector) => self.solved(graph, factor, vector, id),
+            } => self.differentiate_product(graph, matrix, transposed, vector),
+            Operation::CholeskySolve(factor, vector) => {
+                self.differentiate_solution(graph, factor, vector, id)
+            }
             Operation::GramDiagonal {
                 left,
                 weight,
@@ -169,7 +171,7 @@ impl<'a> Direction<'a> {
             }
             _ => {
                 let partials =
-                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+                    partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.derivative(graph, operand);
@@ -184,7 +186,7 @@ impl<'a> Direction<'a> {
 }
 
 /// Differentiates a node by a scalar node: a leaf, or an expression whose operands then count as constant.
-pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
+pub fn derive_by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let mut direction = Direction::default();
     let one = graph.one();
     direction.seed(variable, one);
@@ -248,13 +250,13 @@ pub(crate) fn partial_derivatives(
                 Some((term, graph.constant(factor.value())))
             })
             .collect(),
-        Operation::Product(factors) => unguarded(graph, &factors)
+        Operation::Product(factors) => remove_guards(graph, &factors)
             .iter()
             .filter_map(|&(factor, exponent)| {
                 if !moves(graph, factor) {
                     return None;
                 }
-                let lowered: Vec<(NodeId, i32)> = unguarded(graph, &factors)
+                let lowered: Vec<(NodeId, i32)> = remove_guards(graph, &factors)
                     .iter()
                     .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
                     .collect();
@@ -289,7 +291,7 @@ pub(crate) fn partial_derivatives(
 }
 
 /// Replaces guarded powers in a product by powers. Each term of the derivative gets new guards.
-fn unguarded(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)> {
+fn remove_guards(graph: &Graph, factors: &[(NodeId, i32)]) -> Vec<(NodeId, i32)> {
     let mut collected = BTreeMap::new();
     for &(factor, exponent) in factors {
         let (base, power) = graph.guarded_power(factor).unwrap_or((factor, 1));
@@ -309,12 +311,12 @@ fn power_derivatives(
     let lowered = graph.add(exponent, minus_one);
     let power = graph.power(base, lowered);
     let by_base = graph.multiply(exponent, power);
-    let by_exponent = by_exponent(graph, id, base, exponent);
+    let by_exponent = derive_by_exponent(graph, id, base, exponent);
     [(base, by_base), (exponent, by_exponent)]
 }
 
 /// Returns b^e ln(b), with its limit 0 at b = 0 for e > 0. The other branch is NaN if there is no limit.
-fn by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: NodeId) -> NodeId {
+fn derive_by_exponent(graph: &mut Graph, power: NodeId, base: NodeId, exponent: NodeId) -> NodeId {
     let logarithm = graph.call(Function::Ln, &[base]);
     let then = graph.multiply(power, logarithm);
     if !graph.dependence(exponent).is_parameter_only() {

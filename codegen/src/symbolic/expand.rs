@@ -4,10 +4,10 @@
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Largest number of expanded levels.
-pub const MOST_EXPANSIONS: usize = 4;
+pub const MAX_EXPANSIONS: usize = 4;
 
 /// Largest number of terms of an expanded sum.
-const MOST_TERMS: usize = 200;
+const MAX_TERMS: usize = 200;
 
 /// Expands every product with a sum among its factors by one of the sums; `None` if there is no such product,
 /// or if the result is too long.
@@ -27,7 +27,7 @@ pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
             }
             None => result.push((factor, term)),
         }
-        if result.len() > MOST_TERMS {
+        if result.len() > MAX_TERMS {
             return None;
         }
     }

@@ -5,15 +5,15 @@ use std::collections::{BTreeMap, HashMap};
 
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::association::{MOST_FACTORS, shared_operations};
+use crate::symbolic::association::{MAX_FACTORS, shared_operations};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
 type Terms = Vec<(f64, NodeId)>;
 
 /// Extracts common factors of sums if that saves operations.
-pub(crate) fn cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
-    let other = factored(graph, &roots);
+pub(crate) fn factor_if_cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
+    let other = factor_common(graph, &roots);
     if shared_operations(graph, &other) < shared_operations(graph, &roots) {
         other
     } else {
@@ -22,7 +22,7 @@ pub(crate) fn cheaper(graph: &mut Graph, roots: Vec<NodeId>) -> Vec<NodeId> {
 }
 
 /// Extracts common factors in all sums that the roots depend on.
-fn factored(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
+fn factor_common(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut uses = graph.uses(roots);
     for root in roots {
         *uses.entry(*root).or_insert(0) += 2;
@@ -58,7 +58,7 @@ fn factored(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
 }
 
 /// Adds terms; terms that differ only in parameters and numbers are collected: a x + b x = (a + b) x.
-pub(crate) fn collected(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
+pub(crate) fn collect_terms(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
     let mut by_live: BTreeMap<NodeId, Terms> = BTreeMap::new();
     for &(c, term) in terms {
         let (prepared, live) = match graph.operation(term).clone() {
@@ -92,7 +92,7 @@ fn sum(graph: &mut Graph, terms: &[(f64, NodeId)]) -> NodeId {
         return combined;
     };
     let terms: Terms = terms.iter().map(|(c, term)| (c.value(), *term)).collect();
-    let combined = collected(graph, &terms);
+    let combined = collect_terms(graph, &terms);
     let mut terms: Terms = match graph.operation(combined) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
         _ => return combined,
@@ -143,7 +143,7 @@ fn live_factors(graph: &Graph, term: NodeId) -> Vec<NodeId> {
     let live =
         |id: NodeId| graph.shape(id) == Shape::Scalar && !graph.dependence(id).is_parameter_only();
     match graph.operation(term) {
-        Operation::Product(factors) if factors.len() > MOST_FACTORS => Vec::new(),
+        Operation::Product(factors) if factors.len() > MAX_FACTORS => Vec::new(),
         Operation::Product(factors) => factors
             .iter()
             .filter(|(id, exponent)| *exponent > 0 && live(*id))

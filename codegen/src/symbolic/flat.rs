@@ -159,7 +159,7 @@ impl<'m> Activities<'m> {
             .iter()
             .map(|operand| self.activity(graph, *operand));
         let found: Vec<NodeId> = found.collect();
-        any(graph, &found)
+        any_positive(graph, &found)
     }
 
     fn support(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
@@ -186,7 +186,7 @@ impl<'m> Activities<'m> {
             Operation::Sum(terms) => {
                 let found = terms.iter().map(|(_, term)| self.support(graph, *term));
                 let found: Vec<NodeId> = found.collect();
-                any(graph, &found)
+                any_positive(graph, &found)
             }
             Operation::Product(factors) => {
                 let mut product = graph.one();
@@ -234,7 +234,7 @@ fn outside_play(graph: &mut Graph, p: NodeId, b: NodeId) -> NodeId {
 }
 
 /// Returns a node that is positive if any of the nodes is; none of them is negative.
-fn any(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
+fn any_positive(graph: &mut Graph, nodes: &[NodeId]) -> NodeId {
     let is_positive = |id: &NodeId| graph.as_constant(*id).is_some_and(|value| value > 0.0);
     if nodes.iter().any(is_positive) {
         return graph.one();

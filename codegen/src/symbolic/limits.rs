@@ -257,7 +257,7 @@ impl Graph {
                     exponent * self.order(argument, base)
                 }
                 Some(_) if self.order(argument, base) != 0.0 => f64::NEG_INFINITY,
-                _ => self.bounded(argument, &[base, exponent]),
+                _ => self.bounded_order(argument, &[base, exponent]),
             },
             Operation::Total(vector)
             | Operation::Apply { vector, .. }
@@ -267,14 +267,14 @@ impl Graph {
             }
             operation => {
                 let operands = self.operands(&operation);
-                let bounded = self.bounded(argument, &operands);
+                let bounded = self.bounded_order(argument, &operands);
                 bounded.max(self.product_order(argument, bounds, &[(id, 1.0)], Some(id)))
             }
         }
     }
 
     /// Returns 0 for bounded operands, else negative infinity.
-    fn bounded(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
+    fn bounded_order(&mut self, argument: NodeId, operands: &[NodeId]) -> f64 {
         let unbounded = operands.iter().any(|operand| {
             self.has_reciprocal_root(*operand) && self.order(argument, *operand) < 0.0
         });

@@ -6,7 +6,7 @@ use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, ScaledMatrix, S
 
 impl Assembly {
     /// Returns the terms of this matrix times a vector.
-    pub(crate) fn times(&self, graph: &mut Graph, vector: NodeId) -> Vec<NodeId> {
+    pub(crate) fn multiply_vector(&self, graph: &mut Graph, vector: NodeId) -> Vec<NodeId> {
         let mut parts = Vec::new();
         if let Some(diagonal) = self.diagonal {
             parts.push(graph.multiply(diagonal, vector));
@@ -108,7 +108,7 @@ impl StructuredMatrix {
     }
 
     /// Returns `matrix`, or its transpose, times this matrix.
-    pub fn applied(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
+    pub fn left_multiply(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
         let rows = match (graph.shape(matrix), transposed) {
             (Shape::Matrix(rows, _), false) => rows,
             (Shape::Matrix(_, columns), true) => columns,
@@ -146,7 +146,7 @@ impl StructuredMatrix {
     }
 
     /// Solves a system by its Cholesky factor with this matrix as the right-hand side.
-    pub fn solved(&self, graph: &mut Graph, factor: NodeId) -> Self {
+    pub fn solve_with_factor(&self, graph: &mut Graph, factor: NodeId) -> Self {
         let mut result = Self::zero(self.rows, self.columns);
         for &(u, v) in &self.outer {
             let solved = graph.cholesky_solve(factor, u);

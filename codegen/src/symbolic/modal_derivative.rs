@@ -2,7 +2,7 @@
 //! products and tables) for a vector.
 
 use crate::symbolic::branches::choice;
-use crate::symbolic::differentiate::{Moving, choose, partial_derivatives};
+use crate::symbolic::differentiate::{VariationTest, choose, partial_derivatives};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::node_map::NodeMap;
@@ -11,7 +11,7 @@ use crate::symbolic::node_map::NodeMap;
 pub struct ModalDerivative {
     variable: NodeId,
     space: Space,
-    moving: Moving,
+    moving: VariationTest,
     gradients: NodeMap<NodeId, NodeId>,
     jacobians: NodeMap<NodeId, StructuredMatrix>,
 }
@@ -24,7 +24,7 @@ impl ModalDerivative {
             Shape::Vector(space) => Some(Self {
                 variable,
                 space,
-                moving: Moving::default(),
+                moving: VariationTest::default(),
                 gradients: NodeMap::default(),
                 jacobians: NodeMap::default(),
             }),
@@ -32,7 +32,7 @@ impl ModalDerivative {
         }
     }
 
-    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
+    fn is_moving(&mut self, graph: &Graph, id: NodeId) -> bool {
         let variable = self.variable;
         if !graph.may_depend_on(id, variable) {
             return false;
@@ -51,7 +51,7 @@ impl ModalDerivative {
         if let Some(&known) = self.gradients.get(&id) {
             return known;
         }
-        if !self.moves(graph, id) {
+        if !self.is_moving(graph, id) {
             return graph.zero();
         }
         let result = match graph.operation(id).clone() {
@@ -64,7 +64,7 @@ impl ModalDerivative {
             }
             _ => {
                 let partials =
-                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+                    partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.gradient(graph, operand);
@@ -90,7 +90,12 @@ impl ModalDerivative {
     }
 
     /// Returns the Jacobian of a vector, or of a scalar that is repeated for each element.
-    pub fn of_elements(&mut self, graph: &mut Graph, id: NodeId, rows: Space) -> StructuredMatrix {
+    pub fn element_jacobian(
+        &mut self,
+        graph: &mut Graph,
+        id: NodeId,
+        rows: Space,
+    ) -> StructuredMatrix {
         if graph.shape(id) != Shape::Scalar {
             return self.jacobian(graph, id);
         }
@@ -101,7 +106,7 @@ impl ModalDerivative {
     }
 
     /// Returns the Jacobian of M x with x, the solution of M x = right, held; M depends on the modes.
-    fn moved_matrix(
+    fn matrix_product_jacobian(
         &mut self,
         graph: &mut Graph,
         factor: NodeId,
@@ -112,24 +117,24 @@ impl ModalDerivative {
         let Operation::Cholesky(matrix) = *graph.operation(factor) else {
             return zero;
         };
-        if !self.moves(graph, matrix) {
+        if !self.is_moving(graph, matrix) {
             return zero;
         }
         let Operation::Assemble(assembly) = graph.operation(matrix).clone() else {
             return zero;
         };
-        let parts = assembly.times(graph, solution);
+        let parts = assembly.multiply_vector(graph, solution);
         let terms: Vec<(f64, NodeId)> = parts.into_iter().map(|part| (1.0, part)).collect();
         let product = graph.combine(&terms);
         let mut held = Self {
             variable: self.variable,
             space: self.space,
-            moving: Moving::default(),
+            moving: VariationTest::default(),
             gradients: NodeMap::default(),
             jacobians: NodeMap::default(),
         };
         held.moving.known.insert(solution, false);
-        held.of_elements(graph, product, rows)
+        held.element_jacobian(graph, product, rows)
     }
 
     fn compute_jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
@@ -138,7 +143,7 @@ impl ModalDerivative {
             _ => self.space,
         };
         let mut result = StructuredMatrix::zero(rows, self.space);
-        if !self.moves(graph, id) {
+        if !self.is_moving(graph, id) {
             return result;
         }
         if id == self.variable {
@@ -153,16 +158,17 @@ impl ModalDerivative {
         {
             return self
                 .jacobian(graph, vector)
-                .applied(graph, matrix, transposed);
+                .left_multiply(graph, matrix, transposed);
         }
         if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
-            let mut rest = self.of_elements(graph, right, rows);
-            let moved = self.moved_matrix(graph, factor, id, rows);
+            let mut rest = self.element_jacobian(graph, right, rows);
+            let moved = self.matrix_product_jacobian(graph, factor, id, rows);
             let minus_one = graph.constant(-1.0);
             rest.add_scaled(graph, minus_one, &moved);
-            return rest.solved(graph, factor);
+            return rest.solve_with_factor(graph, factor);
         }
-        let partials = partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+        let partials =
+            partial_derivatives(graph, id, |graph, operand| self.is_moving(graph, operand));
         for (operand, partial) in partials {
             match graph.shape(operand) {
                 Shape::Scalar => {

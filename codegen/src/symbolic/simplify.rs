@@ -191,9 +191,9 @@ impl Graph {
     /// products are expanded, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1. Inner products are not
     /// expanded if an exponent would become too large.
     pub fn product(&mut self, factors: &[(NodeId, i32)]) -> NodeId {
-        let (number, mut collected) = match self.opened_factors(factors) {
+        let (number, mut collected) = match self.collect_nested_factors(factors) {
             Some(opened) => opened,
-            None => (1.0, closed_factors(factors)),
+            None => (1.0, collect_equal_factors(factors)),
         };
         collected.retain(|_, exponent| *exponent != 0);
         self.apply_piecewise_laws(&mut collected);
@@ -210,7 +210,10 @@ impl Graph {
     }
 
     /// Returns the number and the powers of a product; `None` if an exponent is too large.
-    fn opened_factors(&self, factors: &[(NodeId, i32)]) -> Option<(f64, BTreeMap<NodeId, i32>)> {
+    fn collect_nested_factors(
+        &self,
+        factors: &[(NodeId, i32)],
+    ) -> Option<(f64, BTreeMap<NodeId, i32>)> {
         let mut number = 1.0;
         let mut collected = BTreeMap::new();
         for &(id, exponent) in factors {
@@ -461,7 +464,7 @@ impl Graph {
 const MAX_EXPONENT: i32 = 4096;
 
 /// Collects equal factors without expanding inner products.
-fn closed_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
+fn collect_equal_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     let mut collected = BTreeMap::new();
     for &(id, exponent) in factors {
         *collected.entry(id).or_insert(0) += exponent;

@@ -7,16 +7,16 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::expand::expand_once;
-use crate::symbolic::factor::collected;
+use crate::symbolic::factor::collect_terms;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Largest number of expanded levels.
-const MOST_LEVELS: usize = 12;
+const MAX_LEVELS: usize = 12;
 
 /// Expands a node and applies the addition theorems to its terms.
 pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
     let mut expanded = node;
-    for _ in 0..MOST_LEVELS {
+    for _ in 0..MAX_LEVELS {
         match expand_once(graph, expanded) {
             Some(next) => expanded = next,
             None => break,
@@ -38,7 +38,7 @@ pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
         };
     }
     let terms: Vec<(f64, NodeId)> = terms.iter().map(|(term, c)| (*c, *term)).collect();
-    collected(graph, &terms)
+    collect_terms(graph, &terms)
 }
 
 /// Returns two terms that an addition theorem combines, with the result.
@@ -74,7 +74,7 @@ fn merging_pair(
                 if other.abs() != factor.abs() {
                     continue;
                 }
-                let (sign, angle) = merged(graph, (factor, other), first, second);
+                let (sign, angle) = merge_pair(graph, (factor, other), first, second);
                 let value = graph.multiply(rest, angle);
                 return Some((term, partner, (sign, value)));
             }
@@ -93,7 +93,7 @@ fn partner(graph: &mut Graph, (_, function, angle): (NodeId, Function, NodeId)) 
 }
 
 /// Returns factor * first * second + other * (partner of first) * (partner of second) as one term.
-fn merged(
+fn merge_pair(
     graph: &mut Graph,
     (factor, other): (f64, f64),
     (_, first, a): (NodeId, Function, NodeId),

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use wasm_encoder::{BlockType, Function, InstructionSink, MemArg, MemArgTarget, ValType};
 
 use super::indices::Indices;
-use super::memory::{Memory, NUMBER, Region, nowhere};
+use super::memory::{Memory, NUMBER, Region, missing_place_error};
 use crate::program::{Extent, Program};
-use crate::statements::{EmitError, Emitted, Index};
+use crate::statements::{EmitError, EmitResult, Index};
 
 /// Binary logarithm of the bytes of a number, for alignment.
 const ALIGNMENT: u32 = NUMBER.trailing_zeros();
@@ -49,13 +49,13 @@ impl<'m> Code<'m> {
     }
 
     pub(super) fn finish(mut self) -> Function {
-        self.put().end();
+        self.instructions().end();
         let mut function = Function::new_with_locals_types(self.types);
         function.raw(self.bytes);
         function
     }
 
-    pub(super) fn put(&mut self) -> InstructionSink<'_> {
+    pub(super) fn instructions(&mut self) -> InstructionSink<'_> {
         InstructionSink::new(&mut self.bytes)
     }
 
@@ -77,13 +77,13 @@ impl<'m> Code<'m> {
         variable
     }
 
-    pub(super) fn named(&self, name: &str) -> Emitted<u32> {
+    pub(super) fn local_index(&self, name: &str) -> EmitResult<u32> {
         let variable = self.variables.get(name).copied();
-        variable.ok_or_else(|| nowhere(name))
+        variable.ok_or_else(|| missing_place_error(name))
     }
 
     /// Allocates a named array; its content is undefined.
-    pub(super) fn array(&mut self, name: &str, lengths: &[usize]) -> Emitted<Region> {
+    pub(super) fn array(&mut self, name: &str, lengths: &[usize]) -> EmitResult<Region> {
         let extent = match *lengths {
             [rows, columns] => Extent::Matrix(rows, columns),
             _ => Extent::Vector(lengths.iter().product()),
@@ -93,15 +93,15 @@ impl<'m> Code<'m> {
         Ok(region)
     }
 
-    pub(super) fn region(&self, name: &str) -> Emitted<Region> {
+    pub(super) fn region(&self, name: &str) -> EmitResult<Region> {
         let region = self.arrays.get(name).copied();
-        region.ok_or_else(|| nowhere(name))
+        region.ok_or_else(|| missing_place_error(name))
     }
 
-    pub(super) fn zero(&mut self, region: Region, length: usize) -> Emitted<()> {
+    pub(super) fn zero(&mut self, region: Region, length: usize) -> EmitResult<()> {
         if length > 0 {
-            let (first, bytes) = (signed(region.first)?, signed(length as u32 * NUMBER)?);
-            let mut put = self.put();
+            let (first, bytes) = (to_signed(region.first)?, to_signed(length as u32 * NUMBER)?);
+            let mut put = self.instructions();
             put.i32_const(first)
                 .i32_const(0)
                 .i32_const(bytes)
@@ -111,21 +111,21 @@ impl<'m> Code<'m> {
     }
 
     /// Writes a loop over a variable between two numbers.
-    pub(super) fn counted(
+    pub(super) fn write_loop(
         &mut self,
         index: &'static str,
         (from, to): (usize, usize),
-        lines: impl FnOnce(&mut Self) -> Emitted<()>,
-    ) -> Emitted<()> {
+        lines: impl FnOnce(&mut Self) -> EmitResult<()>,
+    ) -> EmitResult<()> {
         if from >= to {
             return Ok(());
         }
-        let (from, to) = (whole(from)?, whole(to)?);
+        let (from, to) = (to_i32(from)?, to_i32(to)?);
         let (variable, outer) = self.loop_variable(index);
-        self.put().i32_const(from).local_set(variable);
-        self.put().loop_(BlockType::Empty);
+        self.instructions().i32_const(from).local_set(variable);
+        self.instructions().loop_(BlockType::Empty);
         lines(self)?;
-        let mut put = self.put();
+        let mut put = self.instructions();
         put.local_get(variable).i32_const(1).i32_add();
         put.local_tee(variable).i32_const(to).i32_lt_s();
         put.br_if(0).end();
@@ -134,21 +134,21 @@ impl<'m> Code<'m> {
     }
 
     /// Writes a loop over a variable between two indices.
-    pub(super) fn counted_between(
+    pub(super) fn write_loop_between(
         &mut self,
         index: &'static str,
         (from, to): (&Index, &Index),
-        lines: impl FnOnce(&mut Self) -> Emitted<()>,
-    ) -> Emitted<()> {
+        lines: impl FnOnce(&mut Self) -> EmitResult<()>,
+    ) -> EmitResult<()> {
         self.index(from)?;
         let (variable, outer) = self.loop_variable(index);
-        let mut put = self.put();
+        let mut put = self.instructions();
         put.local_set(variable).block(BlockType::Empty);
         put.loop_(BlockType::Empty).local_get(variable);
         self.index(to)?;
-        self.put().i32_ge_s().br_if(1);
+        self.instructions().i32_ge_s().br_if(1);
         lines(self)?;
-        let mut put = self.put();
+        let mut put = self.instructions();
         put.local_get(variable).i32_const(1).i32_add();
         put.local_set(variable).br(0).end().end();
         self.restore(index, outer);
@@ -168,35 +168,37 @@ impl<'m> Code<'m> {
         };
     }
 
-    pub(super) fn index(&mut self, index: &Index) -> Emitted<()> {
+    pub(super) fn index(&mut self, index: &Index) -> EmitResult<()> {
         match index {
             Index::Number(number) => {
-                let number = whole(*number)?;
-                self.put().i32_const(number);
+                let number = to_i32(*number)?;
+                self.instructions().i32_const(number);
             }
             Index::Variable(name) => {
-                let variable = self.named(name)?;
-                self.put().local_get(variable);
+                let variable = self.local_index(name)?;
+                self.instructions().local_get(variable);
             }
             Index::Sum(a, b) => {
                 self.index(a)?;
                 self.index(b)?;
-                self.put().i32_add();
+                self.instructions().i32_add();
             }
             Index::Product(a, b) => {
                 self.index(a)?;
                 self.index(b)?;
-                self.put().i32_mul();
+                self.instructions().i32_mul();
             }
         }
         Ok(())
     }
 
     /// Pushes the address of an element, relative to the returned offset of a load or store.
-    pub(super) fn address(&mut self, region: Region, indices: &[Index]) -> Emitted<MemArg> {
+    pub(super) fn address(&mut self, region: Region, indices: &[Index]) -> EmitResult<MemArg> {
         let place = match indices {
             [place] => place.clone(),
-            [row, column] => Index::times(region.columns, row.clone()).plus(column.clone()),
+            [row, column] => {
+                Index::from_multiple(region.columns, row.clone()).offset_by(column.clone())
+            }
             _ => {
                 return Err(EmitError::Value(
                     "an array element must have one or two indices".into(),
@@ -205,11 +207,11 @@ impl<'m> Code<'m> {
         };
         // A constant address is part of the instruction.
         let from = if let Index::Number(number) = place {
-            self.put().i32_const(0);
-            region.at(number)
+            self.instructions().i32_const(0);
+            region.address(number)
         } else {
             self.index(&place)?;
-            self.put().i32_const(ALIGNMENT as i32).i32_shl();
+            self.instructions().i32_const(ALIGNMENT as i32).i32_shl();
             region.first
         };
         Ok(aligned(from))
@@ -217,7 +219,7 @@ impl<'m> Code<'m> {
 
     /// Pushes the number at a fixed address.
     pub(super) fn load(&mut self, place: u32) {
-        self.put().i32_const(0).f64_load(aligned(place));
+        self.instructions().i32_const(0).f64_load(aligned(place));
     }
 }
 
@@ -231,11 +233,11 @@ fn aligned(from: u32) -> MemArg {
     }
 }
 
-fn whole(number: usize) -> Emitted<i32> {
+fn to_i32(number: usize) -> EmitResult<i32> {
     i32::try_from(number).map_err(|_| too_large(number))
 }
 
-fn signed(number: u32) -> Emitted<i32> {
+fn to_signed(number: u32) -> EmitResult<i32> {
     i32::try_from(number).map_err(|_| too_large(number as usize))
 }
 

@@ -12,8 +12,8 @@ use super::memory::{Memory, Region};
 use super::names::WORDS;
 use crate::program::Program;
 use crate::statements::{
-    EmitError, Emitted, File, Index, Needed, Outcome, Place, Preparation, Prepared, Stage,
-    Statement, Used, guards, observables, preparation, rates,
+    EmitError, EmitResult, File, Index, Outcome, Place, Preparation, PreparedValue,
+    RequiredFunctions, Stage, Statement, UsedNames, guards, observables, preparation, rates,
 };
 
 /// Writes a program as a WebAssembly module without imports.
@@ -34,7 +34,7 @@ use crate::statements::{
 /// A program that exceeds the memory of a module.
 pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let mut needed = Needed::default();
+    let mut needed = RequiredFunctions::default();
     let prepared = preparation(&file, &mut needed)?;
     let mut stages = vec![rates(&file, &mut needed)?];
     stages.extend(observables(&file, &mut needed)?.into_iter().take(1));
@@ -48,11 +48,11 @@ pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
     for helper in &helpers {
         written.push(helper.function(program, &mut memory, &functions)?);
     }
-    written.push(preparing(&file, prepared, &mut memory, &functions)?);
+    written.push(write_preparation(&file, prepared, &mut memory, &functions)?);
     let mut exported = vec!["prepare"];
     for stage in stages {
         exported.push(exported_name(&stage));
-        written.push(computing(program, stage, &mut memory, &functions)?);
+        written.push(write_stage(program, stage, &mut memory, &functions)?);
     }
     Ok(module(&helpers, &exported, &written, &memory))
 }
@@ -64,14 +64,14 @@ fn exported_name(stage: &Stage) -> &'static str {
     }
 }
 
-fn preparing(
+fn write_preparation(
     file: &File<'_>,
     prepared: Preparation,
     memory: &mut Memory,
     functions: &Indices,
-) -> Emitted<Function> {
+) -> EmitResult<Function> {
     let program = file.program;
-    let mut used = Used::by_preparation(&prepared);
+    let mut used = UsedNames::from_preparation(&prepared);
     let computed = used.retain(prepared.computed);
     let mut code = Code::new(program, memory, functions, &[]);
     code.statements(&computed)?;
@@ -81,11 +81,11 @@ fn preparing(
         let region = code.memory.coefficient(&file.field_names[id])?;
         code.name_array(target, region);
         match coefficient {
-            Prepared::Number(value) => {
+            PreparedValue::Number(value) => {
                 code.assign(&Place::new(target, [Index::Number(0)]), value)?;
             }
             // Both arrays have the same extent and are copied number by number.
-            Prepared::Numbers(array) => {
+            PreparedValue::Numbers(array) => {
                 let from = Region {
                     columns: 1,
                     ..code.region_of(array)?
@@ -101,7 +101,7 @@ fn preparing(
                 code.name_array(source, from);
                 let place = Place::new(source, [Index::Variable("i")]);
                 let copy = Statement::Assign(Place::new(target, ["i".into()]), place.value());
-                code.statements(&[Statement::each(extent.length(), copy)])?;
+                code.statements(&[Statement::loop_over_elements(extent.length(), copy)])?;
             }
         }
     }
@@ -109,14 +109,14 @@ fn preparing(
     Ok(code.finish())
 }
 
-fn computing(
+fn write_stage(
     program: &Program,
     stage: Stage,
     memory: &mut Memory,
     functions: &Indices,
-) -> Emitted<Function> {
+) -> EmitResult<Function> {
     let exchanged = memory.exchanged;
-    let mut used = Used::by(&stage.outcome);
+    let mut used = UsedNames::from_outcome(&stage.outcome);
     let written = used.retain(stage.written);
     let computed = used.retain(stage.computed);
     let mut code = Code::new(program, memory, functions, &["t"]);

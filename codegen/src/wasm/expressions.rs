@@ -1,25 +1,25 @@
 //! Expressions as instructions that push a number or a condition.
 
 use super::code::Code;
-use super::memory::{Region, nowhere};
-use crate::statements::{Array, EmitError, Emitted, Expression, Operator, Structure};
+use super::memory::{Region, missing_place_error};
+use crate::statements::{Array, EmitError, EmitResult, Expression, Operator, Structure};
 
 impl Code<'_> {
     /// Pushes the value of an expression.
-    pub(super) fn expression(&mut self, expression: &Expression) -> Emitted<()> {
+    pub(super) fn expression(&mut self, expression: &Expression) -> EmitResult<()> {
         match expression {
             Expression::Number(value) => {
-                self.put().f64_const((*value).into());
+                self.instructions().f64_const((*value).into());
             }
             Expression::Name(name) => {
-                let variable = self.named(name)?;
-                self.put().local_get(variable);
+                let variable = self.local_index(name)?;
+                self.instructions().local_get(variable);
             }
             Expression::Element(Array::Filled(value, _), _) => self.expression(value)?,
             Expression::Element(array, indices) => {
                 let region = self.region_of(array)?;
                 let from = self.address(region, indices)?;
-                self.put().f64_load(from);
+                self.instructions().f64_load(from);
             }
             Expression::Field(structure, name) => self.field(*structure, name)?,
             Expression::Shared(coefficient) => self.expression(coefficient)?,
@@ -30,19 +30,19 @@ impl Code<'_> {
             }
             Expression::Negate(a) => {
                 self.expression(a)?;
-                self.put().f64_neg();
+                self.instructions().f64_neg();
             }
             Expression::Call(name, parts) => {
                 self.expressions(parts)?;
-                let function = self.functions.of(name)?;
-                self.put().call(function);
+                let function = self.functions.index(name)?;
+                self.instructions().call(function);
             }
             Expression::Primitive("select_equal", parts) => {
                 let [a, b, then, otherwise] = &parts[..] else {
-                    return Err(nowhere("select_equal"));
+                    return Err(missing_place_error("select_equal"));
                 };
                 self.expressions([then, otherwise, a, b])?;
-                self.put().f64_eq().select();
+                self.instructions().f64_eq().select();
             }
             Expression::Primitive(name, parts) => {
                 self.expressions(parts)?;
@@ -52,18 +52,18 @@ impl Code<'_> {
             Expression::Select(parts) => {
                 let [a, b, then, otherwise] = &**parts;
                 self.expressions([then, otherwise, a, b])?;
-                self.put().f64_gt().select();
+                self.instructions().f64_gt().select();
             }
             Expression::Greater(parts) => {
                 self.expressions(&**parts)?;
-                self.put().f64_gt();
+                self.instructions().f64_gt();
             }
             Expression::And(parts) => {
                 self.expressions(&**parts)?;
-                self.put().i32_and();
+                self.instructions().i32_and();
             }
             Expression::True => {
-                self.put().i32_const(1);
+                self.instructions().i32_const(1);
             }
             Expression::Positive(_) => {
                 return Err(EmitError::Value(
@@ -74,22 +74,22 @@ impl Code<'_> {
         Ok(())
     }
 
-    fn expressions<'e>(&mut self, all: impl IntoIterator<Item = &'e Expression>) -> Emitted<()> {
+    fn expressions<'e>(&mut self, all: impl IntoIterator<Item = &'e Expression>) -> EmitResult<()> {
         all.into_iter().try_for_each(|one| self.expression(one))
     }
 
-    fn field(&mut self, structure: Structure, name: &str) -> Emitted<()> {
+    fn field(&mut self, structure: Structure, name: &str) -> EmitResult<()> {
         let place = match structure {
             Structure::Coefficients => self.memory.coefficient(name)?.first,
             Structure::Parameters => self.memory.parameter(name)?,
             Structure::Inputs => self.memory.input(name)?,
-            Structure::InputDirection => return Err(nowhere(name)),
+            Structure::InputDirection => return Err(missing_place_error(name)),
         };
         self.load(place);
         Ok(())
     }
 
-    pub(super) fn region_of(&mut self, array: &Array) -> Emitted<Region> {
+    pub(super) fn region_of(&mut self, array: &Array) -> EmitResult<Region> {
         match array {
             Array::Local(name) => self.region(name),
             Array::Coefficient(name, _) => self.memory.coefficient(name),
@@ -99,7 +99,7 @@ impl Code<'_> {
     }
 
     fn operator(&mut self, operator: Operator) {
-        let mut put = self.put();
+        let mut put = self.instructions();
         match operator {
             Operator::Add => put.f64_add(),
             Operator::Subtract => put.f64_sub(),
@@ -109,9 +109,9 @@ impl Code<'_> {
     }
 
     /// Writes an operation on the bits of a number; see `Real` in `eomgen-elementary`.
-    fn primitive(&mut self, name: &str) -> Emitted<()> {
+    fn primitive(&mut self, name: &str) -> EmitResult<()> {
         const MANTISSA_BITS: i64 = 52;
-        let mut put = self.put();
+        let mut put = self.instructions();
         match name {
             "magnitude" => put.f64_abs(),
             "copy_sign" => put.f64_copysign(),
@@ -133,7 +133,7 @@ impl Code<'_> {
                 put.i64_and().i64_const(0x3ff << MANTISSA_BITS).i64_or();
                 put.f64_reinterpret_i64()
             }
-            _ => return Err(nowhere(name)),
+            _ => return Err(missing_place_error(name)),
         };
         Ok(())
     }

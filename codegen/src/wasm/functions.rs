@@ -7,7 +7,7 @@ use super::code::Code;
 use super::indices::Indices;
 use super::memory::Memory;
 use crate::program::Program;
-use crate::statements::{Emitted, Expression, KernelStatements, Needed, Statement};
+use crate::statements::{EmitResult, Expression, KernelStatements, RequiredFunctions, Statement};
 use eomgen_elementary::Function as Elementary;
 
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl Helper {
         program: &Program,
         memory: &mut Memory,
         functions: &Indices,
-    ) -> Emitted<Function> {
+    ) -> EmitResult<Function> {
         let mut code = Code::new(program, memory, functions, self.arguments);
         code.statements(&self.computed)?;
         code.expression(&self.value)?;
@@ -32,12 +32,12 @@ impl Helper {
     }
 }
 
-pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
+pub(super) fn helpers(needed: &RequiredFunctions) -> Vec<Helper> {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
         elementary.insert(Elementary::Sqrt);
     }
-    let mut all: Vec<Helper> = elementary.into_iter().filter_map(of_kernel).collect();
+    let mut all: Vec<Helper> = elementary.into_iter().filter_map(kernel_helper).collect();
     for (needed, helper) in [
         (needed.deadzone, deadzone as fn() -> Helper),
         (needed.contact, contact),
@@ -51,7 +51,7 @@ pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
     all
 }
 
-fn of_kernel(function: Elementary) -> Option<Helper> {
+fn kernel_helper(function: Elementary) -> Option<Helper> {
     let arguments: &[&str] = match function.arity() {
         2 => &["x", "y"],
         _ => &["x"],
@@ -70,7 +70,7 @@ fn select(a: &Expression, b: &Expression, then: Expression, otherwise: Expressio
     Expression::Select(Box::new([a.clone(), b.clone(), then, otherwise]))
 }
 
-fn of_deflection(
+fn deflection_helper(
     name: &'static str,
     computed: Vec<Statement>,
     value: impl FnOnce(&Expression, &Expression) -> Expression,
@@ -87,7 +87,7 @@ fn of_deflection(
 fn deadzone() -> Helper {
     let [p, b, held] = ["p", "b", "held"].map(Expression::name);
     let within = select(&p, &b, b.clone(), p.clone());
-    of_deflection(
+    deflection_helper(
         "deadzone",
         vec![Statement::Let("held".to_owned(), within)],
         |p, b| {
@@ -100,7 +100,7 @@ fn deadzone() -> Helper {
 /// Indicator of |p| > b: the contact of Eq. (8).
 fn contact() -> Helper {
     let [zero, one] = [0.0, 1.0].map(Expression::Number);
-    of_deflection("contact", Vec::new(), |p, b| {
+    deflection_helper("contact", Vec::new(), |p, b| {
         let beyond = select(&Expression::negate(b), p, one.clone(), zero);
         select(p, b, one, beyond)
     })

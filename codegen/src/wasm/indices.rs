@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::memory::nowhere;
-use crate::statements::Emitted;
+use super::memory::missing_place_error;
+use crate::statements::EmitResult;
 
 #[derive(Debug)]
 pub(super) struct Indices(HashMap<&'static str, u32>);
@@ -14,7 +14,10 @@ impl Indices {
         Self(names.zip(0..).collect())
     }
 
-    pub(super) fn of(&self, name: &str) -> Emitted<u32> {
-        self.0.get(name).copied().ok_or_else(|| nowhere(name))
+    pub(super) fn index(&self, name: &str) -> EmitResult<u32> {
+        self.0
+            .get(name)
+            .copied()
+            .ok_or_else(|| missing_place_error(name))
     }
 }

@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use crate::program::{Extent, Program};
-use crate::statements::{EmitError, Emitted, File};
+use crate::statements::{EmitError, EmitResult, File};
 
 /// Bytes of a number.
 pub(super) const NUMBER: u32 = 8;
 
 /// Largest address: addresses are signed 32-bit constants.
-const MOST: u32 = i32::MAX as u32;
+const MAX_ADDRESS: u32 = i32::MAX as u32;
 
 /// Bytes of a page, the unit of memory sizes.
 const PAGE: u32 = 65536;
@@ -24,7 +24,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    pub(super) fn at(self, place: usize) -> u32 {
+    pub(super) fn address(self, place: usize) -> u32 {
         // No overflow: the end of the region was checked at allocation.
         self.first + NUMBER * place as u32
     }
@@ -32,7 +32,7 @@ impl Region {
 
 /// Arrays that callers write and read.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exchanged {
+pub(super) struct ExchangedArray {
     pub(super) parameters: Region,
     pub(super) inputs: Region,
     pub(super) state: Region,
@@ -44,7 +44,7 @@ pub(super) struct Exchanged {
 #[derive(Debug)]
 pub(super) struct Memory {
     size: u32,
-    pub(super) exchanged: Exchanged,
+    pub(super) exchanged: ExchangedArray,
     coefficients: HashMap<String, Region>,
     tables: HashMap<String, Region>,
     parameters: HashMap<String, usize>,
@@ -55,11 +55,11 @@ pub(super) struct Memory {
 
 impl Memory {
     /// Allocates the arrays that stages read and write.
-    pub(super) fn new(file: &File<'_>) -> Emitted<Self> {
+    pub(super) fn new(file: &File<'_>) -> EmitResult<Self> {
         let program = file.program;
         let mut size = 0;
         let mut vector = |length: usize| allocate(&mut size, Extent::Vector(length));
-        let exchanged = Exchanged {
+        let exchanged = ExchangedArray {
             parameters: vector(program.parameters.len())?,
             inputs: vector(program.inputs.len())?,
             state: vector(program.states())?,
@@ -84,7 +84,7 @@ impl Memory {
         Ok(memory)
     }
 
-    pub(super) fn allocate(&mut self, extent: Extent) -> Emitted<Region> {
+    pub(super) fn allocate(&mut self, extent: Extent) -> EmitResult<Region> {
         allocate(&mut self.size, extent)
     }
 
@@ -94,36 +94,42 @@ impl Memory {
     }
 
     /// Returns the region of a table, which is allocated at its first use.
-    pub(super) fn table(&mut self, program: &Program, name: &str) -> Emitted<Region> {
+    pub(super) fn table(&mut self, program: &Program, name: &str) -> EmitResult<Region> {
         if let Some(known) = self.tables.get(name) {
             return Ok(*known);
         }
         let table = program.tables.iter().find(|table| table.name == name);
-        let table = table.ok_or_else(|| nowhere(name))?;
+        let table = table.ok_or_else(|| missing_place_error(name))?;
         let region = self.allocate(table.extent)?;
         self.constants.push((region, table.values.clone()));
         self.tables.insert(name.to_owned(), region);
         Ok(region)
     }
 
-    pub(super) fn coefficient(&self, name: &str) -> Emitted<Region> {
+    pub(super) fn coefficient(&self, name: &str) -> EmitResult<Region> {
         let region = self.coefficients.get(name).copied();
-        region.ok_or_else(|| nowhere(name))
+        region.ok_or_else(|| missing_place_error(name))
     }
 
-    pub(super) fn parameter(&self, name: &str) -> Emitted<u32> {
-        let place = self.parameters.get(name).ok_or_else(|| nowhere(name))?;
-        Ok(self.exchanged.parameters.at(*place))
+    pub(super) fn parameter(&self, name: &str) -> EmitResult<u32> {
+        let place = self
+            .parameters
+            .get(name)
+            .ok_or_else(|| missing_place_error(name))?;
+        Ok(self.exchanged.parameters.address(*place))
     }
 
-    pub(super) fn input(&self, name: &str) -> Emitted<u32> {
-        let place = self.inputs.get(name).ok_or_else(|| nowhere(name))?;
-        Ok(self.exchanged.inputs.at(*place))
+    pub(super) fn input(&self, name: &str) -> EmitResult<u32> {
+        let place = self
+            .inputs
+            .get(name)
+            .ok_or_else(|| missing_place_error(name))?;
+        Ok(self.exchanged.inputs.address(*place))
     }
 }
 
 /// Reserves an array of this extent at the end of the memory.
-fn allocate(size: &mut u32, extent: Extent) -> Emitted<Region> {
+fn allocate(size: &mut u32, extent: Extent) -> EmitResult<Region> {
     let columns = match extent {
         Extent::Matrix(_, columns) => columns,
         Extent::Scalar | Extent::Vector(_) => 1,
@@ -132,7 +138,7 @@ fn allocate(size: &mut u32, extent: Extent) -> Emitted<Region> {
         .ok()
         .and_then(|length| length.checked_mul(NUMBER));
     let end = bytes.and_then(|bytes| size.checked_add(bytes));
-    let Some(end) = end.filter(|end| *end <= MOST) else {
+    let Some(end) = end.filter(|end| *end <= MAX_ADDRESS) else {
         return Err(EmitError::Value(
             "its numbers exceed the 2 GiB memory of a WebAssembly module".to_owned(),
         ));
@@ -149,6 +155,6 @@ fn places<'n>(names: impl Iterator<Item = &'n String>) -> HashMap<String, usize>
 }
 
 /// Returns the error for a name without place: a defect of the generator.
-pub(super) fn nowhere(name: &str) -> EmitError {
+pub(super) fn missing_place_error(name: &str) -> EmitError {
     EmitError::Value(format!("`{name}` has no place in the module"))
 }

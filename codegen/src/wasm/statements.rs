@@ -3,14 +3,14 @@
 use super::cholesky::Solution;
 use super::code::Code;
 use crate::program::PARTIAL_SUMS;
-use crate::statements::{Emitted, Expression, Index, Place, Statement};
+use crate::statements::{EmitResult, Expression, Index, Place, Statement};
 
 impl Code<'_> {
-    pub(super) fn statements(&mut self, statements: &[Statement]) -> Emitted<()> {
+    pub(super) fn statements(&mut self, statements: &[Statement]) -> EmitResult<()> {
         statements.iter().try_for_each(|one| self.statement(one))
     }
 
-    fn statement(&mut self, statement: &Statement) -> Emitted<()> {
+    fn statement(&mut self, statement: &Statement) -> EmitResult<()> {
         match statement {
             Statement::Let(name, value) => self.bind(name, value),
             Statement::Zeros(name, lengths) => {
@@ -19,7 +19,7 @@ impl Code<'_> {
             }
             Statement::Flag(name) => {
                 let flag = self.flag(name);
-                self.put().i32_const(1).local_set(flag);
+                self.instructions().i32_const(1).local_set(flag);
                 Ok(())
             }
             Statement::Assign(place, value) => self.assign(place, value),
@@ -27,7 +27,7 @@ impl Code<'_> {
                 index,
                 length,
                 lines,
-            } => self.counted(index, (0, *length), |code| code.statements(lines)),
+            } => self.write_loop(index, (0, *length), |code| code.statements(lines)),
             Statement::Sum {
                 name,
                 length,
@@ -51,31 +51,31 @@ impl Code<'_> {
     }
 
     /// Computes a named number.
-    pub(super) fn bind(&mut self, name: &str, value: &Expression) -> Emitted<()> {
+    pub(super) fn bind(&mut self, name: &str, value: &Expression) -> EmitResult<()> {
         self.expression(value)?;
         let variable = self.number(name);
-        self.put().local_set(variable);
+        self.instructions().local_set(variable);
         Ok(())
     }
 
     /// Assigns to an element or a flag.
-    pub(super) fn assign(&mut self, place: &Place, value: &Expression) -> Emitted<()> {
+    pub(super) fn assign(&mut self, place: &Place, value: &Expression) -> EmitResult<()> {
         if place.indices.is_empty() {
             self.expression(value)?;
-            let flag = self.named(&place.name)?;
-            self.put().local_set(flag);
+            let flag = self.local_index(&place.name)?;
+            self.instructions().local_set(flag);
             return Ok(());
         }
         let region = self.region(&place.name)?;
         let to = self.address(region, &place.indices)?;
         self.expression(value)?;
-        self.put().f64_store(to);
+        self.instructions().f64_store(to);
         Ok(())
     }
 
     /// Computes a sum: each of the first elements begins a partial sum, every eighth element after it is
     /// added in order, then neighbours are added in pairs.
-    fn sum(&mut self, name: &str, length: usize, element: &Expression) -> Emitted<()> {
+    fn sum(&mut self, name: &str, length: usize, element: &Expression) -> EmitResult<()> {
         if length == 0 {
             return self.bind(name, &Expression::Number(0.0));
         }
@@ -84,13 +84,13 @@ impl Code<'_> {
         let count = length.min(PARTIAL_SUMS);
         self.array(&parts, &[count])?;
         let part = |at: Index| Place::new(&*parts, [at]);
-        self.counted("i", (0, count), |code| {
+        self.write_loop("i", (0, count), |code| {
             code.assign(&part("i".into()), element)
         })?;
         // Element i belongs to the partial sum with its index within its block.
-        self.counted("i", (count, length), |code| {
-            let (i, k) = (code.named("i")?, code.flag("k"));
-            let mut put = code.put();
+        self.write_loop("i", (count, length), |code| {
+            let (i, k) = (code.local_index("i")?, code.flag("k"));
+            let mut put = code.instructions();
             put.local_get(i).i32_const(PARTIAL_SUMS as i32);
             put.i32_rem_u().local_set(k);
             let sum = Expression::add(&part("k".into()).value(), element);

@@ -51,7 +51,7 @@ const AWAY: &str = "x = { unit = \"m\", initial = 0.6 }\ny = { unit = \"m\", ini
 fn refusal(text: &str) -> Option<String> {
     let model = crate::support::model(text);
     let orders = vec![2; model.fields.len()];
-    let found = Variant::derive_to_read(&model, &orders, &[]).err()?;
+    let found = Variant::derive_for_report(&model, &orders, &[]).err()?;
     let said = found.render(false);
     let examined = examine(&model, &orders).expect_err("an examination reports the same");
     assert_eq!(examined.render(false), said);

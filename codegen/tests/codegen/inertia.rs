@@ -19,7 +19,7 @@ fn found(text: &str) -> Option<Record> {
     let model = model(text);
     let orders = model.orders(None).unwrap();
     let found = Variant::derive(&model, &orders).err()?;
-    assert!(Variant::derive_to_read(&model, &orders, &[]).is_ok());
+    assert!(Variant::derive_for_report(&model, &orders, &[]).is_ok());
     Some(found.records().remove(0))
 }
 

@@ -15,7 +15,7 @@ use crate::support::{chain_of_pendulums, evaluator, model, models, observables, 
 /// Returns a report at the specification's own orders.
 fn report(model: &Model) -> Report {
     let orders = model.orders(None).unwrap();
-    let variant = Variant::derive_to_read(model, &orders, &[])
+    let variant = Variant::derive_for_report(model, &orders, &[])
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     Report::new(model, &variant.equations, &Evaluator::new(variant.program))
 }

@@ -6,7 +6,7 @@
 //! each other share one. The candidates span the null space of the derivatives of the
 //! accelerations with respect to the coordinates. Finite displacements confirm each candidate.
 
-use eomgen_codegen::independence::vectors::largest;
+use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 
@@ -186,7 +186,7 @@ fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
         .collect();
     let units: Vec<f64> = (0..columns)
         .map(
-            |column| match largest(matrix.iter().map(|row| &row[column])) {
+            |column| match max_magnitude(matrix.iter().map(|row| &row[column])) {
                 0.0 => 1.0,
                 size => 1.0 / size,
             },

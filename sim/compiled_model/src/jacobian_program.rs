@@ -18,7 +18,7 @@ pub(crate) struct JacobianProgram {
 impl JacobianProgram {
     pub(crate) fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         let outputs = [Output::Jacobians, Output::TimeDerivatives];
-        let program = Variant::derive_to_read(model, orders, &outputs)?.program;
+        let program = Variant::derive_for_report(model, orders, &outputs)?.program;
         Ok(Self {
             program,
             code: OnceLock::new(),

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use eomgen_codegen::independence::rows::constraint_program;
 use eomgen_codegen::mechanics::equations::Equations;
-use eomgen_codegen::mechanics::sliding::may_hold;
+use eomgen_codegen::mechanics::sliding::can_hold_motion;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
 use eomgen_codegen::variant::{Variant, derive_sliding};
@@ -118,7 +118,7 @@ impl CompiledModel {
     /// Same as [`CompiledModel::derive`], except those about inertia.
     pub fn derive_without_inertia_check(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
         let orders = orders.resolve(&model)?;
-        let derived = Variant::derive_to_read(&model, &orders, &[])?;
+        let derived = Variant::derive_for_report(&model, &orders, &[])?;
         Ok(Self::new(model, orders, derived))
     }
 
@@ -253,7 +253,7 @@ impl CompiledModel {
     /// Terms that cannot be derived.
     pub fn sided_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
         let made = self.sided.get_or_init(|| {
-            if !may_hold(&self.equations) || !self.model.impacts.is_empty() {
+            if !can_hold_motion(&self.equations) || !self.model.impacts.is_empty() {
                 return Ok(None);
             }
             let program = derive_sliding(&self.model, &self.orders)?;

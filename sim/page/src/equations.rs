@@ -67,7 +67,7 @@ fn introduction(report: &Report) -> Markup {
         }
         p {
             "The state: "
-            (comma_list(&report.state, |name| formula(&Formula::Symbol(Symbol::of_state(name)))))
+            (comma_list(&report.state, |name| formula(&Formula::Symbol(Symbol::from_state(name)))))
             "."
         }
     }

@@ -14,7 +14,7 @@ fn report(text: &str) -> Report {
     let checked = eomgen_model_spec::check(Source::new("test.toml", text))
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     let orders = checked.model.orders(None).unwrap();
-    let variant = Variant::derive_to_read(&checked.model, &orders, &[])
+    let variant = Variant::derive_for_report(&checked.model, &orders, &[])
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     Report::new(
         &checked.model,
@@ -90,6 +90,6 @@ fn fractions_dots_and_indices_are_formatted() {
 
 #[test]
 fn markup_in_names_is_escaped() {
-    let named = formula(&Formula::named("<b>&\"'")).into_string();
+    let named = formula(&Formula::from_name("<b>&\"'")).into_string();
     assert_eq!(named, "<math><mi>&lt;b&gt;&amp;&quot;'</mi></math>");
 }

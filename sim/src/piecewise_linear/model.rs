@@ -1,11 +1,11 @@
 //! Piecewise-linear models, derived once for all parameter values.
 
-use eomgen_codegen::mechanics::affine::affine;
+use eomgen_codegen::mechanics::affine::derive_affine;
 use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineProgram};
 use eomgen_codegen::program::lowering::lower_affine;
-use eomgen_codegen::symbolic::formula::abridged;
+use eomgen_codegen::symbolic::formula::abridged_formula;
 use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::error::ExactError;
@@ -33,11 +33,11 @@ impl PiecewiseLinear {
             Linearity::Constrained => return Err(ExactError::Constrained),
             Linearity::Impacts => return Err(ExactError::Impacts),
             Linearity::Nonlinear(node) => {
-                let formula = abridged(&equations.graph, model, node).to_string();
+                let formula = abridged_formula(&equations.graph, model, node).to_string();
                 return Err(ExactError::NotLinear { formula });
             }
         }
-        let affine = affine(equations).map_err(|_| ExactError::NotLinear {
+        let affine = derive_affine(equations).map_err(|_| ExactError::NotLinear {
             formula: "a switching function over modes".to_owned(),
         })?;
         let values = model

@@ -2,7 +2,7 @@
 
 use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
-use eomgen_codegen::symbolic::formula::written_out;
+use eomgen_codegen::symbolic::formula::full_formula;
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -21,7 +21,7 @@ fn kind(model: &Model) -> String {
         Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
         Linearity::Constrained => "with constraints".to_owned(),
         Linearity::Impacts => "with impacts".to_owned(),
-        Linearity::Nonlinear(node) => written_out(&equations.graph, model, node).to_string(),
+        Linearity::Nonlinear(node) => full_formula(&equations.graph, model, node).to_string(),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
 use eomgen_tests::program::refused;
 use nalgebra::{DMatrix, DVector};
@@ -471,7 +471,7 @@ fn assert_matches_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)],
             state: &state,
             inputs: &[],
         };
-        let mut at: Vec<ImpactAt> = Vec::new();
+        let mut at: Vec<ImpactValues> = Vec::new();
         own.impacts(point, &mut at);
         let mut mass = vec![0.0; degrees * degrees];
         own.mass_matrix(point, &mut mass);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::expression::initialiser;
-use super::super::names::named;
+use super::super::names::fill_template;
 use crate::program::{GradientDerivative, Jacobian, Program, ValueId};
 
 /// Structural nonzero: its position in the matrix, and its index in row order.
@@ -46,7 +46,7 @@ impl Columns {
     }
 
     /// Collects the structural nonzeros of a Jacobian with this number of columns.
-    pub(super) fn of(jacobian: &Jacobian<ValueId>, columns: usize) -> Self {
+    pub(super) fn from_jacobian(jacobian: &Jacobian<ValueId>, columns: usize) -> Self {
         let mut nonzeros = Vec::new();
         for (block, place) in jacobian.entries.iter().zip(jacobian.places()) {
             for i in 0..block.rows {
@@ -63,7 +63,7 @@ impl Columns {
     }
 
     /// Collects the structural nonzeros of a Hessian's block with these rows and columns.
-    pub(super) fn where_not_zero(
+    pub(super) fn hessian_block(
         derivative: &GradientDerivative<ValueId>,
         rows: &Range<usize>,
         columns: &Range<usize>,
@@ -86,7 +86,7 @@ impl Columns {
         Self::new(rows.len(), columns.len(), nonzeros)
     }
 
-    pub(super) fn transposed(&self) -> Self {
+    pub(super) fn transpose(&self) -> Self {
         let turned = self.nonzeros.iter().map(|nonzero| Nonzero {
             column: nonzero.row,
             row: nonzero.column,
@@ -124,5 +124,9 @@ fn list(program: &Program, of: &str, name: &str, numbers: impl Iterator<Item = u
     }
     let lines: Vec<String> = numbers.chunks(16).map(|line| line.join(", ")).collect();
     let head = format!("static const {of} NAME_{name}[{}]", numbers.len());
-    format!("{} = {};\n", named(program, &head), initialiser(&lines))
+    format!(
+        "{} = {};\n",
+        fill_template(program, &head),
+        initialiser(&lines)
+    )
 }

@@ -1,8 +1,8 @@
 //! Function of CasADi's interface: numbers, names and sparsities of arguments and results, work memory, and
 //! body.
 
-use super::super::names::named;
-use super::given::Given;
+use super::super::names::fill_template;
+use super::given::RateArgument;
 use crate::program::Program;
 use crate::statements::layout::block;
 
@@ -19,7 +19,7 @@ pub(super) struct Function {
 
 impl Function {
     /// Starts a function with the given arguments.
-    pub(super) fn of(given: &[Given], name: &'static str) -> Self {
+    pub(super) fn new(given: &[RateArgument], name: &'static str) -> Self {
         let given = given.iter();
         Self {
             name,
@@ -32,16 +32,16 @@ impl Function {
         }
     }
 
-    pub(super) fn given(&mut self, name: &str, shape: &str) {
+    pub(super) fn push_argument(&mut self, name: &str, shape: &str) {
         self.given.push((name.to_owned(), shape.to_owned()));
     }
 
-    pub(super) fn result(&mut self, name: String, sparsity: &str) {
+    pub(super) fn push_result(&mut self, name: String, sparsity: &str) {
         self.results.push((name, sparsity.to_owned()));
     }
 
     /// Makes the work array at least this long.
-    pub(super) fn need(&mut self, room: usize) {
+    pub(super) fn reserve_work(&mut self, room: usize) {
         self.room = self.room.max(room);
     }
 
@@ -70,7 +70,7 @@ impl Function {
             self.name
         );
         let body = POINT.to_owned() + &self.statements + "return 0;\n";
-        named(program, &(text + &block(&head, &body, "}")))
+        fill_template(program, &(text + &block(&head, &body, "}")))
     }
 }
 

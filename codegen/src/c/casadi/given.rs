@@ -1,19 +1,19 @@
 //! Arguments of the rates with CasADi's names, and the Jacobian by each.
 
 use crate::program::{Jacobian, Program, ValueId};
-use crate::statements::{EmitError, Emitted};
+use crate::statements::{EmitError, EmitResult};
 
 /// Argument of the rates: name, sparsity of its column, Jacobian of the rates by it, and length.
 #[derive(Clone, Copy)]
-pub(super) struct Given {
+pub(super) struct RateArgument {
     pub(super) name: &'static str,
     pub(super) shape: &'static str,
     pub(super) jacobian: &'static str,
     pub(super) count: usize,
 }
 
-pub(super) fn given(program: &Program) -> [Given; 4] {
-    let one = |name, shape, jacobian, count| Given {
+pub(super) fn rate_arguments(program: &Program) -> [RateArgument; 4] {
+    let one = |name, shape, jacobian, count| RateArgument {
         name,
         shape,
         jacobian,
@@ -32,7 +32,10 @@ pub(super) fn given(program: &Program) -> [Given; 4] {
     ]
 }
 
-pub(super) fn derived<'a>(program: &'a Program, name: &str) -> Emitted<&'a Jacobian<ValueId>> {
+pub(super) fn find_jacobian<'a>(
+    program: &'a Program,
+    name: &str,
+) -> EmitResult<&'a Jacobian<ValueId>> {
     let mut jacobians = program.outputs.jacobians.iter();
     let found = jacobians.find(|known| known.name == name);
     found.ok_or_else(|| EmitError::Value(format!("the program lacks the Jacobian `{name}`")))

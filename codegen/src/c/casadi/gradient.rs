@@ -2,37 +2,37 @@
 //! `jac_adj1_rates`. Blocks of the Jacobian by (t, x, u, p) are second derivatives of the weighted rates;
 //! blocks by the weights are transposed Jacobians.
 
-use super::super::names::named;
+use super::super::names::fill_template;
 use super::columns::Columns;
 use super::function::Function;
-use super::given::{Given, derived};
+use super::given::{RateArgument, find_jacobian};
 use crate::program::{GradientDerivative, Program, ValueId};
-use crate::statements::Emitted;
+use crate::statements::EmitResult;
 
 pub(super) fn gradient(
     program: &Program,
-    given: &[Given; 4],
+    given: &[RateArgument; 4],
     derivative: &GradientDerivative<ValueId>,
-) -> Emitted<String> {
-    Ok(weighted(program, given)? + &second(program, given, derivative)?)
+) -> EmitResult<String> {
+    Ok(weighted_gradient(program, given)? + &second_derivative(program, given, derivative)?)
 }
 
 /// Starts a function of the point, of the rates (unused), and of the weights.
-fn of_weights(given: &[Given; 4], name: &'static str) -> Function {
-    let mut function = Function::of(given, name);
-    function.given("out_rates", "states");
-    function.given("adj_rates", "states");
+fn of_weights(given: &[RateArgument; 4], name: &'static str) -> Function {
+    let mut function = Function::new(given, name);
+    function.push_argument("out_rates", "states");
+    function.push_argument("adj_rates", "states");
     function.statements = "const double *weights = arg[5] ? arg[5] : zeros;\n".to_owned();
     function
 }
 
-fn weighted(program: &Program, given: &[Given; 4]) -> Emitted<String> {
+fn weighted_gradient(program: &Program, given: &[RateArgument; 4]) -> EmitResult<String> {
     let mut function = of_weights(given, "adj1_rates");
     for argument in given {
-        function.result(format!("adj_{}", argument.name), argument.shape);
+        function.push_result(format!("adj_{}", argument.name), argument.shape);
     }
-    let by_time = derived(program, "rates_by_time")?.nonzeros();
-    function.need(by_time.max(program.states()));
+    let by_time = find_jacobian(program, "rates_by_time")?.nonzeros();
+    function.reserve_work(by_time.max(program.states()));
     let inputs = program
         .inputs
         .iter()
@@ -44,15 +44,15 @@ fn weighted(program: &Program, given: &[Given; 4]) -> Emitted<String> {
 }
 
 /// Writes the Jacobian of the gradient, computed column by column, and the sparsities of its blocks.
-fn second(
+fn second_derivative(
     program: &Program,
-    given: &[Given; 4],
+    given: &[RateArgument; 4],
     derivative: &GradientDerivative<ValueId>,
-) -> Emitted<String> {
+) -> EmitResult<String> {
     let mut function = of_weights(given, "jac_adj1_rates");
-    let mut text = named(program, COLUMN);
+    let mut text = fill_template(program, COLUMN);
     for argument in given {
-        function.given(&format!("out_adj_{}", argument.name), argument.shape);
+        function.push_argument(&format!("out_adj_{}", argument.name), argument.shape);
     }
     let mut places = Vec::new();
     let mut first = 0;
@@ -65,19 +65,20 @@ fn second(
     for (row, of) in given.iter().enumerate() {
         for (column, by) in given.iter().enumerate() {
             let name = format!("adj_{}_{}", of.name, by.name);
-            let block = Columns::where_not_zero(derivative, &places[row], &places[column]);
+            let block = Columns::hessian_block(derivative, &places[row], &places[column]);
             text += &block.sparsity(program, &name);
-            function.result(format!("jac_{name}"), &name);
+            function.push_result(format!("jac_{name}"), &name);
         }
         let name = format!("adj_{}_out", of.name);
         text += &Columns::zero(of.count, program.states()).sparsity(program, &name);
-        function.result(format!("jac_adj_{}_out_rates", of.name), &name);
-        let turned = Columns::of(derived(program, of.jacobian)?, of.count).transposed();
+        function.push_result(format!("jac_adj_{}_out_rates", of.name), &name);
+        let turned =
+            Columns::from_jacobian(find_jacobian(program, of.jacobian)?, of.count).transpose();
         let name = format!("adj_{}_weights", of.name);
         text += &turned.sparsity(program, &name);
         text += &turned.order(program, &name);
-        function.need(turned.count());
-        function.result(format!("jac_adj_{}_adj_rates", of.name), &name);
+        function.reserve_work(turned.count());
+        function.push_result(format!("jac_adj_{}_adj_rates", of.name), &name);
         let place = results * row + given.len() + 1;
         by_weights += &format!(
             "if (res[{place}]) {{\n    NAME_{}(t, x, &inputs, &coefficients, w);\n    \
@@ -87,7 +88,7 @@ fn second(
             turned.count()
         );
     }
-    function.statements += &named(program, DIRECTION).replace("LENGTH", &first.to_string());
+    function.statements += &fill_template(program, DIRECTION).replace("LENGTH", &first.to_string());
     for (column, by) in given.iter().enumerate() {
         let asked = (0..given.len()).map(|row| format!("res[{}]", results * row + column));
         let asked = asked.collect::<Vec<_>>().join(" || ");

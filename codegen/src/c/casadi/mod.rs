@@ -15,15 +15,15 @@ mod gradient;
 
 use columns::Columns;
 use function::Function;
-use given::{derived, given};
+use given::{find_jacobian, rate_arguments};
 use gradient::gradient;
 
 use super::comments::comment;
 use super::emit::emit;
-use super::names::named;
+use super::names::fill_template;
 use crate::program::{Output, Program};
 use crate::statements::layout;
-use crate::statements::{EmitError, Emitted};
+use crate::statements::{EmitError, EmitResult};
 
 /// Outputs that the program must have.
 pub const CASADI_OUTPUTS: [Output; 2] = [Output::Jacobians, Output::TimeDerivatives];
@@ -35,7 +35,7 @@ pub const CASADI_OUTPUTS: [Output; 2] = [Output::Jacobians, Output::TimeDerivati
 pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
     let files = emit(program)?;
     let include = format!("#include \"{}.h\"\n", program.name);
-    let double = named(program, "#undef NAME_REAL\n#define NAME_REAL double\n");
+    let double = fill_template(program, "#undef NAME_REAL\n#define NAME_REAL double\n");
     let functions = layout::source(&functions(program)?);
     Ok([
         double,
@@ -46,21 +46,21 @@ pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
     .concat())
 }
 
-fn functions(program: &Program) -> Emitted<String> {
-    let given = given(program);
-    let mut text = named(program, OPENING);
+fn functions(program: &Program) -> EmitResult<String> {
+    let given = rate_arguments(program);
+    let mut text = fill_template(program, OPENING);
     for argument in given {
         text += &Columns::dense(argument.count).sparsity(program, argument.shape);
     }
-    let mut jac_rates = Function::of(&given, "jac_rates");
-    jac_rates.given("out_rates", "states");
+    let mut jac_rates = Function::new(&given, "jac_rates");
+    jac_rates.push_argument("out_rates", "states");
     for (place, argument) in given.iter().enumerate() {
         let name = argument.jacobian;
-        let compressed = Columns::of(derived(program, name)?, argument.count);
+        let compressed = Columns::from_jacobian(find_jacobian(program, name)?, argument.count);
         text += &compressed.sparsity(program, name);
         text += &compressed.order(program, name);
-        jac_rates.result(format!("jac_rates_{}", argument.name), name);
-        jac_rates.need(compressed.count());
+        jac_rates.push_result(format!("jac_rates_{}", argument.name), name);
+        jac_rates.reserve_work(compressed.count());
         jac_rates.statements += &format!(
             "if (res[{place}]) {{\n    NAME_{name}(t, x, &inputs, &coefficients, w);\n    \
              for (int i = 0; i < {}; ++i) {{\n        \
@@ -68,9 +68,9 @@ fn functions(program: &Program) -> Emitted<String> {
             compressed.count()
         );
     }
-    text += &named(program, INTERFACE);
-    let mut rates = Function::of(&given, "rates");
-    rates.result("rates".to_owned(), "states");
+    text += &fill_template(program, INTERFACE);
+    let mut rates = Function::new(&given, "rates");
+    rates.push_result("rates".to_owned(), "states");
     rates.statements =
         "if (res[0]) {\n    NAME_rates(t, x, &inputs, &coefficients, res[0]);\n}\n".to_owned();
     text += &rates.text(program);
@@ -93,7 +93,7 @@ fn defaults(program: &Program) -> String {
             format!("        res[0][{place}] = parameters.{name};\n")
         });
     let text = DEFAULTS.replace("FILLED\n", &filled.collect::<String>());
-    comment(&[line.to_owned()]) + &named(program, &text)
+    comment(&[line.to_owned()]) + &fill_template(program, &text)
 }
 
 const OPENING: &str = "\

@@ -14,11 +14,11 @@ use eomgen_model_spec::ids::{FieldId, ParameterId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::forces::may_rest;
+use crate::mechanics::forces::can_be_constant;
 use crate::mechanics::linearity::{Linearity, linearity};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::Sides;
-use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::substitute::substitute;
 
@@ -57,7 +57,7 @@ pub(crate) struct PhaseNodes {
 ///
 /// # Errors
 /// The first node that is not linear between switching surfaces.
-pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
+pub fn derive_affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     match linearity(&equations) {
         Linearity::Linear | Linearity::PiecewiseLinear => {}
         Linearity::Constrained => return Err(equations.multipliers[0]),
@@ -73,21 +73,21 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     let first_side = equations.parameter_names.len();
     let mut roots = equations.rate_nodes();
     roots.extend(equations.guards.iter().map(|guard| guard.value));
-    let mut with_sides = Sides::of(&mut equations, &roots, &|guard| {
+    let mut with_sides = Sides::replace_all(&mut equations, &roots, &|guard| {
         Some(Operation::Parameter(ParameterId::new(first_side + guard)))
     });
     let graph = &mut equations.graph;
     let known = &mut with_sides.known;
     let mut replaced = |graph: &mut Graph, id: NodeId| substitute(graph, id, &|_, _| None, known);
     let accelerations = RowNodes {
-        scalars: each(graph, &equations.accelerations.rows.scalars, &mut replaced),
-        modal: each(graph, &equations.accelerations.rows.modal, &mut replaced),
+        scalars: map_nodes(graph, &equations.accelerations.rows.scalars, &mut replaced),
+        modal: map_nodes(graph, &equations.accelerations.rows.modal, &mut replaced),
     };
-    let state_rates = each(graph, &equations.state_rates, &mut replaced);
+    let state_rates = map_nodes(graph, &equations.state_rates, &mut replaced);
     let surfaces: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
-    let guards = each(graph, &surfaces, &mut replaced);
+    let guards = map_nodes(graph, &surfaces, &mut replaced);
     let moving = [accelerations.nodes(), state_rates.clone(), guards.clone()].concat();
-    let sinusoids = rows::Sinusoids::in_nodes(graph, &moving);
+    let sinusoids = rows::Sinusoids::find(graph, &moving);
     let inputs = input_count(graph, &moving);
     let mut reader = rows::Reader::new(
         graph,
@@ -95,13 +95,13 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
         &sinusoids,
         inputs,
     );
-    let scalars = read(&mut reader, graph, &accelerations.scalars);
+    let scalars = read_rows(&mut reader, graph, &accelerations.scalars);
     let modal = FieldId::first(accelerations.modal.len()).zip(&accelerations.modal);
     let modal: Vec<AffineRow> = modal
         .map(|(field, id)| reader.row(graph, *id, Some(Space::Modes(field))))
         .collect();
-    let first_order = read(&mut reader, graph, &state_rates);
-    let guard_rows = read(&mut reader, graph, &guards);
+    let first_order = read_rows(&mut reader, graph, &state_rates);
+    let guard_rows = read_rows(&mut reader, graph, &guards);
     let rows = [&scalars, &modal, &first_order, &guard_rows]
         .into_iter()
         .flatten();
@@ -114,12 +114,15 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
         .phases
         .iter()
         .map(|&phase| PhaseNodes {
-            rate: by_scalar(graph, phase, time),
+            rate: derive_by_scalar(graph, phase, time),
             offset: at_time_zero(graph, phase, time),
         })
         .collect();
-    let guard_groups = parallel(graph, &surfaces);
-    let guards_rest = surfaces.iter().map(|id| may_rest(graph, *id)).collect();
+    let guard_groups = parallel_groups(graph, &surfaces);
+    let guards_rest = surfaces
+        .iter()
+        .map(|id| can_be_constant(graph, *id))
+        .collect();
     let mut derived_parameters = equations.derived_parameters;
     derived_parameters.extend(guards.iter().map(|_| None));
     let mut parameter_names = equations.parameter_names;
@@ -141,7 +144,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     })
 }
 
-fn each(
+fn map_nodes(
     graph: &mut Graph,
     nodes: &[NodeId],
     replaced: &mut dyn FnMut(&mut Graph, NodeId) -> NodeId,
@@ -149,7 +152,7 @@ fn each(
     nodes.iter().map(|id| replaced(graph, *id)).collect()
 }
 
-fn read(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[NodeId]) -> Vec<AffineRow> {
+fn read_rows(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[NodeId]) -> Vec<AffineRow> {
     nodes
         .iter()
         .map(|id| reader.row(graph, *id, None))
@@ -162,7 +165,7 @@ fn at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
 }
 
 /// Returns, for each surface, the first one that it is parallel to (itself included).
-fn parallel(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
+fn parallel_groups(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     let mut firsts = Vec::with_capacity(surfaces.len());
     for (index, &surface) in surfaces.iter().enumerate() {
         let first = (0..index).find(|&other| {

@@ -6,7 +6,7 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::rows::RowNodes;
-use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::substitute::substitute;
@@ -53,7 +53,7 @@ pub(super) struct Sinusoids {
 
 impl Sinusoids {
     /// Finds the sinusoids in `nodes`.
-    pub fn in_nodes(graph: &mut Graph, nodes: &[NodeId]) -> Self {
+    pub fn find(graph: &mut Graph, nodes: &[NodeId]) -> Self {
         let mut phases = Vec::new();
         for id in graph.reachable(nodes) {
             if graph.dependence(id).is_parameter_only() {
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         let by = |graph: &mut Graph, variables: &[NodeId]| -> Vec<NodeId> {
             variables
                 .iter()
-                .map(|variable| by_scalar(graph, id, *variable))
+                .map(|variable| derive_by_scalar(graph, id, *variable))
                 .collect()
         };
         let (coordinates, rates) = (by(graph, &self.coordinates), by(graph, &self.rates));
@@ -142,7 +142,7 @@ impl<'a> Reader<'a> {
         let by_calls = |graph: &mut Graph, place: usize| -> Vec<NodeId> {
             let calls = self.sinusoids.calls.iter();
             calls
-                .map(|pair| by_scalar(graph, id, pair[place]))
+                .map(|pair| derive_by_scalar(graph, id, pair[place]))
                 .collect()
         };
         AffineRow {
@@ -152,8 +152,8 @@ impl<'a> Reader<'a> {
             inputs,
             sines: by_calls(graph, 0),
             cosines: by_calls(graph, 1),
-            mode_coordinates: by_modes(graph, id, elements, &mut self.modes),
-            mode_rates: by_modes(graph, id, elements, &mut self.mode_rates),
+            mode_coordinates: read_modes(graph, id, elements, &mut self.modes),
+            mode_rates: read_modes(graph, id, elements, &mut self.mode_rates),
             constant: self.constant(graph, id),
         }
     }
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
 }
 
 /// Differentiates by each field's modes: a vector for a scalar, a matrix for elements.
-fn by_modes(
+fn read_modes(
     graph: &mut Graph,
     id: NodeId,
     elements: Option<Space>,
@@ -188,7 +188,7 @@ fn by_modes(
         .iter_mut()
         .map(|field| match elements {
             Some(space) => {
-                let jacobian = field.of_elements(graph, id, space);
+                let jacobian = field.element_jacobian(graph, id, space);
                 jacobian.assemble(graph)
             }
             None => field.gradient(graph, id),

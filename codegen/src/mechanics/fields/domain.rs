@@ -27,7 +27,7 @@ impl Domain {
     ///
     /// # Errors
     /// A third derivative of tabulated shapes, which are cubic splines.
-    pub fn has(&self, atom: Atom) -> Result<(), String> {
+    pub fn check_derivative(&self, atom: Atom) -> Result<(), String> {
         if self.basis.table().is_some() && atom.derivative() > 2 {
             return Err(
                 "the shapes of a table have only two derivatives: they are cubic splines through its rows"
@@ -39,7 +39,7 @@ impl Domain {
 
     /// Returns s = (x - from)/(to - from). Tabulated shapes need a constant s, so equal terms of x and the
     /// domain are cancelled for them.
-    pub fn relative(&self, graph: &mut Graph, position: NodeId) -> NodeId {
+    pub fn relative_position(&self, graph: &mut Graph, position: NodeId) -> NodeId {
         if self.basis.table().is_none() {
             let from_start = graph.subtract(position, self.from);
             return graph.divide(from_start, self.length);

@@ -62,7 +62,7 @@ impl FieldFunction {
     }
 
     /// Returns a multiple.
-    pub fn scaled(mut self, graph: &mut Graph, factor: f64) -> Self {
+    pub fn scale(mut self, graph: &mut Graph, factor: f64) -> Self {
         for term in &mut self.terms {
             term.scalar = graph.scale(factor, term.scalar);
         }
@@ -78,25 +78,25 @@ impl FieldFunction {
         other: &Self,
     ) -> Outcome<Self> {
         match operator {
-            BinaryOperator::Add => self.plus(graph, other.clone()),
+            BinaryOperator::Add => self.add(graph, other.clone()),
             BinaryOperator::Subtract => {
-                let negated = other.clone().scaled(graph, -1.0);
-                self.plus(graph, negated)
+                let negated = other.clone().scale(graph, -1.0);
+                self.add(graph, negated)
             }
-            BinaryOperator::Multiply => self.times(graph, domain, other),
+            BinaryOperator::Multiply => self.multiply(graph, domain, other),
             BinaryOperator::Divide => match other.as_scalar() {
                 Some(scalar) => {
                     let reciprocal = graph.integer_power(scalar, -1);
-                    self.times(graph, domain, &Self::constant(reciprocal))
+                    self.multiply(graph, domain, &Self::constant(reciprocal))
                 }
                 None => {
                     let values = other.values(graph, domain)?;
                     let reciprocal = graph.integer_power(values, -1);
                     let weight = Self::weight(graph, reciprocal);
-                    self.times(graph, domain, &weight)
+                    self.multiply(graph, domain, &weight)
                 }
             },
-            BinaryOperator::Power => self.to_the_power(graph, domain, other),
+            BinaryOperator::Power => self.power(graph, domain, other),
         }
     }
 
@@ -107,7 +107,8 @@ impl FieldFunction {
         function: Function,
         arguments: &[Self],
     ) -> Outcome<Self> {
-        let operands = |all| Arguments::of(all).ok_or("a function takes one or two arguments");
+        let operands =
+            |all| Arguments::from_operands(all).ok_or("a function takes one or two arguments");
         let scalars: Option<Vec<NodeId>> = arguments.iter().map(Self::as_scalar).collect();
         if let Some(scalars) = scalars {
             return Ok(Self::constant(graph.call(function, operands(scalars)?)));
@@ -121,8 +122,13 @@ impl FieldFunction {
     }
 
     /// Returns the value at a position that depends only on parameters.
-    pub fn at(&self, graph: &mut Graph, domain: &Domain, position: NodeId) -> Outcome<NodeId> {
-        let s = domain.relative(graph, position);
+    pub fn evaluate_at(
+        &self,
+        graph: &mut Graph,
+        domain: &Domain,
+        position: NodeId,
+    ) -> Outcome<NodeId> {
+        let s = domain.relative_position(graph, position);
         let mut terms = Vec::new();
         for term in &self.terms {
             if term.weight.is_some() {
@@ -175,13 +181,13 @@ impl FieldFunction {
         }
     }
 
-    fn plus(&self, graph: &mut Graph, other: Self) -> Outcome<Self> {
+    fn add(&self, graph: &mut Graph, other: Self) -> Outcome<Self> {
         let mut terms = self.terms.clone();
         terms.extend(other.terms);
-        bounded(collect_like_terms(graph, terms))
+        check_term_count(collect_like_terms(graph, terms))
     }
 
-    fn times(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
+    fn multiply(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
         let atoms = |function: &Self| {
             function
                 .terms
@@ -207,7 +213,7 @@ impl FieldFunction {
                 };
                 let mut atoms = [a.atoms.clone(), b.atoms.clone()].concat();
                 atoms.sort();
-                let (power, weight) = within_moments(graph, domain, a.power + b.power, weight);
+                let (power, weight) = reduce_power(graph, domain, a.power + b.power, weight);
                 terms.push(IntegrandTerm {
                     scalar: graph.multiply(a.scalar, b.scalar),
                     power,
@@ -216,10 +222,10 @@ impl FieldFunction {
                 });
             }
         }
-        bounded(collect_like_terms(graph, terms))
+        check_term_count(collect_like_terms(graph, terms))
     }
 
-    fn to_the_power(&self, graph: &mut Graph, domain: &Domain, exponent: &Self) -> Outcome<Self> {
+    fn power(&self, graph: &mut Graph, domain: &Domain, exponent: &Self) -> Outcome<Self> {
         let number = exponent.as_scalar().and_then(|e| graph.as_constant(e));
         if let (Some(base), Some(exponent)) = (self.as_scalar(), exponent.as_scalar()) {
             return Ok(Self::constant(graph.power(base, exponent)));
@@ -228,7 +234,7 @@ impl FieldFunction {
             Some(n) if n == n.round() && (0.0..=8.0).contains(&n) => {
                 let mut result = Self::constant(graph.one());
                 for _ in 0..n as u32 {
-                    result = result.times(graph, domain, self)?;
+                    result = result.multiply(graph, domain, self)?;
                 }
                 Ok(result)
             }
@@ -262,7 +268,7 @@ impl FieldFunction {
 }
 
 /// Moves a power without a table into the weight.
-fn within_moments(
+fn reduce_power(
     graph: &mut Graph,
     domain: &Domain,
     power: u32,
@@ -293,7 +299,7 @@ fn collect_like_terms(graph: &mut Graph, terms: Vec<IntegrandTerm>) -> Vec<Integ
     collected
 }
 
-fn bounded(terms: Vec<IntegrandTerm>) -> Outcome<FieldFunction> {
+fn check_term_count(terms: Vec<IntegrandTerm>) -> Outcome<FieldFunction> {
     if terms.len() > MAX_TERMS {
         return Err(too_many_terms());
     }

@@ -45,16 +45,18 @@ fn nodes_of_a_piece(pieces: usize, order: usize) -> usize {
 
 /// Computes a table for modes 1 to `order`; matrices row by row.
 pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
-    let shapes = Shapes::of(basis, order);
+    let shapes = Shapes::new(basis, order);
     match kind {
-        TableKind::Wavenumber => shapes.each(|mode| mode.wavenumber),
-        TableKind::Mixing => shapes.each(|mode| mode.cosine),
-        TableKind::GrowingAmplitude => shapes.each(|mode| -2.0 * mode.rising),
-        TableKind::FallingAmplitude => shapes.each(|mode| mode.falling),
-        TableKind::RisingAmplitude => shapes.each(|mode| mode.rising),
+        TableKind::Wavenumber => shapes.values(|mode| mode.wavenumber),
+        TableKind::Mixing => shapes.values(|mode| mode.cosine),
+        TableKind::GrowingAmplitude => shapes.values(|mode| -2.0 * mode.rising),
+        TableKind::FallingAmplitude => shapes.values(|mode| mode.falling),
+        TableKind::RisingAmplitude => shapes.values(|mode| mode.rising),
         TableKind::ShapeAtStart(derivative) => shapes.at_start(derivative),
         TableKind::ShapeAtEnd(derivative) => shapes.at_end(basis, derivative),
-        TableKind::ShapeAtPlace { bits, derivative } => shapes.at(derivative, f64::from_bits(bits)),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            shapes.values_at(derivative, f64::from_bits(bits))
+        }
         TableKind::Moment { power, derivative } => shapes.moments(basis, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
             shapes.own_moments(basis, power, left, right)
@@ -64,7 +66,7 @@ pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
         TableKind::NodeWeight => shapes.rule(0).weights,
         TableKind::ShapeAtNodes(derivative) => {
             let nodes = shapes.rule(0).nodes;
-            shapes.at_each(derivative, &nodes).concat()
+            shapes.values_at_nodes(derivative, &nodes).concat()
         }
     }
 }
@@ -78,13 +80,13 @@ enum Shapes {
 }
 
 impl Shapes {
-    fn of(basis: &Basis, order: usize) -> Self {
+    fn new(basis: &Basis, order: usize) -> Self {
         let numbers = 1..=order;
         match basis {
             Basis::Beam { from, to } => {
                 Self::Modes(numbers.map(|r| beam::mode(*from, *to, r)).collect())
             }
-            Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed).collect()),
+            Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed_mode).collect()),
             Basis::Table { table, .. } => {
                 let first = table.positions[0];
                 let length = table.positions[table.positions.len() - 1] - first;
@@ -98,14 +100,14 @@ impl Shapes {
     }
 
     /// Returns a number of each analytic mode.
-    fn each(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
+    fn values(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(value).collect(),
             Self::Splines(..) => Vec::new(),
         }
     }
 
-    fn at(&self, derivative: u8, s: f64) -> Vec<f64> {
+    fn values_at(&self, derivative: u8, s: f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
             Self::Splines(_, splines) => splines
@@ -118,11 +120,11 @@ impl Shapes {
     fn at_start(&self, derivative: u8) -> Vec<f64> {
         let zero = |mode: &Mode| mode.at_start.get(usize::from(derivative)) == Some(&0.0);
         match self {
-            Self::Modes(_) => self.each(|mode| match zero(mode) {
+            Self::Modes(_) => self.values(|mode| match zero(mode) {
                 true => 0.0,
                 false => mode.shape(derivative, 0.0),
             }),
-            Self::Splines(..) => self.at(derivative, 0.0),
+            Self::Splines(..) => self.values_at(derivative, 0.0),
         }
     }
 
@@ -131,25 +133,28 @@ impl Shapes {
     fn at_end(&self, basis: &Basis, derivative: u8) -> Vec<f64> {
         let keeps = *basis == Basis::CLAMPED_FREE && matches!(derivative, 1 | 4..);
         match (self, basis) {
-            (Self::Modes(_), Basis::Beam { .. }) if !keeps => self.each(|mode| {
+            (Self::Modes(_), Basis::Beam { .. }) if !keeps => self.values(|mode| {
                 power(mode.wavenumber, derivative) * mode.at_end[usize::from(derivative % 4)]
             }),
-            _ => self.at(derivative, 1.0),
+            _ => self.values_at(derivative, 1.0),
         }
     }
 
     /// Rows: positions; columns: modes.
-    fn at_each(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
-        places.iter().map(|s| self.at(derivative, *s)).collect()
+    fn values_at_nodes(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
+        places
+            .iter()
+            .map(|s| self.values_at(derivative, *s))
+            .collect()
     }
 
     /// Returns the integrals of s^k phi_r^(a).
     fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
         if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
-            return self.each(|mode| mode.moment(moment));
+            return self.values(|mode| mode.moment(moment));
         }
         let QuadratureRule { nodes, weights } = self.rule(moment);
-        let shapes = self.at_each(derivative, &nodes);
+        let shapes = self.values_at_nodes(derivative, &nodes);
         (0..self.order())
             .map(|r| sum_over(&weights, |g| shapes[g][r]))
             .collect()
@@ -160,7 +165,7 @@ impl Shapes {
         if is_orthogonal(basis, moment, left, right) {
             let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
             let sign = if opposite { -1.0 } else { 1.0 };
-            return self.each(|m| {
+            return self.values(|m| {
                 let [one, other] = m.mean_square;
                 sign * (power(m.wavenumber, left + right) * one * other)
             });
@@ -171,11 +176,11 @@ impl Shapes {
 
     fn pair_moments(&self, moment: u32, left: u8, right: u8) -> Vec<f64> {
         let QuadratureRule { nodes, weights } = self.rule(moment);
-        let a = self.at_each(left, &nodes);
+        let a = self.values_at_nodes(left, &nodes);
         let b = if left == right {
             a.clone()
         } else {
-            self.at_each(right, &nodes)
+            self.values_at_nodes(right, &nodes)
         };
         let order = self.order();
         (0..order * order)

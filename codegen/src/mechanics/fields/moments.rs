@@ -98,10 +98,10 @@ fn beam_shapes(
     let z = graph.multiply(beta, s);
     let mut terms = Vec::new();
     if from != End::Guided {
-        terms.push(turned(graph, Function::Sin, z, derivative));
+        terms.push(sinusoid_derivative(graph, Function::Sin, z, derivative));
     }
     if from != End::Pinned {
-        let (sign, mut cosine) = turned(graph, Function::Cos, z, derivative);
+        let (sign, mut cosine) = sinusoid_derivative(graph, Function::Cos, z, derivative);
         if from != End::Guided {
             let xi = domain.table(graph, TableKind::Mixing);
             cosine = graph.multiply(xi, cosine);
@@ -130,7 +130,12 @@ fn beam_shapes(
 }
 
 /// Returns a derivative of sin z or cos z by z, and its sign.
-fn turned(graph: &mut Graph, function: Function, z: NodeId, derivative: u8) -> (f64, NodeId) {
+fn sinusoid_derivative(
+    graph: &mut Graph,
+    function: Function,
+    z: NodeId,
+    derivative: u8,
+) -> (f64, NodeId) {
     let quarters = derivative + u8::from(function == Function::Cos);
     let own = if quarters.is_multiple_of(2) {
         Function::Sin

@@ -16,7 +16,7 @@ pub enum Atom {
 
 impl Atom {
     /// Returns the atom, differentiated `times` more by the position.
-    pub fn differentiated(self, times: u8) -> Self {
+    pub fn derivative_of_order(self, times: u8) -> Self {
         match self {
             Self::Coordinates(d) => Self::Coordinates(d + times),
             Self::Rates(d) => Self::Rates(d + times),

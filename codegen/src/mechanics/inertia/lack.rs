@@ -7,40 +7,40 @@ use std::collections::BTreeMap;
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Components of a direction below this fraction of the largest are rounding errors.
-const NEGLIGIBLE: f64 = 1e-6;
+const MAX_ROUNDING_COMPONENT: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Lack {
+pub(super) enum Defect {
     /// A diagonal entry that is not positive, or an entry of its row that is not finite.
-    Of(usize, f64),
+    Entry(usize, f64),
     /// Rates with zero or negative kinetic energy.
-    Along { rates: Vec<f64>, negative: bool },
+    Direction { rates: Vec<f64>, negative: bool },
 }
 
 /// Symmetric matrix by rows; structural zeros are absent.
 pub(super) type SparseRows = Vec<BTreeMap<usize, f64>>;
 
 /// Converts a full matrix, given row by row, and removes its zeros.
-pub(super) fn sparse(matrix: &[f64], size: usize) -> SparseRows {
+pub(super) fn to_sparse(matrix: &[f64], size: usize) -> SparseRows {
     let rows = matrix.chunks(size.max(1));
     let entries = rows.map(|row| row.iter().copied().enumerate().filter(|(_, v)| *v != 0.0));
     entries.map(Iterator::collect).collect()
 }
 
 /// Returns the defect of the first connected block that is not positive definite.
-pub(super) fn lack(rows: &SparseRows) -> Option<Lack> {
+pub(super) fn find_defect(rows: &SparseRows) -> Option<Defect> {
     for (place, row) in rows.iter().enumerate() {
         if let Some(bad) = row.values().find(|entry| !entry.is_finite()) {
-            return Some(Lack::Of(place, *bad));
+            return Some(Defect::Entry(place, *bad));
         }
         let own = row.get(&place).copied().unwrap_or(0.0);
         if own <= 0.0 {
-            return Some(Lack::Of(place, own));
+            return Some(Defect::Entry(place, own));
         }
     }
     blocks(rows)
         .iter()
-        .find_map(|block| lack_within(rows, block))
+        .find_map(|block| find_block_defect(rows, block))
 }
 
 /// Returns the connected sets of indices.
@@ -67,22 +67,22 @@ fn blocks(rows: &SparseRows) -> Vec<Vec<usize>> {
     blocks
 }
 
-fn lack_within(rows: &SparseRows, block: &[usize]) -> Option<Lack> {
+fn find_block_defect(rows: &SparseRows, block: &[usize]) -> Option<Defect> {
     let entry = |a: usize, b: usize| rows[block[a]].get(&block[b]).copied().unwrap_or(0.0);
     let scales: Vec<f64> = (0..block.len())
         .map(|place| entry(place, place).sqrt())
         .collect();
     let mut factor = Factor::new(block.len());
-    while let Some(place) = factor.largest_rest() {
+    while let Some(place) = factor.largest_remaining_pivot() {
         if factor.rest[place] <= ROUNDING * block.len() as f64 {
-            let (place, negative) = factor.smallest_rest();
+            let (place, negative) = factor.smallest_remaining_pivot();
             let direction = factor.null_direction(place);
             let mut rates = vec![0.0; rows.len()];
             for ((own, part), scale) in block.iter().zip(direction).zip(&scales) {
                 rates[*own] = part / scale;
             }
-            let rates = normalised(rates);
-            return Some(Lack::Along { rates, negative });
+            let rates = normalise(rates);
+            return Some(Defect::Direction { rates, negative });
         }
         factor.eliminate(place, |row| {
             entry(place, row) / (scales[place] * scales[row])
@@ -111,13 +111,13 @@ impl Factor {
         }
     }
 
-    fn largest_rest(&self) -> Option<usize> {
+    fn largest_remaining_pivot(&self) -> Option<usize> {
         let remaining = self.remaining.iter().copied();
         remaining.max_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
     }
 
     /// Returns the index of the smallest remaining pivot, and true if it is negative beyond rounding.
-    fn smallest_rest(&self) -> (usize, bool) {
+    fn smallest_remaining_pivot(&self) -> (usize, bool) {
         let remaining = self.remaining.iter().copied();
         let smallest = remaining
             .min_by(|a, b| self.rest[*a].total_cmp(&self.rest[*b]))
@@ -157,7 +157,7 @@ impl Factor {
 }
 
 /// Scales the largest component to 1 and removes rounding errors.
-fn normalised(rates: Vec<f64>) -> Vec<f64> {
+fn normalise(rates: Vec<f64>) -> Vec<f64> {
     let largest = rates.iter().fold(
         0.0_f64,
         |most, rate| {
@@ -166,7 +166,13 @@ fn normalised(rates: Vec<f64>) -> Vec<f64> {
     );
     let scaled = rates.into_iter().map(|rate| rate / largest);
     scaled
-        .map(|rate| if rate.abs() < NEGLIGIBLE { 0.0 } else { rate })
+        .map(|rate| {
+            if rate.abs() < MAX_ROUNDING_COMPONENT {
+                0.0
+            } else {
+                rate
+            }
+        })
         .collect()
 }
 
@@ -175,29 +181,35 @@ mod tests {
     use super::*;
 
     fn along(matrix: &[f64], size: usize) -> (Vec<f64>, bool) {
-        match lack(&sparse(matrix, size)) {
-            Some(Lack::Along { rates, negative }) => (rates, negative),
+        match find_defect(&to_sparse(matrix, size)) {
+            Some(Defect::Direction { rates, negative }) => (rates, negative),
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
     fn definite_matrices_of_any_units_pass() {
-        assert_eq!(lack(&sparse(&[2.0, 1.0, 1.0, 2.0], 2)), None);
-        assert_eq!(lack(&sparse(&[1e18, 1.0, 1.0, 1e-16], 2)), None);
-        assert_eq!(lack(&sparse(&[1.0, 1.0, 1.0, 1.0 + 1e-10], 2)), None);
-        assert_eq!(lack(&sparse(&[], 0)), None);
+        assert_eq!(find_defect(&to_sparse(&[2.0, 1.0, 1.0, 2.0], 2)), None);
+        assert_eq!(find_defect(&to_sparse(&[1e18, 1.0, 1.0, 1e-16], 2)), None);
+        assert_eq!(
+            find_defect(&to_sparse(&[1.0, 1.0, 1.0, 1.0 + 1e-10], 2)),
+            None
+        );
+        assert_eq!(find_defect(&to_sparse(&[], 0)), None);
     }
 
     #[test]
     fn diagonal_entries_must_be_positive_numbers() {
         assert_eq!(
-            lack(&sparse(&[1.0, 0.0, 0.0, 0.0], 2)),
-            Some(Lack::Of(1, 0.0))
+            find_defect(&to_sparse(&[1.0, 0.0, 0.0, 0.0], 2)),
+            Some(Defect::Entry(1, 0.0))
         );
-        assert_eq!(lack(&sparse(&[-3.0], 1)), Some(Lack::Of(0, -3.0)));
+        assert_eq!(
+            find_defect(&to_sparse(&[-3.0], 1)),
+            Some(Defect::Entry(0, -3.0))
+        );
         assert!(
-            matches!(lack(&sparse(&[f64::NAN], 1)), Some(Lack::Of(0, value)) if value.is_nan())
+            matches!(find_defect(&to_sparse(&[f64::NAN], 1)), Some(Defect::Entry(0, value)) if value.is_nan())
         );
     }
 

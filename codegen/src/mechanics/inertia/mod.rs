@@ -12,7 +12,7 @@ use eomgen_model_spec::variant::ModelError;
 
 use crate::mechanics::equations::Equations;
 use crate::symbolic::graph::{Dependence, Graph, NodeId};
-use lack::{Lack, SparseRows, lack, sparse};
+use lack::{Defect, SparseRows, find_defect, to_sparse};
 use point::Point;
 pub use sweep::Sweep;
 use sweep::Velocities;
@@ -33,10 +33,10 @@ pub fn check(
         model,
         names: model.state_names(orders),
         orders,
-        moves: equations.inertia_moves(),
+        moves: equations.has_variable_inertia(),
     };
     let size = model.coordinates.len() + orders.iter().sum::<usize>();
-    machine.judge(&sparse(mass, size))
+    machine.check_mass(&to_sparse(mass, size))
 }
 
 /// Checks the kinetic energy of a model without fields; the work grows linearly with the energy's expression.
@@ -71,28 +71,28 @@ pub fn check_energy(
         model,
         names: model.state_names(&[]),
         orders: &[],
-        moves: graph.dependence(kinetic).has(MOVING_ENERGY),
+        moves: graph.dependence(kinetic).has(VARIABLE_ENERGY_DEPENDENCE),
     };
     let mass = velocities.mass_matrix(point.coordinates);
-    mass.map_or(Ok(()), |rows| machine.judge(&rows))?;
+    mass.map_or(Ok(()), |rows| machine.check_mass(&rows))?;
     Ok(Some(sweep))
 }
 
 /// Quantities on which a kinetic energy with a variable inertia depends.
-const MOVING_ENERGY: Dependence = Dependence::COORDINATE
+const VARIABLE_ENERGY_DEPENDENCE: Dependence = Dependence::COORDINATE
     .join(Dependence::INPUT)
     .join(Dependence::TIME);
 
 /// Quantities on which a variable inertia depends.
-const MOVING: Dependence = MOVING_ENERGY.join(Dependence::RATE);
+const VARIABLE_INERTIA_DEPENDENCE: Dependence = VARIABLE_ENERGY_DEPENDENCE.join(Dependence::RATE);
 
 impl Equations {
     /// Returns true if the mass matrix depends on more than parameters.
-    fn inertia_moves(&self) -> bool {
+    fn has_variable_inertia(&self) -> bool {
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
         let mut blocks = self.modal_blocks.iter().map(|block| block.matrix);
-        let moves = |node| self.graph.dependence(node).has(MOVING);
+        let moves = |node| self.graph.dependence(node).has(VARIABLE_INERTIA_DEPENDENCE);
         nodes.any(moves) || blocks.any(moves)
     }
 }
@@ -107,22 +107,22 @@ struct Machine<'m> {
 }
 
 impl Machine<'_> {
-    fn judge(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
-        match lack(mass) {
+    fn check_mass(&self, mass: &SparseRows) -> Result<(), Diagnostic> {
+        match find_defect(mass) {
             None => Ok(()),
             Some(lack) => Err(self.diagnostic(&lack)),
         }
     }
 
-    fn diagnostic(&self, lack: &Lack) -> Diagnostic {
+    fn diagnostic(&self, lack: &Defect) -> Diagnostic {
         match lack {
-            Lack::Of(place, value) => self.of_one(*place, *value),
-            Lack::Along { rates, negative } => self.of_several(rates, *negative),
+            Defect::Entry(place, value) => self.single_diagnostic(*place, *value),
+            Defect::Direction { rates, negative } => self.combined_diagnostic(rates, *negative),
         }
         .help_if(Some(self.help()))
     }
 
-    fn of_one(&self, place: usize, value: f64) -> Diagnostic {
+    fn single_diagnostic(&self, place: usize, value: f64) -> Diagnostic {
         let name = &self.names[place];
         let what = if !value.is_finite() {
             format!("the inertia {value}")
@@ -141,7 +141,7 @@ impl Machine<'_> {
         )
     }
 
-    fn of_several(&self, rates: &[f64], negative: bool) -> Diagnostic {
+    fn combined_diagnostic(&self, rates: &[f64], negative: bool) -> Diagnostic {
         let moving: Vec<usize> = (0..rates.len()).filter(|at| rates[*at] != 0.0).collect();
         let names: Vec<String> = moving
             .iter()
@@ -149,7 +149,13 @@ impl Machine<'_> {
             .collect();
         let direction: Vec<String> = moving
             .iter()
-            .map(|place| format!("dot({}) = {}", self.names[*place], short(rates[*place])))
+            .map(|place| {
+                format!(
+                    "dot({}) = {}",
+                    self.names[*place],
+                    format_short(rates[*place])
+                )
+            })
             .collect();
         let what = if negative { "a negative" } else { "no" };
         let message = format!(
@@ -210,7 +216,7 @@ impl Machine<'_> {
     }
 }
 
-fn short(value: f64) -> String {
+fn format_short(value: f64) -> String {
     let text = format!("{value:.4}");
     match text.trim_end_matches('0').trim_end_matches('.') {
         "0" | "-0" => format!("{value:.1e}"),

@@ -141,32 +141,32 @@ impl<'g> Velocities<'g> {
         Some(())
     }
 
-    fn moves(&self, node: NodeId) -> bool {
+    fn is_moving(&self, node: NodeId) -> bool {
         self.graph.dependence(node).has(Dependence::RATE)
     }
 
     fn operands(&self, node: NodeId) -> Vec<NodeId> {
         let mut operands = self.graph.operands(self.graph.operation(node));
-        operands.retain(|operand| self.moves(*operand));
+        operands.retain(|operand| self.is_moving(*operand));
         operands
     }
 
     fn local(&self, node: NodeId) -> Option<Local> {
         match self.graph.operation(node) {
             Operation::Sum(terms) => {
-                let moving = terms.iter().filter(|(_, term)| self.moves(*term));
+                let moving = terms.iter().filter(|(_, term)| self.is_moving(*term));
                 Some(Local {
                     slopes: moving.map(|(c, term)| (*term, c.value())).collect(),
                     curvatures: Vec::new(),
                 })
             }
-            Operation::Product(factors) => Some(self.of_product(factors)),
+            Operation::Product(factors) => Some(self.local_product(factors)),
             _ => None,
         }
     }
 
     /// Returns the derivatives of a product of powers by its moving factors.
-    fn of_product(&self, factors: &[(NodeId, i32)]) -> Local {
+    fn local_product(&self, factors: &[(NodeId, i32)]) -> Local {
         let product = |lowered: &[usize]| -> f64 {
             let mut value = 1.0;
             for (place, &(factor, power)) in factors.iter().enumerate() {
@@ -182,7 +182,7 @@ impl<'g> Velocities<'g> {
             curvatures: Vec::new(),
         };
         for (i, &(a, power)) in factors.iter().enumerate() {
-            if !self.moves(a) {
+            if !self.is_moving(a) {
                 continue;
             }
             local.slopes.push((a, product(&[i])));
@@ -190,7 +190,7 @@ impl<'g> Velocities<'g> {
                 local.curvatures.push((a, a, product(&[i, i])));
             }
             for (j, &(b, _)) in factors.iter().enumerate().take(i) {
-                if self.moves(b) {
+                if self.is_moving(b) {
                     local.curvatures.push((a, b, product(&[i, j])));
                 }
             }

@@ -20,7 +20,7 @@ pub fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
 }
 
 /// Pairs the weight of each acceleration and of each first-order rate with its node.
-pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
+pub fn pair_weights(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     let rows = &equations.accelerations.rows;
     let graph = &mut equations.graph;
     let mut weighted = Vec::new();
@@ -33,7 +33,7 @@ pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     for (index, rate) in StateId::first(equations.state_rates.len()).zip(&equations.state_rates) {
         weighted.push((weight(graph, Variable::State(index)), *rate));
     }
-    weighted
+    pair_weights
 }
 
 /// Returns the gradient of the sum of weight times node (summed over the elements of a vector) by every leaf
@@ -57,12 +57,12 @@ pub fn gradient_by_parameters(
         return None;
     }
     let mut parts: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); derived.len()];
-    hand_to_parameters(graph, weighted, &mut parts);
+    propagate_to_parameters(graph, weighted, &mut parts);
     for index in outermost_first(graph, derived) {
         let received = std::mem::take(&mut parts[index]);
         let adjoint = graph.combine(&received);
         if let (Some(expression), false) = (derived[index], graph.is_zero(adjoint)) {
-            hand_to_parameters(graph, &[(adjoint, expression)], &mut parts);
+            propagate_to_parameters(graph, &[(adjoint, expression)], &mut parts);
         }
     }
     let independent = parts.iter().zip(derived).filter(|(_, d)| d.is_none());
@@ -70,7 +70,7 @@ pub fn gradient_by_parameters(
 }
 
 /// Adds the contributions to the leaf of each parameter to its parts.
-fn hand_to_parameters(
+fn propagate_to_parameters(
     graph: &mut Graph,
     weighted: &[(NodeId, NodeId)],
     parts: &mut [Vec<(f64, NodeId)>],
@@ -94,13 +94,13 @@ fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
     for index in ParameterId::first(derived.len()) {
-        after_what_is_read(graph, derived, index, &mut known, &mut order);
+        order_after_operands(graph, derived, index, &mut known, &mut order);
     }
     order.reverse();
     order
 }
 
-fn after_what_is_read(
+fn order_after_operands(
     graph: &Graph,
     derived: &[Option<NodeId>],
     index: ParameterId,
@@ -113,7 +113,7 @@ fn after_what_is_read(
     known[index] = true;
     for node in graph.reachable(&[expression]) {
         if let Operation::Parameter(read) = *graph.operation(node) {
-            after_what_is_read(graph, derived, read, known, order);
+            order_after_operands(graph, derived, read, known, order);
         }
     }
     order.push(index);
@@ -131,7 +131,7 @@ fn accumulate(
         follows,
     };
     for &(weight, node) in weighted {
-        adjoints.add(node, Part::of(weight));
+        adjoints.add(node, Part::from_value(weight));
     }
     let mut gradient = HashMap::new();
     for id in graph.reachable(&roots).into_iter().rev() {
@@ -145,7 +145,7 @@ fn accumulate(
         if graph.operands(graph.operation(id)).is_empty() {
             gradient.insert(id, adjoint.chosen(graph));
         } else {
-            adjoints.hand_down(graph, id, &adjoint);
+            adjoints.propagate(graph, id, &adjoint);
         }
     }
     gradient
@@ -188,32 +188,32 @@ pub(super) struct Part {
 }
 
 impl Part {
-    fn of(value: NodeId) -> Self {
+    fn from_value(value: NodeId) -> Self {
         Self {
             conditions: Vec::new(),
             value,
         }
     }
 
-    pub(super) fn with(&self, value: NodeId) -> Self {
+    pub(super) fn with_value(&self, value: NodeId) -> Self {
         Self {
             conditions: self.conditions.clone(),
             value,
         }
     }
 
-    fn under(&self, condition: Condition) -> Self {
+    fn add_condition(&self, condition: Condition) -> Self {
         let mut part = self.clone();
         part.conditions.push(condition);
         part
     }
 
     fn chosen(self, graph: &mut Graph) -> NodeId {
-        self.chosen_to(graph, 0).value
+        self.select_to(graph, 0).value
     }
 
     /// Applies conditions until at most `open` remain.
-    fn chosen_to(mut self, graph: &mut Graph, open: usize) -> Self {
+    fn select_to(mut self, graph: &mut Graph, open: usize) -> Self {
         while self.conditions.len() > open
             && let Some(condition) = self.conditions.pop()
         {
@@ -223,13 +223,13 @@ impl Part {
     }
 
     /// Applies the conditions that differ between elements.
-    fn chosen_by_element(self, graph: &mut Graph) -> Self {
+    fn select_by_element(self, graph: &mut Graph) -> Self {
         let whole = self
             .conditions
             .iter()
             .take_while(|condition| condition.is_scalar(graph))
             .count();
-        self.chosen_to(graph, whole)
+        self.select_to(graph, whole)
     }
 }
 
@@ -255,7 +255,7 @@ impl Adjoints {
         }
         let mut terms = Vec::with_capacity(parts.len());
         for part in parts {
-            terms.push((1.0, part.chosen_to(graph, common.len()).value));
+            terms.push((1.0, part.select_to(graph, common.len()).value));
         }
         Part {
             conditions: common,
@@ -273,9 +273,9 @@ impl Adjoints {
     ) {
         let part = match graph.shape(operand) {
             Shape::Scalar => {
-                let part = part.chosen_by_element(graph);
+                let part = part.select_by_element(graph);
                 let total = graph.total_over(space, part.value);
-                part.with(total)
+                part.with_value(total)
             }
             _ => part,
         };
@@ -283,7 +283,7 @@ impl Adjoints {
     }
 
     /// Passes the adjoint of `id` to its operands.
-    fn hand_down(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
+    fn propagate(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
         match graph.operation(id).clone() {
             Operation::Total(a) => self.add(a, adjoint.clone()),
             Operation::Apply {
@@ -291,16 +291,16 @@ impl Adjoints {
                 transposed,
                 vector,
             } => {
-                let adjoint = adjoint.clone().chosen_by_element(graph);
-                let part = adjoint.with(graph.apply(matrix, !transposed, adjoint.value));
+                let adjoint = adjoint.clone().select_by_element(graph);
+                let part = adjoint.with_value(graph.apply(matrix, !transposed, adjoint.value));
                 if let Shape::Matrix(rows, columns) = graph.shape(matrix) {
                     let space = if transposed { rows } else { columns };
                     self.add_over(graph, space, vector, part);
                 }
             }
             Operation::CholeskySolve(factor, vector) => {
-                let adjoint = adjoint.clone().chosen_by_element(graph);
-                let part = adjoint.with(graph.cholesky_solve(factor, adjoint.value));
+                let adjoint = adjoint.clone().select_by_element(graph);
+                let part = adjoint.with_value(graph.cholesky_solve(factor, adjoint.value));
                 if let Shape::Vector(space) = graph.shape(id) {
                     self.add_over(graph, space, vector, part.clone());
                 }
@@ -308,23 +308,23 @@ impl Adjoints {
                     && (self.follows)(graph, matrix)
                 {
                     let left = graph.negate(part.value);
-                    self.hand_to_matrix(graph, matrix, part.with(left), id);
+                    self.propagate_to_matrix(graph, matrix, part.with_value(left), id);
                 }
             }
-            _ => self.hand_down_element_wise(graph, id, adjoint),
+            _ => self.propagate_element_wise(graph, id, adjoint),
         }
     }
 
-    fn hand_down_element_wise(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
+    fn propagate_element_wise(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
         let parts: Vec<(NodeId, Part)> = if let Some([a, b, then, otherwise]) = choice(graph, id) {
-            let branch = |holds| adjoint.under(Condition { a, b, holds });
+            let branch = |holds| adjoint.add_condition(Condition { a, b, holds });
             vec![(then, branch(true)), (otherwise, branch(false))]
         } else {
             partial_derivatives(graph, id, self.follows)
                 .into_iter()
                 .map(|(operand, partial)| {
                     let product = graph.derivative_term(partial, adjoint.value);
-                    (operand, adjoint.with(product))
+                    (operand, adjoint.with_value(product))
                 })
                 .collect()
         };

@@ -6,39 +6,45 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 impl Adjoints {
     /// Passes the gradient of y^T M x to the operands of M, with x held; `y` is a vector under conditions.
-    pub(super) fn hand_to_matrix(&mut self, graph: &mut Graph, matrix: NodeId, y: Part, x: NodeId) {
+    pub(super) fn propagate_to_matrix(
+        &mut self,
+        graph: &mut Graph,
+        matrix: NodeId,
+        y: Part,
+        x: NodeId,
+    ) {
         match graph.operation(matrix).clone() {
             Operation::Assemble(assembly) => {
                 if let Some(diagonal) = assembly.diagonal {
-                    self.hand_product(graph, assembly.rows, diagonal, &y, x);
+                    self.propagate_product(graph, assembly.rows, diagonal, &y, x);
                 }
                 for &(u, v) in &assembly.outer {
                     let along_v = total_product(graph, assembly.columns, v, x);
-                    self.hand_product(graph, assembly.rows, u, &y, along_v);
+                    self.propagate_product(graph, assembly.rows, u, &y, along_v);
                     let along_u = total_product(graph, assembly.rows, u, y.value);
-                    let along_u = y.with(along_u);
-                    self.hand_product(graph, assembly.columns, v, &along_u, x);
+                    let along_u = y.with_value(along_u);
+                    self.propagate_product(graph, assembly.columns, v, &along_u, x);
                 }
                 for part in &assembly.matrices {
                     let (left, right) = (
-                        y.with(graph.multiply(part.row, y.value)),
+                        y.with_value(graph.multiply(part.row, y.value)),
                         graph.multiply(part.column, x),
                     );
                     let applied = graph.apply(part.matrix, part.transposed, right);
-                    self.hand_product(graph, assembly.rows, part.row, &y, applied);
+                    self.propagate_product(graph, assembly.rows, part.row, &y, applied);
                     let applied = graph.apply(part.matrix, !part.transposed, left.value);
-                    let applied = left.with(applied);
-                    self.hand_product(graph, assembly.columns, part.column, &applied, x);
+                    let applied = left.with_value(applied);
+                    self.propagate_product(graph, assembly.columns, part.column, &applied, x);
                     if (self.follows)(graph, part.matrix) {
-                        self.hand_to_gram(graph, part.matrix, part.transposed, left, right);
+                        self.propagate_to_gram(graph, part.matrix, part.transposed, left, right);
                     }
                 }
             }
-            _ => self.hand_to_gram(graph, matrix, false, y, x),
+            _ => self.propagate_to_gram(graph, matrix, false, y, x),
         }
     }
 
-    fn hand_to_gram(
+    fn propagate_to_gram(
         &mut self,
         graph: &mut Graph,
         matrix: NodeId,
@@ -62,15 +68,22 @@ impl Adjoints {
         let Some(nodes) = rows(graph, left) else {
             return;
         };
-        let y = y.with(graph.apply(left, false, y.value));
+        let y = y.with_value(graph.apply(left, false, y.value));
         let x = graph.apply(right, false, x);
-        self.hand_product(graph, nodes, weight, &y, x);
+        self.propagate_product(graph, nodes, weight, &y, x);
     }
 
     /// Adds y times x, element by element over `space`, to a vector or to a repeated scalar.
-    fn hand_product(&mut self, graph: &mut Graph, space: Space, to: NodeId, y: &Part, x: NodeId) {
+    fn propagate_product(
+        &mut self,
+        graph: &mut Graph,
+        space: Space,
+        to: NodeId,
+        y: &Part,
+        x: NodeId,
+    ) {
         if (self.follows)(graph, to) {
-            let part = y.with(graph.multiply(y.value, x));
+            let part = y.with_value(graph.multiply(y.value, x));
             self.add_over(graph, space, to, part);
         }
     }

@@ -1,10 +1,11 @@
 //! Derivation of the requested outputs as nodes: bias forces, inverse dynamics, rates of guards, products
 //! with the Jacobian. `jacobian` derives Jacobians; `types` defines the results.
 
-use super::adjoint::{self, weighted};
+use super::adjoint::{self, pair_weights};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
-    JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
+    JacobianRows, by_parameters, by_time, by_variables, observable_rows, rate_rows,
+    single_row_jacobian,
 };
 use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
@@ -15,7 +16,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::factor::cheaper;
+use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
@@ -42,7 +43,7 @@ pub fn derive_outputs(
         roots.extend(&equations.observables);
         roots.push(equations.power);
         if holds_moving_diagonal(&equations.graph, &roots) {
-            return Err(MovingDiagonal::of(equations));
+            return Err(MovingDiagonal::find(equations));
         }
     }
     if has(Output::BiasForces) || has(Output::InverseDynamics) {
@@ -82,7 +83,7 @@ pub struct MovingDiagonal {
 }
 
 impl MovingDiagonal {
-    fn of(equations: &Equations) -> Self {
+    fn find(equations: &Equations) -> Self {
         let holds = |term: &NodeId| holds_moving_diagonal(&equations.graph, &[*term]);
         Self {
             term: equations.terms.iter().position(holds),
@@ -143,7 +144,7 @@ fn inverse_dynamics_by_sweep(equations: &mut Equations) -> Option<Vec<NodeId>> {
     let momenta = equations.sweep.clone()?;
     let graph = &mut equations.graph;
     let rows = momenta.rates(graph, &given_acceleration);
-    let rows = cheaper(graph, rows);
+    let rows = factor_if_cheaper(graph, rows);
     let rows = rows.iter().zip(&equations.forces.scalars);
     Some(
         rows.map(|(row, force)| graph.combine(&[(1.0, *row), (-1.0, *force)]))
@@ -156,7 +157,7 @@ fn inverse_dynamics_by_recursion(equations: &mut Equations) -> Option<Vec<NodeId
     let coordinates = equations.forces.scalars.len();
     let graph = &mut equations.graph;
     let rows = bodies.inverse_dynamics(graph, coordinates, &given_acceleration)?;
-    Some(cheaper(graph, rows))
+    Some(factor_if_cheaper(graph, rows))
 }
 
 fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
@@ -188,7 +189,7 @@ fn inverse_dynamics_by_mass(equations: &mut Equations, bias: &RowNodes) -> RowNo
             terms.push((1.0, graph.multiply(coupling[field], *a)));
         }
         for (block, a) in mass.modal[field].iter().zip(&modal) {
-            let parts = block.assembly().times(graph, *a);
+            let parts = block.assembly().multiply_vector(graph, *a);
             terms.extend(parts.into_iter().map(|term| (1.0, term)));
         }
         *slot = graph.combine(&terms);
@@ -229,7 +230,7 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         modal: derivatives(graph, &mut direction, &rows.modal),
     };
     let first_order = derivatives(graph, &mut direction, &equations.state_rates);
-    let weighted = weighted(equations);
+    let weighted = pair_weights(equations);
     let gradient = adjoint::gradient(&mut equations.graph, &weighted);
     let mut reverse: Vec<(Variable, NodeId)> = gradient
         .into_iter()
@@ -240,22 +241,22 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         forward,
         forward_first_order: first_order,
         reverse,
-        by_parameters: weighted_by_parameters(equations, &weighted),
+        by_parameters: derive_weighted_by_parameters(equations, &weighted),
     }
 }
 
 /// Returns the gradient of the weighted rates by the independent parameters: by reverse accumulation, or
 /// parameter by parameter if matrices depend on them.
-fn weighted_by_parameters(
+fn derive_weighted_by_parameters(
     equations: &mut Equations,
     weighted: &[(NodeId, NodeId)],
 ) -> Jacobian<NodeId> {
     const NAME: &str = "weighted_rates_by_parameters";
     let graph = &mut equations.graph;
     match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
-        Some(gradient) => one_row(graph, NAME, &gradient),
+        Some(gradient) => single_row_jacobian(graph, NAME, &gradient),
         None => {
-            let sum = JacobianRows::single(weighted_sum(graph, weighted));
+            let sum = JacobianRows::from_node(weighted_sum(graph, weighted));
             by_parameters(equations, &sum, NAME)
         }
     }

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::adjoint::{self, weighted};
+use super::adjoint::{self, pair_weights};
 use super::jacobian::{degrees_of_freedom, mode_offset, seed_derived, state_variables};
 use super::types::{GradientDerivative, GradientRow, Jacobian};
 use crate::mechanics::equations::Equations;
@@ -85,13 +85,13 @@ fn places(equations: &Equations) -> Places {
         let place = one(before_inputs + index.index());
         places.push((Variable::Input(index), place));
     }
-    for (place, index) in independent(equations).enumerate() {
+    for (place, index) in independent_parameters(equations).enumerate() {
         places.push((Variable::Parameter(index), one(before_parameters + place)));
     }
     places
 }
 
-fn independent(equations: &Equations) -> impl Iterator<Item = ParameterId> {
+fn independent_parameters(equations: &Equations) -> impl Iterator<Item = ParameterId> {
     let derived = &equations.derived_parameters;
     ParameterId::first(derived.len()).filter(|index| derived[*index].is_none())
 }
@@ -102,7 +102,7 @@ fn gradient(
     places: &Places,
     weighted_by_parameters: &Jacobian<NodeId>,
 ) -> Vec<(Range<usize>, NodeId)> {
-    let weighted = weighted(equations);
+    let weighted = pair_weights(equations);
     let graph = &mut equations.graph;
     let by_leaf = adjoint::gradient(graph, &weighted);
     let mut rows = Vec::new();

@@ -29,7 +29,7 @@ struct EquationRow {
 }
 
 impl JacobianRows {
-    pub(crate) fn single(node: NodeId) -> Self {
+    pub(crate) fn from_node(node: NodeId) -> Self {
         let row = EquationRow {
             first: 0,
             count: 1,
@@ -149,11 +149,15 @@ pub(crate) fn by_time(
     let time = graph.intern(Operation::Time);
     direction.seed(time, graph.one());
     let mut blocks = Blocks::new(graph, rows, true);
-    blocks.along(&mut direction, 0);
+    blocks.push_along(&mut direction, 0);
     blocks.jacobian(name, 1)
 }
 
-pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jacobian<NodeId> {
+pub(crate) fn single_row_jacobian(
+    graph: &Graph,
+    name: &'static str,
+    row: &[NodeId],
+) -> Jacobian<NodeId> {
     let nonzeros = row
         .iter()
         .enumerate()
@@ -244,7 +248,7 @@ impl<'a> Blocks<'a> {
         }
         let mut direction = Direction::default();
         direction.seed(leaf, self.graph.one());
-        self.along(&mut direction, column);
+        self.push_along(&mut direction, column);
         1
     }
 
@@ -256,11 +260,11 @@ impl<'a> Blocks<'a> {
         for index in ParameterId::first(derived.len()) {
             seed_derived(self.graph, derived, index, &mut direction, &mut seeded);
         }
-        self.along(&mut direction, column);
+        self.push_along(&mut direction, column);
     }
 
     /// Adds a column: the derivatives of all rows along a direction.
-    fn along(&mut self, direction: &mut Direction<'_>, column: usize) {
+    fn push_along(&mut self, direction: &mut Direction<'_>, column: usize) {
         for row in &self.rows.rows {
             let value = direction.derivative(self.graph, row.node);
             self.push(*row, (column, 1), false, value);
@@ -279,7 +283,7 @@ impl<'a> Blocks<'a> {
             self.push(row, (column, columns), false, value);
             return;
         };
-        let matrix = derivative.of_elements(self.graph, row.node, Space::Modes(field));
+        let matrix = derivative.element_jacobian(self.graph, row.node, Space::Modes(field));
         match matrix {
             StructuredMatrix {
                 diagonal: Some(diagonal),

@@ -7,7 +7,7 @@ use crate::symbolic::graph::{Assembly, Dependence, Graph, NodeId, Operation};
 
 impl Direction<'_> {
     /// Returns d(matrix vector) along the direction.
-    pub(crate) fn applied(
+    pub(crate) fn differentiate_product(
         &mut self,
         graph: &mut Graph,
         matrix: NodeId,
@@ -16,12 +16,12 @@ impl Direction<'_> {
     ) -> NodeId {
         let inner = self.derivative(graph, vector);
         let by_vector = graph.apply(matrix, transposed, inner);
-        let by_matrix = self.moved_matrix_applied(graph, matrix, transposed, vector);
+        let by_matrix = self.apply_matrix_derivative(graph, matrix, transposed, vector);
         graph.add(by_vector, by_matrix)
     }
 
     /// Returns d(L^-T L^-1 right) along the direction; `solution` is the node itself.
-    pub(crate) fn solved(
+    pub(crate) fn differentiate_solution(
         &mut self,
         graph: &mut Graph,
         factor: NodeId,
@@ -31,7 +31,7 @@ impl Direction<'_> {
         let inner = self.derivative(graph, right);
         let moved = match *graph.operation(factor) {
             Operation::Cholesky(matrix) => {
-                self.moved_matrix_applied(graph, matrix, false, solution)
+                self.apply_matrix_derivative(graph, matrix, false, solution)
             }
             _ => graph.zero(),
         };
@@ -40,7 +40,7 @@ impl Direction<'_> {
     }
 
     /// Returns d(matrix) vector, with the vector held.
-    fn moved_matrix_applied(
+    fn apply_matrix_derivative(
         &mut self,
         graph: &mut Graph,
         matrix: NodeId,
@@ -66,13 +66,18 @@ impl Direction<'_> {
                 let weighted = graph.multiply(moved, at_nodes);
                 graph.apply(outer, true, weighted)
             }
-            Operation::Assemble(assembly) => self.moved_assembly(graph, &assembly, vector),
+            Operation::Assemble(assembly) => self.differentiate_assembly(graph, &assembly, vector),
             _ => graph.zero(),
         }
     }
 
     /// Returns d(matrix) vector for an assembled matrix, part by part. It is symmetric, so never transposed.
-    fn moved_assembly(&mut self, graph: &mut Graph, assembly: &Assembly, vector: NodeId) -> NodeId {
+    fn differentiate_assembly(
+        &mut self,
+        graph: &mut Graph,
+        assembly: &Assembly,
+        vector: NodeId,
+    ) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = assembly.diagonal {
             let moved = self.derivative(graph, diagonal);
@@ -94,7 +99,8 @@ impl Direction<'_> {
             let moved_column = self.derivative(graph, part.column);
             let scaled_by_moved = graph.multiply(moved_column, vector);
             let by_column = graph.apply(part.matrix, part.transposed, scaled_by_moved);
-            let by_matrix = self.moved_matrix_applied(graph, part.matrix, part.transposed, scaled);
+            let by_matrix =
+                self.apply_matrix_derivative(graph, part.matrix, part.transposed, scaled);
             let inner = graph.add(by_column, by_matrix);
             terms.push((1.0, graph.multiply(part.row, inner)));
         }

@@ -18,7 +18,7 @@ mod types;
 pub use derive::derive_outputs;
 pub(crate) use derive::guard_rate;
 pub use output::{Output, UnknownOutput};
-pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
+pub use regimes::{Decision, SURFACES_OF_A_REGIME, Switch};
 pub use types::{
     BlockPlace, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
     SlidingSurface,

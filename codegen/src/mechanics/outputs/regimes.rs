@@ -14,12 +14,12 @@ pub struct Switch<N> {
     /// Value of the function.
     pub value: N,
     /// Deciding surfaces.
-    pub decided: Decided,
+    pub decided: Decision,
 }
 
 /// Surfaces that decide a branch, by their indices among all guard values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decided {
+pub enum Decision {
     /// Dead zone or contact, by p - b and p + b.
     Between {
         /// Index of p - b.
@@ -35,9 +35,9 @@ pub enum Decided {
         below: usize,
     },
     /// Other function, by its only surface.
-    By(usize),
+    Surface(usize),
     /// Selection for a > b by b - a, or `above(p)` by -p.
-    Turned(usize),
+    NegatedSurface(usize),
 }
 
 /// Returns the piecewise functions of the accelerations that surfaces decide. Functions of modes are
@@ -55,7 +55,7 @@ pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
         if graph.dependence(id).is_parameter_only() || graph.shape(id) != Shape::Scalar {
             continue;
         }
-        if let Some(decided) = decided(graph, id, &place) {
+        if let Some(decided) = find_decision(graph, id, &place) {
             found.push(Switch { value: id, decided });
         }
     }
@@ -80,29 +80,29 @@ fn places(equations: &Equations) -> Vec<(NodeId, usize)> {
     places
 }
 
-fn decided(
+fn find_decision(
     graph: &mut Graph,
     id: NodeId,
     place: &dyn Fn(NodeId) -> Option<usize>,
-) -> Option<Decided> {
+) -> Option<Decision> {
     match graph.operation(id).clone() {
         Operation::Call(function, arguments) => match surfaces(graph, function, &arguments) {
-            Surfaces::Between { above, beyond } => Some(Decided::Between {
+            Surfaces::TwoSided { above, beyond } => Some(Decision::Between {
                 above: place(above)?,
                 beyond: place(beyond)?,
             }),
-            Surfaces::Outside { above, below } => Some(Decided::Outside {
+            Surfaces::OuterSides { above, below } => Some(Decision::Outside {
                 above: place(above)?,
                 below: place(below)?,
             }),
-            Surfaces::One(surface) => place(surface).map(Decided::By),
-            Surfaces::Turned(surface) => place(surface).map(Decided::Turned),
+            Surfaces::Single(surface) => place(surface).map(Decision::Surface),
+            Surfaces::Negated(surface) => place(surface).map(Decision::NegatedSurface),
             Surfaces::None => None,
         },
         Operation::Select { a, b, .. } => {
             let (difference, turned) = (graph.subtract(a, b), graph.subtract(b, a));
-            let by = place(difference).map(Decided::By);
-            by.or_else(|| place(turned).map(Decided::Turned))
+            let by = place(difference).map(Decision::Surface);
+            by.or_else(|| place(turned).map(Decision::NegatedSurface))
         }
         _ => None,
     }

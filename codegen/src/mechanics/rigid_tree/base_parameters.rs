@@ -7,7 +7,7 @@ use super::mass_properties::MassProperties;
 use crate::symbolic::graph::Graph;
 
 /// Regroups inertial parameters, outermost links first.
-pub(super) fn pass_on(graph: &mut Graph, links: &mut [Link]) {
+pub(super) fn regroup(graph: &mut Graph, links: &mut [Link]) {
     for place in (0..links.len()).rev() {
         let Link {
             parent,
@@ -16,20 +16,19 @@ pub(super) fn pass_on(graph: &mut Graph, links: &mut [Link]) {
         } = &links[place];
         let parent = *parent;
         let (passed, kept) = match joint {
-            Joint::Turn(turn) if joint.is_constant(graph) => {
-                (mass.turned_back(graph, turn), MassProperties::none(graph))
+            Joint::Rotation(turn) if joint.is_constant(graph) => {
+                (mass.rotate_back(graph, turn), MassProperties::zero(graph))
             }
-            Joint::Turn(turn) => mass.parted_by_turn(graph, turn.axis),
-            Joint::Shift(origin) if joint.is_constant(graph) => (
-                mass.shifted_back(graph, origin),
-                MassProperties::none(graph),
-            ),
-            Joint::Shift(_) => mass.parted_by_shift(graph),
+            Joint::Rotation(turn) => mass.split_by_rotation(graph, turn.axis),
+            Joint::Shift(origin) if joint.is_constant(graph) => {
+                (mass.shift_back(graph, origin), MassProperties::zero(graph))
+            }
+            Joint::Shift(_) => mass.split_by_shift(graph),
         };
         links[place].mass = kept;
         // Parameters of the fixed axes do no work.
         if let Some(parent) = parent {
-            links[parent].mass = links[parent].mass.plus(graph, &passed);
+            links[parent].mass = links[parent].mass.add(graph, &passed);
         }
     }
 }

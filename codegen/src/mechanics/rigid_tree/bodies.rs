@@ -4,7 +4,7 @@ use eomgen_model_spec::ids::CoordinateId;
 use eomgen_model_spec::model::Term;
 use eomgen_model_spec::rigid_tree::RigidTree;
 
-use super::base_parameters::pass_on;
+use super::base_parameters::regroup;
 use super::inward::generalised_forces;
 use super::links::links;
 use super::outward::motions;
@@ -25,7 +25,7 @@ pub(crate) struct RigidBodies {
 impl RigidBodies {
     /// Collects the bodies of a model; `applied` are its forces without the potential. Returns `None` without
     /// bodies, with fields, or with a gravity that is not constant.
-    pub(crate) fn of(
+    pub(crate) fn find(
         translator: &mut Translator,
         variables: &Variables,
         applied: &RowNodes,
@@ -66,13 +66,13 @@ impl RigidBodies {
         let others = match graph.is_zero(self.other_kinetic) {
             true => vec![graph.zero(); coordinates],
             false => {
-                let velocities = Velocities::of(graph, self.other_kinetic)?;
+                let velocities = Velocities::from_kinetic_energy(graph, self.other_kinetic)?;
                 let momenta = velocities.momenta(graph, coordinates);
                 momenta.rates(graph, acceleration)
             }
         };
         let mut links = links(graph, &self.tree);
-        pass_on(graph, &mut links);
+        regroup(graph, &mut links);
         let motions = motions(graph, &links, &self.tree.gravity, acceleration);
         let bodies = generalised_forces(graph, &links, &motions, coordinates);
         let rows = bodies.iter().zip(&others).zip(&self.other_forces.scalars);

@@ -5,8 +5,8 @@ use eomgen_model_spec::ids::CoordinateId;
 use super::links::{Joint, Link};
 use super::mass_properties::MassProperties;
 use super::outward::Motion;
-use super::vector::{VectorTerms, cross, following, signed_sums, times, turned_back};
-use crate::symbolic::differentiate::by_scalar;
+use super::vector::{VectorTerms, cross, multiply, next_axes, rotate_back, signed_sums};
+use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Terms of a force and of its moment about the origin of a link's axes.
@@ -32,13 +32,13 @@ pub(super) fn generalised_forces(
         let moment = signed_sums(graph, &wrench.moment);
         // Pairs of virtual work: effort and displacement.
         let pairs = match &link.joint {
-            Joint::Turn(turn) => vec![(moment[turn.axis], turn.angle)],
+            Joint::Rotation(turn) => vec![(moment[turn.axis], turn.angle)],
             Joint::Shift(origin) => force.into_iter().zip(*origin).collect(),
         };
         for (row, index) in work.iter_mut().zip(CoordinateId::first(coordinates)) {
             let variable = graph.intern(Operation::Coordinate(index));
             for &(effort, way) in &pairs {
-                let slope = by_scalar(graph, way, variable);
+                let slope = derive_by_scalar(graph, way, variable);
                 row.push((1.0, graph.multiply(effort, slope)));
             }
         }
@@ -46,8 +46,8 @@ pub(super) fn generalised_forces(
             continue;
         };
         let (force, moment, lever) = match &link.joint {
-            Joint::Turn(turn) => {
-                let [force, moment] = [force, moment].map(|v| turned_back(graph, turn, &v));
+            Joint::Rotation(turn) => {
+                let [force, moment] = [force, moment].map(|v| rotate_back(graph, turn, &v));
                 (force, moment, None)
             }
             Joint::Shift(origin) => (force, moment, Some(cross(graph, origin, &force))),
@@ -68,7 +68,7 @@ impl Wrench {
     /// Adds the inertia forces of a link: m a + U h, and h x a + the moment about the origin, with the
     /// acceleration a, its gradient U, the mass m and the first moments h.
     fn add_inertia(&mut self, graph: &mut Graph, mass: &MassProperties, motion: &Motion) {
-        let carried = times(graph, &motion.gradient, &mass.first_moment);
+        let carried = multiply(graph, &motion.gradient, &mass.first_moment);
         let lever = cross(graph, &mass.first_moment, &motion.acceleration);
         for axis in 0..3 {
             let product = graph.multiply(mass.mass, motion.acceleration[axis]);
@@ -91,7 +91,7 @@ fn moment_of_rotation(
     axis: usize,
 ) -> Vec<(f64, NodeId)> {
     let (inertia, omega, gradient) = (&mass.inertia, &motion.omega, &motion.gradient);
-    let [j, k] = following(axis);
+    let [j, k] = next_axes(axis);
     let difference = graph.combine_flat(&[(1.0, inertia[k][k]), (-1.0, inertia[j][j])]);
     let squares = [k, j].map(|other| graph.multiply(omega[other], omega[other]));
     let squares = graph.subtract(squares[0], squares[1]);

@@ -3,7 +3,7 @@
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidTree};
 
 use super::mass_properties::MassProperties;
-use super::vector::{Vector, turned_back};
+use super::vector::{Vector, rotate_back};
 use crate::symbolic::graph::{Graph, NodeId};
 
 /// Set of axes with the mass fixed to it.
@@ -21,7 +21,7 @@ pub(super) enum Joint {
     /// Shift of the origin, along the axes.
     Shift(Vector),
     /// Rotation about one of the axes.
-    Turn(AxisTurn<NodeId>),
+    Rotation(AxisTurn<NodeId>),
 }
 
 impl Joint {
@@ -30,7 +30,7 @@ impl Joint {
         let constant = |id: &NodeId| graph.dependence(*id).is_parameter_only();
         match self {
             Self::Shift(origin) => origin.iter().all(constant),
-            Self::Turn(turn) => constant(&turn.angle),
+            Self::Rotation(turn) => constant(&turn.angle),
         }
     }
 }
@@ -55,19 +55,19 @@ pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
         };
         let back = place.fixed.iter().rev();
         let origin = back.fold(frame.origin, |origin, turn| {
-            turned_back(graph, turn, &origin)
+            rotate_back(graph, turn, &origin)
         });
         if origin.iter().any(|component| !graph.is_zero(*component)) {
             place.link = push(graph, &mut links, place.link, Joint::Shift(origin));
         }
         for turn in &frame.turns {
-            let joint = Joint::Turn(turn.clone());
+            let joint = Joint::Rotation(turn.clone());
             if joint.is_constant(graph) {
                 place.fixed.push(turn.clone());
                 continue;
             }
             for fixed in std::mem::take(&mut place.fixed) {
-                place.link = push(graph, &mut links, place.link, Joint::Turn(fixed));
+                place.link = push(graph, &mut links, place.link, Joint::Rotation(fixed));
             }
             place.link = push(graph, &mut links, place.link, joint);
         }
@@ -75,11 +75,11 @@ pub(super) fn links(graph: &mut Graph, tree: &RigidTree<NodeId>) -> Vec<Link> {
     }
     for body in &tree.bodies {
         let place = &placements[body.frame];
-        let own = MassProperties::of_body(graph, body);
+        let own = MassProperties::from_body(graph, body);
         let back = place.fixed.iter().rev();
-        let along = back.fold(own, |mass, turn| mass.turned_back(graph, turn));
+        let along = back.fold(own, |mass, turn| mass.rotate_back(graph, turn));
         if let Some(link) = place.link {
-            links[link].mass = links[link].mass.plus(graph, &along);
+            links[link].mass = links[link].mass.add(graph, &along);
         }
     }
     links
@@ -94,7 +94,7 @@ fn push(
     links.push(Link {
         parent,
         joint,
-        mass: MassProperties::none(graph),
+        mass: MassProperties::zero(graph),
     });
     Some(links.len() - 1)
 }

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::rigid_tree::{AxisTurn, RigidBody};
 
-use super::vector::{Matrix, Vector, following, turned_back};
+use super::vector::{Matrix, Vector, next_axes, rotate_back};
 use crate::symbolic::graph::{Graph, NodeId};
 
 /// Inertial parameters of a body along the axes of a frame, about the frame's origin; all depend only on
@@ -18,7 +18,7 @@ pub(super) struct MassProperties {
 }
 
 impl MassProperties {
-    pub(super) fn none(graph: &mut Graph) -> Self {
+    pub(super) fn zero(graph: &mut Graph) -> Self {
         let zero = graph.zero();
         Self {
             mass: zero,
@@ -27,7 +27,7 @@ impl MassProperties {
         }
     }
 
-    pub(super) fn of_body(graph: &mut Graph, body: &RigidBody<NodeId>) -> Self {
+    pub(super) fn from_body(graph: &mut Graph, body: &RigidBody<NodeId>) -> Self {
         let ([xx, yy, zz], [xy, yz, xz]) = (body.moments, body.products);
         let zero = graph.zero();
         let about_centre = Self {
@@ -35,10 +35,10 @@ impl MassProperties {
             first_moment: [zero; 3],
             inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
         };
-        about_centre.shifted_back(graph, &body.centre)
+        about_centre.shift_back(graph, &body.centre)
     }
 
-    pub(super) fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
+    pub(super) fn add(&self, graph: &mut Graph, other: &Self) -> Self {
         let mut sum = |a: NodeId, b: NodeId| graph.combine_flat(&[(1.0, a), (1.0, b)]);
         Self {
             mass: sum(self.mass, other.mass),
@@ -49,20 +49,20 @@ impl MassProperties {
     }
 
     /// Transforms the parameters from rotated axes to the axes before the rotation.
-    pub(super) fn turned_back(&self, graph: &mut Graph, turn: &AxisTurn<NodeId>) -> Self {
-        let rows = self.inertia.map(|row| turned_back(graph, turn, &row));
+    pub(super) fn rotate_back(&self, graph: &mut Graph, turn: &AxisTurn<NodeId>) -> Self {
+        let rows = self.inertia.map(|row| rotate_back(graph, turn, &row));
         // The inertia is symmetric: its rows are its columns.
         let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| rows[i][j]));
         Self {
             mass: self.mass,
-            first_moment: turned_back(graph, turn, &self.first_moment),
-            inertia: columns.map(|column| turned_back(graph, turn, &column)),
+            first_moment: rotate_back(graph, turn, &self.first_moment),
+            inertia: columns.map(|column| rotate_back(graph, turn, &column)),
         }
     }
 
     /// Transforms the parameters to an origin from which the present one has the offset `origin`.
     /// Huygens-Steiner theorem with first moments h: J + (2 h.o + m o.o) 1 - h o' - o h' - m o o'.
-    pub(super) fn shifted_back(&self, graph: &mut Graph, origin: &Vector) -> Self {
+    pub(super) fn shift_back(&self, graph: &mut Graph, origin: &Vector) -> Self {
         let moved = origin.map(|component| graph.multiply(self.mass, component));
         let first_moment =
             [0, 1, 2].map(|i| graph.combine_flat(&[(1.0, self.first_moment[i]), (1.0, moved[i])]));
@@ -98,9 +98,9 @@ impl MassProperties {
 
     /// Splits the parameters into those unaffected by a rotation about an axis through the origin, and the
     /// rest. The first part has mass, first moment along the axis, and the inertia of a thin rod along it.
-    pub(super) fn parted_by_turn(&self, graph: &mut Graph, axis: usize) -> (Self, Self) {
-        let [i, j] = following(axis);
-        let (mut symmetric, mut rest) = (Self::none(graph), self.clone());
+    pub(super) fn split_by_rotation(&self, graph: &mut Graph, axis: usize) -> (Self, Self) {
+        let [i, j] = next_axes(axis);
+        let (mut symmetric, mut rest) = (Self::zero(graph), self.clone());
         symmetric.mass = self.mass;
         rest.mass = graph.zero();
         std::mem::swap(
@@ -116,8 +116,8 @@ impl MassProperties {
     }
 
     /// Splits off the inertia, which a shift leaves unchanged if mass and first moment remain.
-    pub(super) fn parted_by_shift(&self, graph: &mut Graph) -> (Self, Self) {
-        let (mut passed, mut rest) = (Self::none(graph), self.clone());
+    pub(super) fn split_by_shift(&self, graph: &mut Graph) -> (Self, Self) {
+        let (mut passed, mut rest) = (Self::zero(graph), self.clone());
         std::mem::swap(&mut passed.inertia, &mut rest.inertia);
         (passed, rest)
     }

@@ -3,7 +3,7 @@
 use eomgen_model_spec::ids::CoordinateId;
 
 use super::links::{Joint, Link};
-use super::vector::{Matrix, Vector, cross, following, signed_sum, times, turned, zero};
+use super::vector::{Matrix, Vector, cross, multiply, next_axes, rotate, signed_sum, zero};
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
@@ -46,13 +46,13 @@ pub(super) fn motions(
     for link in links {
         let before = link.parent.map_or(&base, |parent| &motions[parent]).clone();
         motions.push(match &link.joint {
-            Joint::Shift(origin) => shifted(graph, before, origin, &mut along),
-            Joint::Turn(turn) => {
+            Joint::Shift(origin) => shift_motion(graph, before, origin, &mut along),
+            Joint::Rotation(turn) => {
                 let rate = along_motion(graph, turn.angle);
                 let second = along.derivative(graph, rate);
                 let axes = [&before.omega, &before.alpha, &before.acceleration];
-                let [omega, alpha, acceleration] = axes.map(|v| turned(graph, turn, v));
-                spun(
+                let [omega, alpha, acceleration] = axes.map(|v| rotate(graph, turn, v));
+                add_rotation(
                     graph,
                     (omega, alpha, acceleration),
                     turn.axis,
@@ -65,13 +65,13 @@ pub(super) fn motions(
 }
 
 /// Returns the motion of axes with a shifted origin, which can move.
-fn shifted(
+fn shift_motion(
     graph: &mut Graph,
     mut motion: Motion,
     origin: &Vector,
     along: &mut Direction<'_>,
 ) -> Motion {
-    let carried = times(graph, &motion.gradient, origin);
+    let carried = multiply(graph, &motion.gradient, origin);
     let rate = origin.map(|component| along_motion(graph, component));
     let second = rate.map(|component| along.derivative(graph, component));
     let coriolis = cross(graph, &motion.omega, &rate);
@@ -89,13 +89,13 @@ fn shifted(
 }
 
 /// Adds the rotation about an axis to a motion along axes that are already rotated.
-fn spun(
+fn add_rotation(
     graph: &mut Graph,
     (mut omega, mut alpha, acceleration): (Vector, Vector, Vector),
     axis: usize,
     [rate, second]: [NodeId; 2],
 ) -> Motion {
-    let [i, j] = following(axis);
+    let [i, j] = next_axes(axis);
     for (to, other, sign) in [(i, j, 1.0), (j, i, -1.0)] {
         let product = graph.multiply(omega[other], rate);
         alpha[to] = signed_sum(graph, &[(1.0, alpha[to]), (sign, product)]);
@@ -114,7 +114,7 @@ fn spun(
 fn gradient(graph: &mut Graph, omega: &Vector, alpha: &Vector) -> Matrix {
     let mut gradient = [*omega; 3];
     for axis in 0..3 {
-        let [i, j] = following(axis);
+        let [i, j] = next_axes(axis);
         let squares = [i, j].map(|other| (-1.0, graph.multiply(omega[other], omega[other])));
         gradient[axis][axis] = signed_sum(graph, &squares);
         let product = graph.multiply(omega[i], omega[j]);

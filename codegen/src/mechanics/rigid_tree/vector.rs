@@ -17,7 +17,7 @@ pub(super) fn zero(graph: &mut Graph) -> Vector {
 }
 
 /// Returns the two axes (i, j) after an axis, so that axis = i x j.
-pub(super) fn following(axis: usize) -> [usize; 2] {
+pub(super) fn next_axes(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
@@ -42,7 +42,7 @@ pub(super) fn signed_sums(graph: &mut Graph, terms: &VectorTerms) -> Vector {
 /// Returns the terms of the vector product, by component.
 pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
     [0, 1, 2].map(|axis| {
-        let [i, j] = following(axis);
+        let [i, j] = next_axes(axis);
         vec![
             (1.0, graph.multiply(a[i], b[j])),
             (-1.0, graph.multiply(a[j], b[i])),
@@ -51,7 +51,7 @@ pub(super) fn cross(graph: &mut Graph, a: &Vector, b: &Vector) -> VectorTerms {
 }
 
 /// Returns the terms of a matrix times a vector.
-pub(super) fn times(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> VectorTerms {
+pub(super) fn multiply(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> VectorTerms {
     matrix.map(|row| {
         let products = row.iter().zip(vector);
         products
@@ -61,17 +61,22 @@ pub(super) fn times(graph: &mut Graph, matrix: &Matrix, vector: &Vector) -> Vect
 }
 
 /// Transforms a vector to the rotated axes.
-pub(super) fn turned(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
-    by_angle(graph, turn, vector, 1.0)
+pub(super) fn rotate(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
+    rotate_by_angle(graph, turn, vector, 1.0)
 }
 
 /// Transforms a vector from the rotated axes back to the axes before.
-pub(super) fn turned_back(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
-    by_angle(graph, turn, vector, -1.0)
+pub(super) fn rotate_back(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector) -> Vector {
+    rotate_by_angle(graph, turn, vector, -1.0)
 }
 
-fn by_angle(graph: &mut Graph, turn: &AxisTurn<NodeId>, vector: &Vector, way: f64) -> Vector {
-    let [i, j] = following(turn.axis);
+fn rotate_by_angle(
+    graph: &mut Graph,
+    turn: &AxisTurn<NodeId>,
+    vector: &Vector,
+    way: f64,
+) -> Vector {
+    let [i, j] = next_axes(turn.axis);
     let mut result = *vector;
     for (to, other, sign) in [(i, j, way), (j, i, -way)] {
         let along = graph.multiply(turn.cosine, vector[to]);

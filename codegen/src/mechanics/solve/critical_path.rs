@@ -102,9 +102,9 @@ fn terms_by_scale(
         }
     }
     for (scale, collected) in early {
-        let (free, bound): (Vec<_>, Vec<_>) = opened(graph, uses, collected)
+        let (free, bound): (Vec<_>, Vec<_>) = expand_sums(graph, uses, collected)
             .into_iter()
-            .partition(|(_, node)| takes_a_scale(graph, uses, *node));
+            .partition(|(_, node)| absorbs_scale(graph, uses, *node));
         for (factor, node) in free {
             terms.push((factor, graph.multiply(scale, node)));
         }
@@ -116,7 +116,7 @@ fn terms_by_scale(
 }
 
 /// Expands sums with one use if all their terms absorb a scale.
-fn opened(
+fn expand_sums(
     graph: &Graph,
     uses: &HashMap<NodeId, usize>,
     terms: Vec<(f64, NodeId)>,
@@ -126,7 +126,7 @@ fn opened(
         let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
         match graph.operation(node) {
             Operation::Sum(inner)
-                if !shared && inner.iter().all(|(_, id)| takes_a_scale(graph, uses, *id)) =>
+                if !shared && inner.iter().all(|(_, id)| absorbs_scale(graph, uses, *id)) =>
             {
                 all.extend(inner.iter().map(|(c, id)| (factor * c.value(), *id)));
             }
@@ -138,7 +138,7 @@ fn opened(
 
 /// Returns true if a term absorbs a scale without an operation: it depends only on parameters, or has such a
 /// factor and no other use. The scaled term can then equal a term of another row.
-fn takes_a_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> bool {
+fn absorbs_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> bool {
     let parameter_only = |id: NodeId| graph.dependence(id).is_parameter_only();
     let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
     let has_a_factor = match graph.operation(node) {

@@ -51,7 +51,7 @@ pub struct SolveReport {
     /// Operations per call in the chosen order.
     pub operations: usize,
     /// Operations per call in the most expensive order tried.
-    pub dearest: usize,
+    pub most_expensive_operations: usize,
     /// True if a field's modal block is dense.
     pub dense_modes: bool,
 }
@@ -63,7 +63,7 @@ pub(crate) fn solve(
     right: &RowNodes,
     constraints: &Constraints,
 ) -> (Accelerations, Vec<NodeId>) {
-    let (mass, right) = &bordered(graph, mass, right, constraints);
+    let (mass, right) = &border_matrix(graph, mass, right, constraints);
     let modal = ModalBlock::new(graph, mass, right);
     let multipliers = constraints.rows.len();
     let system = SmallSystem::new(graph, mass, right, &modal, multipliers);
@@ -95,7 +95,7 @@ pub(crate) fn solve(
             order,
             interfaces: modal.interfaces.len(),
             operations,
-            dearest,
+            most_expensive_operations: dearest,
             dense_modes: modal.inverses.iter().flatten().any(ModalInverse::is_dense),
         },
     };
@@ -109,7 +109,7 @@ pub(crate) fn solve(
 /// ```
 /// A multiplier couples to the modes as a coordinate does, through interfaces if its coupling depends on the
 /// state. It is eliminated last, with minus a pivot of A M^-1 A^T.
-fn bordered(
+fn border_matrix(
     graph: &mut Graph,
     mass: &MassMatrix,
     right: &RowNodes,

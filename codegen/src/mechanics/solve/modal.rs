@@ -79,7 +79,7 @@ pub(super) struct Interface {
 
 /// Smallest remaining square of an interface, as a fraction. A dependent interface leaves about 1e-32 by
 /// rounding.
-const LEAST_SHARE: f64 = 1e-20;
+const MIN_SQUARE_FRACTION: f64 = 1e-20;
 
 /// Modal block: an inverse for each field, and interfaces with their weights G.
 pub(super) struct ModalBlock {
@@ -234,7 +234,7 @@ impl ModalBlock {
         let product = inner_product(graph, own.field, own.shape, other.solved);
         let square = inner_product(graph, own.field, other.shape, other.solved);
         let share = graph.divide(product, square);
-        let least = graph.scale(LEAST_SHARE, other.square);
+        let least = graph.scale(MIN_SQUARE_FRACTION, other.square);
         let zero = graph.zero();
         graph.select(square, least, share, zero)
     }

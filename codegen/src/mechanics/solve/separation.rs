@@ -37,7 +37,7 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
                 let (scalars, mut vectors) = graph.scalar_factors(&factors);
                 let scalar = graph.product(&scalars);
                 let weight = graph.multiply(weight, scalar);
-                let opened = sum_among(graph, &mut vectors);
+                let opened = remove_sum(graph, &mut vectors);
                 let others = graph.product(&vectors);
                 if opened.is_empty() && scalars.is_empty() {
                     found.entry(node).or_default().push((1.0, weight));
@@ -64,7 +64,7 @@ pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> 
 }
 
 /// Removes a sum from the factors and returns its terms; empty without a sum.
-fn sum_among(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
+fn remove_sum(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
     let place = factors.iter().position(|(factor, exponent)| {
         *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))
     });

@@ -69,12 +69,12 @@ impl Stage {
                 .iter()
                 .map(|impact| impact.distance)
                 .collect(),
-            Self::Impacts => program.impacts.iter().flat_map(of_impact).collect(),
+            Self::Impacts => program.impacts.iter().flat_map(impact_values).collect(),
             Self::Sliding => program
                 .outputs
                 .sliding
                 .iter()
-                .flat_map(of_surface)
+                .flat_map(surface_values)
                 .collect(),
             Self::Mass => {
                 let mass = &program.mass;
@@ -99,7 +99,7 @@ impl Stage {
     }
 }
 
-fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
+fn impact_values(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     let mut values = vec![
         impact.distance,
         impact.rate,
@@ -111,7 +111,7 @@ fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     values
 }
 
-fn of_surface(surface: &SlidingSurface<ValueId, RowValues>) -> Vec<ValueId> {
+fn surface_values(surface: &SlidingSurface<ValueId, RowValues>) -> Vec<ValueId> {
     let mut values = vec![surface.rate];
     values.extend(&surface.by_sides);
     values.extend(&surface.first_order);
@@ -154,7 +154,7 @@ impl Stage {
 /// [places](super::Places), then its own data.
 pub trait MachineCode: Send + Sync {
     /// Returns the initial content of its own data.
-    fn room(&self) -> &[f64];
+    fn initial_memory(&self) -> &[f64];
 
     /// Computes the prepared values from parameters and tables in their places.
     fn prepare(&self, memory: &mut [f64]);

@@ -10,7 +10,7 @@ pub(super) fn pivot_reciprocal(a: f64) -> f64 {
 
 /// Definition of a function of the expression language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Law {
+pub enum PiecewiseFunction {
     /// Elementary function of the same name.
     Elementary(Elementary),
     /// f_k of Eq. (7).
@@ -23,11 +23,11 @@ pub enum Law {
 
 /// Computes a function of the expression language; functions of one argument ignore `b`.
 pub fn call(function: Function, a: f64, b: f64) -> f64 {
-    match law(function) {
-        Law::Elementary(elementary) => elementary.apply(&[a, b]),
-        Law::Deadzone => deadzone(a, b),
-        Law::Contact => contact(a, b),
-        Law::Above => above(a),
+    match piecewise_function(function) {
+        PiecewiseFunction::Elementary(elementary) => elementary.apply(&[a, b]),
+        PiecewiseFunction::Deadzone => deadzone(a, b),
+        PiecewiseFunction::Contact => contact(a, b),
+        PiecewiseFunction::Above => above(a),
     }
 }
 
@@ -47,8 +47,8 @@ fn above(p: f64) -> f64 {
 }
 
 /// Returns the definition of a function.
-pub fn law(function: Function) -> Law {
-    Law::Elementary(match function {
+pub fn piecewise_function(function: Function) -> PiecewiseFunction {
+    PiecewiseFunction::Elementary(match function {
         Function::Sin => Elementary::Sin,
         Function::Cos => Elementary::Cos,
         Function::Tan => Elementary::Tan,
@@ -66,8 +66,8 @@ pub fn law(function: Function) -> Law {
         Function::Sign => Elementary::Sign,
         Function::Min => Elementary::Min,
         Function::Max => Elementary::Max,
-        Function::Deadzone => return Law::Deadzone,
-        Function::Contact => return Law::Contact,
-        Function::Above => return Law::Above,
+        Function::Deadzone => return PiecewiseFunction::Deadzone,
+        Function::Contact => return PiecewiseFunction::Contact,
+        Function::Above => return PiecewiseFunction::Above,
     })
 }

@@ -4,7 +4,7 @@ use super::{Evaluator, Point, Stage};
 
 /// Impact at a point in SI units; see [`Impact`](crate::mechanics::impacts::Impact).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ImpactAt {
+pub struct ImpactValues {
     /// Distance.
     pub distance: f64,
     /// Rate of the distance.
@@ -30,10 +30,10 @@ impl Evaluator {
 
     /// Computes all impacts in the order of the specification. A call with an `out` of a previous call
     /// allocates no memory.
-    pub fn impacts(&mut self, point: Point<'_>, out: &mut Vec<ImpactAt>) {
+    pub fn impacts(&mut self, point: Point<'_>, out: &mut Vec<ImpactValues>) {
         self.compute(Stage::Impacts, &point);
         let degrees = self.program.degrees_of_freedom();
-        out.resize_with(self.program.impacts.len(), ImpactAt::default);
+        out.resize_with(self.program.impacts.len(), ImpactValues::default);
         for (slot, impact) in out.iter_mut().zip(&self.program.impacts) {
             let number = |id| self.memory[self.places.offset(id)];
             slot.distance = number(impact.distance);

@@ -18,11 +18,11 @@ use std::sync::Arc;
 
 use crate::program::{Extent, Op, Program, ValueId};
 pub use code::{MachineCode, Stage};
-pub use functions::{Law, call, law};
-pub use impacts::ImpactAt;
+pub use functions::{PiecewiseFunction, call, piecewise_function};
+pub use impacts::ImpactValues;
 pub use places::Places;
 pub use point::Point;
-pub use sliding::SlidingAt;
+pub use sliding::SlidingValues;
 use step::step;
 
 /// Program with memory for its values. No memory is allocated after construction.
@@ -52,7 +52,7 @@ impl Evaluator {
                 _ => None,
             })
             .collect();
-        let places = Places::of(&program);
+        let places = Places::new(&program);
         let mut evaluator = Self {
             memory: vec![0.0; places.size()],
             places,
@@ -70,7 +70,7 @@ impl Evaluator {
     /// Prepares a program that is computed by `code`, its own machine code.
     pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
         let mut evaluator = Self::new(program);
-        evaluator.memory.extend_from_slice(code.room());
+        evaluator.memory.extend_from_slice(code.initial_memory());
         evaluator.code = Some(code);
         evaluator
     }
@@ -95,7 +95,7 @@ impl Evaluator {
                 &self.places,
                 &self.program,
                 steps,
-                &NOWHERE,
+                &NO_POINT,
             );
         }
     }
@@ -253,7 +253,7 @@ impl Evaluator {
     }
 }
 
-const NOWHERE: Point<'static> = Point {
+const NO_POINT: Point<'static> = Point {
     t: 0.0,
     state: &[],
     inputs: &[],

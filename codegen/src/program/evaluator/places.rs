@@ -10,7 +10,7 @@ pub struct Places {
 impl Places {
     /// Arranges the values one after the other. Vectors and matrices begin at an even offset, so that a pair
     /// of elements never crosses a cache line.
-    pub fn of(program: &Program) -> Self {
+    pub fn new(program: &Program) -> Self {
         let mut offsets = Vec::with_capacity(program.values.len());
         let mut size = 0_usize;
         for value in &program.values {

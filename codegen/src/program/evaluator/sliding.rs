@@ -4,7 +4,7 @@ use super::{Evaluator, Point, Stage};
 
 /// Surface at a point in SI units; see [`SlidingSurface`](crate::mechanics::outputs::SlidingSurface).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SlidingAt {
+pub struct SlidingValues {
     /// Rate of the surface's function.
     pub rate: f64,
     /// Derivative of that rate by each side.
@@ -17,11 +17,11 @@ pub struct SlidingAt {
 impl Evaluator {
     /// Computes all surfaces that can hold the motion, in the order of the program. A call with an `out` of a
     /// previous call allocates no memory.
-    pub fn sliding(&mut self, point: Point<'_>, out: &mut Vec<SlidingAt>) {
+    pub fn sliding(&mut self, point: Point<'_>, out: &mut Vec<SlidingValues>) {
         self.compute(Stage::Sliding, &point);
         let degrees = self.program.degrees_of_freedom();
         let states = self.program.states();
-        out.resize_with(self.program.outputs.sliding.len(), SlidingAt::default);
+        out.resize_with(self.program.outputs.sliding.len(), SlidingValues::default);
         for (slot, surface) in out.iter_mut().zip(&self.program.outputs.sliding) {
             let number = |id| self.memory[self.places.offset(id)];
             slot.rate = number(surface.rate);

@@ -43,7 +43,7 @@ pub fn lower_affine(
         .map(|id| lowering.value(*id))
         .collect();
     let mut parameters = program_parameters(model, parameter_values);
-    parameters.extend((0..guards.len()).map(side));
+    parameters.extend((0..guards.len()).map(side_parameter));
     AffineProgram {
         layout: AffineLayout {
             scalars,
@@ -103,7 +103,7 @@ fn fields(model: &Model, orders: &[usize]) -> Vec<ProgramField> {
         .collect()
 }
 
-fn side(guard: usize) -> ProgramParameter {
+fn side_parameter(guard: usize) -> ProgramParameter {
     ProgramParameter {
         quantity: Quantity {
             name: format!("side_{guard}"),

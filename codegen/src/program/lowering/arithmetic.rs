@@ -29,7 +29,7 @@ impl Lowering<'_> {
             live.chunk_by(|(_, a), (_, b)| graph.critical_path(*a) == graph.critical_path(*b))
         {
             if graph.critical_path(equals[0].1) > 0 {
-                parts = self.joined(parts);
+                parts = self.join_terms(parts);
             }
             parts.extend(equals.iter().map(|(c, id)| self.term(*c, *id)));
         }
@@ -37,7 +37,7 @@ impl Lowering<'_> {
     }
 
     /// Combines the parts into one, which is subtracted if all parts are.
-    fn joined(&mut self, parts: Vec<(bool, ValueId)>) -> Vec<(bool, ValueId)> {
+    fn join_terms(&mut self, parts: Vec<(bool, ValueId)>) -> Vec<(bool, ValueId)> {
         if parts.len() < 2 {
             return parts;
         }
@@ -57,7 +57,7 @@ impl Lowering<'_> {
         let Some((negative, first)) = iterator.next() else {
             return self.constant(0.0);
         };
-        let mut total = if negative { self.negated(first) } else { first };
+        let mut total = if negative { self.negate(first) } else { first };
         for (negative, value) in iterator {
             let op = if negative { Op::Subtract } else { Op::Add };
             total = self.binary(op, total, value);
@@ -66,7 +66,7 @@ impl Lowering<'_> {
     }
 
     /// Returns -a, with the sign in a prepared factor if there is one.
-    fn negated(&mut self, value: ValueId) -> ValueId {
+    fn negate(&mut self, value: ValueId) -> ValueId {
         let extent = self.values[value.0].extent;
         if let Op::Multiply(factor, moving) = self.values[value.0].op
             && self.values[factor.0].parameter_only
@@ -85,7 +85,7 @@ impl Lowering<'_> {
         let (negative, magnitude) = (factor < 0.0, factor.abs());
         if let Some(factors) = self.association.factors(magnitude, id) {
             let factors = factors.to_vec();
-            return (negative, self.associated(&factors));
+            return (negative, self.multiply_in_order(&factors));
         }
         let factors = match graph.operation(id) {
             Operation::Product(factors) => factors.to_vec(),
@@ -102,7 +102,7 @@ impl Lowering<'_> {
         }
         let coefficient = self.powers(magnitude, &parameter_only);
         let moving = (!live.is_empty())
-            .then(|| self.where_in_contact(&live))
+            .then(|| self.select_by_contact(&live))
             .flatten();
         let value = match (coefficient, moving) {
             (Some(coefficient), Some(moving)) => self.binary(Op::Multiply, coefficient, moving),
@@ -113,7 +113,7 @@ impl Lowering<'_> {
     }
 
     /// Multiplies the factors in their order, with a prepared factor last.
-    fn associated(&mut self, factors: &[Factor]) -> ValueId {
+    fn multiply_in_order(&mut self, factors: &[Factor]) -> ValueId {
         let mut product: Option<ValueId> = None;
         let (prepared, live): (Vec<Factor>, Vec<Factor>) = factors
             .iter()
@@ -141,7 +141,7 @@ impl Lowering<'_> {
             Factor::Node(id) => self.value(id),
             Factor::Pair(place) => {
                 let (a, b) = self.association.pair(place);
-                self.associated(&[a, b])
+                self.multiply_in_order(&[a, b])
             }
             Factor::Coefficient(place) => {
                 let prepared = self.association.coefficient(place).clone();
@@ -181,14 +181,14 @@ impl Lowering<'_> {
             return None;
         }
         let coefficient = self.powers(number, &[parameter_only, constant.as_slice()].concat())?;
-        let moving = self.where_in_contact(&moving)?;
+        let moving = self.select_by_contact(&moving)?;
         let summand = self.binary(Op::Multiply, coefficient, moving);
         Some(self.emit(Op::Total(summand), Extent::Scalar))
     }
 
     /// Multiplies powers. A contact factor selects between the product of the others and 0, which needs no
     /// multiplication.
-    fn where_in_contact(&mut self, factors: &[(NodeId, i32)]) -> Option<ValueId> {
+    fn select_by_contact(&mut self, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let contact = |(id, _): &(NodeId, i32)| {
             matches!(graph.operation(*id), Operation::Call(Function::Contact, _))
@@ -201,7 +201,7 @@ impl Lowering<'_> {
         }
         let mut others = factors.to_vec();
         others.remove(place);
-        let then = self.where_in_contact(&others)?;
+        let then = self.select_by_contact(&others)?;
         let a = self.value(factors[place].0);
         let b = self.constant(0.0);
         let otherwise = b;

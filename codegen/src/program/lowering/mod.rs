@@ -16,7 +16,7 @@ use crate::mechanics::equations::Equations;
 use crate::mechanics::outputs::Outputs;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, ValueId};
-use crate::symbolic::formula::abridged;
+use crate::symbolic::formula::abridged_formula;
 use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
 use quantities::{program_observables, program_parameters, quantity};
@@ -67,7 +67,7 @@ pub fn lower_with_outputs(
         .guards
         .iter()
         .map(|guard| ProgramGuard {
-            formula: abridged(&equations.graph, model, guard.value).to_string(),
+            formula: abridged_formula(&equations.graph, model, guard.value).to_string(),
             value: lowering.value(guard.value),
         })
         .collect();

@@ -11,22 +11,22 @@ use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small
 use crate::symbolic::table_text;
 
 /// Largest length, in characters of plain text, of a part that TeX must not break.
-const HELD_TOGETHER: usize = 80;
+const MAX_UNBROKEN_LENGTH: usize = 80;
 
 /// Largest number of terms of a sum with fractions; longer sums have quotients with a slash.
-const MOST_FRACTIONS: usize = 8;
+const MAX_FRACTIONS: usize = 8;
 
 const TIMES: &str = "\\,";
 
 impl Formula {
     /// Returns the formula in LaTeX math mode with amsmath.
     pub fn latex(&self) -> String {
-        at(self, Level::Sum)
+        latex_at_level(self, Level::Sum)
     }
 }
 
 /// Writes a formula with parentheses if its surroundings require them.
-fn at(formula: &Formula, level: Level) -> String {
+fn latex_at_level(formula: &Formula, level: Level) -> String {
     if formula.set_level() < level {
         return in_parentheses(formula);
     }
@@ -41,16 +41,23 @@ fn at(formula: &Formula, level: Level) -> String {
         Formula::Operation(name, operands) => operation(name, operands),
         Formula::Choice(choice) => cases(choice),
         Formula::Total(index, of) => {
-            format!("\\sum_{{{}}} {}", index.name(), at(of, Level::Product))
+            format!(
+                "\\sum_{{{}}} {}",
+                index.name(),
+                latex_at_level(of, Level::Product)
+            )
         }
         Formula::Applied(matrix, vector) => {
             format!(
                 "\\left({}{TIMES}{}\\right)_{{i}}",
-                at(matrix, Level::Product),
-                at(vector, Level::Product)
+                latex_at_level(matrix, Level::Product),
+                latex_at_level(vector, Level::Product)
             )
         }
-        Formula::Transposed(matrix) => format!("{{{}}}^{{\\mathsf{{T}}}}", at(matrix, Level::Base)),
+        Formula::Transposed(matrix) => format!(
+            "{{{}}}^{{\\mathsf{{T}}}}",
+            latex_at_level(matrix, Level::Base)
+        ),
         Formula::Matrix(parts) => {
             let parts: Vec<String> = parts.iter().map(matrix_part).collect();
             parts.join(" + ")
@@ -69,16 +76,16 @@ fn in_parentheses(formula: &Formula) -> String {
 }
 
 fn is_long(formula: &Formula) -> bool {
-    formula.to_string().len() > HELD_TOGETHER
+    formula.to_string().len() > MAX_UNBROKEN_LENGTH
 }
 
 fn sum(terms: &[Term]) -> String {
-    let with_strokes = terms.len() > MOST_FRACTIONS;
+    let with_strokes = terms.len() > MAX_FRACTIONS;
     let at = |of: &Formula, level: Level| match of {
         Formula::Quotient { above, below } if with_strokes && !above.is_empty() => {
-            beside_a_stroke(above, below)
+            slash_quotient(above, below)
         }
-        _ => at(of, level),
+        _ => latex_at_level(of, level),
     };
     let mut text = String::new();
     for (place, term) in terms.iter().enumerate() {
@@ -113,7 +120,7 @@ fn product(factors: &[Formula]) -> String {
         .enumerate()
         .map(|(place, factor)| match factor {
             Formula::Total(..) if place < last => in_parentheses(factor),
-            _ => at(factor, Level::Product),
+            _ => latex_at_level(factor, Level::Product),
         })
         .collect();
     factors.join(TIMES)
@@ -127,20 +134,20 @@ fn quotient(above: &[Formula], below: &[Formula]) -> String {
     if below.is_empty() {
         // A single factor needs no more parentheses than outside a product.
         return match above {
-            [only] => at(only, Level::Product),
+            [only] => latex_at_level(only, Level::Product),
             _ => numerator,
         };
     }
     if !above.is_empty() && above.iter().chain(below).any(is_long) {
-        return beside_a_stroke(above, below);
+        return slash_quotient(above, below);
     }
     format!("\\frac{{{numerator}}}{{{}}}", product(below))
 }
 
 /// Writes a quotient with a slash, or a product, on one line that TeX can break.
-fn beside_a_stroke(above: &[Formula], below: &[Formula]) -> String {
+fn slash_quotient(above: &[Formula], below: &[Formula]) -> String {
     let numerator = match above {
-        [only] => at(only, Level::Product),
+        [only] => latex_at_level(only, Level::Product),
         several => product(several),
     };
     match below {
@@ -152,7 +159,7 @@ fn beside_a_stroke(above: &[Formula], below: &[Formula]) -> String {
 
 /// Writes a power. Braces separate the exponent from other superscripts, except for a symbol.
 fn power(base: &Formula, exponent: &Formula) -> String {
-    let (base_text, exponent) = (at(base, Level::Base), exponent.latex());
+    let (base_text, exponent) = (latex_at_level(base, Level::Base), exponent.latex());
     match base {
         Formula::Symbol(_) => format!("{base_text}^{{{exponent}}}"),
         _ => format!("{{{base_text}}}^{{{exponent}}}"),
@@ -206,7 +213,7 @@ fn operation(name: &str, operands: &[Formula]) -> String {
     let (name, indices) = name.split_once('_').unwrap_or((name, ""));
     format!(
         "\\operatorname{{{name}}}{}{}",
-        below(&[indices]),
+        subscript(&[indices]),
         list(operands)
     )
 }
@@ -224,7 +231,10 @@ fn cases(choice: &Choice) -> String {
 fn matrix_part(part: &MatrixPart) -> String {
     match part {
         MatrixPart::Diagonal(diagonal) => {
-            format!("\\delta_{{ij}}{TIMES}{}", at(diagonal, Level::Product))
+            format!(
+                "\\delta_{{ij}}{TIMES}{}",
+                latex_at_level(diagonal, Level::Product)
+            )
         }
         MatrixPart::Outer(u, v) => format!(
             "\\left[{}\\right]_{{i}}{TIMES}\\left[{}\\right]_{{j}}",
@@ -234,7 +244,7 @@ fn matrix_part(part: &MatrixPart) -> String {
         MatrixPart::Scaled(row, matrix, column) => format!(
             "\\left[{}\\right]_{{i}}{TIMES}{}{TIMES}\\left[{}\\right]_{{j}}",
             row.latex(),
-            at(matrix, Level::Product),
+            latex_at_level(matrix, Level::Product),
             column.latex()
         ),
     }
@@ -251,11 +261,11 @@ fn symbol(symbol: &Symbol) -> String {
     };
     let indices: String = symbol.indices.iter().map(|index| index.name()).collect();
     parts.push(&indices);
-    format!("{head}{}", below(&parts))
+    format!("{head}{}", subscript(&parts))
 }
 
 /// Writes a subscript with commas between the parts.
-fn below(parts: &[&str]) -> String {
+fn subscript(parts: &[&str]) -> String {
     let parts: Vec<&str> = parts
         .iter()
         .filter(|part| !part.is_empty())

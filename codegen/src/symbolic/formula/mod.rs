@@ -15,7 +15,7 @@ mod tree;
 
 pub(crate) use latex::prose;
 pub use letters::letter;
-pub use read::{Reader, abridged, written_out};
-pub use shared::Shared;
+pub use read::{Reader, abridged_formula, full_formula};
+pub use shared::SharedExpressions;
 pub use symbol::{Index, Symbol};
 pub use tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};

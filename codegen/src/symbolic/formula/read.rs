@@ -5,34 +5,34 @@ use std::collections::{HashMap, HashSet};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Model;
 
-use super::shared::{Shared, is_leaf, own_length};
+use super::shared::{SharedExpressions, is_leaf, own_length};
 use super::symbol::{Index, Symbol};
 use super::tree::{Choice, Formula, MatrixPart, Term};
 use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, NodeId, Operation, Shape, Variable};
 
 /// Largest length of an abridged formula in characters.
-const ABRIDGED: u64 = 2000;
+const MAX_ABRIDGED_LENGTH: u64 = 2000;
 
 /// Smallest length of an omitted part in characters.
-const SHORTEST: u64 = 40;
+const MIN_OMITTED_LENGTH: u64 = 40;
 
 /// Reader of the formulas of a graph.
 pub struct Reader<'a> {
     graph: &'a Graph,
     model: &'a Model,
-    shared: &'a Shared,
+    shared: &'a SharedExpressions,
     omitted: HashSet<NodeId>,
 }
 
 /// Returns the complete formula of a node; only named nodes are abbreviated. For large models it can be
 /// exponentially longer than the graph.
-pub fn written_out(graph: &Graph, model: &Model, id: NodeId) -> Formula {
-    Reader::new(graph, model, &Shared::default()).formula(id)
+pub fn full_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
+    Reader::new(graph, model, &SharedExpressions::default()).formula(id)
 }
 
 /// Returns the formula of a node for a message or a comment; parts of a very long formula are omitted.
-pub fn abridged(graph: &Graph, model: &Model, id: NodeId) -> Formula {
-    let shared = Shared::default();
+pub fn abridged_formula(graph: &Graph, model: &Model, id: NodeId) -> Formula {
+    let shared = SharedExpressions::default();
     let mut reader = Reader::new(graph, model, &shared);
     let mut lengths = HashMap::new();
     for node in graph.reachable(&[id]) {
@@ -41,13 +41,13 @@ pub fn abridged(graph: &Graph, model: &Model, id: NodeId) -> Formula {
             lengths.insert(node, length);
         }
     }
-    reader.omit(id, ABRIDGED, &lengths);
+    reader.omit(id, MAX_ABRIDGED_LENGTH, &lengths);
     reader.formula(id)
 }
 
 impl<'a> Reader<'a> {
     /// Prepares a reader in which the nodes of `shared` have separate lines.
-    pub fn new(graph: &'a Graph, model: &'a Model, shared: &'a Shared) -> Self {
+    pub fn new(graph: &'a Graph, model: &'a Model, shared: &'a SharedExpressions) -> Self {
         Self {
             graph,
             model,
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
     pub fn symbol(&self, name: &str) -> Symbol {
         for (ending, dots) in [("_dot", 1), ("_ddot", 2)] {
             if let Some(stem) = name.strip_suffix(ending)
-                && self.moves(stem)
+                && self.is_moving(stem)
             {
                 return Symbol::plain(stem).with_dots(dots);
             }
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
         Symbol::plain(name)
     }
 
-    fn moves(&self, name: &str) -> bool {
+    fn is_moving(&self, name: &str) -> bool {
         let model = self.model;
         model.coordinates.iter().any(|known| known.name == name)
             || model.fields.iter().any(|known| known.coordinates == name)
@@ -110,7 +110,7 @@ impl<'a> Reader<'a> {
         let share = longest / (operands.len() as u64).max(1);
         for operand in operands {
             let too_long = lengths.get(&operand).is_some_and(|length| *length > share);
-            if too_long && share < SHORTEST {
+            if too_long && share < MIN_OMITTED_LENGTH {
                 self.omitted.insert(operand);
             } else if too_long {
                 self.omit(operand, share, lengths);
@@ -137,14 +137,14 @@ impl<'a> Reader<'a> {
         ids.iter().map(|id| self.node(*id)).collect()
     }
 
-    fn boxed(&self, id: NodeId) -> Box<Formula> {
+    fn boxed_formula(&self, id: NodeId) -> Box<Formula> {
         Box::new(self.node(id))
     }
 
     fn operation(&self, id: NodeId) -> Formula {
         match self.graph.operation(id) {
             Operation::Constant(bits) => Formula::Number(bits.value()),
-            Operation::Parameter(index) => Formula::named(&self.model.parameters[*index].name),
+            Operation::Parameter(index) => Formula::from_name(&self.model.parameters[*index].name),
             Operation::Coordinate(index) => {
                 Formula::Symbol(self.variable(Variable::Coordinate(*index)))
             }
@@ -157,7 +157,7 @@ impl<'a> Reader<'a> {
             Operation::ModeRates(field) => {
                 Formula::Symbol(self.variable(Variable::ModeRates(*field)))
             }
-            Operation::Time => Formula::named("t"),
+            Operation::Time => Formula::from_name("t"),
             Operation::Argument(argument, variable) => {
                 let operand = Formula::Symbol(self.variable(*variable));
                 Formula::Operation(argument_name(*argument), vec![operand])
@@ -167,7 +167,7 @@ impl<'a> Reader<'a> {
             Operation::Product(factors) => self.product(factors),
             Operation::Call(function, arguments) => Formula::Call(*function, self.nodes(arguments)),
             Operation::Power(base, exponent) => {
-                Formula::Power(self.boxed(*base), self.boxed(*exponent))
+                Formula::Power(self.boxed_formula(*base), self.boxed_formula(*exponent))
             }
             Operation::Select {
                 a,
@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
                 then: self.node(*then),
                 otherwise: self.node(*otherwise),
             })),
-            Operation::Total(a) => Formula::Total(Index::I, self.boxed(*a)),
+            Operation::Total(a) => Formula::Total(Index::I, self.boxed_formula(*a)),
             other => self.matrix_operation(other),
         }
     }
@@ -228,7 +228,7 @@ impl<'a> Reader<'a> {
                 1 => self.node(id),
                 power => {
                     let power = Formula::Number(f64::from(power));
-                    Formula::Power(self.boxed(id), Box::new(power))
+                    Formula::Power(self.boxed_formula(id), Box::new(power))
                 }
             });
         }
@@ -243,8 +243,8 @@ impl<'a> Reader<'a> {
                 transposed,
                 vector,
             } => Formula::Applied(
-                Box::new(self.transposed(*matrix, *transposed)),
-                self.boxed(*vector),
+                Box::new(self.transpose(*matrix, *transposed)),
+                self.boxed_formula(*vector),
             ),
             Operation::Gram { .. } => Formula::Operation("gram", operands()),
             Operation::GramDiagonal { .. } => Formula::Operation("gram_ii", operands()),
@@ -259,9 +259,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn transposed(&self, matrix: NodeId, transposed: bool) -> Formula {
+    fn transpose(&self, matrix: NodeId, transposed: bool) -> Formula {
         if transposed {
-            Formula::Transposed(self.boxed(matrix))
+            Formula::Transposed(self.boxed_formula(matrix))
         } else {
             self.node(matrix)
         }
@@ -277,7 +277,7 @@ impl<'a> Reader<'a> {
         parts.extend(assembly.matrices.iter().map(|part| {
             MatrixPart::Scaled(
                 self.node(part.row),
-                self.transposed(part.matrix, part.transposed),
+                self.transpose(part.matrix, part.transposed),
                 self.node(part.column),
             )
         }));

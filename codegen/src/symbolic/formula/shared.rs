@@ -9,40 +9,40 @@ use eomgen_model_spec::model::Model;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Largest total length in characters of formulas that are not split.
-const WRITTEN_OUT: u64 = 16_000;
+const MAX_UNSPLIT_LENGTH: u64 = 16_000;
 
 /// Target length in characters of split formulas, as far as [`LENGTHS`] permit.
-const CUT: u64 = 24_000;
+const SPLIT_TARGET_LENGTH: u64 = 24_000;
 
 /// Lengths above which shared nodes get lines, tried in turn.
 const LENGTHS: [u64; 4] = [320, 160, 80, 40];
 
 /// Approximate length in characters of the name of a line.
-const NAME: u64 = 5;
+const NAME_LENGTH: u64 = 5;
 
 /// Stems of the names; the first that no numbered quantity of the model uses.
 const STEMS: [&str; 4] = ["s", "z", "y", "h"];
 
 /// Shared nodes with separate lines.
 #[derive(Clone, Debug, Default)]
-pub struct Shared {
+pub struct SharedExpressions {
     /// Nodes in the order of the graph: each line uses only earlier lines.
     nodes: Vec<NodeId>,
     names: HashMap<NodeId, String>,
 }
 
-impl Shared {
+impl SharedExpressions {
     /// Chooses among the nodes that the formulas of `roots` share. A named root is written in full as itself,
     /// and by its name elsewhere.
-    pub fn among(graph: &Graph, model: &Model, roots: &[NodeId]) -> Self {
+    pub fn find_shared(graph: &Graph, model: &Model, roots: &[NodeId]) -> Self {
         let uses = uses(graph, roots);
         let lengths = Lengths { graph, uses: &uses };
         let mut nodes = Vec::new();
-        if lengths.total(roots, u64::MAX).0 > WRITTEN_OUT {
+        if lengths.total(roots, u64::MAX).0 > MAX_UNSPLIT_LENGTH {
             for longest in LENGTHS {
                 let (total, chosen) = lengths.total(roots, longest);
                 nodes = chosen;
-                if total <= CUT {
+                if total <= SPLIT_TARGET_LENGTH {
                     break;
                 }
             }
@@ -86,7 +86,7 @@ impl Lengths<'_> {
             if is_shared && length > longest {
                 total = total.saturating_add(length);
                 chosen.push(id);
-                written.insert(id, NAME);
+                written.insert(id, NAME_LENGTH);
             } else {
                 written.insert(id, length);
             }

@@ -55,7 +55,7 @@ impl Symbol {
     }
 
     /// Returns the symbol of a state; the suffix `_dot` denotes a rate.
-    pub fn of_state(name: &str) -> Self {
+    pub fn from_state(name: &str) -> Self {
         match name.strip_suffix("_dot").filter(|stem| !stem.is_empty()) {
             Some(stem) => Self::plain(stem).with_dots(1),
             None => Self::plain(name),
@@ -116,6 +116,6 @@ mod tests {
         assert_eq!(symbol.with_dots(2).to_string(), "ddot(q_i)");
         let matrix = Symbol::plain("a_qq").with_indices(&[Index::I, Index::J]);
         assert_eq!(matrix.to_string(), "a_qq_ij");
-        assert_eq!(Symbol::of_state("x_sp_dot").to_string(), "dot(x_sp)");
+        assert_eq!(Symbol::from_state("x_sp_dot").to_string(), "dot(x_sp)");
     }
 }

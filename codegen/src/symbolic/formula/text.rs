@@ -6,14 +6,14 @@ use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small
 use crate::symbolic::table_text;
 
 /// Formula with the level of its surroundings.
-struct At<'a>(&'a Formula, Level);
+struct AtLevel<'a>(&'a Formula, Level);
 
 /// Formulas with a separator.
 struct Joined<'a>(&'a [Formula], &'static str, Level);
 
 impl Display for Formula {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        At(self, Level::Sum).fmt(f)
+        AtLevel(self, Level::Sum).fmt(f)
     }
 }
 
@@ -21,13 +21,13 @@ impl Display for Joined<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         for (place, formula) in self.0.iter().enumerate() {
             let between = if place == 0 { "" } else { self.1 };
-            write!(f, "{between}{}", At(formula, self.2))?;
+            write!(f, "{between}{}", AtLevel(formula, self.2))?;
         }
         Ok(())
     }
 }
 
-impl Display for At<'_> {
+impl Display for AtLevel<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         if own_level(self.0) < self.1 {
             return write!(f, "({})", self.0);
@@ -41,10 +41,10 @@ impl Display for At<'_> {
             Formula::Power(base, exponent) => power(f, base, exponent),
             Formula::Call(function, arguments) => call(f, function.name(), arguments),
             Formula::Operation(name, operands) => call(f, name, operands),
-            Formula::Choice(choice) => chosen(f, choice),
+            Formula::Choice(choice) => write_choice(f, choice),
             Formula::Total(index, of) => write!(f, "sum_{}({of})", index.name()),
             Formula::Applied(matrix, vector) => write!(f, "({matrix} . {vector})_i"),
-            Formula::Transposed(matrix) => write!(f, "{}^T", At(matrix, Level::Base)),
+            Formula::Transposed(matrix) => write!(f, "{}^T", AtLevel(matrix, Level::Base)),
             Formula::Matrix(parts) => matrix(f, parts),
             Formula::Omitted => f.write_str("..."),
         }
@@ -74,9 +74,9 @@ fn sum(f: &mut Formatter<'_>, terms: &[Term]) -> fmt::Result {
         let magnitude = term.factor.abs();
         match &term.of {
             None => f.write_str(&number(magnitude))?,
-            Some(of) if term.factor == 1.0 => At(of, Level::Sum).fmt(f)?,
-            Some(of) if magnitude == 1.0 => At(of, Level::Product).fmt(f)?,
-            Some(of) => write!(f, "{}*{}", factor(magnitude), At(of, Level::Product))?,
+            Some(of) if term.factor == 1.0 => AtLevel(of, Level::Sum).fmt(f)?,
+            Some(of) if magnitude == 1.0 => AtLevel(of, Level::Product).fmt(f)?,
+            Some(of) => write!(f, "{}*{}", factor(magnitude), AtLevel(of, Level::Product))?,
         }
     }
     Ok(())
@@ -89,13 +89,13 @@ fn quotient(f: &mut Formatter<'_>, above: &[Formula], below: &[Formula]) -> fmt:
     Joined(above, "*", Level::Product).fmt(f)?;
     match below {
         [] => Ok(()),
-        [only] => write!(f, "/{}", At(only, Level::Divisor)),
+        [only] => write!(f, "/{}", AtLevel(only, Level::Divisor)),
         several => write!(f, "/({})", Joined(several, "*", Level::Product)),
     }
 }
 
 fn power(f: &mut Formatter<'_>, base: &Formula, exponent: &Formula) -> fmt::Result {
-    let base = At(base, Level::Base);
+    let base = AtLevel(base, Level::Base);
     match exponent {
         Formula::Number(n) if *n >= 0.0 && n.fract() == 0.0 => write!(f, "{base}^{n}"),
         _ => write!(f, "{base}^({exponent})"),
@@ -106,7 +106,7 @@ fn call(f: &mut Formatter<'_>, name: &str, arguments: &[Formula]) -> fmt::Result
     write!(f, "{name}({})", Joined(arguments, ", ", Level::Sum))
 }
 
-fn chosen(f: &mut Formatter<'_>, choice: &Choice) -> fmt::Result {
+fn write_choice(f: &mut Formatter<'_>, choice: &Choice) -> fmt::Result {
     let Choice {
         a,
         b,

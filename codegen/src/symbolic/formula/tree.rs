@@ -92,12 +92,12 @@ pub enum Level {
 
 impl Formula {
     /// Returns a named quantity without index or dot.
-    pub fn named(name: &str) -> Self {
+    pub fn from_name(name: &str) -> Self {
         Self::Symbol(Symbol::plain(name))
     }
 
     /// Returns the product of two formulas; a factor 1 is omitted.
-    pub fn times(self, other: Self) -> Self {
+    pub fn multiply(self, other: Self) -> Self {
         match (self, other) {
             (Self::Number(1.0), other) => other,
             (own, Self::Number(1.0)) => own,
@@ -128,7 +128,7 @@ impl Formula {
     }
 
     /// Changes the index of a vector's element to the column index; other formulas are unchanged.
-    pub fn by_columns(self) -> Self {
+    pub fn split_by_columns(self) -> Self {
         match self {
             Self::Symbol(symbol) if symbol.indices == [Index::I] => {
                 Self::Symbol(symbol.with_indices(&[Index::J]))

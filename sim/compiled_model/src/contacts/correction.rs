@@ -1,6 +1,6 @@
 //! Correction of states onto closed contacts, and detection of overlaps.
 
-use eomgen_codegen::independence::vectors::largest;
+use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap, distance_rounding};
@@ -20,7 +20,7 @@ impl Contacts {
         state: &mut [f64],
     ) -> u64 {
         let degrees = own.program().degrees_of_freedom();
-        self.size = self.size.max(largest(&state[..degrees]));
+        self.size = self.size.max(max_magnitude(&state[..degrees]));
         // A step that was taken back may have ended below.
         self.overlap = None;
         let mut arrived = vec![0.0; self.names.len()];

@@ -1,6 +1,6 @@
 //! Impacts: touching contacts, jumps of rates, and contacts that close afterwards.
 
-use eomgen_codegen::independence::vectors::{dot, largest};
+use eomgen_codegen::independence::vectors::{dot, max_magnitude};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
@@ -215,7 +215,7 @@ impl Contacts {
                 .ok_or(Overlap::NoImpulse)?;
             self.impact_work -= work_against(&drifts, &touching, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
-            let most = largest(&*rates) + self.largest_push(&touching, &impulses);
+            let most = max_magnitude(&*rates) + self.largest_push(&touching, &impulses);
             still = still.max(DISTANCE_ROUNDING * most);
             self.add_impulses(&touching, &impulses, rates);
             let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
@@ -283,7 +283,7 @@ impl Contacts {
 
 /// Returns true if impulses leave no rate negative.
 fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
-    let unsolved = MAX_UNSOLVED_RATE_FRACTION * largest(rates);
+    let unsolved = MAX_UNSOLVED_RATE_FRACTION * max_magnitude(rates);
     let mut rows = delassus.iter().zip(rates);
     rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
 }
@@ -299,5 +299,5 @@ fn largest_acceleration(own: &mut Evaluator, point: Point<'_>) -> f64 {
     let degrees = own.program().degrees_of_freedom();
     let mut rates = vec![0.0; point.state.len()];
     own.rates(point, &mut rates);
-    largest(&rates[degrees..2 * degrees])
+    max_magnitude(&rates[degrees..2 * degrees])
 }

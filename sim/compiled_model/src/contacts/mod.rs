@@ -16,8 +16,8 @@ mod start;
 
 use std::collections::VecDeque;
 
-use eomgen_codegen::independence::vectors::largest;
-use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
+use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 
 use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
@@ -47,7 +47,7 @@ pub(crate) struct Contacts {
     /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
     allowances: Vec<f64>,
     /// The impacts where they were last looked at.
-    at: Vec<ImpactAt>,
+    at: Vec<ImpactValues>,
     /// The largest that any coordinate has been.
     size: f64,
     /// When the last impacts were, s.
@@ -175,7 +175,7 @@ impl Contacts {
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         own.impacts(point, &mut self.at);
-        let small = ROUNDING * largest(point.state);
+        let small = ROUNDING * max_magnitude(point.state);
         let touching: Vec<usize> = (0..self.at.len())
             .filter(|place| self.at[*place].distance <= small)
             .collect();
@@ -194,7 +194,7 @@ impl Contacts {
     }
 
     /// What at these contacts brings a quantity of theirs to zero.
-    fn solve_balance(&self, places: &[usize], quantity: impl Fn(&ImpactAt) -> f64) -> Vec<f64> {
+    fn solve_balance(&self, places: &[usize], quantity: impl Fn(&ImpactValues) -> f64) -> Vec<f64> {
         let quantities: Vec<f64> = places
             .iter()
             .map(|place| quantity(&self.at[*place]))
@@ -216,7 +216,7 @@ impl Contacts {
     fn largest_push(&self, places: &[usize], impulses: &[f64]) -> f64 {
         let pushes = places.iter().zip(impulses);
         let pushes =
-            pushes.map(|(place, impulse)| impulse.abs() * largest(&self.at[*place].column));
+            pushes.map(|(place, impulse)| impulse.abs() * max_magnitude(&self.at[*place].column));
         pushes.fold(0.0, f64::max)
     }
 
@@ -233,5 +233,6 @@ impl Contacts {
 /// By how much rounding of state and time changes distances.
 fn distance_rounding(state: &[f64], degrees: usize, t: f64) -> f64 {
     let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
-    f64::MIN_POSITIVE + DISTANCE_ROUNDING * (largest(coordinates) + t.abs() * largest(rates))
+    f64::MIN_POSITIVE
+        + DISTANCE_ROUNDING * (max_magnitude(coordinates) + t.abs() * max_magnitude(rates))
 }

@@ -69,7 +69,7 @@ impl<'m> Slider<'m> {
         html! {
             div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) {
                 label.name for=(id) {
-                    (formula(&Formula::Symbol(Symbol::of_state(name))))
+                    (formula(&Formula::Symbol(Symbol::from_state(name))))
                     @if unit != "1" { span.unit { (unit) } }
                 }
                 input type="number" step="any" value=(value) aria-label={ (name) " in " (unit) };

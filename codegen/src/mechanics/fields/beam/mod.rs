@@ -16,7 +16,7 @@ use super::mode::{Mode, exponential, values_at};
 mod tests;
 
 pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
-    let root = Root::of(from, to, number);
+    let root = Root::solve(from, to, number);
     let wave = wave(from, to, root);
     let wave_at_end = wave_at_end(from, to, root, number, wave);
     let [falling, rising] = exponentials(from, to, root, wave, wave_at_end[0]);
@@ -25,8 +25,8 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
     // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4, or the same at the start. At an end
     // from which the shape decays, one of these terms remains.
     let mean_square = match (from, to) {
-        (start, _) if decays(start) => [cosine; 2],
-        (_, end) if decays(end) => [wave_at_end[0]; 2],
+        (start, _) if has_decaying_exponential(start) => [cosine; 2],
+        (_, end) if has_decaying_exponential(end) => [wave_at_end[0]; 2],
         _ => [1.0, 0.5],
     };
     Mode {
@@ -51,7 +51,7 @@ pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
 
 /// Computes the mode `number` with beta_r l and xi_r as printed in Eq. (18) and (19). It satisfies no
 /// condition at its end, and its integrals have no closed form.
-pub(super) fn printed(number: usize) -> Mode {
+pub(super) fn printed_mode(number: usize) -> Mode {
     let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
     let sine = -alternating(number);
     let decay = exponential(-wavenumber);
@@ -70,7 +70,7 @@ pub(super) fn printed(number: usize) -> Mode {
 
 /// Returns true if every shape is a pure sine or cosine.
 pub(super) fn is_sinusoidal(from: End, to: End) -> bool {
-    !decays(from) && !decays(to)
+    !has_decaying_exponential(from) && !has_decaying_exponential(to)
 }
 
 /// k = beta_r l with its sine and cosine, which are more accurate than those of the rounded k.
@@ -83,30 +83,30 @@ struct Root {
 }
 
 impl Root {
-    fn of(from: End, to: End, number: usize) -> Self {
+    fn solve(from: End, to: End, number: usize) -> Self {
         let sign = alternating(number);
         let hyperbolic = |k: f64| -sign * Function::Asin.apply(&[sech(exponential(-k))]);
         let tangent = |k: f64| Function::Atan.apply(&[exponential(-2.0 * k)]);
-        match (decays(from), decays(to)) {
+        match (has_decaying_exponential(from), has_decaying_exponential(to)) {
             (true, true) => {
-                let unlike = unlikeness(from, to);
-                let root = Self::beside(number, -2.0 * unlike, hyperbolic);
+                let unlike = end_difference(from, to);
+                let root = Self::near_multiple(number, -2.0 * unlike, hyperbolic);
                 Self {
                     cosine: -unlike * sech(root.decay),
                     ..root
                 }
             }
-            (false, false) if from == to => Self::beside(number, 0.0, |_| 0.0),
-            (false, false) => Self::beside(number, -2.0, |_| 0.0),
+            (false, false) if from == to => Self::near_multiple(number, 0.0, |_| 0.0),
+            (false, false) => Self::near_multiple(number, -2.0, |_| 0.0),
             _ if from == End::Pinned || to == End::Pinned => {
-                Self::beside(number, 1.0, |k| -tangent(k))
+                Self::near_multiple(number, 1.0, |k| -tangent(k))
             }
-            _ => Self::beside(number, -1.0, tangent),
+            _ => Self::near_multiple(number, -1.0, tangent),
         }
     }
 
     /// Finds the fixed point of the contraction k = (r + quarters/4) pi + offset(k).
-    fn beside(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
+    fn near_multiple(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
         let centre = std::f64::consts::PI * (number as f64 + 0.25 * quarters);
         let mut d = 0.0;
         for _ in 0..64 {
@@ -145,13 +145,13 @@ fn sech(decay: f64) -> f64 {
 }
 
 /// Returns true if shapes have an exponential that decays from this end.
-fn decays(end: End) -> bool {
+fn has_decaying_exponential(end: End) -> bool {
     matches!(end, End::Clamped | End::Free)
 }
 
 /// Returns the sign of two ends that decay: -1 for equal ends, cos k cosh k = 1; 1 for clamped and free, cos
 /// k cosh k = -1.
-fn unlikeness(from: End, to: End) -> f64 {
+fn end_difference(from: End, to: End) -> f64 {
     if from == to { -1.0 } else { 1.0 }
 }
 
@@ -166,24 +166,24 @@ fn wave(from: End, to: End, root: Root) -> [f64; 2] {
         // -(sin - sinh)/(cos - cosh) and -(sin + sinh)/(cos + cosh), numerator and denominator
         // times 2 exp(-k)
         _ => {
-            let unlike = unlikeness(from, to);
+            let unlike = end_difference(from, to);
             let numerator = 2.0 * root.sine * root.decay + unlike - unlike * square;
-            -numerator / divisor(unlike, root)
+            -numerator / wave_divisor(unlike, root)
         }
     };
     [1.0, mixing]
 }
 
 /// Returns cos k - cosh k or cos k + cosh k, times 2 exp(-k).
-fn divisor(unlike: f64, root: Root) -> f64 {
+fn wave_divisor(unlike: f64, root: Root) -> f64 {
     2.0 * root.cosine * root.decay + unlike + unlike * root.decay * root.decay
 }
 
 /// Returns the wave at the end, and its first derivative divided by k.
 fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) -> [f64; 2] {
-    if decays(from) && decays(to) {
+    if has_decaying_exponential(from) && has_decaying_exponential(to) {
         // Such a wave is equal from both ends except for signs.
-        let sign = unlikeness(from, to) * alternating(number);
+        let sign = end_difference(from, to) * alternating(number);
         return [sign * c, -sign * a];
     }
     [
@@ -198,11 +198,11 @@ fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64
     // Exponentials cancel the wave at a clamped end and double it at a free one.
     let sense = |end| if end == End::Free { 1.0 } else { -1.0 };
     match (from, to) {
-        (End::Pinned, end) if decays(end) => {
+        (End::Pinned, end) if has_decaying_exponential(end) => {
             let rising = sense(end) * wave_at_end / (1.0 - decay * decay);
             [-rising * decay, rising]
         }
-        (End::Guided, end) if decays(end) => {
+        (End::Guided, end) if has_decaying_exponential(end) => {
             let rising = sense(end) * wave_at_end / (1.0 + decay * decay);
             [rising * decay, rising]
         }
@@ -215,9 +215,9 @@ fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64
                 End::Guided => falling * decay,
                 // -+(1 + xi) exp(k)/2
                 _ => {
-                    let unlike = unlikeness(from, to);
+                    let unlike = end_difference(from, to);
                     let above = root.cosine - root.sine + unlike * decay;
-                    sense(start) * (above / divisor(unlike, root))
+                    sense(start) * (above / wave_divisor(unlike, root))
                 }
             };
             [falling, rising]
