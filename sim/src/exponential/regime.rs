@@ -236,5 +236,5 @@ pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64
             fastest = fastest.max(sizes.unwrap_or(f64::INFINITY));
         }
     }
-    fastest_rate
+    fastest
 }

@@ -18,6 +18,9 @@ const APPROACHES: usize = 64;
 /// or fewer in 222 of 230 windows.
 const MOST_CROSSED: usize = 32;
 
+/// Number of steps that a stall beside a surface must take before the motion is given up.
+const STALLED_STEPS: u64 = 100_000;
+
 /// Times closer to 0 than this part of the span count as so far from it when a step is
 /// judged too short.
 const SMALLEST_TIME: f64 = 1e-6;
@@ -131,6 +134,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return Ok(());
         };
         if crossed > MOST_CROSSED || needed < most.saturating_sub(steps) as f64 {
+            self.stalled_since = None;
+            return Ok(());
+        }
+        // A motion that reverses at a surface stalls for some steps and then leaves.
+        let since = *self.stalled_since.get_or_insert(first.steps);
+        if steps - since < STALLED_STEPS {
             return Ok(());
         }
         Err(SolveError::StiffAtSurface {
