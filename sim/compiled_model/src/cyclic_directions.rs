@@ -177,7 +177,7 @@ impl Instance<'_> {
 /// Returns a basis of the null space of a matrix given by rows; each vector has a 1 at an index
 /// where the others have 0. Rows and columns may have different units.
 fn null_space_basis(rows: &[Vec<f64>], columns: usize) -> Vec<Vec<f64>> {
-    let row_sizes = rows.iter().map(largest);
+    let row_sizes = rows.iter().map(max_magnitude);
     let mut matrix: Vec<Vec<f64>> = rows
         .iter()
         .zip(row_sizes)

@@ -33,7 +33,7 @@ pub fn pair_weights(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
     for (index, rate) in StateId::first(equations.state_rates.len()).zip(&equations.state_rates) {
         weighted.push((weight(graph, Variable::State(index)), *rate));
     }
-    pair_weights
+    weighted
 }
 
 /// Returns the gradient of the sum of weight times node (summed over the elements of a vector) by every leaf

@@ -38,7 +38,7 @@ const MAX_NEAR_FRACTION: f64 = 1e-9;
 /// Arrival on a surface on which the motion already is.
 const ARRIVAL_AT_REST: Arrival = Arrival {
     side: 1.0,
-    is_overcome: false,
+    exceeds_limit: false,
 };
 
 /// State of a surface.
@@ -229,7 +229,7 @@ impl SurfaceStates {
                         true => -came_from[surface],
                         false => came_from[surface],
                     },
-                    is_overcome: false,
+                    exceeds_limit: false,
                 }));
             }
         }
@@ -340,7 +340,7 @@ impl SurfaceStates {
                 matches!(place, SurfaceState::Holding { .. }) && !(0.0..=1.0).contains(side);
             is_overcome.then_some(Arrival {
                 side: (side - 0.5).signum(),
-                is_overcome,
+                exceeds_limit: is_overcome,
             })
         })
         .collect()
@@ -387,8 +387,8 @@ impl SurfaceStates {
             };
             let new = match verdict {
                 Verdict::Holds(_) => SurfaceState::Holding { from, since },
-                Verdict::Bears(side) => SurfaceState::Bearing { from, side },
-                Verdict::LetsGo(side) => {
+                Verdict::AtLimit(side) => SurfaceState::Bearing { from, side },
+                Verdict::Releases(side) => {
                     let value = functions[*surface];
                     match side * value > 2.0 * roundings[*surface] {
                         true => SurfaceState::Free,

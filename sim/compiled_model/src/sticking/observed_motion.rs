@@ -62,7 +62,7 @@ impl StickingMotion {
     ) -> Self {
         let mut sizes = vec![0.0_f64; sided.surface_count()];
         for (t, state) in times.iter().zip(states) {
-            let functions = sided.evaluate_functions((*t, state), &inputs.at(*t));
+            let functions = sided.evaluate_functions((*t, state), &inputs.evaluate(*t));
             for (size, value) in sizes.iter_mut().zip(functions) {
                 *size = size.max(value.abs());
             }
@@ -136,7 +136,7 @@ fn set_holding_sides(
     }
     let arrival = |surface: &usize| Arrival {
         side: if functions[*surface] < 0.0 { -1.0 } else { 1.0 },
-        is_overcome: false,
+        exceeds_limit: false,
     };
     let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
     let Some(verdicts) = sided.decide(at, inputs, (&touching, &arrivals), &sides) else {

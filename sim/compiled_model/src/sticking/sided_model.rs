@@ -1,7 +1,7 @@
 //! A model with given sides of its surfaces: rates, observables and the sides that hold.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingAt};
-use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, least};
+use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
+use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
 use nalgebra::{DMatrix, DVector};
 
 /// Maximum number of Newton iterations if the rates are not linear in the sides.
@@ -31,7 +31,7 @@ pub struct SidedModel {
     model_input_count: usize,
     /// Inputs of the model, then the sides.
     inputs: Vec<f64>,
-    at: Vec<SlidingAt>,
+    at: Vec<SlidingValues>,
     guards: Vec<f64>,
     is_linear: bool,
 }
@@ -124,7 +124,7 @@ impl SidedModel {
             }
             self.evaluate(at);
             let right = self.surface_values(held, |surface| -surface.rate);
-            let change = least(self.matrix(held), right);
+            let change = solve_least_squares(self.matrix(held), right);
             for (surface, change) in held.iter().zip(&change) {
                 self.inputs[self.model_input_count + surface] += change;
             }
@@ -230,7 +230,7 @@ impl SidedModel {
     ) {
         self.evaluate((t, state));
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -values[*i]));
-        let moved = least(self.matrix(held), right);
+        let moved = solve_least_squares(self.matrix(held), right);
         let degrees = self.evaluator.program().degrees_of_freedom();
         for (surface, moved) in held.iter().zip(&moved) {
             let entries = state[degrees..].iter_mut().zip(&self.at[*surface].column);
@@ -260,7 +260,11 @@ impl SidedModel {
         })
     }
 
-    fn surface_values(&self, surfaces: &[usize], of: impl Fn(&SlidingAt) -> f64) -> DVector<f64> {
+    fn surface_values(
+        &self,
+        surfaces: &[usize],
+        of: impl Fn(&SlidingValues) -> f64,
+    ) -> DVector<f64> {
         DVector::from_iterator(
             surfaces.len(),
             surfaces.iter().map(|surface| of(&self.at[*surface])),
