@@ -6,9 +6,9 @@ use std::process::ExitCode;
 
 use eomgen_discover::error::DiscoverError;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Severity};
+use eomgen_model_spec::hidden_characters::{escape_hidden, escape_hidden_in_strings};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
-use eomgen_model_spec::visible::{visible, visible_in_strings};
 use eomgen_records::Refusal;
 use serde_json::{Value, json};
 
@@ -48,7 +48,7 @@ impl Error {
 
     /// Error of a model with the given values.
     pub fn model(source: &Source, error: ModelError) -> Self {
-        Self::Specification(Diagnostics::one(source.clone(), error.diagnostic()))
+        Self::Specification(Diagnostics::from_one(source.clone(), error.diagnostic()))
     }
 
     /// Rejected records.
@@ -109,7 +109,7 @@ impl Error {
 
 /// Prints a message to stderr, with control characters escaped. Errors of writing are ignored.
 pub fn warn(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", visible(text));
+    let _ = writeln!(std::io::stderr(), "{}", escape_hidden(text));
 }
 
 /// Prints diagnostics to stderr, with colours on a terminal.
@@ -121,13 +121,13 @@ pub fn print_diagnostics(findings: &Diagnostics) {
 
 /// Prints text to stdout, with control characters escaped. A closed pipe is no error.
 pub fn print_text(text: &str) -> Result {
-    print_bytes(visible(text).as_bytes())
+    print_bytes(escape_hidden(text).as_bytes())
 }
 
 /// Prints a JSON document to stdout, with control characters escaped.
 pub fn print_json(document: &serde_json::Value) -> Result {
     let text = format!("{document:#}\n");
-    print_bytes(visible_in_strings(&text).as_bytes())
+    print_bytes(escape_hidden_in_strings(&text).as_bytes())
 }
 
 /// Prints bytes to stdout. A closed pipe is no error.

@@ -39,7 +39,7 @@ pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<V
             Ok(Setting::Input(place)) => model.inputs[place].unit.clone(),
             Ok(Setting::Time) => Unit::coherent(Dimension::TIME),
             Err(error) => {
-                let unknown = given.refuse_name(error.to_string(), None);
+                let unknown = given.name_error(error.to_string(), None);
                 return Err(Error::Specification(unknown));
             }
         };

@@ -68,7 +68,7 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
         });
         let edited = edit::apply(&model.source, &[edit]);
         let edited = edited.map_err(|error| not_prescribed(&error, &given, &model))?;
-        let source = model.source.edited(edited);
+        let source = model.source.with_text(edited);
         let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
         model = checked.model;
     }
@@ -81,9 +81,9 @@ fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error
         EditError::Invalid(found) => given.relocated(found),
         EditError::Expression { text, diagnostic } => {
             let source = Source::new("--input", text.as_str());
-            given.relocated(&Diagnostics::one(source, (**diagnostic).clone()))
+            given.relocated(&Diagnostics::from_one(source, (**diagnostic).clone()))
         }
-        EditError::MissingTerm { .. } => Some(given.refuse_name(messages(error, model), None)),
+        EditError::MissingTerm { .. } => Some(given.name_error(messages(error, model), None)),
         _ => None,
     };
     match found {

@@ -37,7 +37,7 @@ pub fn singular_terms(
     parameters: &[f64],
     point: Point<'_>,
 ) -> Result<Vec<SingularTerm>, Diagnostics> {
-    let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+    let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
     let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
     let mut terms = terms(model, &equations);
     let mut nodes = Vec::with_capacity(2 * terms.len());

@@ -48,7 +48,7 @@ impl Variant {
     ) -> Result<Self, Diagnostics> {
         let variant = Self::derive_for_report(model, orders, outputs)?;
         let checked = check_inertia(model, orders, &variant);
-        checked.map_err(|diagnostic| Diagnostics::one(model.source.clone(), diagnostic))?;
+        checked.map_err(|diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic))?;
         Ok(variant)
     }
 
@@ -62,7 +62,7 @@ impl Variant {
         orders: &[usize],
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
-        let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+        let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
         let values = model
             .parameter_values()
             .map_err(|error| found(error.diagnostic()))?;
@@ -73,7 +73,7 @@ impl Variant {
             let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
             let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
             found(match error.term.and_then(|place| spans.nth(place)) {
-                Some(span) => message.at(span, "in this term"),
+                Some(span) => message.with_span(span, "in this term"),
                 None => message,
             })
         })?;
@@ -96,7 +96,7 @@ pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     match examination::examine(model) {
         Ok(Some(_)) => Ok(()),
         Ok(None) => examine_by_equations(model, orders),
-        Err(diagnostic) => Err(Diagnostics::one(model.source.clone(), diagnostic)),
+        Err(diagnostic) => Err(Diagnostics::from_one(model.source.clone(), diagnostic)),
     }
 }
 
@@ -104,7 +104,8 @@ pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
 /// square of their number and cause no error.
 fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
     let translated = translate_impacts(&mut Translator::new(model, orders));
-    let found = |error: DeriveError| Diagnostics::one(model.source.clone(), error.diagnostic());
+    let found =
+        |error: DeriveError| Diagnostics::from_one(model.source.clone(), error.diagnostic());
     translated.map_err(found)?;
     let without_impacts = Model {
         impacts: Vec::new(),
@@ -130,7 +131,7 @@ fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(
 /// # Errors
 /// Expressions that cannot be derived.
 pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
-    let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+    let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
     let values = model
         .parameter_values()
         .map_err(|error| found(error.diagnostic()))?;

@@ -145,7 +145,7 @@ fn generate_variant(
 ) -> Result<PathBuf, Error> {
     let model = &checked.model;
     let orders = model.orders(order).map_err(|error| {
-        let found = Diagnostics::one(model.source.clone(), error.diagnostic());
+        let found = Diagnostics::from_one(model.source.clone(), error.diagnostic());
         specification_error(&found)
     })?;
     let variant = Variant::derive_with(model, &orders, outputs)

@@ -1,11 +1,11 @@
 //! Checks the model as a whole: unused names, channels of sensors, tables of shapes and the
 //! drawing.
 
-use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{DeclarationKind, Diagnostic, Diagnostics, quote};
 use crate::dimension::Dimension;
 use crate::evaluate::evaluate;
 use crate::ids::InputId;
-use crate::infer::Words;
+use crate::infer::UnitPhrase;
 use crate::model::{
     Basis, CoefficientKind, Expr, ExprKind, Input, Model, ObservedRate, Ordinate, ParameterValue,
     STABILISATION_RATE,
@@ -39,15 +39,15 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
         if !channels.contains(&sensor.observable) {
             let message = format!(
                 "the model has no quantity {} to measure",
-                quoted(&sensor.observable)
+                quote(&sensor.observable)
             );
             let near = did_you_mean(&sensor.observable, channels.iter().map(String::as_str));
             let rule = "a channel is an observable or a coordinate, its rate (NAME_dot) or acceleration \
                         (NAME_ddot), a state, or an input";
             found.push(
                 Diagnostic::error(message)
-                    .at(sensor.span, "not a channel of this model")
-                    .help(near.unwrap_or_else(|| rule.to_owned())),
+                    .with_span(sensor.span, "not a channel of this model")
+                    .with_help(near.unwrap_or_else(|| rule.to_owned())),
             );
         }
     }
@@ -63,10 +63,10 @@ pub fn check_tables(model: &Model, found: &mut Diagnostics) {
             continue;
         };
         let [from, to] = [&field.from, &field.to].map(|end| evaluate(end, &parameters));
-        if let Err(fault) = table.spans(from, to) {
+        if let Err(fault) = table.check_span(from, to) {
             let (line, column) = (fault.line, fault.column);
             let message = format!("{}:{line}:{column}: {}", table.file, fault.message);
-            found.push(Diagnostic::error(message).at(*span, "this table").help(
+            found.push(Diagnostic::error(message).with_span(*span, "this table").with_help(
                 "the first x of the table must equal `from`, and the last x must equal `to`, in m",
             ));
         }
@@ -93,20 +93,20 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
             }
         };
         if unit.dimension != Dimension::LENGTH {
-            let is = Words(unit.dimension);
+            let is = UnitPhrase(unit.dimension);
             found.push(
                 Diagnostic::error(format!(
                     "`{name}` is {is}, but the ordinate of a point is in m"
                 ))
-                .at(span, is.to_string())
-                .help("add the length to [observables] and use its name"),
+                .with_span(span, is.to_string())
+                .with_help("add the length to [observables] and use its name"),
             );
         }
     }
 }
 
 pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
-    let mut used = Used {
+    let mut used = UsageMarks {
         parameters: vec![false; model.parameters.len()],
         inputs: vec![false; model.inputs.len()],
         definitions: vec![false; model.definitions.len()],
@@ -128,28 +128,28 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
         // The stabilisation rate is part of every constraint.
         let stabilises = !model.constraints.is_empty() && name == STABILISATION_RATE;
         if !used && !stabilises {
-            warn(Declared::Parameter, name, span);
+            warn(DeclarationKind::Parameter, name, span);
         }
     }
     for input in unused_inputs {
-        warn(Declared::Input, &input.name, input.span);
+        warn(DeclarationKind::Input, &input.name, input.span);
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
         // Generated definitions of a frame, which have the frame's span, may be unused.
         let written = model.source.text.get(span.start..span.end);
         if !used && written.is_some_and(|written| written.contains(name.as_str())) {
-            warn(Declared::Definition, name, span);
+            warn(DeclarationKind::Definition, name, span);
         }
     }
 }
 
-struct Used {
+struct UsageMarks {
     parameters: Vec<bool>,
     inputs: Vec<bool>,
     definitions: Vec<bool>,
 }
 
-impl Used {
+impl UsageMarks {
     fn mark(&mut self, part: &Expr) {
         match part.kind {
             ExprKind::Parameter(index) => self.parameters[index] = true,

@@ -8,16 +8,16 @@ use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
 /// Constant that is infinite, not a number, or outside the domain of a function.
-pub struct NotFinite {
+pub struct ConstantError {
     pub message: String,
     pub help: &'static str,
     pub span: Span,
 }
 
 /// Finite value of an expression; `None` if it is not constant.
-type Constant = Result<Option<f64>, NotFinite>;
+type Constant = Result<Option<f64>, ConstantError>;
 
-pub fn check(model: &Model, parameters: &[f64]) -> Result<(), NotFinite> {
+pub fn check(model: &Model, parameters: &[f64]) -> Result<(), ConstantError> {
     let mut known = Constants {
         parameters,
         definitions: vec![None; model.definitions.len()],
@@ -86,7 +86,7 @@ impl Constants<'_> {
             ExprKind::Call(function, arguments) => self.call(*function, arguments, expr)?,
         };
         match value {
-            Some(value) if !value.is_finite() => Err(not_finite(value, expr)),
+            Some(value) if !value.is_finite() => Err(not_finite_error(value, expr)),
             value => Ok(value),
         }
     }
@@ -94,7 +94,7 @@ impl Constants<'_> {
     fn operation(&self, operator: BinaryOperator, left: &Expr, right: &Expr) -> Constant {
         let (one, other) = (self.value(left)?, self.value(right)?);
         if operator == BinaryOperator::Divide && other == Some(0.0) {
-            return Err(NotFinite {
+            return Err(ConstantError {
                 message: "division by 0: this divisor is 0".to_owned(),
                 help: "divide by a quantity that is not 0, or remove the term",
                 span: right.span,
@@ -110,7 +110,7 @@ impl Constants<'_> {
             && matches!(function, Function::Deadzone | Function::Contact)
             && *value < 0.0
         {
-            return Err(NotFinite {
+            return Err(ConstantError {
                 message: format!(
                     "the half-width of `{}` is negative: {value}",
                     function.name()
@@ -125,7 +125,7 @@ impl Constants<'_> {
         let argument = |place: usize| values.get(place).copied().unwrap_or(f64::NAN);
         let (x, value) = (argument(0), call(function, argument(0), argument(1)));
         if is_periodic(function) && x.abs() > MAX_ANGLE {
-            return Err(NotFinite {
+            return Err(ConstantError {
                 message: format!("`{}` of {x} is outside its domain", function.name()),
                 help: "give an angle between -1e9 and 1e9 rad",
                 span: whole.span,
@@ -134,16 +134,16 @@ impl Constants<'_> {
         if value.is_finite() {
             return Ok(Some(value));
         }
-        Err(NotFinite {
+        Err(ConstantError {
             message: format!("`{}` of {x} evaluates to {value}", function.name()),
-            help: domain(function),
+            help: domain_help(function),
             span: whole.span,
         })
     }
 }
 
-fn not_finite(value: f64, expr: &Expr) -> NotFinite {
-    NotFinite {
+fn not_finite_error(value: f64, expr: &Expr) -> ConstantError {
+    ConstantError {
         message: format!("this expression evaluates to {value}"),
         help: match value.is_nan() {
             true => "give a negative number a whole exponent",
@@ -162,7 +162,7 @@ fn is_periodic(function: Function) -> bool {
     matches!(function, Function::Sin | Function::Cos | Function::Tan)
 }
 
-fn domain(function: Function) -> &'static str {
+fn domain_help(function: Function) -> &'static str {
     match function {
         Function::Sqrt => "give `sqrt` an argument of at least 0",
         Function::Ln => "give `ln` an argument greater than 0",

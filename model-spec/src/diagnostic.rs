@@ -4,9 +4,9 @@
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
+use crate::hidden_characters::escape_hidden;
 use crate::source::{Source, character_start};
 use crate::span::Span;
-use crate::visible::visible;
 
 /// Largest number of findings listed; one bad file can have thousands.
 pub const MAX_LISTED: usize = 20;
@@ -44,12 +44,12 @@ pub struct Diagnostic {
     /// The cure, if known.
     pub help: Option<String>,
     /// Kind of an unused declaration. `render` prints all unused names of a kind in one line.
-    pub unused: Option<Declared>,
+    pub unused: Option<DeclarationKind>,
 }
 
 /// Kind of a declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Declared {
+pub enum DeclarationKind {
     /// A parameter.
     Parameter,
     /// An input.
@@ -58,7 +58,7 @@ pub enum Declared {
     Definition,
 }
 
-impl Declared {
+impl DeclarationKind {
     fn name(self) -> &'static str {
         match self {
             Self::Parameter => "parameter",
@@ -82,13 +82,13 @@ impl Diagnostic {
     }
 
     /// Creates a warning about a declared name that nothing refers to.
-    pub fn unused(kind: Declared, name: &str, span: Span) -> Self {
+    pub fn unused(kind: DeclarationKind, name: &str, span: Span) -> Self {
         Self {
             unused: Some(kind),
             ..Self::warning(format!("the {} `{name}` is not used", kind.name()))
         }
-        .at(span, "nothing refers to it")
-        .help("remove it, or use it where it was meant")
+        .with_span(span, "nothing refers to it")
+        .with_help("remove it, or use it where it was meant")
     }
 
     /// Creates a warning without a place.
@@ -100,7 +100,7 @@ impl Diagnostic {
     }
 
     /// Sets the place.
-    pub fn at(mut self, span: Span, label: impl Into<String>) -> Self {
+    pub fn with_span(mut self, span: Span, label: impl Into<String>) -> Self {
         self.primary = Some(Label {
             span,
             text: label.into(),
@@ -109,7 +109,7 @@ impl Diagnostic {
     }
 
     /// Adds a related place.
-    pub fn also(mut self, span: Span, label: impl Into<String>) -> Self {
+    pub fn with_related_span(mut self, span: Span, label: impl Into<String>) -> Self {
         self.secondary.push(Label {
             span,
             text: label.into(),
@@ -118,13 +118,13 @@ impl Diagnostic {
     }
 
     /// Sets the cure.
-    pub fn help(mut self, help: impl Into<String>) -> Self {
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
     /// Sets the cure, if there is one.
-    pub fn help_if(mut self, help: Option<String>) -> Self {
+    pub fn with_optional_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
         self
     }
@@ -170,7 +170,7 @@ impl Diagnostics {
     }
 
     /// Returns a list of one finding.
-    pub fn one(source: Source, diagnostic: Diagnostic) -> Self {
+    pub fn from_one(source: Source, diagnostic: Diagnostic) -> Self {
         let mut diagnostics = Self::new(source);
         diagnostics.push(diagnostic);
         diagnostics
@@ -196,7 +196,7 @@ impl Diagnostics {
     }
 
     /// Adds the error, or returns the value.
-    pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
+    pub fn push_error<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         result.map_err(|diagnostic| self.push(diagnostic)).ok()
     }
 
@@ -216,7 +216,7 @@ impl Diagnostics {
     }
 
     /// Returns the number of findings that are only counted.
-    pub fn omitted(&self) -> usize {
+    pub fn omitted_count(&self) -> usize {
         self.omitted
     }
 
@@ -253,17 +253,21 @@ impl Diagnostics {
         // With colour, the renderer escapes the text itself and adds its own escapes.
         match colour {
             true => text,
-            false => visible(&text).into_owned(),
+            false => escape_hidden(&text).into_owned(),
         }
     }
 
     fn unused_lines(&self) -> Vec<String> {
-        let kinds = [Declared::Parameter, Declared::Input, Declared::Definition];
+        let kinds = [
+            DeclarationKind::Parameter,
+            DeclarationKind::Input,
+            DeclarationKind::Definition,
+        ];
         let kinds = kinds.into_iter();
         kinds.filter_map(|kind| self.unused_line(kind)).collect()
     }
 
-    fn unused_line(&self, kind: Declared) -> Option<String> {
+    fn unused_line(&self, kind: DeclarationKind) -> Option<String> {
         let unused = self.list.iter().filter(|found| found.unused == Some(kind));
         let spans: Vec<Span> = unused
             .filter_map(|found| found.primary.as_ref().map(|label| label.span))
@@ -273,7 +277,8 @@ impl Diagnostics {
             1 => ("", "is"),
             _ => ("s", "are"),
         };
-        let name = |span: &Span| self.source.text[self.inside(*span)].trim_matches(['"', '\'']);
+        let name =
+            |span: &Span| self.source.text[self.clamp_to_text(*span)].trim_matches(['"', '\'']);
         let names: Vec<&str> = spans.iter().map(name).collect();
         let places = spans.iter().map(|span| self.source.place(span.start));
         let places: Vec<String> = places
@@ -332,7 +337,7 @@ impl Diagnostics {
     ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
         let (excerpt, line) = self.excerpt(primary, secondary);
         let annotation = |kind: AnnotationKind, label: &'a Label| {
-            let inside = self.inside(label.span);
+            let inside = self.clamp_to_text(label.span);
             let annotation = kind.span(inside.start - excerpt.start..inside.end - excerpt.start);
             if label.text.is_empty() {
                 annotation
@@ -354,7 +359,7 @@ impl Diagnostics {
     /// grows with the lines given.
     fn excerpt(&self, primary: &Label, others: &[Label]) -> (std::ops::Range<usize>, usize) {
         let span = |whole: Span, label: &Label| whole.join(label.span);
-        let whole = self.inside(others.iter().fold(primary.span, span));
+        let whole = self.clamp_to_text(others.iter().fold(primary.span, span));
         let text = &self.source.text;
         let start = text[..whole.start]
             .rfind('\n')
@@ -366,7 +371,7 @@ impl Diagnostics {
     }
 
     /// Clamps a span to whole characters of the text.
-    fn inside(&self, span: Span) -> std::ops::Range<usize> {
+    fn clamp_to_text(&self, span: Span) -> std::ops::Range<usize> {
         let text = &self.source.text;
         let start = character_start(text, span.start);
         let end = character_start(text, span.end);
@@ -384,7 +389,7 @@ impl std::error::Error for Diagnostics {}
 
 /// Quotes user text for a message: at most 48 characters in backquotes, control characters
 /// replaced by spaces.
-pub fn quoted(text: &str) -> String {
+pub fn quote(text: &str) -> String {
     let clean = |letter: char| if letter.is_control() { ' ' } else { letter };
     let mut shown: String = text.chars().take(48).map(clean).collect();
     if text.chars().nth(48).is_some() {
@@ -401,9 +406,9 @@ mod tests {
     fn finding_shows_place_text_and_help() {
         let source = Source::new("arm.toml", "[a]\nb = \"k_s*x\"\n");
         let diagnostic = Diagnostic::error("unknown name `k_s`")
-            .at(Span::new(9, 12), "not declared")
-            .help("did you mean `k_sp`?");
-        let shown = Diagnostics::one(source.clone(), diagnostic.clone()).render(false);
+            .with_span(Span::new(9, 12), "not declared")
+            .with_help("did you mean `k_sp`?");
+        let shown = Diagnostics::from_one(source.clone(), diagnostic.clone()).render(false);
         for part in [
             "error: unknown name `k_s`",
             "arm.toml:2:6",
@@ -412,14 +417,14 @@ mod tests {
         ] {
             assert!(shown.contains(part), "{part} is missing in\n{shown}");
         }
-        let coloured = Diagnostics::one(source, diagnostic).render(true);
+        let coloured = Diagnostics::from_one(source, diagnostic).render(true);
         assert!(coloured.contains('\u{1b}') && !shown.contains('\u{1b}'));
     }
 
     #[test]
     fn findings_without_a_place_name_the_file() {
         let source = Source::new("arm.toml", "");
-        let diagnostics = Diagnostics::one(source, Diagnostic::error("no such file"));
+        let diagnostics = Diagnostics::from_one(source, Diagnostic::error("no such file"));
         assert!(diagnostics.render(false).contains("arm.toml"));
         assert_eq!(diagnostics.records()[0].line, None);
     }
@@ -427,8 +432,10 @@ mod tests {
     #[test]
     fn records_hold_lines_and_columns() {
         let source = Source::new("arm.toml", "ab\ncd\n");
-        let diagnostic = Diagnostic::warning("odd").at(Span::new(4, 5), "");
-        let record = Diagnostics::one(source, diagnostic).records().remove(0);
+        let diagnostic = Diagnostic::warning("odd").with_span(Span::new(4, 5), "");
+        let record = Diagnostics::from_one(source, diagnostic)
+            .records()
+            .remove(0);
         assert_eq!((record.line, record.column), (Some(2), Some(2)));
         assert_eq!((record.end_line, record.end_column), (Some(2), Some(3)));
         assert_eq!(record.severity, Severity::Warning);
@@ -439,7 +446,7 @@ mod tests {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for number in 0..1000 {
             let message = format!("wrong {number}");
-            diagnostics.push(Diagnostic::error(message).at(Span::new(0, 1), ""));
+            diagnostics.push(Diagnostic::error(message).with_span(Span::new(0, 1), ""));
         }
         assert_eq!(diagnostics.list().len(), MAX_LISTED);
         assert!(diagnostics.render(false).ends_with("and 980 more"));
@@ -449,15 +456,15 @@ mod tests {
     fn repeated_finding_is_listed_once() {
         let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
         for place in [0, 1, 0] {
-            diagnostics.push(Diagnostic::error("wrong").at(Span::new(place, 1), ""));
+            diagnostics.push(Diagnostic::error("wrong").with_span(Span::new(place, 1), ""));
         }
         assert_eq!(diagnostics.list().len(), 2);
     }
 
     #[test]
     fn places_outside_the_text_are_shown_at_its_end() {
-        let diagnostic = Diagnostic::error("odd").at(Span::new(900, 7), "");
-        let shown = Diagnostics::one(Source::new("a.toml", "µ"), diagnostic).render(false);
+        let diagnostic = Diagnostic::error("odd").with_span(Span::new(900, 7), "");
+        let shown = Diagnostics::from_one(Source::new("a.toml", "µ"), diagnostic).render(false);
         assert!(shown.contains("a.toml:1:2"), "{shown}");
     }
 }

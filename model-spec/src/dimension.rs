@@ -47,25 +47,25 @@ pub struct Dimension {
 
 impl Dimension {
     /// Dimensionless.
-    pub const NONE: Self = Self::of([0, 0, 0, 0]);
+    pub const DIMENSIONLESS: Self = Self::from_mechanical_exponents([0, 0, 0, 0]);
     /// m
-    pub const LENGTH: Self = Self::of([0, 1, 0, 0]);
+    pub const LENGTH: Self = Self::from_mechanical_exponents([0, 1, 0, 0]);
     /// kg
-    pub const MASS: Self = Self::of([1, 0, 0, 0]);
+    pub const MASS: Self = Self::from_mechanical_exponents([1, 0, 0, 0]);
     /// s
-    pub const TIME: Self = Self::of([0, 0, 1, 0]);
+    pub const TIME: Self = Self::from_mechanical_exponents([0, 0, 1, 0]);
     /// J = N m
-    pub const ENERGY: Self = Self::of([1, 2, -2, 0]);
+    pub const ENERGY: Self = Self::from_mechanical_exponents([1, 2, -2, 0]);
     /// W
-    pub const POWER: Self = Self::of([1, 2, -3, 0]);
+    pub const POWER: Self = Self::from_mechanical_exponents([1, 2, -3, 0]);
 
     /// Returns the dimension with these exponents of kg, m, s and A.
-    pub const fn of([kg, m, s, a]: [i32; 4]) -> Self {
-        Self::base([kg, m, s, a, 0, 0, 0])
+    pub const fn from_mechanical_exponents([kg, m, s, a]: [i32; 4]) -> Self {
+        Self::from_exponents([kg, m, s, a, 0, 0, 0])
     }
 
     /// Returns the dimension with these exponents of kg, m, s, A, K, mol and cd.
-    pub const fn base(whole: [i32; 7]) -> Self {
+    pub const fn from_exponents(whole: [i32; 7]) -> Self {
         let mut exponents = [Ratio::new_raw(0, 1); 7];
         let mut index = 0;
         while index < 7 {
@@ -81,22 +81,22 @@ impl Dimension {
     }
 
     /// Returns true if the quantity is dimensionless.
-    pub fn is_none(self) -> bool {
-        self == Self::NONE
+    pub fn is_dimensionless(self) -> bool {
+        self == Self::DIMENSIONLESS
     }
 
     /// Returns the dimension of a product; `None` if an exponent overflows i32.
-    pub fn times(self, other: Self) -> Option<Self> {
-        self.combined(other, |a, b| a.checked_add(&b))
+    pub fn multiply(self, other: Self) -> Option<Self> {
+        self.combine(other, |a, b| a.checked_add(&b))
     }
 
     /// Returns the dimension of a quotient; `None` if an exponent overflows i32.
-    pub fn over(self, other: Self) -> Option<Self> {
-        self.combined(other, |a, b| a.checked_sub(&b))
+    pub fn divide(self, other: Self) -> Option<Self> {
+        self.combine(other, |a, b| a.checked_sub(&b))
     }
 
     /// Returns the dimension of a power; `None` if an exponent overflows i32.
-    pub fn power(self, exponent: Exponent) -> Option<Self> {
+    pub fn raise(self, exponent: Exponent) -> Option<Self> {
         let mut exponents = self.exponents;
         for own in &mut exponents {
             *own = own.checked_mul(&exponent)?;
@@ -104,7 +104,7 @@ impl Dimension {
         Some(Self { exponents })
     }
 
-    fn combined(
+    fn combine(
         self,
         other: Self,
         combine: impl Fn(Exponent, Exponent) -> Option<Exponent>,
@@ -154,7 +154,7 @@ impl std::fmt::Display for Dimension {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let common = COMMON
             .iter()
-            .find(|(_, exponents)| *self == Self::of(*exponents));
+            .find(|(_, exponents)| *self == Self::from_mechanical_exponents(*exponents));
         match common {
             Some((name, _)) => f.write_str(name),
             None => f.write_str(&self.in_base_units()),
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn common_dimensions_are_printed_with_their_symbols() {
-        let shown = |exponents| Dimension::of(exponents).to_string();
+        let shown = |exponents| Dimension::from_mechanical_exponents(exponents).to_string();
         assert_eq!(shown([0, 0, 0, 0]), "1");
         assert_eq!(shown([1, 2, -2, 0]), "N m");
         assert_eq!(shown([1, 0, -1, 0]), "N s/m");
@@ -181,18 +181,18 @@ mod tests {
 
     #[test]
     fn fractional_exponents_are_exact() {
-        let root = Dimension::LENGTH.power(Ratio::new(1, 2)).unwrap();
+        let root = Dimension::LENGTH.raise(Ratio::new(1, 2)).unwrap();
         assert_eq!(root.to_string(), "m^(1/2)");
-        assert_eq!(root.times(root), Some(Dimension::LENGTH));
-        assert_eq!(root.over(root), Some(Dimension::NONE));
+        assert_eq!(root.multiply(root), Some(Dimension::LENGTH));
+        assert_eq!(root.divide(root), Some(Dimension::DIMENSIONLESS));
     }
 
     #[test]
     fn exponents_out_of_range_are_rejected() {
         let huge = Dimension::LENGTH
-            .power(Ratio::from_integer(i32::MAX))
+            .raise(Ratio::from_integer(i32::MAX))
             .unwrap();
-        assert_eq!(huge.times(Dimension::LENGTH), None);
-        assert_eq!(huge.power(Ratio::from_integer(2)), None);
+        assert_eq!(huge.multiply(Dimension::LENGTH), None);
+        assert_eq!(huge.raise(Ratio::from_integer(2)), None);
     }
 }

@@ -3,10 +3,11 @@
 
 use toml_edit::Document as Toml;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::entries::{
-    body, coefficient, constraint, coordinate, definition, field, force, frame, impact, input,
-    line, name_of, observable, parameter, point, sensor, state, term,
+    read_body, read_coefficient, read_constraint, read_coordinate, read_definition, read_field,
+    read_force, read_frame, read_impact, read_input, read_line, read_observable, read_parameter,
+    read_point, read_sensor, read_state, term, to_name,
 };
 use crate::keys;
 use crate::raw::{Document, RawDrawing, RawInput};
@@ -22,9 +23,9 @@ pub const MAX_ENTRIES: usize = 2000;
 pub fn read(source: &Source) -> Result<Document, Diagnostics> {
     let text: &str = &source.text;
     let toml = Toml::parse(text)
-        .map_err(|error| Diagnostics::one(source.clone(), grammar_error(text, &error)))?;
+        .map_err(|error| Diagnostics::from_one(source.clone(), grammar_error(text, &error)))?;
     if toml.as_table().is_empty() {
-        return Err(Diagnostics::one(source.clone(), empty()));
+        return Err(Diagnostics::from_one(source.clone(), empty()));
     }
     let mut reader = Reader {
         top: entries(toml.as_table(), text),
@@ -39,8 +40,8 @@ pub fn read(source: &Source) -> Result<Document, Diagnostics> {
 
 fn empty() -> Diagnostic {
     Diagnostic::error("the specification is empty")
-        .at(Span::new(0, 0), "expected sections")
-        .help("write [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
+        .with_span(Span::new(0, 0), "expected sections")
+        .with_help("write [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
 }
 
 struct Reader<'d> {
@@ -53,27 +54,27 @@ impl<'d> Reader<'d> {
         self.refuse_unknown_sections();
         let model = self.model();
         let mut document = Document {
-            parameters: self.collect("parameters", parameter),
-            coordinates: self.collect("coordinates", coordinate),
-            inputs: (self.collect("inputs", input).into_iter())
+            parameters: self.collect("parameters", read_parameter),
+            coordinates: self.collect("coordinates", read_coordinate),
+            inputs: (self.collect("inputs", read_input).into_iter())
                 .flat_map(RawInput::with_rates)
                 .collect(),
-            states: self.collect("states", state),
-            fields: self.collect("fields", field),
-            definitions: self.collect("definitions", definition),
+            states: self.collect("states", read_state),
+            fields: self.collect("fields", read_field),
+            definitions: self.collect("definitions", read_definition),
             vectors: Vec::new(),
-            frames: self.collect("frames", frame),
-            bodies: self.collect("bodies", body),
+            frames: self.collect("frames", read_frame),
+            bodies: self.collect("bodies", read_body),
             gravity: self.gravity(),
             kinetic: self.collect("kinetic", term),
             potential: self.collect("potential", term),
             dissipation: self.collect("dissipation", term),
-            forces: self.collect("forces", force),
-            constraints: self.collect("constraints", constraint),
-            impacts: self.collect("impacts", impact),
-            observables: self.collect("observables", observable),
-            coefficients: self.collect("coefficients", coefficient),
-            sensors: self.collect("sensors", sensor),
+            forces: self.collect("forces", read_force),
+            constraints: self.collect("constraints", read_constraint),
+            impacts: self.collect("impacts", read_impact),
+            observables: self.collect("observables", read_observable),
+            coefficients: self.collect("coefficients", read_coefficient),
+            sensors: self.collect("sensors", read_sensor),
             drawing: self.drawing(),
             name: model.as_ref().map(|(name, _)| name.clone())?,
             title: model.map(|(_, title)| title).unwrap_or_default(),
@@ -113,8 +114,8 @@ impl<'d> Reader<'d> {
             let missing = missing.join(" and ");
             self.found.push(
                 Diagnostic::error(format!("a model needs {missing} with at least one entry"))
-                    .at(document.name.span, "the model has none")
-                    .help(
+                    .with_span(document.name.span, "the model has none")
+                    .with_help(
                         "for example [coordinates] theta = { unit = \"rad\" } and \
                            [kinetic] arm = \"1/2*J*dot(theta)^2\"",
                     ),
@@ -127,8 +128,8 @@ impl<'d> Reader<'d> {
             let help = "begin with [model] and name = \"my_machine\"";
             self.found.push(
                 Diagnostic::error("the section [model] is missing")
-                    .at(Span::new(0, 1), "expected [model] in this file")
-                    .help(help),
+                    .with_span(Span::new(0, 1), "expected [model] in this file")
+                    .with_help(help),
             );
             return None;
         };
@@ -139,7 +140,7 @@ impl<'d> Reader<'d> {
             self.found.push(misplaced_order(&order.name, has_fields));
         }
         let named = record.require("name", "write name = \"my_machine\"", &mut self.found)?;
-        let name = name_of(self.found.keep(named.written())?);
+        let name = to_name(self.found.push_error(named.written())?);
         let title = record.text("title", &mut self.found);
         Some((name, title))
     }
@@ -153,13 +154,13 @@ impl<'d> Reader<'d> {
         if self.section("bodies").is_none() && self.section("kinetic").is_some() {
             self.found.push(
                 Diagnostic::error("`gravity` has no effect: the model has no [bodies]")
-                    .at(entry.name.span, "it acts only on bodies")
-                    .help("without bodies, write the energy m*g*height in [potential]"),
+                    .with_span(entry.name.span, "it acts only on bodies")
+                    .with_help("without bodies, write the energy m*g*height in [potential]"),
             );
             return None;
         }
         let components = entry.quantities(&[3], "[0, 0, \"-g\"]");
-        self.found.keep(components)
+        self.found.push_error(components)
     }
 
     fn collect<T>(
@@ -182,10 +183,10 @@ impl<'d> Reader<'d> {
             lines: Vec::new(),
         };
         if let Some(table) = record.get("points") {
-            drawing.points = self.entries(table, "drawing.points", point);
+            drawing.points = self.entries(table, "drawing.points", read_point);
         }
         if let Some(table) = record.get("lines") {
-            drawing.lines = self.entries(table, "drawing.lines", line);
+            drawing.lines = self.entries(table, "drawing.lines", read_line);
         }
         Some(drawing)
     }
@@ -197,11 +198,14 @@ impl<'d> Reader<'d> {
         read: impl Fn(&Entry<'d>, &mut Diagnostics) -> Option<T>,
     ) -> Vec<T> {
         let example = format!("{{ }} or [{section}]");
-        let entries = self.found.keep(table.table(&example)).unwrap_or_default();
+        let entries = self
+            .found
+            .push_error(table.table(&example))
+            .unwrap_or_default();
         if let Some(excess) = entries.get(MAX_ENTRIES) {
             self.found.push(
                 Diagnostic::error(format!("[{section}] has more than {MAX_ENTRIES} entries"))
-                    .at(excess.name.span, "one too many"),
+                    .with_span(excess.name.span, "one too many"),
             );
             return Vec::new();
         }
@@ -216,17 +220,17 @@ impl<'d> Reader<'d> {
 fn unknown_section(name: &Name) -> Diagnostic {
     let known: Vec<&str> = keys::sections().collect();
     let listed = format!("the sections are {}", known.join(", "));
-    Diagnostic::error(format!("unknown section {}", quoted(&name.text)))
-        .at(name.span, "not known")
-        .help(did_you_mean(&name.text, known).unwrap_or(listed))
+    Diagnostic::error(format!("unknown section {}", quote(&name.text)))
+        .with_span(name.span, "not known")
+        .with_help(did_you_mean(&name.text, known).unwrap_or(listed))
 }
 
 fn misplaced_order(name: &Name, has_fields: bool) -> Diagnostic {
     let diagnostic = if has_fields {
-        Diagnostic::error("`order` does not belong here").help("move it to [fields.NAME]")
+        Diagnostic::error("`order` does not belong here").with_help("move it to [fields.NAME]")
     } else {
         Diagnostic::error("`order` is given, but the model has no field")
-            .help("remove it: only a field has a modal truncation order")
+            .with_help("remove it: only a field has a modal truncation order")
     };
-    diagnostic.at(name.span, "not part of a field")
+    diagnostic.with_span(name.span, "not part of a field")
 }

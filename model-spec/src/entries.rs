@@ -1,6 +1,6 @@
 //! Reads one entry of each section: the required keys and the kinds of their values.
 
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
@@ -9,7 +9,7 @@ use crate::raw::{
     RawUncertainty,
 };
 use crate::suggest::did_you_mean;
-use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
+use crate::table::{Entry, Name, Quantity, Record, StringValue, unknown_key_error};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
 const UNCERTAINTY_EXAMPLE: &str = "{ relative = 0.02 }";
@@ -23,14 +23,14 @@ const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
                              coordinates = \"q\", order = 4, unit = \"m\" }";
 
-pub fn name_of(written: Written) -> Name {
+pub fn to_name(written: StringValue) -> Name {
     Name {
         text: written.text,
         span: written.span,
     }
 }
 
-pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
+pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
     let record = entry.record(&keys::PARAMETER, PARAMETER_EXAMPLE, found)?;
     let help = "give a number in the declared unit, or an expression of other parameters";
     let value = record.require("value", help, found)?.quantity();
@@ -42,7 +42,7 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
         min: record.number("min", found),
         max: record.number("max", found),
         uncertainty: uncertainty(&record, found),
-        value: found.keep(value)?,
+        value: found.push_error(value)?,
     })
 }
 
@@ -57,8 +57,8 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
         let message = format!("an uncertainty has one key, not {}", given.len());
         found.push(
             Diagnostic::error(message)
-                .at(entry.span(), "expected one of relative, sd, between")
-                .help(format!("write uncertainty = {UNCERTAINTY_EXAMPLE}")),
+                .with_span(entry.span(), "expected one of relative, sd, between")
+                .with_help(format!("write uncertainty = {UNCERTAINTY_EXAMPLE}")),
         );
         return None;
     };
@@ -71,15 +71,17 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
             }
             _ => Err(
                 Diagnostic::error("the ends of an uncertainty must be numbers")
-                    .at(one.span(), "expected two numbers")
-                    .help("write them in the parameter's unit, for example { between = [1, 2] }"),
+                    .with_span(one.span(), "expected two numbers")
+                    .with_help(
+                        "write them in the parameter's unit, for example { between = [1, 2] }",
+                    ),
             ),
         }),
     };
-    found.keep(raw)
+    found.push_error(raw)
 }
 
-pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
+pub fn read_coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
     let record = entry.record(&keys::COORDINATE, COORDINATE_EXAMPLE, found)?;
     Some(RawCoordinate {
         name: entry.name.clone(),
@@ -94,18 +96,18 @@ pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoord
 /// Reads the `range` of a coordinate, an input or a state, if it has one.
 fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
     let entry = record.get("range")?;
-    let [low, high] = found.keep(entry.pair())?;
+    let [low, high] = found.push_error(entry.pair())?;
     let span = entry.span();
     Some(RawRange { low, high, span })
 }
 
-fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written> {
+fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<StringValue> {
     let help = "give the SI unit, for example unit = \"m\" or unit = \"rad\"";
     let unit = record.require("unit", help, found)?.written();
-    found.keep(unit)
+    found.push_error(unit)
 }
 
-pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
+pub fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
     let record = entry.record(&keys::INPUT, "{ unit = \"N m\" }", found)?;
     Some(RawInput {
         name: entry.name.clone(),
@@ -121,21 +123,23 @@ pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
 fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
     let Some((number, span)) = record
         .get("rates")
-        .and_then(|entry| found.keep(entry.whole()))
+        .and_then(|entry| found.push_error(entry.integer()))
     else {
         return 0;
     };
     if number != 2 {
         let diagnostic = Diagnostic::error(format!("an input cannot have {number} given rates"))
-            .at(span, "expected 2")
-            .help("with rates = 2 the first and second rate are inputs too: `s_dot` and `s_ddot`");
+            .with_span(span, "expected 2")
+            .with_help(
+                "with rates = 2 the first and second rate are inputs too: `s_dot` and `s_ddot`",
+            );
         found.push(diagnostic);
         return 0;
     }
     2
 }
 
-pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
+pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     let record = entry.record(&keys::STATE, STATE_EXAMPLE, found)?;
     let unit = required_unit(&record, found);
     let help = "give its time derivative: rate = \"(k*x - z)/tau\"";
@@ -143,27 +147,27 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     Some(RawState {
         name: entry.name.clone(),
         unit,
-        rate: found.keep(rate)?,
+        rate: found.push_error(rate)?,
         initial: record.quantity("initial", found),
         range: range(&record, found),
         doc: record.text("doc", found),
     })
 }
 
-pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
     let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
     let zero = record.require("zero", help, found)?.scalar_or_vector();
     Some(RawTerm {
         name: entry.name.clone(),
-        value: found.keep(zero)?,
+        value: found.push_error(zero)?,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     })
 }
 
 /// Reads an entry of `[impacts]` and its restitution.
-pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
+pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = entry.record(&keys::IMPACT, IMPACT_EXAMPLE, found)?;
     let help = "give the distance that crosses zero at the impact: when = \"y\"";
     let when = record.require("when", help, found).map(Entry::quantity);
@@ -172,14 +176,14 @@ pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Qu
     let restitution = restitution.map(Entry::quantity);
     let term = RawTerm {
         name: entry.name.clone(),
-        value: found.keep(when?)?,
+        value: found.push_error(when?)?,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     };
-    Some((term, found.keep(restitution?)?))
+    Some((term, found.push_error(restitution?)?))
 }
 
-pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
+pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     let record = entry.record(&keys::FIELD, FIELD_EXAMPLE, found)?;
     let along = record
         .require("along", "name the position: along = \"x\"", found)
@@ -201,45 +205,45 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
         doc: record.text("doc", found),
-        along: name_of(found.keep(along?.written())?),
-        from: found.keep(from?.quantity())?,
-        to: found.keep(to?.quantity())?,
-        basis: basis_of(&record, &basis?, found)?,
-        coordinates: name_of(found.keep(coordinates?.written())?),
-        order: found.keep(order?.whole())?,
+        along: to_name(found.push_error(along?.written())?),
+        from: found.push_error(from?.quantity())?,
+        to: found.push_error(to?.quantity())?,
+        basis: read_basis(&record, &basis?, found)?,
+        coordinates: to_name(found.push_error(coordinates?.written())?),
+        order: found.push_error(order?.integer())?,
     })
 }
 
-fn basis_of(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
-    let written = found.keep(basis.written())?;
+fn read_basis(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
+    let written = found.push_error(basis.written())?;
     let table = record.get("table");
     if written.text == keys::TABLE {
         let help = "name the file with the shapes: table = \"modes.csv\"";
         let table = table.or_else(|| record.require("table", help, found))?;
-        return found.keep(table.written()).map(RawBasis::Table);
+        return found.push_error(table.written()).map(RawBasis::Table);
     }
-    let named = found.keep(basis_named(&written))?;
+    let named = found.push_error(parse_basis(&written))?;
     if let Some(table) = table {
         found.push(
             Diagnostic::error("`table` is given, but the basis is not \"table\"")
-                .at(table.name.span, "this file is not read")
-                .help("write basis = \"table\", or remove `table`"),
+                .with_span(table.name.span, "this file is not read")
+                .with_help("write basis = \"table\", or remove `table`"),
         );
         return None;
     }
     Some(RawBasis::Named(named))
 }
 
-fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
+fn parse_basis(written: &StringValue) -> Result<Basis, Diagnostic> {
     let meant = keys::BASES.iter().find(|(name, _)| *name == written.text);
     meant.map(|(_, basis)| basis.clone()).ok_or_else(|| {
-        let unknown = Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
-            .at(written.span, "not known");
+        let unknown = Diagnostic::error(format!("unknown basis {}", quote(&written.text)))
+            .with_span(written.span, "not known");
         let names = keys::BASES
             .iter()
             .map(|(name, _)| *name)
             .chain([keys::TABLE]);
-        unknown.help(did_you_mean(&written.text, names).unwrap_or_else(|| {
+        unknown.with_help(did_you_mean(&written.text, names).unwrap_or_else(|| {
             "a beam is named by its ends at `from` and `to`: clamped, pinned, free or guided, as \
              pinned_clamped; the others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string, \
              table (shapes from a file) and clamped_free_printed"
@@ -255,7 +259,7 @@ pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::quantity, found)
 }
 
-pub fn definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+pub fn read_definition(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     named_expression(entry, Entry::scalar_or_vector, found)
 }
 
@@ -267,93 +271,93 @@ fn named_expression<'d>(
     if !entry.is_table() {
         return Some(RawTerm {
             name: entry.name.clone(),
-            value: found.keep(read(entry))?,
+            value: found.push_error(read(entry))?,
             doc: String::new(),
             origin: String::new(),
         });
     }
     let record = entry.record(&keys::TERM, "\"1/2*m*dot(x)^2\"", found)?;
-    term_of(&record, read, found)
+    read_term(&record, read, found)
 }
 
 /// Reads a named expression from a table with at least `value`.
-fn term_of<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
+fn read_term<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
     let help = "give an expression: value = \"...\"";
     let value = read(record.require("value", help, found)?);
     Some(RawTerm {
         name: record.owner().clone(),
-        value: found.keep(value)?,
+        value: found.push_error(value)?,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     })
 }
 
 /// Reads an entry of `[forces]` and the quantity it acts on.
-pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
+pub fn read_force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = entry.record(&keys::FORCE, FORCE_EXAMPLE, found)?;
     let help = "give the coordinate or displacement the force acts on: on = \"theta\"";
     let on = record
         .require("on", help, found)
         .map(Entry::scalar_or_vector);
-    let term = term_of(&record, Entry::scalar_or_vector, found);
-    Some((term?, found.keep(on?)?))
+    let term = read_term(&record, Entry::scalar_or_vector, found);
+    Some((term?, found.push_error(on?)?))
 }
 
 /// Reads an entry of `[observables]` and its declared unit.
-pub fn observable(
+pub fn read_observable(
     entry: &Entry<'_>,
     found: &mut Diagnostics,
-) -> Option<(RawTerm, Option<Written>)> {
+) -> Option<(RawTerm, Option<StringValue>)> {
     if !entry.is_table() {
-        return Some((definition(entry, found)?, None));
+        return Some((read_definition(entry, found)?, None));
     }
     let record = entry.record(&keys::OBSERVABLE, "\"at(w, l)\"", found)?;
     let unit = record.written("unit", found);
-    Some((term_of(&record, Entry::scalar_or_vector, found)?, unit))
+    Some((read_term(&record, Entry::scalar_or_vector, found)?, unit))
 }
 
-pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
+pub fn read_frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
     let origin = record.get("origin");
     let origin = origin.map(|entry| entry.vector("[0, 0, \"d\"]"));
     Some(RawFrame {
         name: entry.name.clone(),
         parent: record.written("in", found),
-        origin: origin.and_then(|origin| found.keep(origin)),
+        origin: origin.and_then(|origin| found.push_error(origin)),
         rotation: record.written("rotation", found),
         doc: record.text("doc", found),
     })
 }
 
-pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
+pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     let record = entry.record(&keys::BODY, BODY_EXAMPLE, found)?;
     let mut list = |key: &str, counts: &[usize], example: &str| {
         let list = record.get(key)?.quantities(counts, example);
-        found.keep(list)
+        found.push_error(list)
     };
     let inertia = list("inertia", &[3, 6], "[\"I_x\", \"I_y\", \"I_z\"]");
     let centre = record.get("centre");
     let centre = centre.map(|entry| entry.vector("[0, 0, \"c\"]"));
-    let centre = centre.and_then(|centre| found.keep(centre));
+    let centre = centre.and_then(|centre| found.push_error(centre));
     let help = "name the frame it is fixed to: frame = \"link_1\"";
     let frame = record.require("frame", help, found).map(Entry::written);
-    let frame = frame.and_then(|frame| found.keep(frame));
+    let frame = frame.and_then(|frame| found.push_error(frame));
     let mass = match (record.get("mass"), record.get("inertia")) {
         (None, None) => {
-            let name = quoted(&entry.name.text);
+            let name = quote(&entry.name.text);
             found.push(
                 Diagnostic::error(format!("the body {name} has no `mass` and no `inertia`"))
-                    .at(entry.name.span, "its energy would be zero")
-                    .help("give its mass: mass = \"m\""),
+                    .with_span(entry.name.span, "its energy would be zero")
+                    .with_help("give its mass: mass = \"m\""),
             );
             return None;
         }
         (None, Some(_)) => None,
-        (Some(mass), _) => Some(found.keep(mass.quantity())?),
+        (Some(mass), _) => Some(found.push_error(mass.quantity())?),
     };
     Some(RawBody {
         name: entry.name.clone(),
-        frame: frame?,
+        frame: read_frame?,
         mass,
         centre,
         inertia,
@@ -362,10 +366,10 @@ pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     })
 }
 
-pub fn coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoefficient> {
+pub fn read_coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoefficient> {
     let name = entry.name.clone();
     if !entry.is_table() {
-        let value = found.keep(entry.quantity())?;
+        let value = found.push_error(entry.quantity())?;
         return Some(RawCoefficient {
             name,
             kind: RawCoefficientKind::Value(value),
@@ -389,11 +393,14 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
         if let Some(other) = others.iter().find_map(|key| record.get(key)) {
             let known = ["value", "each", "doc"];
             found.push(
-                unknown_key(&other.name, &known).help("give either `value`, or `of` and `by`"),
+                unknown_key_error(&other.name, &known)
+                    .with_help("give either `value`, or `of` and `by`"),
             );
             return None;
         }
-        return found.keep(value.quantity()).map(RawCoefficientKind::Value);
+        return found
+            .push_error(value.quantity())
+            .map(RawCoefficientKind::Value);
     }
     let help =
         "give `of` (the coordinate of the equation) and `by` (the quantity multiplied), or `value`";
@@ -401,18 +408,18 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
     let by = record.require("by", help, found)?.quantity();
     let times = record.quantity("times", found);
     Some(RawCoefficientKind::Factor(
-        found.keep(of)?,
-        found.keep(by)?,
+        found.push_error(of)?,
+        found.push_error(by)?,
         times,
     ))
 }
 
-pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
+pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
     let observable = record.written("observable", found);
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
-        observable,
+        read_observable,
         channel: entry.name.clone(),
         gain: number("gain", 1.0),
         bias: number("bias", 0.0),
@@ -420,12 +427,15 @@ pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
     })
 }
 
-pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
+pub fn read_point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     let record = entry.record(&keys::POINT, "{ x = \"tip_x\", y = \"tip_y\" }", found)?;
     let help = "give a number in m, or the name of an observable or a coordinate in m";
     let x = record.require("x", help, found).map(Entry::quantity);
     let y = record.require("y", help, found).map(Entry::quantity);
-    let (x, y) = (x.and_then(|x| found.keep(x)), y.and_then(|y| found.keep(y)));
+    let (x, y) = (
+        x.and_then(|x| found.push_error(x)),
+        y.and_then(|y| found.push_error(y)),
+    );
     Some(RawPoint {
         name: entry.name.clone(),
         x: x?,
@@ -433,19 +443,19 @@ pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     })
 }
 
-pub fn line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
-    let points = found.keep(entry.list("[\"origin\", \"tip\"]"))?;
+pub fn read_line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
+    let points = found.push_error(entry.list("[\"origin\", \"tip\"]"))?;
     let count = points.len();
-    let points: Vec<Written> = points
+    let points: Vec<StringValue> = points
         .iter()
-        .filter_map(|point| found.keep(point.written()))
+        .filter_map(|point| found.push_error(point.written()))
         .collect();
     if count < 2 {
-        let name = quoted(&entry.name.text);
+        let name = quote(&entry.name.text);
         found.push(
             Diagnostic::error(format!("the line {name} has fewer than two points"))
-                .at(entry.span(), "a line joins at least two points")
-                .help("for example [\"origin\", \"tip\"]"),
+                .with_span(entry.span(), "a line joins at least two points")
+                .with_help("for example [\"origin\", \"tip\"]"),
         );
     }
     Some(RawLine {

@@ -29,32 +29,32 @@ const OPERATORS: [Foreign; 12] = [
         &["!=", "/=", "<>", "~=", "≠"],
         "write `contact(x - a, b)` for 1 if x is more than b away from a",
     ),
-    (&["&", "&&"], AND),
-    (&["||"], OR),
+    (&["&", "&&"], AND_HELP),
+    (&["||"], OR_HELP),
     (
         &["|"],
         "write `abs(x)` for a magnitude, and `max(above(x - a), above(b - x))` for x > a or x < b",
     ),
-    (&["!"], NOT),
-    (&["?", ":"], IF),
+    (&["!"], NOT_HELP),
+    (&["?", ":"], IF_HELP),
     (&["**", "^^"], POWER),
 ];
 
 /// Words between or before operands.
 const WORDS: [Foreign; 4] = [
-    (&["and"], AND),
-    (&["or"], OR),
-    (&["not"], NOT),
+    (&["and"], AND_HELP),
+    (&["or"], OR_HELP),
+    (&["not"], NOT_HELP),
     (
         &[
             "if", "then", "else", "elif", "elseif", "where", "when", "case",
         ],
-        IF,
+        IF_HELP,
     ),
 ];
 
 const FUNCTIONS: [Foreign; 9] = [
-    (&["ifelse", "select", "piecewise", "Piecewise"], IF),
+    (&["ifelse", "select", "piecewise", "Piecewise"], IF_HELP),
     (
         &["heaviside", "Heaviside", "step"],
         "write `above(x)` for 1 if x > 0, else 0",
@@ -68,22 +68,23 @@ const FUNCTIONS: [Foreign; 9] = [
     (&["ddt", "der", "derivative"], "write dot(x) for the rate"),
 ];
 
-const AND: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
-const OR: &str = "for one of two conditions write the larger: `max(above(x - a), above(b - x))`";
-const NOT: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
-const IF: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
+const AND_HELP: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
+const OR_HELP: &str =
+    "for one of two conditions write the larger: `max(above(x - a), above(b - x))`";
+const NOT_HELP: &str = "write `1 - above(x - a)` for 1 if x <= a, else 0";
+const IF_HELP: &str = "write `above(x - a)*A + (1 - above(x - a))*B` for A if x > a, else B; `min` and `max` \
                   choose the smaller and the larger of two";
 const POWER: &str = "write x^2 for a power";
 const REMAINDER: &str =
     "there is no remainder function: `atan2(sin(x), cos(x))` is the angle x between -pi and pi";
 
 /// Returns the equivalent of an operator, a word or a function of another language.
-pub fn written_here(foreign: &str) -> Option<&'static str> {
+pub fn find_equivalent(foreign: &str) -> Option<&'static str> {
     help(OPERATORS.iter().chain(&WORDS).chain(&FUNCTIONS), foreign)
 }
 
 /// Returns the equivalent of a word between or before operands.
-pub fn word_here(word: &str) -> Option<&'static str> {
+pub fn find_word_equivalent(word: &str) -> Option<&'static str> {
     help(WORDS.iter(), word)
 }
 
@@ -93,12 +94,12 @@ fn help<'t>(mut table: impl Iterator<Item = &'t Foreign>, foreign: &str) -> Opti
 }
 
 /// Returns the operator of another language at the start of a text.
-pub fn operator_at(text: &str) -> Option<&str> {
+pub fn find_operator(text: &str) -> Option<&str> {
     let run = text.chars().take(3).take_while(|letter| is_symbol(*letter));
     let length = run.map(char::len_utf8).sum();
     let starts = (1..=length).rev().filter_map(|end| text.get(..end));
     let mut foreign = starts.filter(|start| !["*", "/", "^"].contains(start));
-    foreign.find(|start| written_here(start).is_some())
+    foreign.find(|start| find_equivalent(start).is_some())
 }
 
 /// Returns true if a character can be part of a foreign operator.
@@ -119,10 +120,10 @@ mod tests {
             ("≥ 0", "≥"),
             ("** 2", "**"),
         ] {
-            assert_eq!(operator_at(text), Some(operator), "{text}");
+            assert_eq!(find_operator(text), Some(operator), "{text}");
         }
         for text in ["if", "a", "+ a", "*a", "/ a"] {
-            assert_eq!(operator_at(text), None, "{text}");
+            assert_eq!(find_operator(text), None, "{text}");
         }
     }
 }

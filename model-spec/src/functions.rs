@@ -57,7 +57,7 @@ const KEYWORDS: [&str; 73] = [
 
 impl Function {
     /// Returns the function of a name.
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);
         found.map(|(_, function, _)| *function)
     }
@@ -73,7 +73,7 @@ impl Function {
     }
 
     /// Returns true if the function has a kink or a jump.
-    pub fn switches(self) -> bool {
+    pub fn has_switches(self) -> bool {
         matches!(
             self,
             Self::Abs
@@ -91,13 +91,13 @@ impl Function {
     }
 }
 
-pub fn callable() -> impl Iterator<Item = &'static str> {
+pub fn callable_names() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
 }
 
 /// Returns the reason that a word is reserved, as the rest of a sentence.
-pub fn reserved(word: &str) -> Option<&'static str> {
-    if callable().any(|name| name == word) {
+pub fn reservation_reason(word: &str) -> Option<&'static str> {
+    if callable_names().any(|name| name == word) {
         Some("is a function of the language")
     } else if CONSTANTS.contains(&word) {
         Some("is a built-in quantity of every model")
@@ -115,10 +115,10 @@ mod tests {
     #[test]
     fn every_function_is_found_by_name() {
         for (name, function, arguments) in FUNCTIONS {
-            assert_eq!(Function::named(name), Some(function));
+            assert_eq!(Function::from_name(name), Some(function));
             assert_eq!((function.name(), function.arguments()), (name, arguments));
-            assert!(reserved(name).is_some());
+            assert!(reservation_reason(name).is_some());
         }
-        assert_eq!(Function::named("dot"), None);
+        assert_eq!(Function::from_name("dot"), None);
     }
 }

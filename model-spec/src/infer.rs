@@ -11,13 +11,13 @@ use crate::model::{Expr, ExprKind, Function, Model};
 use crate::span::Span;
 
 /// Unit of an expression; `None` for 0, which fits any unit.
-pub type Inferred = Option<Dimension>;
+pub type InferredUnit = Option<Dimension>;
 
 pub struct Inference<'m> {
     /// Units of parameters, coordinates, inputs, states and fields.
     pub model: &'m Model,
-    pub definitions: Vec<Inferred>,
-    pub coefficients: Vec<Inferred>,
+    pub definitions: Vec<InferredUnit>,
+    pub coefficients: Vec<InferredUnit>,
 }
 
 impl Inference<'_> {
@@ -27,24 +27,24 @@ impl Inference<'_> {
         of: &Expr,
         by: &Expr,
         times: Option<&Expr>,
-    ) -> Result<Inferred, Diagnostic> {
-        let known = |expr: &Expr| Ok(self.infer(expr)?.unwrap_or(Dimension::NONE));
+    ) -> Result<InferredUnit, Diagnostic> {
+        let known = |expr: &Expr| Ok(self.infer(expr)?.unwrap_or(Dimension::DIMENSIONLESS));
         let (of_unit, by_unit) = (known(of)?, known(by)?);
-        let times_unit = times.map_or(Ok(Dimension::NONE), known)?;
+        let times_unit = times.map_or(Ok(Dimension::DIMENSIONLESS), known)?;
         let acceleration = of_unit
-            .over(Dimension::TIME)
-            .and_then(|r| r.over(Dimension::TIME));
-        let factor = acceleration.and_then(|a| a.over(by_unit)?.times(times_unit));
-        factor.map(Some).ok_or_else(|| out_of_range(by.span))
+            .divide(Dimension::TIME)
+            .and_then(|r| r.divide(Dimension::TIME));
+        let factor = acceleration.and_then(|a| a.divide(by_unit)?.multiply(times_unit));
+        factor.map(Some).ok_or_else(|| unit_overflow_error(by.span))
     }
 
-    pub fn infer(&self, expr: &Expr) -> Result<Inferred, Diagnostic> {
+    pub fn infer(&self, expr: &Expr) -> Result<InferredUnit, Diagnostic> {
         let model = self.model;
-        let out_of_range = || out_of_range(expr.span);
+        let out_of_range = || unit_overflow_error(expr.span);
         match &expr.kind {
             ExprKind::Number(0.0) => Ok(None),
             ExprKind::Number(_) | ExprKind::Pi | ExprKind::ModeShape(_) => {
-                Ok(Some(Dimension::NONE))
+                Ok(Some(Dimension::DIMENSIONLESS))
             }
             ExprKind::Time => Ok(Some(Dimension::TIME)),
             ExprKind::Position(_) => Ok(Some(Dimension::LENGTH)),
@@ -61,7 +61,7 @@ impl Inference<'_> {
                     true => Dimension::POWER,
                     false => Dimension::ENERGY,
                 };
-                combined(Some(whole), own, Dimension::over).ok_or_else(out_of_range)
+                combine_units(Some(whole), own, Dimension::divide).ok_or_else(out_of_range)
             }
             ExprKind::Coefficient(index) => {
                 Ok(self.coefficients.get(index.index()).copied().flatten())
@@ -71,18 +71,19 @@ impl Inference<'_> {
             }
             ExprKind::Dot(operand) => {
                 let per = Some(Dimension::TIME);
-                scaled(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
+                scale_unit(self.infer(operand)?, per, Dimension::divide).ok_or_else(out_of_range)
             }
             ExprKind::Diff(operand, times) => {
-                let per = Dimension::LENGTH.power(Ratio::from_integer(i32::from(*times)));
-                scaled(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
+                let per = Dimension::LENGTH.raise(Ratio::from_integer(i32::from(*times)));
+                scale_unit(self.infer(operand)?, per, Dimension::divide).ok_or_else(out_of_range)
             }
             ExprKind::At {
                 value, position, ..
             } => self.at(value, position),
             ExprKind::Integral { integrand, .. } => {
                 let along = Some(Dimension::LENGTH);
-                scaled(self.infer(integrand)?, along, Dimension::times).ok_or_else(out_of_range)
+                scale_unit(self.infer(integrand)?, along, Dimension::multiply)
+                    .ok_or_else(out_of_range)
             }
             ExprKind::Sum { summand, .. } => self.infer(summand),
             ExprKind::Negate(operand) => self.infer(operand),
@@ -91,14 +92,17 @@ impl Inference<'_> {
         }
     }
 
-    fn at(&self, value: &Expr, position: &Expr) -> Result<Inferred, Diagnostic> {
+    fn at(&self, value: &Expr, position: &Expr) -> Result<InferredUnit, Diagnostic> {
         let place = self.infer(position)?;
         match place {
             Some(place) if place != Dimension::LENGTH => {
-                let message = format!("the position along a field is {}, expected m", Words(place));
+                let message = format!(
+                    "the position along a field is {}, expected m",
+                    UnitPhrase(place)
+                );
                 Err(Diagnostic::error(message)
-                    .at(position.span, Words(place).to_string())
-                    .help("declare the length as a parameter with a unit"))
+                    .with_span(position.span, UnitPhrase(place).to_string())
+                    .with_help("declare the length as a parameter with a unit"))
             }
             _ => self.infer(value),
         }
@@ -110,68 +114,78 @@ impl Inference<'_> {
         operator: BinaryOperator,
         left: &Expr,
         right: &Expr,
-    ) -> Result<Inferred, Diagnostic> {
+    ) -> Result<InferredUnit, Diagnostic> {
         let inferred = self.infer(left)?;
         match operator {
-            BinaryOperator::Add => self.same(inferred, left, right, "added to"),
-            BinaryOperator::Subtract => self.same(inferred, left, right, "subtracted from"),
-            BinaryOperator::Multiply => combined(inferred, self.infer(right)?, Dimension::times)
-                .ok_or_else(|| out_of_range(whole.span)),
+            BinaryOperator::Add => self.expect_same_unit(inferred, left, right, "added to"),
+            BinaryOperator::Subtract => {
+                self.expect_same_unit(inferred, left, right, "subtracted from")
+            }
+            BinaryOperator::Multiply => {
+                combine_units(inferred, self.infer(right)?, Dimension::multiply)
+                    .ok_or_else(|| unit_overflow_error(whole.span))
+            }
             BinaryOperator::Divide => match self.infer(right)? {
                 // `constants` reports the division by 0.
                 None => Ok(None),
-                by => {
-                    combined(inferred, by, Dimension::over).ok_or_else(|| out_of_range(whole.span))
-                }
+                by => combine_units(inferred, by, Dimension::divide)
+                    .ok_or_else(|| unit_overflow_error(whole.span)),
             },
             BinaryOperator::Power => self.power(inferred, left, right),
         }
     }
 
     /// Checks that two expressions have one unit, and returns it.
-    fn same(
+    fn expect_same_unit(
         &self,
-        first: Inferred,
+        first: InferredUnit,
         left: &Expr,
         right: &Expr,
         verb: &str,
-    ) -> Result<Inferred, Diagnostic> {
+    ) -> Result<InferredUnit, Diagnostic> {
         match (first, self.infer(right)?) {
             (Some(one), Some(other)) if one != other => {
                 let message = format!("{} is {verb} {}", quantity(other), quantity(one));
                 Err(Diagnostic::error(message)
-                    .at(right.span, Words(other).to_string())
-                    .also(left.span, Words(one).to_string())
-                    .help_if(difference(other, one)))
+                    .with_span(right.span, UnitPhrase(other).to_string())
+                    .with_related_span(left.span, UnitPhrase(one).to_string())
+                    .with_optional_help(difference(other, one)))
             }
             (one, other) => Ok(one.or(other)),
         }
     }
 
-    fn power(&self, base: Inferred, left: &Expr, right: &Expr) -> Result<Inferred, Diagnostic> {
-        self.pure(right, "an exponent")?;
-        let Some(dimension) = base.filter(|dimension| !dimension.is_none()) else {
-            return Ok(base.and(Some(Dimension::NONE)));
+    fn power(
+        &self,
+        base: InferredUnit,
+        left: &Expr,
+        right: &Expr,
+    ) -> Result<InferredUnit, Diagnostic> {
+        self.expect_dimensionless(right, "an exponent")?;
+        let Some(dimension) = base.filter(|dimension| !dimension.is_dimensionless()) else {
+            return Ok(base.and(Some(Dimension::DIMENSIONLESS)));
         };
-        let Some(exponent) = rational(right) else {
+        let Some(exponent) = rational_exponent(right) else {
             return Err(Diagnostic::error(format!(
                 "the exponent of a quantity in {dimension} must be written as a number"
             ))
-            .at(right.span, "the unit would depend on this value")
-            .also(left.span, format!("in {dimension}"))
-            .help("write a number or a fraction such as ^2 or ^(1/2)"));
+            .with_span(right.span, "the unit would depend on this value")
+            .with_related_span(left.span, format!("in {dimension}"))
+            .with_help("write a number or a fraction such as ^2 or ^(1/2)"));
         };
-        let raised = dimension.power(exponent);
-        raised.map(Some).ok_or_else(|| out_of_range(left.span))
+        let raised = dimension.raise(exponent);
+        raised
+            .map(Some)
+            .ok_or_else(|| unit_overflow_error(left.span))
     }
 
-    fn pure(&self, expr: &Expr, what: &str) -> Result<(), Diagnostic> {
+    fn expect_dimensionless(&self, expr: &Expr, what: &str) -> Result<(), Diagnostic> {
         match self.infer(expr)? {
-            Some(dimension) if !dimension.is_none() => Err(Diagnostic::error(format!(
+            Some(dimension) if !dimension.is_dimensionless() => Err(Diagnostic::error(format!(
                 "{what} is in {dimension}, expected a pure number"
             ))
-            .at(expr.span, format!("in {dimension}"))
-            .help("divide it by a quantity of the same unit")),
+            .with_span(expr.span, format!("in {dimension}"))
+            .with_help("divide it by a quantity of the same unit")),
             _ => Ok(()),
         }
     }
@@ -181,51 +195,52 @@ impl Inference<'_> {
         whole: &Expr,
         function: Function,
         arguments: &[Expr],
-    ) -> Result<Inferred, Diagnostic> {
+    ) -> Result<InferredUnit, Diagnostic> {
         let name = function.name();
         match (function, arguments) {
             (Function::Abs, [argument]) => self.infer(argument),
             (Function::Sign | Function::Above, [argument]) => {
-                self.infer(argument).map(|_| Some(Dimension::NONE))
+                self.infer(argument).map(|_| Some(Dimension::DIMENSIONLESS))
             }
             (Function::Sqrt, [argument]) => match self.infer(argument)? {
                 Some(dimension) => dimension
-                    .power(Ratio::new(1, 2))
+                    .raise(Ratio::new(1, 2))
                     .map(Some)
-                    .ok_or_else(|| out_of_range(whole.span)),
+                    .ok_or_else(|| unit_overflow_error(whole.span)),
                 None => Ok(None),
             },
-            (Function::Min | Function::Max | Function::Deadzone, [first, second]) => self.same(
-                self.infer(first)?,
-                first,
-                second,
-                "compared in one call with",
-            ),
+            (Function::Min | Function::Max | Function::Deadzone, [first, second]) => self
+                .expect_same_unit(
+                    self.infer(first)?,
+                    first,
+                    second,
+                    "compared in one call with",
+                ),
             (Function::Atan2 | Function::Contact, [first, second]) => {
-                self.same(
+                self.expect_same_unit(
                     self.infer(first)?,
                     first,
                     second,
                     "compared in one call with",
                 )?;
-                Ok(Some(Dimension::NONE))
+                Ok(Some(Dimension::DIMENSIONLESS))
             }
             _ => {
                 for argument in arguments {
-                    self.pure(argument, &format!("the argument of `{name}`"))?;
+                    self.expect_dimensionless(argument, &format!("the argument of `{name}`"))?;
                 }
-                Ok(Some(Dimension::NONE))
+                Ok(Some(Dimension::DIMENSIONLESS))
             }
         }
     }
 }
 
 /// Unit in a sentence: "in N m", "a pure number".
-pub struct Words(pub Dimension);
+pub struct UnitPhrase(pub Dimension);
 
-impl std::fmt::Display for Words {
+impl std::fmt::Display for UnitPhrase {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if self.0.is_none() {
+        if self.0.is_dimensionless() {
             f.write_str("a pure number")
         } else {
             write!(f, "in {}", self.0)
@@ -234,7 +249,7 @@ impl std::fmt::Display for Words {
 }
 
 fn quantity(dimension: Dimension) -> String {
-    if dimension.is_none() {
+    if dimension.is_dimensionless() {
         "a pure number".to_owned()
     } else {
         format!("a quantity in {dimension}")
@@ -243,24 +258,24 @@ fn quantity(dimension: Dimension) -> String {
 
 /// Returns the unit of a product or quotient; the literal 0 counts as a pure number. `None` if
 /// an exponent overflows.
-fn combined(
-    left: Inferred,
-    right: Inferred,
+fn combine_units(
+    left: InferredUnit,
+    right: InferredUnit,
     combine: impl Fn(Dimension, Dimension) -> Option<Dimension>,
-) -> Option<Inferred> {
+) -> Option<InferredUnit> {
     if left.or(right).is_none() {
         return Some(None);
     }
-    let [left, right] = [left, right].map(|side| side.unwrap_or(Dimension::NONE));
+    let [left, right] = [left, right].map(|side| side.unwrap_or(Dimension::DIMENSIONLESS));
     combine(left, right).map(Some)
 }
 
 /// Returns the unit multiplied or divided by another one. 0 still fits any unit.
-fn scaled(
-    inferred: Inferred,
+fn scale_unit(
+    inferred: InferredUnit,
     by: Option<Dimension>,
     combine: impl Fn(Dimension, Dimension) -> Option<Dimension>,
-) -> Option<Inferred> {
+) -> Option<InferredUnit> {
     match inferred {
         Some(own) => combine(own, by?).map(Some),
         None => Some(None),
@@ -268,16 +283,16 @@ fn scaled(
 }
 
 /// Returns an exponent written as a number or a fraction of whole numbers.
-fn rational(expr: &Expr) -> Option<Exponent> {
+fn rational_exponent(expr: &Expr) -> Option<Exponent> {
     match &expr.kind {
         ExprKind::Number(value) => (1..=12).find_map(|denominator| {
             let numerator = value * f64::from(denominator);
             let whole = numerator.fract() == 0.0 && numerator.abs() <= 1000.0;
             whole.then(|| Ratio::new(numerator as i32, denominator))
         }),
-        ExprKind::Negate(operand) => rational(operand).map(|exponent| -exponent),
+        ExprKind::Negate(operand) => rational_exponent(operand).map(|exponent| -exponent),
         ExprKind::Binary(BinaryOperator::Divide, left, right) => {
-            let (above, below) = (rational(left)?, rational(right)?);
+            let (above, below) = (rational_exponent(left)?, rational_exponent(right)?);
             (below != Ratio::from_integer(0)).then(|| above / below)
         }
         _ => None,
@@ -286,11 +301,11 @@ fn rational(expr: &Expr) -> Option<Exponent> {
 
 /// Suggests the missing factor between a wrong unit and the expected one.
 pub fn difference(inferred: Dimension, expected: Dimension) -> Option<String> {
-    let missing = expected.over(inferred)?;
+    let missing = expected.divide(inferred)?;
     Some(format!("a factor in {missing} would correct the unit"))
 }
 
-fn out_of_range(span: Span) -> Diagnostic {
+fn unit_overflow_error(span: Span) -> Diagnostic {
     Diagnostic::error("an exponent in the unit of this expression overflows")
-        .at(span, "exponent too large")
+        .with_span(span, "exponent too large")
 }

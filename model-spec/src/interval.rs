@@ -26,7 +26,7 @@ impl Interval {
 
     /// Returns the interval between two ends, widened by a few rounding errors. If an end is NaN,
     /// returns [`Interval::ALL`].
-    pub fn between(low: f64, high: f64) -> Self {
+    pub fn from_ends(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
         }
@@ -37,12 +37,12 @@ impl Interval {
     }
 
     /// Returns the bounds of a sum.
-    pub fn plus(self, other: Self) -> Self {
-        Self::between(self.low + other.low, self.high + other.high)
+    pub fn add_interval(self, other: Self) -> Self {
+        Self::from_ends(self.low + other.low, self.high + other.high)
     }
 
     /// Returns the bounds of the negated value.
-    pub fn negated(self) -> Self {
+    pub fn negate(self) -> Self {
         Self {
             low: -self.high,
             high: -self.low,
@@ -50,7 +50,7 @@ impl Interval {
     }
 
     /// Returns the bounds of a product.
-    pub fn times(self, other: Self) -> Self {
+    pub fn multiply(self, other: Self) -> Self {
         // 0 times an unbounded number is 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
@@ -61,13 +61,13 @@ impl Interval {
         ];
         let low = ends.into_iter().fold(f64::INFINITY, f64::min);
         let high = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::between(low, high)
+        Self::from_ends(low, high)
     }
 
     /// Returns the bounds of the reciprocal; all numbers if the interval contains 0.
     pub fn reciprocal(self) -> Self {
         if self.low > 0.0 || self.high < 0.0 {
-            Self::between(1.0 / self.high, 1.0 / self.low)
+            Self::from_ends(1.0 / self.high, 1.0 / self.low)
         } else {
             Self::ALL
         }
@@ -83,25 +83,27 @@ impl Interval {
 
     /// Returns the bounds of the power with a constant exponent, over the values at which it is
     /// defined.
-    pub fn power(self, exponent: f64) -> Self {
+    pub fn raise(self, exponent: f64) -> Self {
         let raised = |x: f64| x.powf(exponent);
         if exponent < 0.0 {
-            return self.power(-exponent).reciprocal();
+            return self.raise(-exponent).reciprocal();
         }
         match (exponent.fract() == 0.0, exponent % 2.0 == 0.0) {
-            (true, true) => self.magnitude().rising((0.0, f64::INFINITY), raised),
-            (true, false) => self.rising((f64::NEG_INFINITY, f64::INFINITY), raised),
+            (true, true) => self
+                .magnitude()
+                .apply_non_decreasing((0.0, f64::INFINITY), raised),
+            (true, false) => self.apply_non_decreasing((f64::NEG_INFINITY, f64::INFINITY), raised),
             // Undefined for negative numbers.
-            (false, _) => self.rising((0.0, f64::INFINITY), raised),
+            (false, _) => self.apply_non_decreasing((0.0, f64::INFINITY), raised),
         }
     }
 
     /// Returns the bounds of a function of one or two arguments, over the values at which it is
     /// defined.
-    pub fn of_function(function: Function, arguments: &[Self]) -> Self {
+    pub fn apply_function(function: Function, arguments: &[Self]) -> Self {
         match arguments {
-            [only] => only.of_one(function),
-            [first, second] => Self::of_two(function, *first, *second),
+            [only] => only.apply_unary(function),
+            [first, second] => Self::apply_binary(function, *first, *second),
             _ => Self::ALL,
         }
     }
@@ -117,41 +119,45 @@ impl Interval {
     }
 
     /// Returns the image under a non-decreasing function with the domain `from..=to`.
-    fn rising(self, (from, to): (f64, f64), function: impl Fn(f64) -> f64) -> Self {
+    fn apply_non_decreasing(self, (from, to): (f64, f64), function: impl Fn(f64) -> f64) -> Self {
         let end = |x: f64| function(x.clamp(from, to));
-        Self::between(end(self.low), end(self.high))
+        Self::from_ends(end(self.low), end(self.high))
     }
 
-    fn of_one(self, function: Function) -> Self {
+    fn apply_unary(self, function: Function) -> Self {
         let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
         let value = |x: f64| call(function, x, f64::NAN);
         match function {
-            Function::Sin | Function::Cos => Self::between(-1.0, 1.0),
-            Function::Asin => self.rising((-1.0, 1.0), value),
-            Function::Acos => Self::between(0.0, PI),
+            Function::Sin | Function::Cos => Self::from_ends(-1.0, 1.0),
+            Function::Asin => self.apply_non_decreasing((-1.0, 1.0), value),
+            Function::Acos => Self::from_ends(0.0, PI),
             Function::Atan | Function::Sinh | Function::Tanh | Function::Exp => {
-                self.rising(everywhere, value)
+                self.apply_non_decreasing(everywhere, value)
             }
-            Function::Cosh => self.magnitude().rising((0.0, f64::INFINITY), value),
-            Function::Ln | Function::Sqrt => self.rising((0.0, f64::INFINITY), value),
+            Function::Cosh => self
+                .magnitude()
+                .apply_non_decreasing((0.0, f64::INFINITY), value),
+            Function::Ln | Function::Sqrt => self.apply_non_decreasing((0.0, f64::INFINITY), value),
             Function::Abs => self.magnitude(),
             // The value at infinity equals that of a large number.
-            Function::Sign | Function::Above => self.rising((f64::MIN, f64::MAX), value),
+            Function::Sign | Function::Above => {
+                self.apply_non_decreasing((f64::MIN, f64::MAX), value)
+            }
             _ => Self::ALL,
         }
     }
 
-    fn of_two(function: Function, x: Self, y: Self) -> Self {
+    fn apply_binary(function: Function, x: Self, y: Self) -> Self {
         match function {
-            Function::Atan2 => Self::between(-PI - FRAC_PI_2 * ROUNDING, PI),
-            Function::Min => Self::between(x.low.min(y.low), x.high.min(y.high)),
-            Function::Max => Self::between(x.low.max(y.low), x.high.max(y.high)),
+            Function::Atan2 => Self::from_ends(-PI - FRAC_PI_2 * ROUNDING, PI),
+            Function::Min => Self::from_ends(x.low.min(y.low), x.high.min(y.high)),
+            Function::Max => Self::from_ends(x.low.max(y.low), x.high.max(y.high)),
             Function::Deadzone => {
                 // The half-width moves the argument towards 0, but not past it.
                 let width = y.low.max(0.0);
-                Self::between((x.low + width).min(0.0), (x.high - width).max(0.0))
+                Self::from_ends((x.low + width).min(0.0), (x.high - width).max(0.0))
             }
-            Function::Contact => Self::between(0.0, 1.0),
+            Function::Contact => Self::from_ends(0.0, 1.0),
             _ => Self::ALL,
         }
     }
@@ -163,16 +169,19 @@ mod tests {
 
     #[test]
     fn bounds_contain_values_at_the_ends_and_between() {
-        let x = Interval::between(-2.0, 3.0);
+        let x = Interval::from_ends(-2.0, 3.0);
         let images: [(Interval, &dyn Fn(f64) -> f64); 6] = [
-            (x.power(2.0), &|x| x * x),
-            (x.power(3.0), &|x| x.powi(3)),
-            (x.times(x.negated()), &|x| -x * x),
-            (x.plus(Interval::between(5.0, 5.0)).power(-1.0), &|x| {
-                1.0 / (x + 5.0)
+            (x.raise(2.0), &|x| x * x),
+            (x.raise(3.0), &|x| x.powi(3)),
+            (x.multiply(x.negate()), &|x| -x * x),
+            (
+                x.add_interval(Interval::from_ends(5.0, 5.0)).raise(-1.0),
+                &|x| 1.0 / (x + 5.0),
+            ),
+            (Interval::apply_function(Function::Cosh, &[x]), &|x| {
+                x.cosh()
             }),
-            (Interval::of_function(Function::Cosh, &[x]), &|x| x.cosh()),
-            (Interval::of_function(Function::Sign, &[x]), &|x| {
+            (Interval::apply_function(Function::Sign, &[x]), &|x| {
                 call(Function::Sign, x, 0.0)
             }),
         ];
@@ -185,16 +194,16 @@ mod tests {
                 );
             }
         }
-        assert_eq!(x.power(2.0).low, 0.0);
+        assert_eq!(x.raise(2.0).low, 0.0);
         assert_eq!(x.reciprocal(), Interval::ALL);
     }
 
     #[test]
     fn unbounded_arguments_keep_the_range_of_functions() {
-        let square = Interval::ALL.power(2.0);
+        let square = Interval::ALL.raise(2.0);
         assert_eq!((square.low, square.high), (0.0, f64::INFINITY));
-        let sine = Interval::of_function(Function::Sin, &[Interval::ALL]);
+        let sine = Interval::apply_function(Function::Sin, &[Interval::ALL]);
         assert!(sine.low < -0.999 && sine.high > 0.999 && sine.high < 1.001);
-        assert_eq!(Interval::ALL.plus(Interval::ALL), Interval::ALL);
+        assert_eq!(Interval::ALL.add_interval(Interval::ALL), Interval::ALL);
     }
 }

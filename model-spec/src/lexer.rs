@@ -1,7 +1,7 @@
 //! Splits the text of an expression into tokens.
 
-use crate::diagnostic::{Diagnostic, quoted};
-use crate::foreign::{operator_at, written_here};
+use crate::diagnostic::{Diagnostic, quote};
+use crate::foreign::{find_equivalent, find_operator};
 use crate::span::Span;
 
 /// Token of an expression.
@@ -46,10 +46,10 @@ pub enum TokenKind {
 
 impl TokenKind {
     /// Returns the token for a message, in backquotes.
-    pub fn shown(&self) -> String {
+    pub fn to_quoted(&self) -> String {
         match self {
             Self::Number(value) => format!("`{value}`"),
-            Self::Name(name) => quoted(name),
+            Self::Name(name) => quote(name),
             Self::Plus => "`+`".to_owned(),
             Self::Minus => "`-`".to_owned(),
             Self::Star => "`*`".to_owned(),
@@ -70,13 +70,19 @@ impl TokenKind {
 ///
 /// # Errors
 /// The first character or number that is not part of the language.
-pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<Token>, Diagnostic> {
+pub fn tokenize(
+    text: &str,
+    place: impl Fn(usize, usize) -> Span,
+) -> Result<Vec<Token>, Diagnostic> {
     let mut found = Vec::new();
     let mut start = 0;
     while let Some(first) = text[start..].chars().next() {
         let rest = &text[start..];
-        if let Some(operator) = operator_at(rest) {
-            return Err(foreign(operator, place(start, start + operator.len())));
+        if let Some(operator) = find_operator(rest) {
+            return Err(foreign_operator_error(
+                operator,
+                place(start, start + operator.len()),
+            ));
         }
         let length = match first {
             '.' if !starts_with_digit(&rest[1..]) => 1,
@@ -111,18 +117,18 @@ fn token(text: &str, first: char, span: Span) -> Result<TokenKind, Diagnostic> {
         '[' => TokenKind::OpenIndex,
         ']' => TokenKind::CloseIndex,
         ',' => TokenKind::Comma,
-        other => return Err(stray(other, span)),
+        other => return Err(stray_character_error(other, span)),
     })
 }
 
-fn foreign(operator: &str, span: Span) -> Diagnostic {
-    let help = written_here(operator).map(str::to_owned);
-    Diagnostic::error(format!("{} is not an operator", quoted(operator)))
-        .at(span, "not part of an expression")
-        .help_if(help)
+fn foreign_operator_error(operator: &str, span: Span) -> Diagnostic {
+    let help = find_equivalent(operator).map(str::to_owned);
+    Diagnostic::error(format!("{} is not an operator", quote(operator)))
+        .with_span(span, "not part of an expression")
+        .with_optional_help(help)
 }
 
-fn stray(letter: char, span: Span) -> Diagnostic {
+fn stray_character_error(letter: char, span: Span) -> Diagnostic {
     let help = match letter {
         '\'' => "write dot(x) for the rate; an expression contains no strings".to_owned(),
         '"' => "an expression contains no strings".to_owned(),
@@ -134,10 +140,10 @@ fn stray(letter: char, span: Span) -> Diagnostic {
         }
         _ => "an expression consists of numbers, names and + - * / ^ ( ) , [ ]".to_owned(),
     };
-    let shown = quoted(letter.encode_utf8(&mut [0; 4]));
+    let shown = quote(letter.encode_utf8(&mut [0; 4]));
     Diagnostic::error(format!("{shown} is not part of an expression"))
-        .at(span, "unexpected character")
-        .help(help)
+        .with_span(span, "unexpected character")
+        .with_help(help)
 }
 
 fn starts_with_digit(text: &str) -> bool {
@@ -175,21 +181,21 @@ fn number_length(text: &str) -> usize {
 
 fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
     let value: f64 = text.parse().map_err(|_| {
-        Diagnostic::error(format!("{} is not a number", quoted(text)))
-            .at(span, "here")
-            .help("numbers are written 1, 0.5, .5 or 1e-3")
+        Diagnostic::error(format!("{} is not a number", quote(text)))
+            .with_span(span, "here")
+            .with_help("numbers are written 1, 0.5, .5 or 1e-3")
     })?;
     if value.is_infinite() {
         return Err(
-            Diagnostic::error(format!("the number {} is too large", quoted(text)))
-                .at(span, "beyond 1.8e308"),
+            Diagnostic::error(format!("the number {} is too large", quote(text)))
+                .with_span(span, "beyond 1.8e308"),
         );
     }
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     if value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
         return Err(
-            Diagnostic::error(format!("the number {} is too small", quoted(text)))
-                .at(span, "below 4.9e-324, it would be read as 0"),
+            Diagnostic::error(format!("the number {} is too small", quote(text)))
+                .with_span(span, "below 4.9e-324, it would be read as 0"),
         );
     }
     Ok(value)
@@ -200,7 +206,7 @@ mod tests {
     use super::*;
 
     fn kinds(text: &str) -> Vec<TokenKind> {
-        let tokens = tokens(text, Span::new).unwrap();
+        let tokens = tokenize(text, Span::new).unwrap();
         tokens.into_iter().map(|token| token.kind).collect()
     }
 
@@ -222,7 +228,7 @@ mod tests {
     #[test]
     fn numbers_out_of_range_are_rejected() {
         for text in ["1e999", "1e-999"] {
-            assert!(tokens(text, Span::new).is_err(), "{text}");
+            assert!(tokenize(text, Span::new).is_err(), "{text}");
         }
         assert_eq!(kinds("0e-999"), [TokenKind::Number(0.0)]);
     }
@@ -243,7 +249,7 @@ mod tests {
 
     #[test]
     fn token_spans_are_byte_ranges() {
-        let spans: Vec<_> = tokens("a_1 *\t(b", Span::new)
+        let spans: Vec<_> = tokenize("a_1 *\t(b", Span::new)
             .unwrap()
             .iter()
             .map(|token| (token.span.start, token.span.end))
@@ -271,7 +277,7 @@ mod tests {
             ("θ", "a-z"),
             ("a·b", "`*`"),
         ] {
-            let diagnostic = tokens(text, Span::new).expect_err(text);
+            let diagnostic = tokenize(text, Span::new).expect_err(text);
             let given = diagnostic.help.unwrap_or_default();
             assert!(given.contains(help), "{text}: {given}");
         }

@@ -37,6 +37,7 @@
 //! with positions), [`models`] (shipped specifications). The derivation of equations is in the
 //! crate `codegen`.
 
+mod adjacent_file;
 pub mod assignment;
 pub mod ast;
 mod checks;
@@ -48,9 +49,9 @@ pub mod edit;
 mod entries;
 pub mod evaluate;
 mod expression;
-mod file_beside;
 mod foreign;
 mod functions;
+pub mod hidden_characters;
 mod id_set;
 pub mod ids;
 mod infer;
@@ -82,7 +83,6 @@ pub mod uncertainty;
 pub mod unit;
 mod units_check;
 pub mod variant;
-pub mod visible;
 
-pub use functions::reserved;
+pub use functions::reservation_reason;
 pub use load::{Checked, MAX_SIZE, check, load, load_from};

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
-use crate::diagnostic::{Declared, Diagnostic, Diagnostics};
+use crate::diagnostic::{DeclarationKind, Diagnostic, Diagnostics};
 use crate::document;
 use crate::model::Model;
 use crate::motion;
@@ -42,7 +42,7 @@ pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
 pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
     let bytes = read(&root.join(path))
-        .map_err(|diagnostic| Diagnostics::one(Source::new(shown.clone(), ""), diagnostic))?;
+        .map_err(|diagnostic| Diagnostics::from_one(Source::new(shown.clone(), ""), diagnostic))?;
     let text = String::from_utf8(bytes).map_err(|error| not_utf8(shown.clone(), &error))?;
     let file = root.join(path);
     let folder = file.parent().unwrap_or(Path::new(""));
@@ -57,7 +57,7 @@ pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
 pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     if source.text.len() as u64 > MAX_SIZE {
         let size = source.text.len() as u64;
-        return Err(Diagnostics::one(source, too_large(size)));
+        return Err(Diagnostics::from_one(source, too_large(size)));
     }
     let mut document = document::read(&source)?;
     let mut demands = space::expand(&mut document, &source)?;
@@ -70,15 +70,15 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     check_sensors(&model, &mut found);
     check_drawing(&model, &mut found);
     if found.is_empty() {
-        found.keep(model.check_numbers().map_err(ModelError::diagnostic));
-        found.keep(model.spreads().map_err(ModelError::diagnostic));
+        found.push_error(model.check_numbers().map_err(ModelError::diagnostic));
+        found.push_error(model.distributions().map_err(ModelError::diagnostic));
     }
     if found.is_empty() {
         check_tables(&model, &mut found);
     }
     if found.is_empty() && !inertias.is_empty() {
         let values = model.parameter_values().map_err(ModelError::diagnostic);
-        if let Some(values) = found.keep(values) {
+        if let Some(values) = found.push_error(values) {
             space::check_inertias(&inertias, &values, &mut found);
         }
     }
@@ -89,7 +89,11 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     warn_unused(&model, &mut warnings);
     for vector in unused {
         let name = &vector.text;
-        warnings.push(Diagnostic::unused(Declared::Definition, name, vector.span));
+        warnings.push(Diagnostic::unused(
+            DeclarationKind::Definition,
+            name,
+            vector.span,
+        ));
     }
     Ok(Checked { model, warnings })
 }
@@ -97,12 +101,12 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
 fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     let unreadable = |error: std::io::Error| {
         Diagnostic::error(format!("the specification cannot be read: {error}"))
-            .help("give the path of a TOML file")
+            .with_help("give the path of a TOML file")
     };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(Diagnostic::error("the specification is not a file")
-            .help("give the path of a TOML file"));
+            .with_help("give the path of a TOML file"));
     }
     if metadata.len() > MAX_SIZE {
         return Err(too_large(metadata.len()));
@@ -119,15 +123,15 @@ fn not_utf8(shown: String, error: &std::string::FromUtf8Error) -> Diagnostics {
     let valid = error.utf8_error().valid_up_to();
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
     let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
-        .at(Span::new(valid, valid + 1), "invalid byte")
-        .help("save the file as UTF-8");
-    Diagnostics::one(Source::new(shown, text), diagnostic)
+        .with_span(Span::new(valid, valid + 1), "invalid byte")
+        .with_help("save the file as UTF-8");
+    Diagnostics::from_one(Source::new(shown, text), diagnostic)
 }
 
 fn too_large(size: u64) -> Diagnostic {
     Diagnostic::error(format!("the specification is too large: {size} bytes"))
-        .at(Span::new(0, 0), "too large")
-        .help(format!("reduce it to {MAX_SIZE} bytes (1 MiB)"))
+        .with_span(Span::new(0, 0), "too large")
+        .with_help(format!("reduce it to {MAX_SIZE} bytes (1 MiB)"))
 }
 
 #[cfg(test)]

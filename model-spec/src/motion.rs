@@ -8,7 +8,7 @@ use crate::ids::{CoordinateId, FieldId, InputId};
 use crate::model::{
     Constraint, Expr, ExprKind, MAX_CONSTRAINTS, MAX_IMPACTS, Model, Term, written_name,
 };
-use crate::rate_order::{WrittenOut, rate_order};
+use crate::rate_order::{Expanded, rate_order};
 use crate::span::Span;
 
 /// Deepest expression accepted after expansion of its definitions.
@@ -25,7 +25,7 @@ fn field_number(field: FieldId) -> usize {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Motion {
+struct Dependencies {
     /// Coordinates and fields that enter by value.
     values: IdSet,
     /// Coordinates and fields that enter by rate.
@@ -59,7 +59,7 @@ pub fn check(model: &mut Model, found: &mut Diagnostics) {
 /// Returns for each constraint whether it contains rates.
 fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     let mut checker = Checker {
-        definitions: vec![Motion::default(); model.definitions.len()],
+        definitions: vec![Dependencies::default(); model.definitions.len()],
         state_rates: vec![0; model.states.len()],
         model,
         found,
@@ -67,14 +67,14 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     // `resolve` has rejected cycles already.
     for written in rate_order(model).unwrap_or_default() {
         match written {
-            WrittenOut::Definition(index) => {
+            Expanded::Definition(index) => {
                 checker.definitions[index] = checker.motion(&model.definitions[index].value);
             }
-            WrittenOut::Rate(index) => {
+            Expanded::Rate(index) => {
                 checker.state_rates[index.index()] =
                     checker.motion(&model.states[index].rate).depth;
             }
-            WrittenOut::RatesWithin(_) => {}
+            Expanded::RatesWithin(_) => {}
         }
     }
     checker.energies();
@@ -89,7 +89,7 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
 
 struct Checker<'m, 'f> {
     model: &'m Model,
-    definitions: Vec<Motion>,
+    definitions: Vec<Dependencies>,
     /// Depth of the rates of the states, after expansion of definitions.
     state_rates: Vec<usize>,
     found: &'f mut Diagnostics,
@@ -101,39 +101,39 @@ impl Checker<'_, '_> {
         let mut inertial = IdSet::default();
         for term in &model.kinetic {
             let motion = self.motion(&term.value);
-            self.refuse_driven(term, &motion, "the kinetic energy");
+            self.reject_inputs_and_states(term, &motion, "the kinetic energy");
             inertial.extend(&motion.rates);
         }
         for term in &model.potential {
             let motion = self.motion(&term.value);
-            self.refuse_driven(term, &motion, "the potential energy");
+            self.reject_inputs_and_states(term, &motion, "the potential energy");
             if let Some(place) = motion.rate {
                 self.found.push(
                     Diagnostic::error(format!(
                         "the potential energy `{}` contains a rate",
                         term.name
                     ))
-                    .at(place, "this is a rate")
-                    .help("move a kinetic energy to [kinetic], a loss to [dissipation]"),
+                    .with_span(place, "this is a rate")
+                    .with_help("move a kinetic energy to [kinetic], a loss to [dissipation]"),
                 );
             }
         }
         for term in &model.dissipation {
             let motion = self.motion(&term.value);
-            self.refuse_driven(term, &motion, "the dissipation");
+            self.reject_inputs_and_states(term, &motion, "the dissipation");
         }
         if self.found.is_empty() {
-            self.refuse_massless(&inertial);
+            self.reject_massless(&inertial);
         }
     }
 
     /// Rejects inputs and states in an energy.
-    fn refuse_driven(&mut self, term: &Term, motion: &Motion, what: &str) {
+    fn reject_inputs_and_states(&mut self, term: &Term, motion: &Dependencies, what: &str) {
         if let Some((0, place)) = motion.input {
             self.found.push(
                 Diagnostic::error(format!("{what} `{}` contains an input", term.name))
-                    .at(place, "this input has no given rate")
-                    .help(
+                    .with_span(place, "this input has no given rate")
+                    .with_help(
                         "inputs act only through [forces]; declare the rates of a prescribed motion: \
                          rates = 2",
                     ),
@@ -142,19 +142,19 @@ impl Checker<'_, '_> {
         if let Some(place) = motion.state {
             self.found.push(
                 Diagnostic::error(format!("{what} `{}` contains a state", term.name))
-                    .at(place, "this is a state")
-                    .help("states act only through [forces]"),
+                    .with_span(place, "this is a state")
+                    .with_help("states act only through [forces]"),
             );
         }
     }
 
     /// Rejects coordinates without inertia: their acceleration would be undetermined.
-    fn refuse_massless(&mut self, inertial: &IdSet) {
+    fn reject_massless(&mut self, inertial: &IdSet) {
         let mut refuse = |name: &str, kind: &str, span: Span| {
             self.found.push(
                 Diagnostic::error(format!("the {kind} `{name}` has no inertia"))
-                    .at(span, "no term of [kinetic] contains its rate")
-                    .help(format!(
+                    .with_span(span, "no term of [kinetic] contains its rate")
+                    .with_help(format!(
                         "add a kinetic energy, for example 1/2*m*dot({name})^2"
                     )),
             );
@@ -191,8 +191,8 @@ impl Checker<'_, '_> {
                 let name = written_name(&force.name, force.span, &self.model.source);
                 self.found.push(
                     Diagnostic::error(format!("`on` of the force `{name}` is not a displacement"))
-                        .at(place, why)
-                        .help("give `on` a coordinate, or an expression of coordinates"),
+                        .with_span(place, why)
+                        .with_help("give `on` a coordinate, or an expression of coordinates"),
                 );
             }
         }
@@ -217,8 +217,8 @@ impl Checker<'_, '_> {
                     "the model has too many constraints: {}",
                     model.constraints.len()
                 ))
-                .at(excess.span, "one constraint too many")
-                .help(help),
+                .with_span(excess.span, "one constraint too many")
+                .with_help(help),
             );
             return Vec::new();
         }
@@ -259,8 +259,8 @@ impl Checker<'_, '_> {
         if let Some((place, why, help)) = problem {
             self.found.push(
                 Diagnostic::error(format!("`{}` is not a valid constraint", constraint.name))
-                    .at(place, why)
-                    .help(help),
+                    .with_span(place, why)
+                    .with_help(help),
             );
         }
         is_nonholonomic
@@ -274,8 +274,8 @@ impl Checker<'_, '_> {
                     "the model has too many impacts: {}",
                     model.impacts.len()
                 ))
-                .at(excess.span, "one impact too many")
-                .help(format!("give at most {MAX_IMPACTS} impacts")),
+                .with_span(excess.span, "one impact too many")
+                .with_help(format!("give at most {MAX_IMPACTS} impacts")),
             );
             return;
         }
@@ -301,8 +301,8 @@ impl Checker<'_, '_> {
             if let Some((place, why, help)) = problem {
                 self.found.push(
                     Diagnostic::error(format!("`{}` is not a valid impact", impact.name))
-                        .at(place, why)
-                        .help(help),
+                        .with_span(place, why)
+                        .with_help(help),
                 );
             }
         }
@@ -316,38 +316,38 @@ impl Checker<'_, '_> {
 
     /// Returns the dependencies of an expression. Reports invalid uses of `dot`, multipliers and
     /// residuals.
-    fn motion(&mut self, expr: &Expr) -> Motion {
+    fn motion(&mut self, expr: &Expr) -> Dependencies {
         let motion = self.motion_with_reactions(expr);
         if let Some(place) = motion.reaction {
             self.found.push(
                 Diagnostic::error("multipliers and residuals are allowed only in [observables]")
-                    .at(place, "this is the multiplier or residual of a constraint")
-                    .help("they follow from the motion, so the motion cannot depend on them"),
+                    .with_span(place, "this is the multiplier or residual of a constraint")
+                    .with_help("they follow from the motion, so the motion cannot depend on them"),
             );
         }
         motion
     }
 
-    fn motion_with_reactions(&mut self, expr: &Expr) -> Motion {
-        let mut motion = Motion::default();
+    fn motion_with_reactions(&mut self, expr: &Expr) -> Dependencies {
+        let mut motion = Dependencies::default();
         self.add(expr, &mut motion, 1);
         if motion.depth > MAX_EXPANDED_DEPTH {
             self.found.push(
                 Diagnostic::error(format!(
                     "the expression is more than {MAX_EXPANDED_DEPTH} deep after expansion of its definitions"
                 ))
-                .at(expr.span, "too deep"),
+                .with_span(expr.span, "too deep"),
             );
             motion.depth = 0;
         }
         motion
     }
 
-    fn add(&mut self, expr: &Expr, motion: &mut Motion, depth: usize) {
+    fn add(&mut self, expr: &Expr, motion: &mut Dependencies, depth: usize) {
         motion.depth = motion.depth.max(depth);
         match &expr.kind {
             ExprKind::Time => motion.time = true,
-            ExprKind::Input(index) => motion.hold_input(self.given_rates(*index), expr.span),
+            ExprKind::Input(index) => motion.add_input(self.given_rates(*index), expr.span),
             ExprKind::State(index) => {
                 motion.states.insert(index.index());
                 motion.state = motion.state.or(Some(expr.span));
@@ -360,7 +360,7 @@ impl Checker<'_, '_> {
             }
             ExprKind::Definition(index) => {
                 if let Some(known) = self.definitions.get(index.index()) {
-                    motion.include(known, expr.span, depth);
+                    motion.add_definition(known, expr.span, depth);
                 }
             }
             ExprKind::Dot(operand) => self.add_rate(operand, motion, depth),
@@ -376,7 +376,7 @@ impl Checker<'_, '_> {
                 for argument in arguments {
                     self.add(argument, motion, depth + 1);
                 }
-                if function.switches() && arguments.iter().any(may_move) {
+                if function.has_switches() && arguments.iter().any(may_move) {
                     motion.switch = motion.switch.or(Some(expr.span));
                 }
             }
@@ -392,8 +392,8 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn add_rate(&mut self, operand: &Expr, motion: &mut Motion, depth: usize) {
-        let mut inner = Motion::default();
+    fn add_rate(&mut self, operand: &Expr, motion: &mut Dependencies, depth: usize) {
+        let mut inner = Dependencies::default();
         self.add(operand, &mut inner, depth + 1);
         if let Some(diagnostic) = rate_error(operand.span, &inner) {
             self.found.push(diagnostic);
@@ -411,30 +411,30 @@ impl Checker<'_, '_> {
             motion.states.extend(&inner.states);
         }
         if let Some((rates, _)) = inner.input {
-            motion.hold_input(rates.saturating_sub(1), operand.span);
+            motion.add_input(rates.saturating_sub(1), operand.span);
         }
         motion.time |= inner.time;
         motion.depth = motion.depth.max(inner.depth);
     }
 }
 
-impl Motion {
+impl Dependencies {
     /// Adds an input with this number of given rates.
-    fn hold_input(&mut self, rates: u8, span: Span) {
+    fn add_input(&mut self, rates: u8, span: Span) {
         if self.input.is_none_or(|(fewest, _)| rates < fewest) {
             self.input = Some((rates, span));
         }
     }
 
     /// Adds the dependencies of a definition that is named at `span`.
-    fn include(&mut self, known: &Self, span: Span, depth: usize) {
+    fn add_definition(&mut self, known: &Self, span: Span, depth: usize) {
         self.values.extend(&known.values);
         self.rates.extend(&known.rates);
         self.states.extend(&known.states);
         self.state = self.state.or(known.state.map(|_| span));
         self.rate = self.rate.or(known.rate.map(|_| span));
         if let Some((rates, _)) = known.input {
-            self.hold_input(rates, span);
+            self.add_input(rates, span);
         }
         self.reaction = self.reaction.or(known.reaction.map(|_| span));
         self.switch = self.switch.or(known.switch.map(|_| span));
@@ -461,30 +461,30 @@ fn may_move(expr: &Expr) -> bool {
     moves
 }
 
-fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
+fn rate_error(span: Span, inner: &Dependencies) -> Option<Diagnostic> {
     if let Some(place) = inner.reaction {
         let diagnostic = Diagnostic::error("multipliers and residuals have no rate")
-            .at(place, "this is the multiplier or residual of a constraint")
-            .help("give dot() a coordinate, a definition with one, or a field");
+            .with_span(place, "this is the multiplier or residual of a constraint")
+            .with_help("give dot() a coordinate, a definition with one, or a field");
         return Some(diagnostic);
     }
     if inner.rate.is_some() {
         let diagnostic = Diagnostic::error("dot() of a rate is an acceleration")
-            .at(span, "this contains a rate")
-            .help("a specification contains no accelerations: they follow from the energies");
+            .with_span(span, "this contains a rate")
+            .with_help("a specification contains no accelerations: they follow from the energies");
         return Some(diagnostic);
     }
     if matches!(inner.input, Some((0, _))) {
         let diagnostic = Diagnostic::error("the input has no given rate")
-            .at(span, "this contains an input")
-            .help("add `rates = 2` to the input to supply its rates");
+            .with_span(span, "this contains an input")
+            .with_help("add `rates = 2` to the input to supply its rates");
         return Some(diagnostic);
     }
     let is_still = inner.values.is_empty() && inner.states.is_empty() && inner.input.is_none();
     if is_still && !inner.time {
         let diagnostic = Diagnostic::error("dot() of a quantity without a rate")
-            .at(span, "this contains no coordinate")
-            .help("give dot() a coordinate, a definition with one, or a field");
+            .with_span(span, "this contains no coordinate")
+            .with_help("give dot() a coordinate, a definition with one, or a field");
         return Some(diagnostic);
     }
     None

@@ -3,8 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
-use crate::functions::reserved;
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
+use crate::functions::reservation_reason;
 use crate::ids::{
     CoefficientId, ConstraintId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId, StateId,
 };
@@ -71,7 +71,7 @@ pub struct FieldNames {
 
 impl Names {
     pub fn declare(document: &Document, found: &mut Diagnostics) -> Self {
-        found.keep(identifier(&document.name));
+        found.push_error(check_identifier(&document.name));
         let mut names = Self {
             symbols: HashMap::new(),
             observables: HashSet::new(),
@@ -131,7 +131,7 @@ impl Names {
         self.observables.contains(name)
     }
 
-    pub fn known(&self) -> impl Iterator<Item = &str> {
+    pub fn known_names(&self) -> impl Iterator<Item = &str> {
         self.symbols.keys().map(String::as_str)
     }
 
@@ -184,17 +184,20 @@ impl Names {
         {
             found.push(
                 Diagnostic::error("`phi` is reserved for mode shapes in a model with a field")
-                    .at(*span, format!("declared as {}", symbol.kind()))
-                    .help("choose another name"),
+                    .with_span(*span, format!("declared as {}", symbol.kind()))
+                    .with_help("choose another name"),
             );
         }
     }
 
     fn add(&mut self, name: &Name, symbol: Symbol, found: &mut Diagnostics) {
         // An invalid name is declared nevertheless, so that one mistake gives one finding.
-        found.keep(identifier(name));
+        found.push_error(check_identifier(name));
         if let Some((other, place)) = self.symbols.get(&name.text) {
-            found.push(taken(name, &format!("used by {}", other.kind())).also(*place, "here"));
+            found.push(
+                name_taken_error(name, &format!("used by {}", other.kind()))
+                    .with_related_span(*place, "here"),
+            );
             return;
         }
         self.symbols.insert(name.text.clone(), (symbol, name.span));
@@ -210,12 +213,12 @@ impl Names {
         let terms = terms.chain(&document.constraints);
         let terms = terms.chain(document.impacts.iter().map(|(term, _)| term));
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
-            found.keep(word(&term.name));
+            found.push_error(check_word(&term.name));
         }
         if let Some(drawing) = &document.drawing {
             let points = drawing.points.iter().map(|point| &point.name);
             for name in points.chain(drawing.lines.iter().map(|line| &line.name)) {
-                found.keep(word(name));
+                found.push_error(check_word(name));
             }
         }
     }
@@ -225,14 +228,14 @@ impl Names {
     fn check_observables(&mut self, document: &Document, found: &mut Diagnostics) {
         for (observable, _) in &document.observables {
             let name = &observable.name;
-            found.keep(identifier(name));
+            found.push_error(check_identifier(name));
             self.observables.insert(name.text.clone());
             match self.symbols.get(&name.text) {
                 None
                 | Some((Symbol::Definition(_) | Symbol::Vector | Symbol::Coefficient(_), _)) => {}
                 Some((other, place)) => {
                     let owner = format!("used by {}", other.kind());
-                    found.push(taken(name, &owner).also(*place, "here"));
+                    found.push(name_taken_error(name, &owner).with_related_span(*place, "here"));
                 }
             }
         }
@@ -249,17 +252,17 @@ impl Names {
         declared.extend(observables.map(|name| (name.text.as_str(), name.span)));
         declared.sort_by_key(|(_, span)| span.start);
         for (name, span) in declared {
-            if let Some(meaning) = self.generated(name) {
+            if let Some(meaning) = self.generated_meaning(name) {
                 found.push(
                     Diagnostic::error(format!("the name `{name}` is taken"))
-                        .at(span, format!("it is generated for {meaning}"))
-                        .help("choose another name"),
+                        .with_span(span, format!("it is generated for {meaning}"))
+                        .with_help("choose another name"),
                 );
             }
         }
     }
 
-    fn generated(&self, name: &str) -> Option<String> {
+    fn generated_meaning(&self, name: &str) -> Option<String> {
         let (stem, what) = match name.strip_suffix("_dot") {
             Some(stem) => (stem, "the rate of"),
             None => (name, "a mode of"),
@@ -280,39 +283,46 @@ impl Names {
     }
 }
 
-fn taken(name: &Name, owner: &str) -> Diagnostic {
-    Diagnostic::error(format!("the name {} is taken", quoted(&name.text)))
-        .at(name.span, owner)
-        .help("choose another name")
+fn name_taken_error(name: &Name, owner: &str) -> Diagnostic {
+    Diagnostic::error(format!("the name {} is taken", quote(&name.text)))
+        .with_span(name.span, owner)
+        .with_help("choose another name")
 }
 
 /// Checks that a name is an identifier in every target language.
-fn identifier(name: &Name) -> Result<(), Diagnostic> {
-    word(name)?;
+fn check_identifier(name: &Name) -> Result<(), Diagnostic> {
+    check_word(name)?;
     let text = name.text.as_str();
-    match reserved(text) {
-        Some(why) => Err(unfit(name, format!("`{text}` cannot be a name: it {why}"))
-            .help(format!("for example `{text}_1`"))),
+    match reservation_reason(text) {
+        Some(why) => Err(
+            invalid_name_error(name, format!("`{text}` cannot be a name: it {why}"))
+                .with_help(format!("for example `{text}_1`")),
+        ),
         None => Ok(()),
     }
 }
 
-fn unfit(name: &Name, message: String) -> Diagnostic {
-    Diagnostic::error(message).at(name.span, "this name")
+fn invalid_name_error(name: &Name, message: String) -> Diagnostic {
+    Diagnostic::error(message).with_span(name.span, "this name")
 }
 
 /// Checks that a name consists of letters, digits and underscores.
-fn word(name: &Name) -> Result<(), Diagnostic> {
+fn check_word(name: &Name) -> Result<(), Diagnostic> {
     let text = name.text.as_str();
     let fit = text.starts_with(|first: char| first.is_ascii_alphabetic())
         && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     if !fit {
-        return Err(unfit(name, format!("{} cannot be a name", quoted(text)))
-            .help("a name starts with a letter a-z or A-Z, followed by letters, digits and `_`"));
+        return Err(
+            invalid_name_error(name, format!("{} cannot be a name", quote(text))).with_help(
+                "a name starts with a letter a-z or A-Z, followed by letters, digits and `_`",
+            ),
+        );
     }
     if text.len() > MAX_NAME {
-        let message = format!("the name {} is too long", quoted(text));
-        return Err(unfit(name, message).help(format!("at most {MAX_NAME} characters")));
+        let message = format!("the name {} is too long", quote(text));
+        return Err(
+            invalid_name_error(name, message).with_help(format!("at most {MAX_NAME} characters"))
+        );
     }
     Ok(())
 }

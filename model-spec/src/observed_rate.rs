@@ -19,7 +19,7 @@ impl ObservedRate {
         let unit = &model.observables[self.observable].unit;
         let over = if self.times == 1 { "s" } else { "s^2" };
         let rate = (0..self.times).try_fold(unit.dimension, |dimension, _| {
-            dimension.over(Dimension::TIME)
+            dimension.divide(Dimension::TIME)
         });
         match Unit::parse(&format!("{}/{over}", unit.text)) {
             Ok(unit) if Some(unit.dimension) == rate => unit,
@@ -28,7 +28,7 @@ impl ObservedRate {
     }
 
     /// Returns the rate or acceleration of this name, if the stem is an observable.
-    pub fn named(model: &Model, name: &str) -> Option<Self> {
+    pub fn from_name(model: &Model, name: &str) -> Option<Self> {
         let of = |name: &str| model.observables.iter().position(|o| o.name == name);
         let within =
             |before: &str, after: &str| of(name.strip_prefix(before)?.strip_suffix(after)?);
@@ -69,7 +69,7 @@ impl Model {
     }
 
     /// Returns true if an expression contains a rate, directly or through definitions.
-    pub fn holds_rate(&self, expr: &Expr) -> bool {
+    pub fn contains_rate(&self, expr: &Expr) -> bool {
         let mut holds = false;
         let mut definitions: Vec<DefinitionId> = Vec::new();
         expr.visit(&mut |part| match part.kind {
@@ -79,6 +79,6 @@ impl Model {
         });
         // The recursion ends: definitions have no cycle.
         let mut inner = definitions.iter();
-        holds || inner.any(|definition| self.holds_rate(&self.definitions[*definition].value))
+        holds || inner.any(|definition| self.contains_rate(&self.definitions[*definition].value))
     }
 }

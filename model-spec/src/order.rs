@@ -11,7 +11,7 @@ pub type Reference = (usize, Span);
 ///
 /// # Errors
 /// A cycle: its entries in order, each with the place that refers to the next.
-pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>> {
+pub fn sort_by_references(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>> {
     let mut state = vec![State::Untouched; references.len()];
     let mut sorted = Vec::with_capacity(references.len());
     for start in 0..references.len() {
@@ -22,7 +22,7 @@ pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>
     Ok(sorted)
 }
 
-pub fn circular<'n>(
+pub fn cycle_error<'n>(
     kind: &str,
     circle: &[Reference],
     named: impl Fn(usize) -> &'n str,
@@ -39,11 +39,11 @@ pub fn circular<'n>(
     }
     let message = format!("the {kind} `{}` refers to itself", named(first));
     let mut diagnostic =
-        Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
+        Diagnostic::error(message).with_span(place, format!("here: {}", chain.join(" -> ")));
     for &(index, place) in rest.iter().take(4) {
-        diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
+        diagnostic = diagnostic.with_related_span(place, format!("in `{}`", named(index)));
     }
-    diagnostic.help("break the cycle: one of them must not depend on the others")
+    diagnostic.with_help("break the cycle: one of them must not depend on the others")
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -105,13 +105,13 @@ mod tests {
     #[test]
     fn order_follows_the_references() {
         let references = [to(&[2]), to(&[]), to(&[1])];
-        assert_eq!(order(&references), Ok(vec![1, 2, 0]));
+        assert_eq!(sort_by_references(&references), Ok(vec![1, 2, 0]));
     }
 
     #[test]
     fn cycle_excludes_the_path_into_it() {
         let references = [to(&[1]), to(&[2]), to(&[1])];
-        let circle = order(&references).expect_err("1 and 2 refer to each other");
+        let circle = sort_by_references(&references).expect_err("1 and 2 refer to each other");
         let entries: Vec<usize> = circle.iter().map(|(entry, _)| *entry).collect();
         assert_eq!(entries, [1, 2]);
     }
@@ -121,6 +121,9 @@ mod tests {
         let count = 100_000;
         let mut references: Vec<_> = (1..count).map(|next| to(&[next])).collect();
         references.push(Vec::new());
-        assert_eq!(order(&references).map(|sorted| sorted[0]), Ok(count - 1));
+        assert_eq!(
+            sort_by_references(&references).map(|sorted| sorted[0]),
+            Ok(count - 1)
+        );
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
-use crate::foreign::word_here;
+use crate::foreign::find_word_equivalent;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
 
@@ -31,7 +31,7 @@ pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let tree = parser.expression(ADDITIVE)?;
     match parser.peek() {
         None => Ok(tree.syntax),
-        Some(token) => Err(left_over(token, &tree.syntax)),
+        Some(token) => Err(leftover_token_error(token, &tree.syntax)),
     }
 }
 
@@ -65,7 +65,7 @@ impl<'t> Parser<'t> {
         self.nesting += 1;
         if self.nesting > MAX_DEPTH {
             let place = self.peek().map_or(self.end, |token| token.span);
-            return Err(too_deep(place));
+            return Err(depth_error(place));
         }
         let mut left = self.operand()?;
         while let Some((operator, binding)) = self.peek().and_then(|token| infix(&token.kind)) {
@@ -77,7 +77,7 @@ impl<'t> Parser<'t> {
                 POWER => self.expression(UNARY)?,
                 _ => self.expression(binding + 1)?,
             };
-            left = combined(operator, left, right)?;
+            left = combine(operator, left, right)?;
         }
         self.nesting -= 1;
         Ok(left)
@@ -104,7 +104,7 @@ impl<'t> Parser<'t> {
             other => {
                 let place = other.map_or(self.end, |token| token.span);
                 return Err(Diagnostic::error("a name is missing after the `.`")
-                    .at(place, "expected a component, for example r.x"));
+                    .with_span(place, "expected a component, for example r.x"));
             }
         };
         let span = of.syntax.span.join(member_span);
@@ -113,7 +113,7 @@ impl<'t> Parser<'t> {
             member,
             member_span,
         };
-        deeper(Syntax { kind, span }, of.depth)
+        nest(Syntax { kind, span }, of.depth)
     }
 
     fn atom(&mut self) -> Parsed {
@@ -124,7 +124,7 @@ impl<'t> Parser<'t> {
                 "is not finished"
             };
             return Err(Diagnostic::error(format!("the expression {what}"))
-                .at(self.end, "expected a number, a name or `(`"));
+                .with_span(self.end, "expected a number, a name or `(`"));
         };
         match &token.kind {
             TokenKind::Number(value) => Ok(leaf(SyntaxKind::Number(*value), token.span)),
@@ -132,14 +132,14 @@ impl<'t> Parser<'t> {
             TokenKind::Minus => self.negated(token.span),
             TokenKind::OpenIndex => {
                 let (components, depth) = self.list(&TokenKind::CloseIndex)?;
-                let close = self.closing(&TokenKind::CloseIndex, token.span)?;
+                let close = self.expect_closing(&TokenKind::CloseIndex, token.span)?;
                 let kind = SyntaxKind::Vector(components);
                 let span = token.span.join(close);
-                deeper(Syntax { kind, span }, depth)
+                nest(Syntax { kind, span }, depth)
             }
             TokenKind::Open => {
                 let inner = self.expression(ADDITIVE)?;
-                let close = self.closing(&TokenKind::Close, token.span)?;
+                let close = self.expect_closing(&TokenKind::Close, token.span)?;
                 let span = token.span.join(close);
                 let syntax = Syntax {
                     span,
@@ -147,8 +147,10 @@ impl<'t> Parser<'t> {
                 };
                 Ok(Tree { syntax, ..inner })
             }
-            other => Err(Diagnostic::error(format!("unexpected {}", other.shown()))
-                .at(token.span, "expected a number, a name or `(`")),
+            other => Err(
+                Diagnostic::error(format!("unexpected {}", other.to_quoted()))
+                    .with_span(token.span, "expected a number, a name or `(`"),
+            ),
         }
     }
 
@@ -157,7 +159,7 @@ impl<'t> Parser<'t> {
         let operand = self.expression(UNARY)?;
         let span = minus.join(operand.syntax.span);
         let kind = SyntaxKind::Negate(Box::new(operand.syntax));
-        deeper(Syntax { kind, span }, operand.depth)
+        nest(Syntax { kind, span }, operand.depth)
     }
 
     fn named(&mut self, name: &str, span: Span) -> Parsed {
@@ -171,14 +173,14 @@ impl<'t> Parser<'t> {
     fn call(&mut self, function: &str, function_span: Span) -> Parsed {
         let open = self.take().map_or(self.end, |token| token.span);
         let (arguments, depth) = self.list(&TokenKind::Close)?;
-        let close = self.closing(&TokenKind::Close, open)?;
+        let close = self.expect_closing(&TokenKind::Close, open)?;
         let kind = SyntaxKind::Call {
             function: function.to_owned(),
             function_span,
             arguments,
         };
         let span = function_span.join(close);
-        deeper(Syntax { kind, span }, depth)
+        nest(Syntax { kind, span }, depth)
     }
 
     /// Parses expressions between commas up to a closing bracket. Returns them and the largest
@@ -209,13 +211,13 @@ impl<'t> Parser<'t> {
             other => {
                 let place = other.map_or(self.end, |token| token.span);
                 return Err(Diagnostic::error("the index of a mode must be a name")
-                    .at(place, "expected a name")
-                    .help(
+                    .with_span(place, "expected a name")
+                    .with_help(
                         "modes appear inside a sum: sum(i, w, q[i]^2); components are written r.x",
                     ));
             }
         };
-        let close = self.closing(&TokenKind::CloseIndex, open)?;
+        let close = self.expect_closing(&TokenKind::CloseIndex, open)?;
         let kind = SyntaxKind::Element {
             name: name.to_owned(),
             index,
@@ -224,20 +226,20 @@ impl<'t> Parser<'t> {
         Ok(leaf(kind, span.join(close)))
     }
 
-    fn closing(&mut self, expected: &TokenKind, open: Span) -> Result<Span, Diagnostic> {
+    fn expect_closing(&mut self, expected: &TokenKind, open: Span) -> Result<Span, Diagnostic> {
         match self.take() {
             Some(token) if token.kind == *expected => Ok(token.span),
             Some(token) => {
-                let shown = expected.shown();
-                let unexpected = format!("expected {shown}, found {}", token.kind.shown());
-                let diagnostic = Diagnostic::error(unexpected).at(token.span, "here");
-                let diagnostic = diagnostic.also(open, "to close this bracket");
-                Err(diagnostic.help_if(missing_operator(&token.kind)))
+                let shown = expected.to_quoted();
+                let unexpected = format!("expected {shown}, found {}", token.kind.to_quoted());
+                let diagnostic = Diagnostic::error(unexpected).with_span(token.span, "here");
+                let diagnostic = diagnostic.with_related_span(open, "to close this bracket");
+                Err(diagnostic.with_optional_help(missing_operator(&token.kind)))
             }
             None => Err(
-                Diagnostic::error(format!("a {} is missing", expected.shown()))
-                    .at(self.end, "the expression ends here")
-                    .also(open, "this bracket is not closed"),
+                Diagnostic::error(format!("a {} is missing", expected.to_quoted()))
+                    .with_span(self.end, "the expression ends here")
+                    .with_related_span(open, "this bracket is not closed"),
             ),
         }
     }
@@ -261,56 +263,56 @@ fn leaf(kind: SyntaxKind, span: Span) -> Tree {
     }
 }
 
-fn combined(operator: BinaryOperator, left: Tree, right: Tree) -> Parsed {
+fn combine(operator: BinaryOperator, left: Tree, right: Tree) -> Parsed {
     let span = left.syntax.span.join(right.syntax.span);
     let depth = left.depth.max(right.depth);
     let kind = SyntaxKind::Binary(operator, Box::new(left.syntax), Box::new(right.syntax));
-    deeper(Syntax { kind, span }, depth)
+    nest(Syntax { kind, span }, depth)
 }
 
-fn deeper(syntax: Syntax, below: usize) -> Parsed {
+fn nest(syntax: Syntax, below: usize) -> Parsed {
     let depth = below + 1;
     if depth > MAX_DEPTH {
-        return Err(too_deep(syntax.span));
+        return Err(depth_error(syntax.span));
     }
     Ok(Tree { syntax, depth })
 }
 
-fn too_deep(place: Span) -> Diagnostic {
+fn depth_error(place: Span) -> Diagnostic {
     Diagnostic::error(format!(
         "the expression is nested more than {MAX_DEPTH} deep; a sum or product counts one level per term"
     ))
-    .at(place, "too deep from here on")
-    .help("move parts of it to [definitions]")
+    .with_span(place, "too deep from here on")
+    .with_help("move parts of it to [definitions]")
 }
 
-fn left_over(token: &Token, before: &Syntax) -> Diagnostic {
+fn leftover_token_error(token: &Token, before: &Syntax) -> Diagnostic {
     let diagnostic = match token.kind {
         TokenKind::Close | TokenKind::CloseIndex => {
-            Diagnostic::error(format!("{} closes nothing", token.kind.shown()))
-                .at(token.span, "no bracket is open here")
+            Diagnostic::error(format!("{} closes nothing", token.kind.to_quoted()))
+                .with_span(token.span, "no bracket is open here")
         }
         TokenKind::Comma => Diagnostic::error("a comma outside a function's brackets")
-            .at(token.span, "unexpected here")
-            .help("decimal fractions are written with a point"),
+            .with_span(token.span, "unexpected here")
+            .with_help("decimal fractions are written with a point"),
         _ => Diagnostic::error(format!(
             "an operator is missing before {}",
-            token.kind.shown()
+            token.kind.to_quoted()
         ))
-        .at(token.span, "expected + - * / or ^")
-        .also(before.span, "the expression so far"),
+        .with_span(token.span, "expected + - * / or ^")
+        .with_related_span(before.span, "the expression so far"),
     };
     let word = match &before.kind {
-        SyntaxKind::Name(name) => word_here(name).map(str::to_owned),
+        SyntaxKind::Name(name) => find_word_equivalent(name).map(str::to_owned),
         _ => None,
     };
-    diagnostic.help_if(word.or_else(|| missing_operator(&token.kind)))
+    diagnostic.with_optional_help(word.or_else(|| missing_operator(&token.kind)))
 }
 
 /// Returns help for an operand that follows another operand.
 fn missing_operator(found: &TokenKind) -> Option<String> {
     if let TokenKind::Name(word) = found
-        && let Some(help) = word_here(word)
+        && let Some(help) = find_word_equivalent(word)
     {
         return Some(help.to_owned());
     }
@@ -324,11 +326,11 @@ fn missing_operator(found: &TokenKind) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lexer::tokens;
+    use crate::lexer::tokenize;
 
     fn parsed(text: &str) -> Result<Syntax, Diagnostic> {
         let end = Span::new(text.len(), text.len());
-        parse(&tokens(text, Span::new)?, end)
+        parse(&tokenize(text, Span::new)?, end)
     }
 
     fn bracketed(syntax: &Syntax) -> String {

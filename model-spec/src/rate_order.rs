@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use crate::ids::{DefinitionId, StateId};
 use crate::model::{Expr, ExprKind, Model};
-use crate::order::{Reference, order};
+use crate::order::{Reference, sort_by_references};
 use crate::span::Span;
 
 /// Expression that is expanded at its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WrittenOut {
+pub enum Expanded {
     Definition(DefinitionId),
     /// Rate of a state, for `dot(z)`.
     Rate(StateId),
@@ -23,7 +23,7 @@ pub enum WrittenOut {
 /// # Errors
 /// A cycle, starting with the rate of a state: each entry with the place that refers to the
 /// next.
-pub fn rate_order(model: &Model) -> Result<Vec<WrittenOut>, Vec<(WrittenOut, Span)>> {
+pub fn rate_order(model: &Model) -> Result<Vec<Expanded>, Vec<(Expanded, Span)>> {
     let sizes = Sizes {
         definitions: model.definitions.len(),
         states: model.states.len(),
@@ -33,18 +33,21 @@ pub fn rate_order(model: &Model) -> Result<Vec<WrittenOut>, Vec<(WrittenOut, Spa
     let rates = model.states.iter().map(|state| held(&state.rate));
     let within = model.definitions.iter().map(|known| {
         let mut found = BTreeMap::new();
-        held_rates(&known.value, sizes, &mut found);
+        collect_rates(&known.value, sizes, &mut found);
         found.into_iter().collect()
     });
     let all: Vec<Vec<Reference>> = values.chain(rates).chain(within).collect();
-    match order(&all) {
-        Ok(sorted) => Ok(sorted.into_iter().map(|place| sizes.at(place)).collect()),
+    match sort_by_references(&all) {
+        Ok(sorted) => Ok(sorted
+            .into_iter()
+            .map(|place| sizes.entry_at(place))
+            .collect()),
         Err(circle) => {
             let mut circle: Vec<_> = circle
                 .into_iter()
-                .map(|(place, span)| (sizes.at(place), span))
+                .map(|(place, span)| (sizes.entry_at(place), span))
                 .collect();
-            let is_rate = |(known, _): &(WrittenOut, Span)| matches!(known, WrittenOut::Rate(_));
+            let is_rate = |(known, _): &(Expanded, Span)| matches!(known, Expanded::Rate(_));
             let first = circle.iter().position(is_rate).unwrap_or(0);
             circle.rotate_left(first);
             Err(circle)
@@ -69,12 +72,12 @@ impl Sizes {
         self.definitions + self.states + definition.index()
     }
 
-    fn at(self, place: usize) -> WrittenOut {
+    fn entry_at(self, place: usize) -> Expanded {
         match place.checked_sub(self.definitions) {
-            None => WrittenOut::Definition(DefinitionId::new(place)),
+            None => Expanded::Definition(DefinitionId::new(place)),
             Some(after) => match after.checked_sub(self.states) {
-                None => WrittenOut::Rate(StateId::new(after)),
-                Some(last) => WrittenOut::RatesWithin(DefinitionId::new(last)),
+                None => Expanded::Rate(StateId::new(after)),
+                Some(last) => Expanded::RatesWithin(DefinitionId::new(last)),
             },
         }
     }
@@ -87,13 +90,13 @@ fn references(expr: &Expr, sizes: Sizes) -> Vec<Reference> {
         ExprKind::Definition(index) => {
             found.entry(index.index()).or_insert(part.span);
         }
-        ExprKind::Dot(operand) => held_rates(operand, sizes, &mut found),
+        ExprKind::Dot(operand) => collect_rates(operand, sizes, &mut found),
         _ => {}
     });
     found.into_iter().collect()
 }
 
-fn held_rates(expr: &Expr, sizes: Sizes, found: &mut BTreeMap<usize, Span>) {
+fn collect_rates(expr: &Expr, sizes: Sizes, found: &mut BTreeMap<usize, Span>) {
     expr.visit(&mut |part| {
         let place = match part.kind {
             ExprKind::State(state) => sizes.rate(state),

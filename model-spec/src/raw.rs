@@ -3,7 +3,7 @@
 
 use crate::model::{Basis, STABILISATION_RATE};
 use crate::span::Span;
-use crate::table::{Name, Number, Quantity, Written};
+use crate::table::{Name, Number, Quantity, StringValue};
 
 #[derive(Debug)]
 pub struct Document {
@@ -31,7 +31,7 @@ pub struct Document {
     /// Each impact with its restitution.
     pub impacts: Vec<(RawTerm, Quantity)>,
     /// Each observable with its declared unit.
-    pub observables: Vec<(RawTerm, Option<Written>)>,
+    pub observables: Vec<(RawTerm, Option<StringValue>)>,
     pub coefficients: Vec<RawCoefficient>,
     pub sensors: Vec<RawSensor>,
     pub drawing: Option<RawDrawing>,
@@ -55,7 +55,7 @@ impl Document {
                 span,
             },
             value: Quantity::Number(Number { value: 0.0, span }),
-            unit: Some(Written::inferred("1/s", span)),
+            unit: Some(StringValue::without_text("1/s", span)),
             doc: "decay rate of constraint residuals (Baumgarte)".to_owned(),
             origin: "default: no stabilisation".to_owned(),
             min: None,
@@ -81,14 +81,14 @@ pub struct RawPoint {
 #[derive(Debug)]
 pub struct RawLine {
     pub name: Name,
-    pub points: Vec<Written>,
+    pub points: Vec<StringValue>,
 }
 
 #[derive(Debug)]
 pub struct RawParameter {
     pub name: Name,
     pub value: Quantity,
-    pub unit: Option<Written>,
+    pub unit: Option<StringValue>,
     pub doc: String,
     /// `source`
     pub origin: String,
@@ -107,7 +107,7 @@ pub enum RawUncertainty {
 #[derive(Debug)]
 pub struct RawCoordinate {
     pub name: Name,
-    pub unit: Option<Written>,
+    pub unit: Option<StringValue>,
     pub doc: String,
     pub initial: Option<Quantity>,
     pub initial_rate: Option<Quantity>,
@@ -126,7 +126,7 @@ pub struct RawRange {
 #[derive(Debug)]
 pub struct RawInput {
     pub name: Name,
-    pub unit: Option<Written>,
+    pub unit: Option<StringValue>,
     pub doc: String,
     pub range: Option<RawRange>,
     /// Order of the rate: 0 for the input itself, 1 for `s_dot`, 2 for `s_ddot`.
@@ -165,13 +165,13 @@ pub enum RawBasis {
     /// Shapes of a formula.
     Named(Basis),
     /// Shapes of a file.
-    Table(Written),
+    Table(StringValue),
 }
 
 #[derive(Debug)]
 pub struct RawState {
     pub name: Name,
-    pub unit: Option<Written>,
+    pub unit: Option<StringValue>,
     pub rate: Quantity,
     pub initial: Option<Quantity>,
     pub range: Option<RawRange>,
@@ -188,7 +188,7 @@ pub struct RawField {
     pub coordinates: Name,
     /// `order` and its position.
     pub order: (i64, Span),
-    pub unit: Option<Written>,
+    pub unit: Option<StringValue>,
     pub doc: String,
 }
 
@@ -205,18 +205,18 @@ pub struct RawTerm {
 pub struct RawFrame {
     pub name: Name,
     /// Frame of reference; the fixed axes if absent.
-    pub parent: Option<Written>,
+    pub parent: Option<StringValue>,
     /// Position, along the axes of the parent.
     pub origin: Option<Quantity>,
     /// Rotation from the frame's axes to the parent's.
-    pub rotation: Option<Written>,
+    pub rotation: Option<StringValue>,
     pub doc: String,
 }
 
 #[derive(Debug)]
 pub struct RawBody {
     pub name: Name,
-    pub frame: Written,
+    pub frame: StringValue,
     /// A body without a mass has only inertia.
     pub mass: Option<Quantity>,
     /// Centre of mass, along the axes of the frame.
@@ -233,7 +233,7 @@ pub struct RawCoefficient {
     pub name: Name,
     pub kind: RawCoefficientKind,
     /// Field and index of a family of coefficients, as `w[i]`.
-    pub each: Option<Written>,
+    pub each: Option<StringValue>,
     pub doc: String,
 }
 
@@ -249,7 +249,7 @@ pub enum RawCoefficientKind {
 pub struct RawSensor {
     pub channel: Name,
     /// Observable that the sensor measures; the channel's name if absent.
-    pub observable: Option<Written>,
+    pub observable: Option<StringValue>,
     /// Gain; 1 if absent.
     pub gain: f64,
     /// Bias in the channel's unit; 0 if absent.

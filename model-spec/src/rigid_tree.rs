@@ -72,7 +72,7 @@ impl<T> RigidTree<T> {
         let bodies = self.bodies.iter().map(|body| body.try_map(change));
         let bodies = bodies.collect::<Result<_, E>>()?;
         Ok(RigidTree {
-            gravity: each(&self.gravity, change)?,
+            gravity: try_map_three(&self.gravity, change)?,
             frames,
             bodies,
         })
@@ -95,7 +95,7 @@ impl<T> PlacedFrame<T> {
         }
         Ok(PlacedFrame {
             parent: self.parent,
-            origin: each(&self.origin, change)?,
+            origin: try_map_three(&self.origin, change)?,
             turns,
         })
     }
@@ -110,14 +110,17 @@ impl<T> RigidBody<T> {
             name: self.name.clone(),
             frame: self.frame,
             mass: change(&self.mass)?,
-            centre: each(&self.centre, change)?,
-            moments: each(&self.moments, change)?,
-            products: each(&self.products, change)?,
+            centre: try_map_three(&self.centre, change)?,
+            moments: try_map_three(&self.moments, change)?,
+            products: try_map_three(&self.products, change)?,
         })
     }
 }
 
-fn each<T, U, E>(parts: &[T; 3], change: &mut impl FnMut(&T) -> Result<U, E>) -> Result<[U; 3], E> {
+fn try_map_three<T, U, E>(
+    parts: &[T; 3],
+    change: &mut impl FnMut(&T) -> Result<U, E>,
+) -> Result<[U; 3], E> {
     let [x, y, z] = parts.each_ref().map(change);
     Ok([x?, y?, z?])
 }

@@ -46,7 +46,7 @@ impl Scale {
     }
 
     /// Returns the product; `None` if it is not exact.
-    pub fn times(self, other: Self) -> Option<Self> {
+    pub fn multiply(self, other: Self) -> Option<Self> {
         Some(Self {
             fraction: self.fraction.checked_mul(&other.fraction)?,
             pi_power: self.pi_power.checked_add(other.pi_power)?,
@@ -54,13 +54,13 @@ impl Scale {
     }
 
     /// Returns the integer power; `None` if it is not exact.
-    pub fn power(self, exponent: i32) -> Option<Self> {
+    pub fn raise(self, exponent: i32) -> Option<Self> {
         if exponent.unsigned_abs() > 64 {
             return (self == Self::ONE).then_some(self);
         }
         let mut result = Self::ONE;
         for _ in 0..exponent.unsigned_abs() {
-            result = result.times(self)?;
+            result = result.multiply(self)?;
         }
         if exponent < 0 {
             result.inverse()
@@ -84,10 +84,10 @@ impl Scale {
         }
         let numerator = *self.fraction.numer() as f64;
         let denominator = *self.fraction.denom() as f64;
-        let mut result = Doubled::product(value, numerator);
+        let mut result = DoubleDouble::product(value, numerator);
         for _ in 0..self.pi_power.unsigned_abs() {
             result = if self.pi_power > 0 {
-                result.times(PI_HIGH, PI_LOW)
+                result.multiply(PI_HIGH, PI_LOW)
             } else {
                 result.over(PI_HIGH, PI_LOW)
             };
@@ -104,19 +104,19 @@ impl Scale {
 
 /// Number of double length, as an unevaluated sum.
 #[derive(Clone, Copy)]
-struct Doubled {
+struct DoubleDouble {
     high: f64,
     low: f64,
 }
 
-impl Doubled {
+impl DoubleDouble {
     fn product(left: f64, right: f64) -> Self {
         let high = left * right;
         let low = left.mul_add(right, -high);
         Self { high, low }
     }
 
-    fn times(self, high: f64, low: f64) -> Self {
+    fn multiply(self, high: f64, low: f64) -> Self {
         let leading = Self::product(self.high, high);
         let low = leading.low + self.high * low + self.low * high;
         Self {
@@ -169,8 +169,8 @@ mod tests {
     #[test]
     fn powers_beyond_the_exact_range_are_rejected() {
         let tera = Scale::power_of_ten(12).unwrap();
-        assert_eq!(tera.power(3), Scale::power_of_ten(36));
-        assert_eq!(tera.power(4), None);
+        assert_eq!(tera.raise(3), Scale::power_of_ten(36));
+        assert_eq!(tera.raise(4), None);
         assert_eq!(Scale::power_of_ten(39), None);
     }
 

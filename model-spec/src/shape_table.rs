@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use crate::adjacent_file;
 use crate::diagnostic::Diagnostic;
-use crate::file_beside;
 use crate::source::sha256;
 use crate::span::Span;
 
@@ -18,15 +18,15 @@ const MIN_ROWS: usize = 4;
 const MAX_CELLS: usize = 1000;
 
 /// Largest ratio of a step to its longer neighbour; a larger one is reported as a gap.
-const GAP: f64 = 3.0;
+const MAX_STEP_RATIO: f64 = 3.0;
 
 /// Smallest norm of a shape after orthogonalisation, relative to its norm before, that counts
 /// as independent.
-const INDEPENDENT: f64 = 1e-8;
+const MIN_INDEPENDENT_NORM: f64 = 1e-8;
 
 /// Largest distance between the ends of the table and those of the field, relative to the
 /// field's length.
-const ENDS: f64 = 1e-9;
+const MAX_END_DISTANCE: f64 = 1e-9;
 
 /// Mode shapes at discrete positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,17 +54,18 @@ impl ShapeTable {
         name: &str,
         most: usize,
     ) -> Result<Self, Diagnostic> {
-        let refused = |message: String| Diagnostic::error(message).at(span, "this table");
+        let refused = |message: String| Diagnostic::error(message).with_span(span, "this table");
         let Some(folder) = folder else {
             return Err(refused(format!(
                 "the table \"{name}\" cannot be found: the specification was given as text, without a folder"
             ))
-            .help("give the specification as a file; `compare`, `discover`, sections in a macro and specifications given as text do not support tables"));
+            .with_help("give the specification as a file; `compare`, `discover`, sections in a macro and specifications given as text do not support tables"));
         };
-        let text = file_beside::read(folder, name)
-            .map_err(|error| refused(format!("the table \"{name}\" {}", error.0)).help(error.1))?;
+        let text = adjacent_file::read(folder, name).map_err(|error| {
+            refused(format!("the table \"{name}\" {}", error.0)).with_help(error.1)
+        })?;
         Self::parse(name, &text, most).map_err(|fault| {
-            refused(format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message)).help(
+            refused(format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message)).with_help(
                 "write x,phi_1,phi_2,... in the first line, and an increasing position with its values in each other line",
             )
         })
@@ -79,7 +80,7 @@ impl ShapeTable {
         let content = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..).zip(content.lines());
         let header = lines.next().map_or("", |(_, line)| line);
-        let count = modes(header, most)?;
+        let count = count_shapes(header, most)?;
         let mut table = Self {
             file: file.to_owned(),
             sha256: sha256(text),
@@ -115,7 +116,7 @@ impl ShapeTable {
             let number = number.ok_or_else(|| {
                 let message = match cell {
                     "" => "a number is missing".to_owned(),
-                    cell => format!("`{}` is not a finite number", shortened(cell)),
+                    cell => format!("`{}` is not a finite number", shorten(cell)),
                 };
                 TableFault::new(line, column, message)
             })?;
@@ -145,8 +146,8 @@ impl ShapeTable {
             let message = format!("{rows} rows: {modes} shapes need at least {least}");
             return Err(TableFault::new(rows + 1, 1, message));
         }
-        self.gaps()?;
-        if let Some(mode) = dependent(&self.shapes) {
+        self.check_gaps()?;
+        if let Some(mode) = find_dependent_shape(&self.shapes) {
             let message = format!(
                 "phi_{} is zero or a linear combination of the shapes before it",
                 mode + 1
@@ -156,7 +157,7 @@ impl ShapeTable {
         Ok(())
     }
 
-    fn gaps(&self) -> Result<(), TableFault> {
+    fn check_gaps(&self) -> Result<(), TableFault> {
         let steps: Vec<f64> = self
             .positions
             .windows(2)
@@ -166,10 +167,10 @@ impl ShapeTable {
             let before = index.checked_sub(1).and_then(|index| steps.get(index));
             let beside = [before, steps.get(index + 1)].into_iter().flatten();
             let longest = beside.fold(0.0, |longest: f64, step| longest.max(*step));
-            if *step > GAP * longest {
+            if *step > MAX_STEP_RATIO * longest {
                 let (from, to) = (self.positions[index], self.positions[index + 1]);
                 let message = format!(
-                    "a gap from x = {from} to {to}, more than {GAP} times the neighbouring steps"
+                    "a gap from x = {from} to {to}, more than {MAX_STEP_RATIO} times the neighbouring steps"
                 );
                 return Err(TableFault::new(index + 3, 1, message));
             }
@@ -181,11 +182,11 @@ impl ShapeTable {
     ///
     /// # Errors
     /// The end that differs.
-    pub fn spans(&self, from: f64, to: f64) -> Result<(), TableFault> {
+    pub fn check_span(&self, from: f64, to: f64) -> Result<(), TableFault> {
         let last = self.positions.len() - 1;
         for (index, end, name) in [(0, from, "from"), (last, to, "to")] {
             let x = self.positions[index];
-            let there = (x - end).abs() <= ENDS * (to - from).abs();
+            let there = (x - end).abs() <= MAX_END_DISTANCE * (to - from).abs();
             if !there {
                 let message = format!("x = {x} at this end, but the field has {name} = {end} m");
                 return Err(TableFault::new(index + 2, 1, message));
@@ -216,7 +217,7 @@ impl TableFault {
     }
 }
 
-fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
+fn count_shapes(header: &str, most: usize) -> Result<usize, TableFault> {
     let cells = cells(header);
     if cells.len() < 2 {
         let message = "no header x,phi_1,phi_2,... with at least one shape";
@@ -228,10 +229,7 @@ fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
             mode => format!("phi_{mode}"),
         };
         if *name != expected {
-            let message = format!(
-                "unexpected column `{}`, expected {expected}",
-                shortened(name)
-            );
+            let message = format!("unexpected column `{}`, expected {expected}", shorten(name));
             return Err(TableFault::new(1, *column, message));
         }
     }
@@ -257,7 +255,7 @@ fn cells(line: &str) -> Vec<(usize, &str)> {
         .collect()
 }
 
-fn shortened(cell: &str) -> String {
+fn shorten(cell: &str) -> String {
     match cell.char_indices().nth(40) {
         Some((end, _)) => format!("{}...", &cell[..end]),
         None => cell.to_owned(),
@@ -266,7 +264,7 @@ fn shortened(cell: &str) -> String {
 
 /// Returns the first shape that depends linearly on those before it, by modified Gram-Schmidt
 /// orthogonalisation, done twice.
-fn dependent(shapes: &[Vec<f64>]) -> Option<usize> {
+fn find_dependent_shape(shapes: &[Vec<f64>]) -> Option<usize> {
     let norm = |shape: &[f64]| shape.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut directions: Vec<Vec<f64>> = Vec::new();
     for (mode, shape) in shapes.iter().enumerate() {
@@ -282,7 +280,7 @@ fn dependent(shapes: &[Vec<f64>]) -> Option<usize> {
         }
         let left = norm(&rest);
         // NaN for a shape that is zero everywhere.
-        let is_another = left > INDEPENDENT * before;
+        let is_another = left > MIN_INDEPENDENT_NORM * before;
         if !is_another {
             return Some(mode);
         }

@@ -45,7 +45,7 @@ impl Source {
 
     /// Returns the source with another text, and the same path and folder.
     #[must_use]
-    pub fn edited(&self, text: impl Into<Arc<str>>) -> Self {
+    pub fn with_text(&self, text: impl Into<Arc<str>>) -> Self {
         Self {
             path: self.path.clone(),
             text: text.into(),

@@ -15,8 +15,13 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
             let distance = strsim::damerau_levenshtein(&lowered, &name.to_lowercase());
             (distance, name)
         })
-        .filter(|(distance, name)| *distance <= allowed(wrong.len().max(name.len())))
-        .min_by_key(|(distance, name)| (*distance, std::cmp::Reverse(common(&lowered, name))))
+        .filter(|(distance, name)| *distance <= max_distance(wrong.len().max(name.len())))
+        .min_by_key(|(distance, name)| {
+            (
+                *distance,
+                std::cmp::Reverse(common_prefix_length(&lowered, name)),
+            )
+        })
         .map(|(_, name)| name)
 }
 
@@ -33,7 +38,7 @@ fn count_comparison() {
     tests::COMPARED.with(|compared| compared.set(compared.get() + 1));
 }
 
-fn common(one: &str, other: &str) -> usize {
+fn common_prefix_length(one: &str, other: &str) -> usize {
     one.chars()
         .zip(other.chars())
         .take_while(|(a, b)| a == b)
@@ -41,7 +46,7 @@ fn common(one: &str, other: &str) -> usize {
 }
 
 /// Returns the largest edit distance for a name of this length.
-fn allowed(length: usize) -> usize {
+fn max_distance(length: usize) -> usize {
     match length {
         0 | 1 => 0,
         2 => 1,

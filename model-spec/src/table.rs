@@ -5,8 +5,8 @@
 use toml_edit::{Item, Table, TableLike, Value};
 
 use crate::ast::{Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
-use crate::lexer::tokens;
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
+use crate::lexer::tokenize;
 use crate::parser::parse;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -22,7 +22,7 @@ pub struct Name {
 
 /// String value of the file.
 #[derive(Clone, Debug)]
-pub struct Written {
+pub struct StringValue {
     /// The string, with escapes resolved.
     pub text: String,
     /// Position, including the quotes.
@@ -47,16 +47,16 @@ pub enum Quantity {
     /// TOML number.
     Number(Number),
     /// TOML string.
-    Expression(Written),
+    Expression(StringValue),
     /// TOML array: a vector from its components.
-    Listed(Vec<Quantity>, Span),
+    Vector(Vec<Quantity>, Span),
     /// Expression that replaces a short form.
     Expansion(Box<Syntax>),
 }
 
-impl Written {
+impl StringValue {
     /// Creates a string that the file does not contain; `span` is the place that needs it.
-    pub fn inferred(text: &str, span: Span) -> Self {
+    pub fn without_text(text: &str, span: Span) -> Self {
         Self {
             text: text.to_owned(),
             span,
@@ -78,7 +78,7 @@ impl Written {
     /// # Errors
     /// The first syntax error, at its token.
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
-        let tokens = tokens(&self.text, |start, end| self.place(start, end))?;
+        let tokens = tokenize(&self.text, |start, end| self.place(start, end))?;
         let written = self.text.trim_end().len();
         // An empty span would be invisible: the end is underlined one character wide.
         let end = self.place(written, written + 1);
@@ -98,7 +98,7 @@ impl Quantity {
                 span: number.span,
             }),
             Self::Expression(written) => written.syntax(),
-            Self::Listed(components, span) => {
+            Self::Vector(components, span) => {
                 let components = components.iter().map(Self::syntax);
                 Ok(Syntax {
                     kind: SyntaxKind::Vector(components.collect::<Result<_, _>>()?),
@@ -114,7 +114,7 @@ impl Quantity {
         match self {
             Self::Number(number) => number.span,
             Self::Expression(written) => written.span,
-            Self::Listed(_, span) => *span,
+            Self::Vector(_, span) => *span,
             Self::Expansion(syntax) => syntax.span,
         }
     }
@@ -175,7 +175,7 @@ impl<'d> Entry<'d> {
     pub fn table(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
         match self.table_like() {
             Some(table) => Ok(entries(table, self.text)),
-            None => Err(self.mismatch("a table", example)),
+            None => Err(self.kind_error("a table", example)),
         }
     }
 
@@ -197,7 +197,7 @@ impl<'d> Entry<'d> {
             Some(Value::Array(array)) => {
                 Ok(array.iter().map(|v| element(Node::Value(v))).collect())
             }
-            _ => Err(self.mismatch("a list", example)),
+            _ => Err(self.kind_error("a list", example)),
         }
     }
 
@@ -205,7 +205,7 @@ impl<'d> Entry<'d> {
     ///
     /// # Errors
     /// A value of another kind, or an unknown word, with the nearest known one.
-    pub fn word<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
+    pub fn keyword<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
         let written = self.written()?;
         let meant = known.iter().find(|(word, _)| *word == written.text);
         meant.map(|(_, meaning)| *meaning).ok_or_else(|| {
@@ -215,18 +215,18 @@ impl<'d> Entry<'d> {
             Diagnostic::error(format!(
                 "`{}` cannot be {}",
                 self.name.text,
-                quoted(&written.text)
+                quote(&written.text)
             ))
-            .at(written.span, listed.clone())
-            .help(did_you_mean(&written.text, words()).unwrap_or(listed))
+            .with_span(written.span, listed.clone())
+            .with_help(did_you_mean(&written.text, words()).unwrap_or(listed))
         })
     }
 
     /// Returns a truth value; an error for any other kind of value.
-    pub fn truth(&self) -> Result<bool, Diagnostic> {
+    pub fn boolean(&self) -> Result<bool, Diagnostic> {
         match self.value() {
             Some(Value::Boolean(truth)) => Ok(*truth.value()),
-            _ => Err(self.mismatch("a truth value", "true")),
+            _ => Err(self.kind_error("a truth value", "true")),
         }
     }
 
@@ -253,8 +253,8 @@ impl<'d> Entry<'d> {
         example: &str,
         found: &mut Diagnostics,
     ) -> Option<Record<'d>> {
-        let entries = found.keep(self.table(example))?;
-        Some(Record::of(self.name.clone(), entries, known, found))
+        let entries = found.push_error(self.table(example))?;
+        Some(Record::new(self.name.clone(), entries, known, found))
     }
 
     /// Returns true if the value is a table.
@@ -263,11 +263,11 @@ impl<'d> Entry<'d> {
     }
 
     /// Returns a string; an error for any other kind of value.
-    pub fn written(&self) -> Result<Written, Diagnostic> {
+    pub fn written(&self) -> Result<StringValue, Diagnostic> {
         let value = self.value();
         value
             .and_then(|value| self.written_in(value))
-            .ok_or_else(|| self.mismatch("a string", "\"...\""))
+            .ok_or_else(|| self.kind_error("a string", "\"...\""))
     }
 
     /// Returns a finite number.
@@ -278,7 +278,7 @@ impl<'d> Entry<'d> {
         let value = self.value();
         value
             .and_then(|value| self.number_in(value))
-            .unwrap_or_else(|| Err(self.mismatch("a number", "0.5")))
+            .unwrap_or_else(|| Err(self.kind_error("a number", "0.5")))
     }
 
     /// Returns a number or an expression; an error for any other kind of value.
@@ -287,7 +287,7 @@ impl<'d> Entry<'d> {
         value
             .and_then(|value| self.quantity_in(value))
             .unwrap_or_else(|| {
-                Err(self.mismatch("a number or an expression in quotes", "\"m*g*a\""))
+                Err(self.kind_error("a number or an expression in quotes", "\"m*g*a\""))
             })
     }
 
@@ -298,7 +298,7 @@ impl<'d> Entry<'d> {
             Some(Value::Array(_)) => {
                 let components = self.list("[\"x\", \"y\", 0]")?;
                 let components = components.iter().map(Entry::quantity);
-                Ok(Quantity::Listed(
+                Ok(Quantity::Vector(
                     components.collect::<Result<_, _>>()?,
                     self.span(),
                 ))
@@ -312,7 +312,7 @@ impl<'d> Entry<'d> {
     pub fn vector(&self, example: &str) -> Result<Quantity, Diagnostic> {
         match self.written() {
             Ok(written) => Ok(Quantity::Expression(written)),
-            Err(_) => Ok(Quantity::Listed(
+            Err(_) => Ok(Quantity::Vector(
                 self.quantities(&[3], example)?,
                 self.span(),
             )),
@@ -326,22 +326,22 @@ impl<'d> Entry<'d> {
     pub fn pair(&self) -> Result<[Quantity; 2], Diagnostic> {
         let example = "[-0.1, 0.1]";
         let Some(Value::Array(array)) = self.value() else {
-            return Err(self.mismatch("a pair of ends", example));
+            return Err(self.kind_error("a pair of ends", example));
         };
         let elements: Vec<&Value> = array.iter().collect();
         let [low, high] = elements[..] else {
             let name = &self.name.text;
-            let message = format!("{} needs two ends, not {}", quoted(name), array.len());
+            let message = format!("{} needs two ends, not {}", quote(name), array.len());
             return Err(Diagnostic::error(message)
-                .at(self.span(), "expected the lower and the upper end")
-                .help(format!("write {name} = {example}")));
+                .with_span(self.span(), "expected the lower and the upper end")
+                .with_help(format!("write {name} = {example}")));
         };
         let end = |value: &Value| {
             self.quantity_in(value).unwrap_or_else(|| {
                 let message = "an end must be a number or an expression in quotes";
                 Err(Diagnostic::error(message)
-                    .at(self.place(value), "this is neither")
-                    .help(format!("write {} = {example}", self.name.text)))
+                    .with_span(self.place(value), "this is neither")
+                    .with_help(format!("write {} = {example}", self.name.text)))
             })
         };
         Ok([end(low)?, end(high)?])
@@ -357,10 +357,10 @@ impl<'d> Entry<'d> {
             let name = &self.name.text;
             let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
             let (counts, given) = (counts.join(" or "), list.len());
-            let message = format!("{} needs {counts} components, not {given}", quoted(name));
+            let message = format!("{} needs {counts} components, not {given}", quote(name));
             return Err(Diagnostic::error(message)
-                .at(self.span(), format!("{given} given"))
-                .help(format!("write {name} = {example}")));
+                .with_span(self.span(), format!("{given} given"))
+                .with_help(format!("write {name} = {example}")));
         }
         list.iter().map(Entry::quantity).collect()
     }
@@ -372,12 +372,12 @@ impl<'d> Entry<'d> {
     }
 
     /// Returns a string, or `None` for a value of another kind.
-    fn written_in(&self, value: &Value) -> Option<Written> {
+    fn written_in(&self, value: &Value) -> Option<StringValue> {
         let Value::String(string) = value else {
             return None;
         };
         let span = self.place(value);
-        Some(Written {
+        Some(StringValue {
             text: string.value().clone(),
             span,
             first: first_character(self.text, span, string.value()),
@@ -396,9 +396,9 @@ impl<'d> Entry<'d> {
             return Some(Ok(Number { value, span }));
         }
         let shown = self.text.get(span.start..span.end).unwrap_or("this");
-        let message = format!("{} is not a finite number", quoted(shown));
+        let message = format!("{} is not a finite number", quote(shown));
         Some(Err(
-            Diagnostic::error(message).at(span, "expected a finite number")
+            Diagnostic::error(message).with_span(span, "expected a finite number")
         ))
     }
 
@@ -411,14 +411,14 @@ impl<'d> Entry<'d> {
     }
 
     /// Returns a whole number; an error for any other kind of value.
-    pub fn whole(&self) -> Result<(i64, Span), Diagnostic> {
+    pub fn integer(&self) -> Result<(i64, Span), Diagnostic> {
         match self.value() {
             Some(Value::Integer(integer)) => Ok((*integer.value(), self.span())),
-            _ => Err(self.mismatch("a whole number", "4")),
+            _ => Err(self.kind_error("a whole number", "4")),
         }
     }
 
-    fn mismatch(&self, expected: &str, example: &str) -> Diagnostic {
+    fn kind_error(&self, expected: &str, example: &str) -> Diagnostic {
         let kind = match self.node {
             Node::Item(item) => item.type_name(),
             Node::Value(value) => value.type_name(),
@@ -431,15 +431,15 @@ impl<'d> Entry<'d> {
             other => other,
         };
         let article = if kind == "array" { "an" } else { "a" };
-        Diagnostic::error(format!("{} is not {expected}", quoted(&self.name.text)))
-            .at(self.span(), format!("this is {article} {kind}"))
-            .help(format!("write {} = {example}", self.name.text))
+        Diagnostic::error(format!("{} is not {expected}", quote(&self.name.text)))
+            .with_span(self.span(), format!("this is {article} {kind}"))
+            .with_help(format!("write {} = {example}", self.name.text))
     }
 }
 
 impl<'d> Record<'d> {
     /// Creates a record, and reports keys that are not `known`.
-    pub fn of(
+    pub fn new(
         owner: Name,
         entries: Vec<Entry<'d>>,
         known: &[&str],
@@ -449,7 +449,7 @@ impl<'d> Record<'d> {
             .into_iter()
             .partition(|entry| known.contains(&entry.name.text.as_str()));
         for other in others {
-            found.push_with(|| unknown_key(&other.name, known));
+            found.push_with(|| unknown_key_error(&other.name, known));
         }
         Self { owner, entries }
     }
@@ -468,11 +468,11 @@ impl<'d> Record<'d> {
     pub fn require(&self, key: &str, help: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
         let entry = self.get(key);
         if entry.is_none() {
-            let owner = quoted(&self.owner.text);
+            let owner = quote(&self.owner.text);
             found.push(
                 Diagnostic::error(format!("{owner} has no `{key}`"))
-                    .at(self.owner.span, format!("`{key}` is missing"))
-                    .help(help),
+                    .with_span(self.owner.span, format!("`{key}` is missing"))
+                    .with_help(help),
             );
         }
         entry
@@ -485,27 +485,27 @@ impl<'d> Record<'d> {
     }
 
     /// Returns the string of a key, if present.
-    pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<Written> {
-        found.keep(self.get(key)?.written())
+    pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<StringValue> {
+        found.push_error(self.get(key)?.written())
     }
 
     /// Returns the number of a key, if present.
     pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
-        found.keep(self.get(key)?.number())
+        found.push_error(self.get(key)?.number())
     }
 
     /// Returns the number or expression of a key, if present.
     pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
-        found.keep(self.get(key)?.quantity())
+        found.push_error(self.get(key)?.quantity())
     }
 }
 
 /// Reports an unknown key, with the nearest known one.
-pub fn unknown_key(name: &Name, known: &[&str]) -> Diagnostic {
+pub fn unknown_key_error(name: &Name, known: &[&str]) -> Diagnostic {
     let listed = format!("the keys are {}", known.join(", "));
-    Diagnostic::error(format!("unknown key {}", quoted(&name.text)))
-        .at(name.span, "unknown here")
-        .help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
+    Diagnostic::error(format!("unknown key {}", quote(&name.text)))
+        .with_span(name.span, "unknown here")
+        .with_help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
 }
 
 /// Returns the offset of the first character of a string, if it has no escapes.

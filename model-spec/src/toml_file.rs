@@ -19,7 +19,7 @@ pub fn read<T>(
 ) -> Result<T, Diagnostics> {
     let text: &str = &source.text;
     let toml = Document::parse(text)
-        .map_err(|error| Diagnostics::one(source.clone(), grammar_error(text, &error)))?;
+        .map_err(|error| Diagnostics::from_one(source.clone(), grammar_error(text, &error)))?;
     let mut found = Diagnostics::new(source.clone());
     match of(&entries(toml.as_table(), text), &mut found) {
         Some(read) if found.is_empty() => Ok(read),
@@ -35,7 +35,7 @@ pub fn source(path: &Path, limit: u64) -> Result<Source, Diagnostics> {
     let shown = path.display().to_string();
     let wrong = |message: String| {
         let message = format!("cannot read {shown}: {message}");
-        Diagnostics::one(Source::new(shown.clone(), ""), Diagnostic::error(message))
+        Diagnostics::from_one(Source::new(shown.clone(), ""), Diagnostic::error(message))
     };
     let metadata = std::fs::metadata(path).map_err(|error| wrong(error.to_string()))?;
     if !metadata.is_file() {
@@ -69,6 +69,6 @@ pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnos
         (!advice.is_empty()).then(|| advice.join("; "))
     };
     Diagnostic::error(format!("not valid TOML: {message}"))
-        .at(Span::new(range.start, range.end), "here")
-        .help_if(help)
+        .with_span(Span::new(range.start, range.end), "here")
+        .with_optional_help(help)
 }

@@ -5,7 +5,7 @@ use crate::variant::ModelError;
 
 /// Distribution of a parameter, in its declared unit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spread {
+pub struct Distribution {
     /// Name of the parameter.
     pub name: String,
     /// Distribution law.
@@ -39,7 +39,7 @@ impl Model {
     ///
     /// # Errors
     /// An uncertainty that is invalid for the present value, with the name of the parameter.
-    pub fn spreads(&self) -> Result<Vec<Spread>, ModelError> {
+    pub fn distributions(&self) -> Result<Vec<Distribution>, ModelError> {
         let uncertain = self.parameters.iter().filter_map(|parameter| {
             let uncertainty = parameter.uncertainty.as_ref()?;
             Some(spread(parameter, uncertainty))
@@ -48,9 +48,9 @@ impl Model {
     }
 }
 
-fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Spread, ModelError> {
+fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Distribution, ModelError> {
     let ParameterValue::Number(value) = parameter.value else {
-        return Err(wrong(
+        return Err(uncertainty_error(
             parameter,
             "the value is an expression",
             "declare the uncertainty of the parameters in the expression",
@@ -59,7 +59,7 @@ fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Spread, Mo
     let law = match *uncertainty {
         Uncertainty::Between(ends) => uniform(parameter, value, ends)?,
         Uncertainty::Relative(part) if value == 0.0 || !(part > 0.0 && part < 1.0) => {
-            return Err(wrong(
+            return Err(uncertainty_error(
                 parameter,
                 &format!("{part} of {}", parameter.unit.from_si(value)),
                 "give a `relative` between 0 and 1, for a value other than 0; otherwise give `sd` in the parameter's unit",
@@ -71,13 +71,13 @@ fn spread(parameter: &Parameter, uncertainty: &Uncertainty) -> Result<Spread, Mo
         }
         Uncertainty::StandardDeviation(sd) => normal(parameter, value, sd, [None, None])?,
     };
-    Ok(Spread {
+    Ok(Distribution {
         name: parameter.name.clone(),
         law,
     })
 }
 
-fn wrong(parameter: &Parameter, what: &str, help: &str) -> ModelError {
+fn uncertainty_error(parameter: &Parameter, what: &str, help: &str) -> ModelError {
     let error = ModelError::new(format!("the uncertainty of `{}`: {what}", parameter.name));
     error.at(parameter.span).help(help)
 }
@@ -90,7 +90,7 @@ fn uniform(parameter: &Parameter, value: f64, [low, high]: [f64; 2]) -> Result<L
     if is_right {
         return Ok(Law::Uniform { low, high });
     }
-    Err(wrong(
+    Err(uncertainty_error(
         parameter,
         &format!("{low} to {high} {}", parameter.unit),
         "give the lower end first, with the value between the ends and both ends within `min` and `max`",
@@ -107,7 +107,7 @@ fn normal(
 ) -> Result<Law, ModelError> {
     let declared = |value: f64| parameter.unit.from_si(value);
     if !(sd > 0.0 && sd.is_finite()) {
-        return Err(wrong(
+        return Err(uncertainty_error(
             parameter,
             &format!("a standard deviation of {}", declared(sd)),
             "give a standard deviation greater than 0",
@@ -118,7 +118,7 @@ fn normal(
     let bounds = [low.reduce(f64::max), high.reduce(f64::min)];
     let near = |bound: &f64| (bound - value).abs() < sd;
     if bounds.iter().flatten().any(near) {
-        return Err(wrong(
+        return Err(uncertainty_error(
             parameter,
             "`min` or `max` is less than a standard deviation from the value",
             "give the ends of an interval instead, for example { between = [1, 2] }",

@@ -106,8 +106,8 @@ impl Unit {
 
     /// Returns the coherent unit of the rate of a quantity in this unit; `None` if an exponent
     /// overflows.
-    pub fn per_second(&self) -> Option<Self> {
-        let mut unit = Self::coherent(self.dimension.over(Dimension::TIME)?);
+    pub fn rate_unit(&self) -> Option<Self> {
+        let mut unit = Self::coherent(self.dimension.divide(Dimension::TIME)?);
         unit.text = format!("{self}/s");
         Some(unit)
     }
@@ -141,7 +141,7 @@ impl UnitError {
         }
     }
 
-    fn too_large(text: &str) -> Self {
+    fn out_of_range(text: &str) -> Self {
         Self::new(format!("the unit `{text}` is out of range"), None)
     }
 }
@@ -176,11 +176,14 @@ fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
             parse_product(written)?
         }
     };
-    let dimension = above.0.over(below.0);
-    let scale = below.1.power(-1).and_then(|inverse| above.1.times(inverse));
+    let dimension = above.0.divide(below.0);
+    let scale = below
+        .1
+        .raise(-1)
+        .and_then(|inverse| above.1.multiply(inverse));
     dimension
         .zip(scale)
-        .ok_or_else(|| UnitError::too_large(text))
+        .ok_or_else(|| UnitError::out_of_range(text))
 }
 
 /// Returns the position of the first `/` outside an exponent such as `^(1/2)`.
@@ -220,14 +223,14 @@ fn factors(text: &str) -> impl Iterator<Item = &str> {
 }
 
 fn parse_product(text: &str) -> Result<Parsed, UnitError> {
-    let mut product = (Dimension::NONE, Scale::ONE);
+    let mut product = (Dimension::DIMENSIONLESS, Scale::ONE);
     for factor in factors(text) {
         let (dimension, scale) = parse_factor(factor)?;
         product = product
             .0
-            .times(dimension)
-            .zip(product.1.times(scale))
-            .ok_or_else(|| UnitError::too_large(text))?;
+            .multiply(dimension)
+            .zip(product.1.multiply(scale))
+            .ok_or_else(|| UnitError::out_of_range(text))?;
     }
     Ok(product)
 }
@@ -237,16 +240,16 @@ fn parse_factor(text: &str) -> Result<Parsed, UnitError> {
         Some((symbol, exponent)) => (symbol, parse_exponent(exponent)?),
         None => (text, Ratio::from_integer(1)),
     };
-    let (dimension, scale) = symbol_named(symbol)?;
+    let (dimension, scale) = parse_symbol(symbol)?;
     let scale = if exponent.is_integer() {
-        scale.power(exponent.to_integer())
+        scale.raise(exponent.to_integer())
     } else {
         (scale == Scale::ONE).then_some(scale)
     };
     dimension
-        .power(exponent)
+        .raise(exponent)
         .zip(scale)
-        .ok_or_else(|| UnitError::too_large(text))
+        .ok_or_else(|| UnitError::out_of_range(text))
 }
 
 fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
@@ -272,26 +275,26 @@ fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
     }
 }
 
-fn symbol_named(symbol: &str) -> Result<Parsed, UnitError> {
+fn parse_symbol(symbol: &str) -> Result<Parsed, UnitError> {
     let whole = match symbol {
-        "1" => Some((Dimension::NONE, Scale::ONE)),
-        "deg" => Some((Dimension::NONE, Scale::DEGREE)),
+        "1" => Some((Dimension::DIMENSIONLESS, Scale::ONE)),
+        "deg" => Some((Dimension::DIMENSIONLESS, Scale::DEGREE)),
         "min" => Scale::fraction(60, 1).map(|scale| (Dimension::TIME, scale)),
         "h" => Scale::fraction(3600, 1).map(|scale| (Dimension::TIME, scale)),
         _ => prefixed(symbol, 0),
     };
-    let found = whole.or_else(|| behind_prefix(symbol));
-    found.ok_or_else(|| unknown(symbol))
+    let found = whole.or_else(|| parse_prefixed(symbol));
+    found.ok_or_else(|| unknown_unit_error(symbol))
 }
 
-fn behind_prefix(symbol: &str) -> Option<Parsed> {
+fn parse_prefixed(symbol: &str) -> Option<Parsed> {
     let mut candidates = PREFIXES.iter();
     candidates.find_map(|(prefix, power)| prefixed(symbol.strip_prefix(prefix)?, *power))
 }
 
 /// Splits a word into two units, if possible.
-fn parted(symbol: &str) -> Option<String> {
-    let is_unit = |part: &str| prefixed(part, 0).is_some() || behind_prefix(part).is_some();
+fn split_word(symbol: &str) -> Option<String> {
+    let is_unit = |part: &str| prefixed(part, 0).is_some() || parse_prefixed(part).is_some();
     let mut ends = symbol.char_indices().skip(1);
     ends.find_map(|(end, _)| {
         let (one, other) = symbol.split_at(end);
@@ -302,10 +305,10 @@ fn parted(symbol: &str) -> Option<String> {
 fn prefixed(symbol: &str, prefix_power: i32) -> Option<Parsed> {
     let (_, own_power, exponents) = PREFIXED.iter().find(|(name, ..)| *name == symbol)?;
     let scale = Scale::power_of_ten(prefix_power + own_power)?;
-    Some((Dimension::base(*exponents), scale))
+    Some((Dimension::from_exponents(*exponents), scale))
 }
 
-fn unknown(symbol: &str) -> UnitError {
+fn unknown_unit_error(symbol: &str) -> UnitError {
     let help = match symbol {
         "rpm" => "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s".to_owned(),
         "°" => "write deg".to_owned(),
@@ -313,7 +316,7 @@ fn unknown(symbol: &str) -> UnitError {
         "Kg" => "write kg for the kilogram".to_owned(),
         "sec" => "write s for the second".to_owned(),
         _ if symbol.starts_with(['µ', 'μ']) => "write u for micro: um".to_owned(),
-        _ => match parted(symbol) {
+        _ => match split_word(symbol) {
             Some(parted) => format!("separate factors by a space: {parted}"),
             None => "use SI units with prefixes, combined as in N s/m or kg m^2".to_owned(),
         },
@@ -410,7 +413,7 @@ mod tests {
         for kg in -1..=1 {
             for m in -4..=4 {
                 for s in -4..=2 {
-                    let dimension = Dimension::of([kg, m, s, 0]);
+                    let dimension = Dimension::from_mechanical_exponents([kg, m, s, 0]);
                     let read = Unit::parse(&dimension.to_string()).unwrap();
                     assert_eq!(read.dimension, dimension);
                     assert!(read.is_coherent());

@@ -4,16 +4,16 @@
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
-use crate::infer::{Inference, Words, difference};
+use crate::infer::{Inference, UnitPhrase, difference};
 use crate::model::{
     CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, STABILISATION_RATE, Term,
     written_name,
 };
-use crate::resolve::Resolved;
+use crate::resolve::ResolvedModel;
 use crate::unit::Unit;
 
 /// Checks the units of all expressions, and sets those of definitions and observables.
-pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
+pub fn check(resolved: &mut ResolvedModel, found: &mut Diagnostics) {
     let mut units = Units {
         known: Inference {
             definitions: vec![None; resolved.model.definitions.len()],
@@ -28,9 +28,9 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     units.inputs();
     units.fields();
     // A wrong unit of gravity would be reported at the rotations of frames, whose definitions contain it.
-    if units.demands(&resolved.demanded)
+    if units.demands(&resolved.required_units)
         && units.definitions()
-        && units.short_forms(&resolved.demanded, &resolved.alike)
+        && units.short_forms(&resolved.required_units, &resolved.same_unit_vectors)
     {
         units.states();
         units.energies();
@@ -38,7 +38,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
         units.stabilisation_rate();
         units.coefficients();
     }
-    let observables = units.observables(&resolved.declared);
+    let observables = units.observables(&resolved.declared_units);
     let constraints: Vec<Unit> = units.constraints();
     let impacts: Vec<Unit> = units.impacts();
     let definitions = units.known.definitions;
@@ -49,7 +49,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
         constraint.unit = unit;
     }
     for (definition, dimension) in resolved.model.definitions.iter_mut().zip(definitions) {
-        definition.unit = Unit::coherent(dimension.unwrap_or(Dimension::NONE));
+        definition.unit = Unit::coherent(dimension.unwrap_or(Dimension::DIMENSIONLESS));
     }
     for (observable, unit) in resolved.model.observables.iter_mut().zip(observables) {
         observable.unit = unit;
@@ -80,7 +80,8 @@ impl Units<'_, '_> {
                 let subject = format!("the initial value of `{}`", coordinate.name);
                 self.expect_quantity(expr, own, &subject);
             }
-            if let (Some(expr), Some(rate)) = (&coordinate.initial_rate, own.over(Dimension::TIME))
+            if let (Some(expr), Some(rate)) =
+                (&coordinate.initial_rate, own.divide(Dimension::TIME))
             {
                 let subject = format!("the initial rate of `{}`", coordinate.name);
                 self.expect_quantity(expr, rate, &subject);
@@ -102,9 +103,9 @@ impl Units<'_, '_> {
                 let subject = format!("the initial value of `{}`", state.name);
                 self.expect_quantity(expr, own, &subject);
             }
-            if let Some(rate) = own.over(Dimension::TIME) {
+            if let Some(rate) = own.divide(Dimension::TIME) {
                 let subject = format!("the rate of `{}`", state.name);
-                let because = format!("expected {}: {} per s", Words(rate), state.unit);
+                let because = format!("expected {}: {} per s", UnitPhrase(rate), state.unit);
                 self.expect(&state.rate, rate, &subject, &because);
             }
             self.range(state.range.as_ref(), own, &state.name);
@@ -130,7 +131,7 @@ impl Units<'_, '_> {
         let mut all = true;
         for &index in &self.model.definition_order {
             let inferred = self.known.infer(&self.model.definitions[index].value);
-            match self.found.keep(inferred) {
+            match self.found.push_error(inferred) {
                 Some(inferred) => self.known.definitions[index] = inferred,
                 None => all = false,
             }
@@ -160,11 +161,11 @@ impl Units<'_, '_> {
     fn forces(&mut self) {
         for force in &self.model.forces {
             let inferred = self.known.infer(&force.on);
-            let Some(on) = self.found.keep(inferred) else {
+            let Some(on) = self.found.push_error(inferred) else {
                 continue;
             };
-            let on = on.unwrap_or(Dimension::NONE);
-            let Some(expected) = Dimension::ENERGY.over(on) else {
+            let on = on.unwrap_or(Dimension::DIMENSIONLESS);
+            let Some(expected) = Dimension::ENERGY.divide(on) else {
                 continue;
             };
             let name = written_name(&force.name, force.span, &self.model.source);
@@ -193,16 +194,16 @@ impl Units<'_, '_> {
             let message = format!("`{STABILISATION_RATE}` must be a number: it is set at run time");
             self.found.push(
                 Diagnostic::error(message)
-                    .at(value.span, "this depends on other parameters")
-                    .help("give a number"),
+                    .with_span(value.span, "this depends on other parameters")
+                    .with_help("give a number"),
             );
         }
-        if Dimension::NONE.over(Dimension::TIME) != Some(parameter.unit.dimension) {
+        if Dimension::DIMENSIONLESS.divide(Dimension::TIME) != Some(parameter.unit.dimension) {
             let message = format!("`{STABILISATION_RATE}` is in {}", parameter.unit);
             self.found.push(
                 Diagnostic::error(message)
-                    .at(parameter.span, "expected 1/s")
-                    .help("it is the decay rate of constraint residuals: unit = \"1/s\""),
+                    .with_span(parameter.span, "expected 1/s")
+                    .with_help("it is the decay rate of constraint residuals: unit = \"1/s\""),
             );
         }
     }
@@ -211,8 +212,8 @@ impl Units<'_, '_> {
         let mut units = Vec::with_capacity(self.model.constraints.len());
         for constraint in &self.model.constraints {
             let inferred = self.known.infer(&constraint.zero);
-            let inferred = self.found.keep(inferred).flatten();
-            units.push(Unit::coherent(inferred.unwrap_or(Dimension::NONE)));
+            let inferred = self.found.push_error(inferred).flatten();
+            units.push(Unit::coherent(inferred.unwrap_or(Dimension::DIMENSIONLESS)));
         }
         units
     }
@@ -222,10 +223,10 @@ impl Units<'_, '_> {
         let mut units = Vec::with_capacity(self.model.impacts.len());
         for impact in &self.model.impacts {
             let subject = format!("the restitution of `{}`", impact.name);
-            self.expect_quantity(&impact.restitution, Dimension::NONE, &subject);
+            self.expect_quantity(&impact.restitution, Dimension::DIMENSIONLESS, &subject);
             let inferred = self.known.infer(&impact.when);
-            let inferred = self.found.keep(inferred).flatten();
-            units.push(Unit::coherent(inferred.unwrap_or(Dimension::NONE)));
+            let inferred = self.found.push_error(inferred).flatten();
+            units.push(Unit::coherent(inferred.unwrap_or(Dimension::DIMENSIONLESS)));
         }
         units
     }
@@ -245,10 +246,10 @@ impl Units<'_, '_> {
                     let inferred = match observable.value.kind {
                         // An error in a constraint is reported at the constraint.
                         ExprKind::Multiplier(_) | ExprKind::Residual(_) => inferred.ok(),
-                        _ => self.found.keep(inferred),
+                        _ => self.found.push_error(inferred),
                     }
                     .flatten();
-                    Unit::coherent(inferred.unwrap_or(Dimension::NONE))
+                    Unit::coherent(inferred.unwrap_or(Dimension::DIMENSIONLESS))
                 }
             };
             units.push(inferred);
@@ -264,7 +265,7 @@ impl Units<'_, '_> {
                     self.known.factor(of, by, times.as_ref())
                 }
             };
-            let dimension = self.found.keep(inferred).flatten();
+            let dimension = self.found.push_error(inferred).flatten();
             self.known.coefficients.push(dimension);
         }
     }
@@ -278,7 +279,7 @@ impl Units<'_, '_> {
     ) -> bool {
         let clean = self.found.is_empty();
         for vector in vectors {
-            self.alike(vector);
+            self.expect_same_unit(vector);
         }
         self.demands(demanded);
         !clean || self.found.is_empty()
@@ -288,18 +289,18 @@ impl Units<'_, '_> {
     fn demands(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
         let clean = self.found.is_empty();
         for (value, dimension, subject) in demanded {
-            let expected = format!("expected {}", Words(*dimension));
+            let expected = format!("expected {}", UnitPhrase(*dimension));
             self.expect(value, *dimension, subject, &expected);
         }
         !clean || self.found.is_empty()
     }
 
     /// Checks that the components of a vector have one unit.
-    fn alike(&mut self, components: &[Expr]) {
+    fn expect_same_unit(&mut self, components: &[Expr]) {
         let mut first: Option<(Dimension, &Expr)> = None;
         for component in components {
             let inferred = self.known.infer(component);
-            let Some(own) = self.found.keep(inferred).flatten() else {
+            let Some(own) = self.found.push_error(inferred).flatten() else {
                 continue;
             };
             match first {
@@ -309,9 +310,9 @@ impl Units<'_, '_> {
                     let message = "the components of a vector have different units";
                     self.found.push(
                         Diagnostic::error(message)
-                            .at(component.span, Words(own).to_string())
-                            .also(other.span, Words(dimension).to_string())
-                            .help_if(difference(own, dimension)),
+                            .with_span(component.span, UnitPhrase(own).to_string())
+                            .with_related_span(other.span, UnitPhrase(dimension).to_string())
+                            .with_optional_help(difference(own, dimension)),
                     );
                     return;
                 }
@@ -326,20 +327,20 @@ impl Units<'_, '_> {
                 expr,
                 expected,
                 subject,
-                &format!("expected {}", Words(expected)),
+                &format!("expected {}", UnitPhrase(expected)),
             );
         }
     }
 
     fn expect(&mut self, expr: &Expr, expected: Dimension, subject: &str, because: &str) {
         let inferred = self.known.infer(expr);
-        if let Some(Some(inferred)) = self.found.keep(inferred)
+        if let Some(Some(inferred)) = self.found.push_error(inferred)
             && inferred != expected
         {
             self.found.push(
-                Diagnostic::error(format!("{subject} is {}, {because}", Words(inferred)))
-                    .at(expr.span, Words(inferred).to_string())
-                    .help_if(difference(inferred, expected)),
+                Diagnostic::error(format!("{subject} is {}, {because}", UnitPhrase(inferred)))
+                    .with_span(expr.span, UnitPhrase(inferred).to_string())
+                    .with_optional_help(difference(inferred, expected)),
             );
         }
     }

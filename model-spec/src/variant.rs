@@ -10,7 +10,7 @@ use crate::span::Span;
 use crate::suggest::did_you_mean;
 
 /// Largest number of names in a suggestion.
-const MOST_NAMES: usize = 12;
+const MAX_SUGGESTIONS: usize = 12;
 
 /// Error of a change: the model is invalid with these numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,9 +44,9 @@ impl ModelError {
 
     /// Converts the error to a finding on the model's source.
     pub fn diagnostic(self) -> Diagnostic {
-        let diagnostic = Diagnostic::error(self.message).help_if(self.help);
+        let diagnostic = Diagnostic::error(self.message).with_optional_help(self.help);
         match self.span {
-            Some(span) => diagnostic.at(span, ""),
+            Some(span) => diagnostic.with_span(span, ""),
             None => diagnostic,
         }
     }
@@ -209,7 +209,7 @@ impl Model {
     fn set(&mut self, name: &str, value: f64) -> Result<(), ModelError> {
         let Some(index) = self.parameters.iter().position(|known| known.name == name) else {
             let error = ModelError::new(format!("the model has no parameter `{name}`"));
-            return Err(error.help(self.parameters_like(name)));
+            return Err(error.help(self.suggest_parameters(name)));
         };
         if !value.is_finite() {
             let message = format!("`{name}` cannot be {value}");
@@ -222,7 +222,7 @@ impl Model {
 
     /// Suggests parameters for an unknown name: the nearest, those with a common part, or the first
     /// of all.
-    pub(crate) fn parameters_like(&self, name: &str) -> String {
+    pub(crate) fn suggest_parameters(&self, name: &str) -> String {
         let known = || self.parameters.iter().map(|known| known.name.as_str());
         if let Some(help) = did_you_mean(name, known()) {
             return help;
@@ -235,18 +235,20 @@ impl Model {
         if self.states.iter().any(|known| known.name == name) {
             return format!("`{name}` is a state: set its `initial` for another initial value");
         }
-        let alike: Vec<&str> = known().filter(|known| share_a_part(name, known)).collect();
+        let alike: Vec<&str> = known()
+            .filter(|known| have_common_part(name, known))
+            .collect();
         let (intro, names) = match alike.len() {
             0 => ("the parameters are", known().collect()),
             _ => ("did you mean one of", alike),
         };
-        let more = match names.len().saturating_sub(MOST_NAMES) {
+        let more = match names.len().saturating_sub(MAX_SUGGESTIONS) {
             0 => "",
             _ => ", ...",
         };
         let names: Vec<String> = names
             .iter()
-            .take(MOST_NAMES)
+            .take(MAX_SUGGESTIONS)
             .map(|name| format!("`{name}`"))
             .collect();
         match names.as_slice() {
@@ -401,7 +403,7 @@ fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Resu
 
 /// Returns true if two names share a part of at least two letters, as `backlash_sp` and `b_sp`,
 /// or a whole name.
-fn share_a_part(one: &str, other: &str) -> bool {
+fn have_common_part(one: &str, other: &str) -> bool {
     let (one, other) = (one.to_lowercase(), other.to_lowercase());
     let mut parts = one.split('_');
     parts.any(|part| part.len() > 1 && other.split('_').any(|known| known == part))

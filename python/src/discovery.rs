@@ -5,8 +5,8 @@ use std::path::Path;
 use eomgen_compiled_model::{Error, Orders};
 use eomgen_discover::report::result::{Discovery, Validation};
 use eomgen_discover::{Specification, catalogue, discover_until};
+use eomgen_model_spec::hidden_characters::escape_hidden;
 use eomgen_model_spec::source::Source;
-use eomgen_model_spec::visible::visible;
 use eomgen_paper::certification::certify;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::{Check, Verdict};
@@ -54,7 +54,7 @@ fn search(
 ) -> PyResult<Discovery> {
     let declared = model.compiled().model();
     let dataset = read_dataset(dataset, declared).map_err(error::records)?;
-    let say = |text: &str| line.report(visible(text).into_owned());
+    let say = |text: &str| line.report(escape_hidden(text).into_owned());
     for note in &dataset.notes {
         say(&format!("note: {note}"));
     }

@@ -144,7 +144,7 @@ impl Model {
                     let model = model.map_err(|error| error.diagnostic());
                     let model = model.map_err(|wrong| {
                         let source = declared.source.clone();
-                        eomgen_model_spec::diagnostic::Diagnostics::one(source, wrong)
+                        eomgen_model_spec::diagnostic::Diagnostics::from_one(source, wrong)
                     })?;
                     let orders = Orders::PerField(self.compiled.orders());
                     Arc::new(CompiledModel::derive(model, orders)?)
@@ -160,7 +160,11 @@ impl Model {
 
     /// Returns the model with inputs replaced by expressions of time and parameters.
     fn with_inputs(&self, py: Python<'_>, given: Vec<(String, String)>) -> PyResult<Self> {
-        let mut source = self.compiled.model().source.edited(self.specification()?);
+        let mut source = self
+            .compiled
+            .model()
+            .source
+            .with_text(self.specification()?);
         let derived = || {
             for (name, value) in given {
                 let edit = Edit::PrescribeInput(PrescribeInput {
@@ -170,7 +174,7 @@ impl Model {
                 let edited = apply(&source, &[edit]).map_err(|error| {
                     Error::Request(format!("the input {name}: {}", messages(&error)))
                 })?;
-                source = source.edited(edited);
+                source = source.with_text(edited);
             }
             let checked = eomgen_model_spec::check(source)?;
             let orders = Orders::PerField(self.compiled.orders());

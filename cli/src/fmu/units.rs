@@ -43,7 +43,7 @@ impl Units {
                 shown: None,
             };
         }
-        let name = match unit.dimension.is_none() && unit.text.contains("deg") {
+        let name = match unit.dimension.is_dimensionless() && unit.text.contains("deg") {
             true => "rad".to_owned(),
             false => unit.dimension.to_string(),
         };
@@ -60,9 +60,10 @@ impl Units {
     pub fn rate(&mut self, unit: &Unit, times: u8) -> Option<Measure> {
         let mut dimension = unit.dimension;
         for _ in 0..times {
-            dimension = dimension.over(Dimension::TIME)?;
+            dimension = dimension.divide(Dimension::TIME)?;
         }
-        let is_angle = unit.dimension.is_none() && matches!(unit.text.as_str(), "rad" | "deg");
+        let is_angle =
+            unit.dimension.is_dimensionless() && matches!(unit.text.as_str(), "rad" | "deg");
         let name = match (is_angle, times) {
             (false, _) => dimension.to_string(),
             (true, 0) => "rad".to_owned(),

@@ -23,8 +23,8 @@ pub fn errors_at_tokens(found: &Diagnostics, placed: &PlacedText) -> Error {
     let nothing = || Error::new(Span::call_site(), "the specification has errors");
     let mut error = errors.next().unwrap_or_else(nothing);
     error.extend(errors);
-    if found.omitted() > 0 {
-        let more = format!("and {} more", found.omitted());
+    if found.omitted_count() > 0 {
+        let more = format!("and {} more", found.omitted_count());
         error.combine(Error::new(Span::call_site(), more));
     }
     error

@@ -33,11 +33,11 @@ pub(crate) fn check_signs(
 fn never_zero(constraint: &Constraint, end: &str, bound: f64) -> Diagnostic {
     let (name, unit) = (&constraint.name, &constraint.unit);
     Diagnostic::error(format!("the constraint `{name}` is never zero"))
-        .at(
+        .with_span(
             constraint.zero.span,
             format!("is at {end} {bound:.3e} {unit} at any state"),
         )
-        .help("correct its expression, for example a sign, so that it can be zero")
+        .with_help("correct its expression, for example a sign, so that it can be zero")
 }
 
 /// Returns the bounds of `nodes` (operands first), indexed by node.
@@ -52,7 +52,7 @@ fn bounds(graph: &Graph, nodes: &[NodeId], parameters: &[f64]) -> Vec<Interval> 
 
 fn bound(operation: &Operation, parameters: &[f64], known: &[Interval]) -> Interval {
     let of = |node: &NodeId| known[node.0 as usize];
-    let exactly = |value: f64| Interval::between(value, value);
+    let exactly = |value: f64| Interval::from_ends(value, value);
     match operation {
         Operation::Constant(value) => exactly(value.value()),
         Operation::Parameter(index) => {
@@ -61,17 +61,17 @@ fn bound(operation: &Operation, parameters: &[f64], known: &[Interval]) -> Inter
         }
         Operation::Sum(terms) => {
             let terms = terms.iter();
-            let scaled = terms.map(|(factor, term)| exactly(factor.value()).times(of(term)));
-            scaled.fold(exactly(0.0), Interval::plus)
+            let scaled = terms.map(|(factor, term)| exactly(factor.value()).multiply(of(term)));
+            scaled.fold(exactly(0.0), Interval::add_interval)
         }
         Operation::Product(factors) => {
             let factors = factors.iter();
-            let powers = factors.map(|(factor, power)| of(factor).power(f64::from(*power)));
-            powers.fold(exactly(1.0), Interval::times)
+            let powers = factors.map(|(factor, power)| of(factor).raise(f64::from(*power)));
+            powers.fold(exactly(1.0), Interval::multiply)
         }
         Operation::Call(function, arguments) => {
             let arguments: Vec<Interval> = arguments.iter().map(of).collect();
-            Interval::of_function(*function, &arguments)
+            Interval::apply_function(*function, &arguments)
         }
         Operation::Select {
             then, otherwise, ..

@@ -188,11 +188,11 @@ impl Dependence {
         let apart = self.combined_residual(last, began);
         let (message, label, help) = message_parts(own, &names.join(", "), apart);
         let found = Diagnostic::error(message)
-            .at(own.zero.span, label)
-            .help(help);
+            .with_span(own.zero.span, label)
+            .with_help(help);
         let others = others.into_iter();
         others.fold(found, |found, other| {
-            found.also(other.zero.span, "depends on it")
+            found.with_related_span(other.zero.span, "depends on it")
         })
     }
 

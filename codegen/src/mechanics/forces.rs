@@ -41,7 +41,7 @@ pub(crate) fn translate_force(
 ) -> Derived<(NodeId, NodeId)> {
     let value = translator.node(&force.value)?;
     // The name of a force can have another meaning in a formula.
-    if eomgen_model_spec::reserved(&force.name).is_none() {
+    if eomgen_model_spec::reservation_reason(&force.name).is_none() {
         translator.graph.suggest_name(value, &force.name);
     }
     let on = translator.node(&force.on)?;
@@ -202,7 +202,7 @@ pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     graph.reachable(&[id]).into_iter().any(|part| {
         let switches = match graph.operation(part) {
             Operation::Select { .. } => graph.guarded_power(part).is_none(),
-            Operation::Call(function, _) => function.switches(),
+            Operation::Call(function, _) => function.has_switches(),
             _ => false,
         };
         switches && !graph.dependence(part).is_parameter_only()

@@ -41,8 +41,8 @@ impl DeriveError {
     /// Returns the error as a diagnostic on the model's source.
     pub fn diagnostic(self) -> Diagnostic {
         Diagnostic::error(self.message)
-            .at(self.span, "")
-            .help_if(self.help)
+            .with_span(self.span, "")
+            .with_optional_help(self.help)
     }
 }
 

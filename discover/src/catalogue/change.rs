@@ -85,22 +85,24 @@ pub(super) fn read_change(
     placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
-    let entries = found.keep(entry.table("{ add = \"force\", ... }"))?;
+    let entries = found.push_error(entry.table("{ add = \"force\", ... }"))?;
     let of = |key: &str| entries.iter().find(|entry| entry.name.text == key);
     match (of("add"), of("substitute")) {
         (Some(add), None) => {
-            let what = found.keep(add.word(&ADDED))?;
+            let what = found.push_error(add.keyword(&ADDED))?;
             addition(entry, what, placeholders, found)
         }
         (None, Some(substitute)) => {
-            let within = found.keep(substitute.word(&REPLACED))?;
+            let within = found.push_error(substitute.keyword(&REPLACED))?;
             if let Some(kind) = within.site()
                 && kind != site
             {
                 let wrong = Diagnostic::error("this effect has another kind of site");
                 let kind = SiteKind::KEYWORDS.iter().find(|(_, known)| *known == kind);
                 let expected = kind.map_or("", |(word, _)| word);
-                found.push(wrong.at(substitute.span(), format!("expected site = \"{expected}\"")));
+                found.push(
+                    wrong.with_span(substitute.span(), format!("expected site = \"{expected}\"")),
+                );
             }
             substitution(entry, within, placeholders, found)
         }
@@ -108,7 +110,7 @@ pub(super) fn read_change(
             entry.record(&KEYS, "{ add = \"force\", ... }", found);
             found.push(
                 Diagnostic::error("an edit needs `add` or `substitute`")
-                    .at(entry.span(), "expected one of both keys"),
+                    .with_span(entry.span(), "expected one of both keys"),
             );
             None
         }
@@ -204,7 +206,7 @@ fn substitution(
         Replaced::Kinetic => {
             let mut terms = Vec::new();
             for term in read_nonempty_list(&record, "terms", "[\"{term}\"]", found)? {
-                let term = found.keep(term.written())?;
+                let term = found.push_error(term.written())?;
                 placeholders.check_placeholders(&term, found);
                 terms.push(term.text);
             }

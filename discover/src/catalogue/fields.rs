@@ -1,7 +1,7 @@
 //! Readers of texts, lists and new names in a file of effects.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use eomgen_model_spec::table::{Entry, Record, Written};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
+use eomgen_model_spec::table::{Entry, Record, StringValue};
 
 /// Reads the elements of a list; reports an empty list.
 pub(super) fn read_nonempty_list<'d>(
@@ -11,12 +11,12 @@ pub(super) fn read_nonempty_list<'d>(
     found: &mut Diagnostics,
 ) -> Option<Vec<Entry<'d>>> {
     let entry = record.require(key, &format!("write {key} = {example}"), found)?;
-    let list = found.keep(entry.list(example))?;
+    let list = found.push_error(entry.list(example))?;
     if list.is_empty() {
         found.push(
             Diagnostic::error(format!("`{key}` is empty"))
-                .at(entry.span(), "an effect needs one or more")
-                .help(format!("write {key} = {example}")),
+                .with_span(entry.span(), "an effect needs one or more")
+                .with_help(format!("write {key} = {example}")),
         );
     }
     Some(list)
@@ -28,12 +28,13 @@ pub(super) fn read_text(
     key: &str,
     example: &str,
     found: &mut Diagnostics,
-) -> Option<Written> {
+) -> Option<StringValue> {
     let entry = record.require(key, &format!("write {key} = {example}"), found)?;
-    let written = found.keep(entry.written())?;
+    let written = found.push_error(entry.written())?;
     if written.text.trim().is_empty() {
-        found
-            .push(Diagnostic::error(format!("`{key}` is empty")).at(written.span, "expected text"));
+        found.push(
+            Diagnostic::error(format!("`{key}` is empty")).with_span(written.span, "expected text"),
+        );
     }
     Some(written)
 }
@@ -45,7 +46,7 @@ pub(super) fn read_new_name(record: &Record<'_>, found: &mut Diagnostics) -> Opt
     let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {
         found.push(
-            Diagnostic::error(format!("{} is not a name", quoted(&written.text))).at(
+            Diagnostic::error(format!("{} is not a name", quote(&written.text))).with_span(
                 written.span,
                 "expected a letter, then letters, digits and underscores",
             ),

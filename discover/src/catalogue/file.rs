@@ -1,10 +1,10 @@
 //! Reader of a file of effects. All keywords, keys and placeholders are checked here; the effect on
 //! a specification is checked at each site.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Name, Record, Written};
+use eomgen_model_spec::table::{Entry, Name, Record, StringValue};
 use eomgen_model_spec::toml_file;
 
 use super::change::read_change;
@@ -23,9 +23,9 @@ pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
             text: "the file of effects".to_owned(),
             span: Span::new(0, 0),
         };
-        let top = Record::of(file, entries.to_vec(), &["effect"], found);
+        let top = Record::new(file, entries.to_vec(), &["effect"], found);
         let list = top.require("effect", "begin each effect with [[effect]]", found)?;
-        let list = found.keep(list.list("[[effect]]"))?;
+        let list = found.push_error(list.list("[[effect]]"))?;
         Some(
             list.iter()
                 .filter_map(|entry| effect(entry, found))
@@ -50,14 +50,14 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let says = read_text(&record, "says", "\"a friction of ...\"", found);
     let experiment = read_text(&record, "experiment", "\"slow motions\"", found);
     let site = record.require("site", "write site = \"axis\"", found);
-    let site = site.cloned().map(|site| site.word(&SiteKind::KEYWORDS));
-    let site = site.and_then(|site| found.keep(site));
+    let site = site.cloned().map(|site| site.keyword(&SiteKind::KEYWORDS));
+    let site = site.and_then(|site| found.push_error(site));
     let orders = truth(&record, "orders", found);
     let loads = truth(&record, "loads", found);
     let parameters = read_nonempty_list(&record, "parameters", "[{ name = ... }]", found)?;
     let edits = read_nonempty_list(&record, "edits", "[{ add = \"force\", ... }]", found)?;
     let (site, orders, loads) = (site?, orders?, loads?);
-    let own: Vec<Written> = (parameters.iter().chain(&edits))
+    let own: Vec<StringValue> = (parameters.iter().chain(&edits))
         .filter_map(|entry| named(entry))
         .collect();
     let of_site = site.placeholders().iter().map(|blank| (*blank).to_owned());
@@ -67,8 +67,8 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
             || (site == SiteKind::Spring && name == DAMPER_PLACEHOLDER)
     };
     for name in own.iter().filter(|own| is_taken(&own.text)) {
-        let wrong = format!("{} is a placeholder of this site", quoted(&name.text));
-        found.push(Diagnostic::error(wrong).at(name.span, "expected another name"));
+        let wrong = format!("{} is a placeholder of this site", quote(&name.text));
+        found.push(Diagnostic::error(wrong).with_span(name.span, "expected another name"));
     }
     let repeating: &[&str] = match (orders, site) {
         (true, SiteKind::Mesh) => &["n", "angle"],
@@ -85,7 +85,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     {
         let wrong = Diagnostic::error("`loads` needs a site that is an axis or an angle");
         let expected = "expected site = \"axis\" or site = \"angle\"";
-        found.push(wrong.at(loads.span(), expected));
+        found.push(wrong.with_span(loads.span(), expected));
     }
     let mut placeholders = Placeholders {
         known: of_site
@@ -106,9 +106,9 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     for parameter in parameters.iter().filter_map(named) {
         if !placeholders.used.contains(&parameter.text) {
             found.push(
-                Diagnostic::error(format!("{} is not used", quoted(&parameter.text)))
-                    .at(parameter.span, "no edit contains it")
-                    .help(format!("write {{{}}} in an edit", parameter.text)),
+                Diagnostic::error(format!("{} is not used", quote(&parameter.text)))
+                    .with_span(parameter.span, "no edit contains it")
+                    .with_help(format!("write {{{}}} in an edit", parameter.text)),
             );
         }
     }
@@ -127,12 +127,12 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
 
 /// Whether a key says true; false where it is absent.
 fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
-    let truth = record.get(key).map(|entry| entry.truth());
-    truth.map_or(Some(false), |truth| found.keep(truth))
+    let truth = record.get(key).map(|entry| entry.boolean());
+    truth.map_or(Some(false), |truth| found.push_error(truth))
 }
 
 /// The name that a parameter or an addition gives to what it adds, where it is read by others.
-fn named(entry: &Entry<'_>) -> Option<Written> {
+fn named(entry: &Entry<'_>) -> Option<StringValue> {
     let entries = entry.table("").ok()?;
     let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
     match of("add") {
@@ -161,8 +161,8 @@ fn parameter(
     );
     let sign = sign
         .cloned()
-        .map(|sign| sign.word(&[("+", true), ("", false)]));
-    let positive = sign.and_then(|sign| found.keep(sign));
+        .map(|sign| sign.keyword(&[("+", true), ("", false)]));
+    let positive = sign.and_then(|sign| found.push_error(sign));
     let inverse = truth(&record, "inverse", found);
     Some(EffectParameter {
         name: name?,
@@ -178,7 +178,7 @@ fn parameter(
 fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
     let word = match scale {
-        Some(scale) => Some(found.keep(scale.clone().word(&ShapeScale::KEYWORDS))?),
+        Some(scale) => Some(found.push_error(scale.clone().keyword(&ShapeScale::KEYWORDS))?),
         None => None,
     };
     let (scale, share) = match (scale, share) {
@@ -187,18 +187,18 @@ fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
         (Some(alone), None) | (None, Some(alone)) => {
             found.push(
                 Diagnostic::error("`scale` and `share` must be given together")
-                    .at(alone.name.span, "the other key is missing")
-                    .help("write scale = \"rate\", share = 0.1"),
+                    .with_span(alone.name.span, "the other key is missing")
+                    .with_help("write scale = \"rate\", share = 0.1"),
             );
             return None;
         }
     };
-    let part = found.keep(share.number())?;
+    let part = found.push_error(share.number())?;
     if part.value <= 0.0 {
         found.push(
             Diagnostic::error(format!("{} is not a valid share", part.value))
-                .at(part.span, "expected a number above 0")
-                .also(scale.span(), "share of this quantity"),
+                .with_span(part.span, "expected a number above 0")
+                .with_related_span(scale.span(), "share of this quantity"),
         );
     }
     word.map(|scale| Shape {

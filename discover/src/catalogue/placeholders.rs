@@ -1,9 +1,9 @@
 //! Placeholders in the texts of an effect. All must be known, and the expressions around them
 //! valid.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::suggest::did_you_mean;
-use eomgen_model_spec::table::{Record, Written};
+use eomgen_model_spec::table::{Record, StringValue};
 
 use super::fields::read_text;
 
@@ -17,7 +17,7 @@ pub(super) struct Placeholders {
 
 impl Placeholders {
     /// Reports unknown placeholders of a text.
-    pub(super) fn check_placeholders(&mut self, written: &Written, found: &mut Diagnostics) {
+    pub(super) fn check_placeholders(&mut self, written: &StringValue, found: &mut Diagnostics) {
         let mut begin = 0;
         while let Some(open) = written.text[begin..].find(['{', '}']) {
             let open = begin + open;
@@ -25,7 +25,7 @@ impl Placeholders {
             let Some(close) = close.filter(|close| *close > open) else {
                 let place = written.place(open, open + 1);
                 let wrong = Diagnostic::error("the braces of a placeholder are not balanced");
-                found.push(wrong.at(place, "expected a name in braces, as {on}"));
+                found.push(wrong.with_span(place, "expected a name in braces, as {on}"));
                 return;
             };
             let name = &written.text[open + 1..close];
@@ -36,9 +36,9 @@ impl Placeholders {
                 let listed: Vec<&str> = known().collect();
                 let listed = format!("known placeholders: {}", listed.join(", "));
                 found.push(
-                    Diagnostic::error(format!("unknown placeholder {}", quoted(name)))
-                        .at(written.place(open + 1, close), "not defined here")
-                        .help(did_you_mean(name, known()).unwrap_or(listed)),
+                    Diagnostic::error(format!("unknown placeholder {}", quote(name)))
+                        .with_span(written.place(open + 1, close), "not defined here")
+                        .with_help(did_you_mean(name, known()).unwrap_or(listed)),
                 );
             }
             begin = close + 1;
@@ -58,6 +58,6 @@ pub(super) fn read_expression(
     // Parentheses for braces keep every letter at its place.
     let mut plain = written.clone();
     plain.text = plain.text.replace('{', "(").replace('}', ")");
-    found.keep(plain.syntax());
+    found.push_error(plain.syntax());
     Some(written.text)
 }

@@ -81,7 +81,10 @@ pub(super) fn deflection_units(
     deflection: &Expr,
 ) -> Option<(&'static str, &'static str)> {
     let dimension = dimension(model, deflection)?;
-    match (dimension == Dimension::NONE, dimension == Dimension::LENGTH) {
+    match (
+        dimension == Dimension::DIMENSIONLESS,
+        dimension == Dimension::LENGTH,
+    ) {
         (true, _) => Some(("rad", "N m")),
         (_, true) => Some(("m", "N")),
         _ => None,
@@ -130,12 +133,12 @@ fn dimension(model: &Model, expr: &Expr) -> Option<Dimension> {
     match &expr.kind {
         ExprKind::Coordinate(id) => Some(model.coordinates[*id].unit.dimension),
         ExprKind::Parameter(id) => Some(model.parameters[*id].unit.dimension),
-        ExprKind::Number(_) | ExprKind::Pi => Some(Dimension::NONE),
+        ExprKind::Number(_) | ExprKind::Pi => Some(Dimension::DIMENSIONLESS),
         ExprKind::Definition(id) => Some(model.definitions[*id].unit.dimension),
         ExprKind::Negate(inner) => of(inner),
         ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, _) => of(left),
-        ExprKind::Binary(BinaryOperator::Multiply, left, right) => of(left)?.times(of(right)?),
-        ExprKind::Binary(BinaryOperator::Divide, left, right) => of(left)?.over(of(right)?),
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => of(left)?.multiply(of(right)?),
+        ExprKind::Binary(BinaryOperator::Divide, left, right) => of(left)?.divide(of(right)?),
         _ => None,
     }
 }

@@ -28,7 +28,7 @@ pub struct UsualMotion {
 impl UsualMotion {
     /// Returns the typical size of a quantity in a unit, SI.
     pub(super) fn typical_size(&self, unit: &str) -> f64 {
-        let dimension = Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension);
+        let dimension = Unit::parse(unit).map_or(Dimension::DIMENSIONLESS, |unit| unit.dimension);
         self.sizes.typical_size(dimension)
     }
 

@@ -114,7 +114,7 @@ impl EstimationModel {
         let compiled =
             CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))?;
         let ranges = compiled.model().coordinate_ranges().map_err(|error| {
-            Diagnostics::one(compiled.model().source.clone(), error.diagnostic())
+            Diagnostics::from_one(compiled.model().source.clone(), error.diagnostic())
         })?;
         let program = compiled.program();
         let is_number = |p: &&Parameter| matches!(p.value, ParameterValue::Number(_));

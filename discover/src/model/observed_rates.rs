@@ -18,7 +18,7 @@ pub(crate) fn add_observed_rates(model: &mut Model, channels: &[Channel]) -> Vec
 
 fn add(model: &mut Model, rate: ObservedRate) -> Output {
     let observable = rate.observable;
-    let holds_rate = model.holds_rate(&model.observables[observable].value);
+    let holds_rate = model.contains_rate(&model.observables[observable].value);
     let place = model.observe_rate(rate);
     let of = match rate.times {
         1 if !holds_rate => return Output::Observable(place),

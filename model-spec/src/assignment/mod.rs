@@ -45,10 +45,10 @@ impl Assignment {
             }),
             _ => {
                 let message = format!("{option} {text}: expected NAME=VALUE");
-                let wrong = Diagnostic::error(message).at(Span::new(0, text.len()), "");
+                let wrong = Diagnostic::error(message).with_span(Span::new(0, text.len()), "");
                 let help = "give a number, an expression of parameters, or an expression with a unit: k=2*k_0, \
                             theta=pi/3, theta=\"30 deg\"";
-                Err(Diagnostics::one(source, wrong.help(help)))
+                Err(Diagnostics::from_one(source, wrong.with_help(help)))
             }
         }
     }
@@ -64,9 +64,11 @@ impl Assignment {
     }
 
     /// Returns the finding that the name is wrong.
-    pub fn refuse_name(&self, message: String, help: Option<String>) -> Diagnostics {
-        let wrong = Diagnostic::error(message).at(self.name, "").help_if(help);
-        Diagnostics::one(self.source.clone(), wrong)
+    pub fn name_error(&self, message: String, help: Option<String>) -> Diagnostics {
+        let wrong = Diagnostic::error(message)
+            .with_span(self.name, "")
+            .with_optional_help(help);
+        Diagnostics::from_one(self.source.clone(), wrong)
     }
 
     /// Returns findings of a text that contains the value, at their places in this option. `None` if a finding has
@@ -82,7 +84,9 @@ impl Assignment {
         let mut here = Diagnostics::new(self.source.clone());
         for finding in found.list() {
             let primary = finding.primary.as_ref()?;
-            let mut moved = finding.clone().at(shifted(primary.span)?, &*primary.text);
+            let mut moved = finding
+                .clone()
+                .with_span(shifted(primary.span)?, &*primary.text);
             moved
                 .secondary
                 .retain_mut(|label| match shifted(label.span) {
@@ -245,8 +249,12 @@ kept = "a + d/l"
         let text = "# 1\n[definitions]\nu = \"2*zz + 1\"\n";
         let start = text.find("zz").expect("the name");
         let source = Source::new("model.toml", text);
-        let found =
-            |span| Diagnostics::one(source.clone(), Diagnostic::error("unknown").at(span, ""));
+        let found = |span| {
+            Diagnostics::from_one(
+                source.clone(),
+                Diagnostic::error("unknown").with_span(span, ""),
+            )
+        };
         let moved = given.relocated(&found(Span::new(start, start + 2)));
         let moved = moved.expect("a place").render(false);
         assert!(
@@ -254,7 +262,7 @@ kept = "a + d/l"
             "{moved}"
         );
         assert!(given.relocated(&found(Span::new(0, 1))).is_none());
-        let missing = Diagnostics::one(source.clone(), Diagnostic::error("unknown"));
+        let missing = Diagnostics::from_one(source.clone(), Diagnostic::error("unknown"));
         assert!(given.relocated(&missing).is_none());
     }
 }

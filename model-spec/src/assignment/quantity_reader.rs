@@ -7,8 +7,8 @@ use crate::dimension::Dimension;
 use crate::document;
 use crate::evaluate::evaluate;
 use crate::expression::{Resolver, Scope};
-use crate::infer::{Inference, Words};
-use crate::lexer::{Token, TokenKind, tokens};
+use crate::infer::{Inference, UnitPhrase};
+use crate::lexer::{Token, TokenKind, tokenize};
 use crate::model::{Expr, Model};
 use crate::names::Names;
 use crate::parser::parse;
@@ -55,11 +55,11 @@ impl<'m> QuantityReader<'m> {
             false => {
                 let message = format!("{}: `{}` evaluates to {value}", given.text(), given.name());
                 Err(Diagnostic::error(message)
-                    .at(given.value, "")
-                    .help("expected a finite number"))
+                    .with_span(given.value, "")
+                    .with_help("expected a finite number"))
             }
         });
-        finite.map_err(|wrong| Diagnostics::one(given.source.clone(), wrong))
+        finite.map_err(|wrong| Diagnostics::from_one(given.source.clone(), wrong))
     }
 
     fn value(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostic> {
@@ -67,8 +67,8 @@ impl<'m> QuantityReader<'m> {
         if let Ok(number) = text.parse::<f64>() {
             return Ok(number);
         }
-        let all = tokens(text, |start, end| given.place(start, end))?;
-        let split = unit_start(&all);
+        let all = tokenize(text, |start, end| given.place(start, end))?;
+        let split = find_unit_start(&all);
         let (expression, own) = all.split_at(split);
         let end = own
             .first()
@@ -81,9 +81,9 @@ impl<'m> QuantityReader<'m> {
             Some(first) => {
                 let place = Span::new(first.span.start, given.value.end);
                 let written = &given.source.text[place.start..place.end];
-                self.in_unit(given, number, dimension, value.span, (written, place), unit)
+                self.convert_with_unit(given, number, dimension, value.span, (written, place), unit)
             }
-            None => in_si(given, number, dimension, &syntax, unit),
+            None => convert_from_si(given, number, dimension, &syntax, unit),
         }
     }
 
@@ -97,7 +97,7 @@ impl<'m> QuantityReader<'m> {
     }
 
     /// Converts a number with an explicit unit.
-    fn in_unit(
+    fn convert_with_unit(
         &self,
         given: &Assignment,
         number: f64,
@@ -106,24 +106,25 @@ impl<'m> QuantityReader<'m> {
         (written, written_place): (&str, Span),
         unit: &Unit,
     ) -> Result<f64, Diagnostic> {
-        if let Some(dimension) = dimension.filter(|dimension| !dimension.is_none()) {
-            return Err(
-                Diagnostic::error(format!("this value is already {}", Words(dimension)))
-                    .at(place, Words(dimension).to_string())
-                    .also(written_place, "a second unit")
-                    .help("remove the unit: parameters have units"),
-            );
+        if let Some(dimension) = dimension.filter(|dimension| !dimension.is_dimensionless()) {
+            return Err(Diagnostic::error(format!(
+                "this value is already {}",
+                UnitPhrase(dimension)
+            ))
+            .with_span(place, UnitPhrase(dimension).to_string())
+            .with_related_span(written_place, "a second unit")
+            .with_help("remove the unit: parameters have units"));
         }
         let own = Unit::parse(written).map_err(|error| {
             Diagnostic::error(error.message)
-                .at(written_place, "not a unit")
-                .help_if(error.help)
+                .with_span(written_place, "not a unit")
+                .with_optional_help(error.help)
         })?;
         if own.dimension != unit.dimension {
             let message = format!("`{}` is in {unit}, not in {own}", given.name());
             return Err(Diagnostic::error(message)
-                .at(written_place, "another kind of quantity")
-                .help(format!("give a unit of the same dimension as {unit}")));
+                .with_span(written_place, "another kind of quantity")
+                .with_help(format!("give a unit of the same dimension as {unit}")));
         }
         Ok(match own == *unit {
             true => number,
@@ -133,7 +134,7 @@ impl<'m> QuantityReader<'m> {
 }
 
 /// Converts an expression without an explicit unit, which is in SI.
-fn in_si(
+fn convert_from_si(
     given: &Assignment,
     number: f64,
     dimension: Option<Dimension>,
@@ -143,31 +144,36 @@ fn in_si(
     match dimension {
         None => Ok(unit.from_si(number)),
         Some(own) if own == unit.dimension => Ok(unit.from_si(number)),
-        Some(own) if own.is_none() && unit.is_coherent() && holds_no_names(syntax) => Ok(number),
+        Some(own) if own.is_dimensionless() && unit.is_coherent() && has_no_names(syntax) => {
+            Ok(number)
+        }
         Some(own) => {
             let message = format!(
                 "the value of `{}` is {}, expected in {unit}",
                 given.name(),
-                Words(own)
+                UnitPhrase(own)
             );
-            let help = match own.is_none() {
+            let help = match own.is_dimensionless() {
                 true => format!(
                     "write the unit after it: {}=\"{} {unit}\"",
                     given.name(),
                     given.value()
                 ),
-                false => format!("parameters have units; expected {}", Words(unit.dimension)),
+                false => format!(
+                    "parameters have units; expected {}",
+                    UnitPhrase(unit.dimension)
+                ),
             };
             Err(Diagnostic::error(message)
-                .at(syntax.span, Words(own).to_string())
-                .help(help))
+                .with_span(syntax.span, UnitPhrase(own).to_string())
+                .with_help(help))
         }
     }
 }
 
 /// Returns the index of the first token of a unit: an operand that follows another without an
 /// operator.
-fn unit_start(tokens: &[Token]) -> usize {
+fn find_unit_start(tokens: &[Token]) -> usize {
     let ends = |kind: &TokenKind| {
         matches!(
             kind,
@@ -180,7 +186,7 @@ fn unit_start(tokens: &[Token]) -> usize {
     found.map_or(tokens.len(), |place| place + 1)
 }
 
-fn holds_no_names(tree: &Syntax) -> bool {
+fn has_no_names(tree: &Syntax) -> bool {
     let mut none = true;
     tree.visit(&mut |part| {
         none &= !matches!(&part.kind, SyntaxKind::Name(name) if name != "pi");

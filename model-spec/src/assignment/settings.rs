@@ -2,7 +2,7 @@
 
 use super::Assignment;
 use super::quantity_reader::QuantityReader;
-use crate::diagnostic::{Diagnostics, quoted};
+use crate::diagnostic::{Diagnostics, quote};
 use crate::model::{Model, ParameterValue};
 use crate::unit::Unit;
 
@@ -18,8 +18,8 @@ impl Model {
         for assignment in given {
             let name = assignment.name();
             let Some(place) = model.parameters.iter().position(|known| known.name == name) else {
-                let message = format!("the model has no parameter {}", quoted(name));
-                return Err(assignment.refuse_name(message, Some(self.parameters_like(name))));
+                let message = format!("the model has no parameter {}", quote(name));
+                return Err(assignment.name_error(message, Some(self.suggest_parameters(name))));
             };
             let unit = model.parameters[place].unit.clone();
             let value = QuantityReader::new(&model)?.read(assignment, &unit)?;
@@ -40,7 +40,7 @@ impl Model {
         for (field, order) in self.fields.iter().zip(orders) {
             units.extend(std::iter::repeat_n(field.unit.clone(), *order));
         }
-        let rates: Vec<Unit> = units.iter().filter_map(Unit::per_second).collect();
+        let rates: Vec<Unit> = units.iter().filter_map(Unit::rate_unit).collect();
         units.extend(rates);
         units.extend(self.states.iter().map(|state| state.unit.clone()));
         units

@@ -16,7 +16,7 @@ pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> 
             ("doc", &new.doc),
             ("source", &new.source),
         ];
-        with_texts(InlineTable::new(), &texts)
+        add_texts(InlineTable::new(), &texts)
     };
     insert(document, new.section.name(), &new.name, value)
 }
@@ -25,7 +25,7 @@ pub fn parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), E
     let mut table = InlineTable::new();
     table.insert("value", new_value(&new.name, &new.value)?);
     table.insert("unit", Value::from(new.unit.as_str()));
-    let value = with_texts(table, &[("doc", &new.doc), ("source", &new.source)]);
+    let value = add_texts(table, &[("doc", &new.doc), ("source", &new.source)]);
     insert(document, "parameters", &new.name, value)
 }
 
@@ -35,20 +35,20 @@ pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(),
     if let Some(initial) = &new.initial {
         table.insert("initial", new_value(&new.name, initial)?);
     }
-    let value = with_texts(table, &[("doc", &new.doc)]);
+    let value = add_texts(table, &[("doc", &new.doc)]);
     insert(document, "coordinates", &new.name, value)
 }
 
 pub fn state(document: &mut DocumentMut, new: &NewState) -> Result<(), EditError> {
     let texts = [("unit", &new.unit), ("rate", &new.rate), ("doc", &new.doc)];
-    let value = with_texts(InlineTable::new(), &texts);
+    let value = add_texts(InlineTable::new(), &texts);
     insert(document, Section::States.name(), &new.name, value)
 }
 
 pub fn force(document: &mut DocumentMut, new: &NewForce) -> Result<(), EditError> {
     let head = [("on", &new.on), ("value", &new.value)];
     let tail = [("doc", &new.doc), ("source", &new.source)];
-    let value = with_texts(InlineTable::new(), &[head, tail].concat());
+    let value = add_texts(InlineTable::new(), &[head, tail].concat());
     insert(document, "forces", &new.name, value)
 }
 
@@ -58,7 +58,7 @@ fn insert(
     name: &str,
     value: Value,
 ) -> Result<(), EditError> {
-    let taken = || EditError::Taken {
+    let taken = || EditError::NameTaken {
         section: section.to_owned(),
         name: name.to_owned(),
     };
@@ -93,7 +93,7 @@ fn add_section(document: &mut DocumentMut, section: &str) {
     document.insert(section, Item::Table(table));
 }
 
-fn with_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
+fn add_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
     for (key, text) in texts {
         if !text.is_empty() {
             table.insert(*key, Value::from(text.as_str()));

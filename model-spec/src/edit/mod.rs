@@ -9,7 +9,7 @@ mod substitute;
 
 use toml_edit::DocumentMut;
 
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::load::check;
 use crate::source::Source;
 
@@ -215,7 +215,7 @@ pub enum EditError {
     /// The text is not TOML, or the edited text is not a valid specification.
     Invalid(Diagnostics),
     /// The section has an entry of this name.
-    Taken {
+    NameTaken {
         /// Section.
         section: String,
         /// Name.
@@ -255,11 +255,11 @@ impl std::fmt::Display for EditError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Invalid(diagnostics) => write!(f, "{diagnostics}"),
-            Self::Taken { section, name } => {
-                write!(f, "[{section}] already contains {}", quoted(name))
+            Self::NameTaken { section, name } => {
+                write!(f, "[{section}] already contains {}", quote(name))
             }
             Self::MissingTerm { section, name } => {
-                write!(f, "[{section}] does not contain {}", quoted(name))
+                write!(f, "[{section}] does not contain {}", quote(name))
             }
             Self::MissingExpression {
                 section,
@@ -268,17 +268,17 @@ impl std::fmt::Display for EditError {
             } => write!(
                 f,
                 "{} in [{section}] does not contain {}",
-                quoted(name),
-                quoted(find)
+                quote(name),
+                quote(find)
             ),
             Self::Expression { text, diagnostic } => {
-                write!(f, "{}: {}", quoted(text), diagnostic.message)?;
+                write!(f, "{}: {}", quote(text), diagnostic.message)?;
                 match &diagnostic.help {
                     Some(help) => write!(f, " ({help})"),
                     None => Ok(()),
                 }
             }
-            Self::NotFinite { name } => write!(f, "the value of {} is not finite", quoted(name)),
+            Self::NotFinite { name } => write!(f, "the value of {} is not finite", quote(name)),
         }
     }
 }
@@ -299,10 +299,10 @@ pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
         };
     };
     for edit in edits {
-        make(&mut document, edit)?;
+        apply_one(&mut document, edit)?;
     }
-    let text = restored(&source.text, document.to_string());
-    let edited = source.edited(text.as_str());
+    let text = restore_line_ends(&source.text, document.to_string());
+    let edited = source.with_text(text.as_str());
     check(edited).map_err(EditError::Invalid)?;
     Ok(text)
 }
@@ -310,7 +310,7 @@ pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
 /// Restores the line ends and the byte order mark of the original, which the TOML writer drops.
 /// A file with mixed line ends gets `\
 /// `.
-fn restored(original: &str, edited: String) -> String {
+fn restore_line_ends(original: &str, edited: String) -> String {
     let lines = original.matches('\n').count();
     let text = if lines > 0 && original.matches("\r\n").count() == lines {
         edited.replace('\n', "\r\n")
@@ -325,7 +325,7 @@ fn restored(original: &str, edited: String) -> String {
     }
 }
 
-fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
+fn apply_one(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
     match edit {
         Edit::AddTerm(term) => insert::term(document, term),
         Edit::AddParameter(parameter) => insert::parameter(document, parameter),

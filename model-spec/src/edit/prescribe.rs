@@ -13,15 +13,18 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
         name: edit.name.clone(),
     })?;
     let tree = syntax(&edit.value)?;
-    let value = if is_of_numbers(&tree) {
+    let value = if has_only_numbers(&tree) {
         // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
         // unit of the input, supply the units.
-        let (second, one) = (unused(document, "one_second"), unused(document, "one_unit"));
+        let (second, one) = (
+            unused_name(document, "one_second"),
+            unused_name(document, "one_unit"),
+        );
         let timed = replaced(&edit.value, "t", &format!("t/{second}"))?;
         if timed.is_some() {
-            parameter(document, &of_one(&second, "s"))?;
+            parameter(document, &unit_parameter(&second, "s"))?;
         }
-        parameter(document, &of_one(&one, &unit))?;
+        parameter(document, &unit_parameter(&one, &unit))?;
         format!("({})*{one}", timed.as_deref().unwrap_or(&edit.value))
     } else {
         edit.value.clone()
@@ -33,13 +36,13 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     let value = if mentions_time(&tree) {
         value
     } else {
-        let second = unused(document, "one_second");
-        parameter(document, &of_one(&second, "s"))?;
+        let second = unused_name(document, "one_second");
+        parameter(document, &unit_parameter(&second, "s"))?;
         format!("({value})*(1 + 0*t/{second})")
     };
     define(document, &edit.name, value)?;
     let rate = format!("{}_dot", edit.name);
-    if is_named(document, &rate) {
+    if contains_name(document, &rate) {
         define(document, &rate, format!("dot({})", edit.name))?;
     }
     Ok(())
@@ -56,7 +59,7 @@ fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), E
     term(document, &definition)
 }
 
-fn is_named(document: &DocumentMut, name: &str) -> bool {
+fn contains_name(document: &DocumentMut, name: &str) -> bool {
     let is_of_names = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let text = document.to_string();
     text.split(|c: char| !is_of_names(c))
@@ -87,7 +90,7 @@ fn remove(document: &mut DocumentMut, name: &str) -> Option<(String, bool)> {
 }
 
 /// Returns true if an expression contains only numbers and the time.
-fn is_of_numbers(tree: &Syntax) -> bool {
+fn has_only_numbers(tree: &Syntax) -> bool {
     let mut of_numbers = true;
     tree.visit(&mut |part| {
         of_numbers &= match &part.kind {
@@ -100,7 +103,7 @@ fn is_of_numbers(tree: &Syntax) -> bool {
 }
 
 /// Returns a name with this prefix that the document does not contain.
-fn unused(document: &DocumentMut, name: &str) -> String {
+fn unused_name(document: &DocumentMut, name: &str) -> String {
     let text = document.to_string();
     let mut unused = name.to_owned();
     while text.contains(&unused) {
@@ -109,7 +112,7 @@ fn unused(document: &DocumentMut, name: &str) -> String {
     unused
 }
 
-fn of_one(name: &str, unit: &str) -> NewParameter {
+fn unit_parameter(name: &str, unit: &str) -> NewParameter {
     NewParameter {
         name: name.to_owned(),
         value: NewValue::Number(1.0),

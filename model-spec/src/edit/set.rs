@@ -40,7 +40,7 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
         .get_mut("sensors")
         .and_then(Item::as_table_like_mut)
     else {
-        return Err(EditError::Taken {
+        return Err(EditError::NameTaken {
             section: "sensors".to_owned(),
             name: edit.channel.clone(),
         });

@@ -5,7 +5,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use super::{EditError, Section, Substitution};
 use crate::ast::{Syntax, SyntaxKind};
-use crate::lexer::tokens;
+use crate::lexer::tokenize;
 use crate::parser::parse;
 use crate::span::Span;
 
@@ -27,7 +27,7 @@ struct Replacement<'e> {
     pattern: Syntax,
     replace: &'e str,
     /// True if the replacement needs brackets next to an operator.
-    compound: bool,
+    needs_brackets: bool,
 }
 
 impl<'e> Replacement<'e> {
@@ -35,7 +35,7 @@ impl<'e> Replacement<'e> {
         let replacement = syntax(replace)?;
         Ok(Self {
             pattern: syntax(find)?,
-            compound: matches!(
+            needs_brackets: matches!(
                 replacement.kind,
                 SyntaxKind::Binary(..) | SyntaxKind::Negate(_)
             ),
@@ -76,7 +76,7 @@ impl<'e> Replacement<'e> {
     fn replaced(&self, text: &str) -> Result<Option<String>, EditError> {
         let tree = syntax(text)?;
         let mut places = Vec::new();
-        self.places(&tree, false, &mut places);
+        self.find_spans(&tree, false, &mut places);
         if places.is_empty() {
             return Ok(None);
         }
@@ -85,7 +85,7 @@ impl<'e> Replacement<'e> {
         let mut done = 0;
         for (span, beside_operator) in places {
             replaced.push_str(&text[done..span.start]);
-            if beside_operator && self.compound {
+            if beside_operator && self.needs_brackets {
                 replaced.push_str(&format!("({})", self.replace));
             } else {
                 replaced.push_str(self.replace);
@@ -97,8 +97,8 @@ impl<'e> Replacement<'e> {
     }
 
     /// Collects the spans of the occurrences; the flag is true next to an operator.
-    fn places(&self, tree: &Syntax, beside_operator: bool, found: &mut Vec<(Span, bool)>) {
-        if same(tree, &self.pattern) {
+    fn find_spans(&self, tree: &Syntax, beside_operator: bool, found: &mut Vec<(Span, bool)>) {
+        if is_same_tree(tree, &self.pattern) {
             found.push((tree.span, beside_operator));
             return;
         }
@@ -109,14 +109,14 @@ impl<'e> Replacement<'e> {
             }
             | SyntaxKind::Vector(parts) => {
                 for part in parts {
-                    self.places(part, false, found);
+                    self.find_spans(part, false, found);
                 }
             }
-            SyntaxKind::Member { of, .. } => self.places(of, true, found),
-            SyntaxKind::Negate(operand) => self.places(operand, true, found),
+            SyntaxKind::Member { of, .. } => self.find_spans(of, true, found),
+            SyntaxKind::Negate(operand) => self.find_spans(operand, true, found),
             SyntaxKind::Binary(_, left, right) => {
-                self.places(left, true, found);
-                self.places(right, true, found);
+                self.find_spans(left, true, found);
+                self.find_spans(right, true, found);
             }
         }
     }
@@ -136,7 +136,7 @@ fn expression_of<'i>(item: &'i mut Item, key: &str) -> Option<(&'i mut Value, St
 
 pub fn syntax(text: &str) -> Result<Syntax, EditError> {
     let end = Span::new(text.len(), text.len());
-    let parsed = tokens(text, Span::new).and_then(|tokens| parse(&tokens, end));
+    let parsed = tokenize(text, Span::new).and_then(|tokens| parse(&tokens, end));
     parsed.map_err(|diagnostic| EditError::Expression {
         text: text.to_owned(),
         diagnostic: Box::new(diagnostic),
@@ -144,7 +144,7 @@ pub fn syntax(text: &str) -> Result<Syntax, EditError> {
 }
 
 /// Returns true if two trees are equal up to positions.
-fn same(one: &Syntax, other: &Syntax) -> bool {
+fn is_same_tree(one: &Syntax, other: &Syntax) -> bool {
     match (&one.kind, &other.kind) {
         (SyntaxKind::Number(one), SyntaxKind::Number(other)) => one == other,
         (SyntaxKind::Name(one), SyntaxKind::Name(other)) => one == other,
@@ -173,10 +173,10 @@ fn same(one: &Syntax, other: &Syntax) -> bool {
                 && arguments
                     .iter()
                     .zip(other_arguments)
-                    .all(|(a, b)| same(a, b))
+                    .all(|(a, b)| is_same_tree(a, b))
         }
         (SyntaxKind::Vector(one), SyntaxKind::Vector(other)) => {
-            one.len() == other.len() && one.iter().zip(other).all(|(a, b)| same(a, b))
+            one.len() == other.len() && one.iter().zip(other).all(|(a, b)| is_same_tree(a, b))
         }
         (
             SyntaxKind::Member { of, member, .. },
@@ -185,10 +185,10 @@ fn same(one: &Syntax, other: &Syntax) -> bool {
                 member: other_member,
                 ..
             },
-        ) => member == other_member && same(of, other_of),
-        (SyntaxKind::Negate(one), SyntaxKind::Negate(other)) => same(one, other),
+        ) => member == other_member && is_same_tree(of, other_of),
+        (SyntaxKind::Negate(one), SyntaxKind::Negate(other)) => is_same_tree(one, other),
         (SyntaxKind::Binary(one, a, b), SyntaxKind::Binary(other, c, d)) => {
-            one == other && same(a, c) && same(b, d)
+            one == other && is_same_tree(a, c) && is_same_tree(b, d)
         }
         _ => false,
     }

@@ -1,9 +1,9 @@
 //! Resolves the special forms: rates, derivatives and integrals along a field, sums over its
 //! modes.
 
-use super::{ResolvedKind, Resolver, Scope, wrong_count};
+use super::{ResolvedKind, Resolver, Scope, argument_count_error};
 use crate::ast::{Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::diagnostic::{Diagnostic, quote};
 use crate::ids::FieldId;
 use crate::model::{Expr, ExprKind};
 use crate::names::Symbol;
@@ -12,7 +12,7 @@ use crate::span::Span;
 const MAX_DERIVATIVE: f64 = 4.0;
 
 impl Resolver<'_> {
-    pub(super) fn form(
+    pub(super) fn resolve_form(
         &mut self,
         name: &str,
         name_span: Span,
@@ -22,20 +22,35 @@ impl Resolver<'_> {
         let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
         if self.scope == Scope::Parameters || (name == "dot" && !motion) {
             let what = format!("{name}(...)");
-            return Err(self.out_of_scope(&quoted(&what), "not a constant", name_span));
+            return Err(self.out_of_scope_error(&quote(&what), "not a constant", name_span));
         }
         match (name, arguments) {
             ("dot", [operand]) => self.dot(operand),
-            ("dot", _) => Err(wrong_count(name, span, arguments.len(), "dot(x)")),
+            ("dot", _) => Err(argument_count_error(name, span, arguments.len(), "dot(x)")),
             ("diff", [value, along]) => self.diff(value, along, 1),
             ("diff", [value, along, times]) => self.diff(value, along, derivative_order(times)?),
-            ("diff", _) => Err(wrong_count(name, span, arguments.len(), "diff(w, x, 2)")),
+            ("diff", _) => Err(argument_count_error(
+                name,
+                span,
+                arguments.len(),
+                "diff(w, x, 2)",
+            )),
             ("at", [value, place]) => self.at(value, place),
-            ("at", _) => Err(wrong_count(name, span, arguments.len(), "at(w, l)")),
+            ("at", _) => Err(argument_count_error(
+                name,
+                span,
+                arguments.len(),
+                "at(w, l)",
+            )),
             ("integral", [integrand, field]) => self.integral(integrand, field),
-            ("integral", _) => Err(wrong_count(name, span, arguments.len(), "integral(w^2, w)")),
+            ("integral", _) => Err(argument_count_error(
+                name,
+                span,
+                arguments.len(),
+                "integral(w^2, w)",
+            )),
             ("sum", [index, field, summand]) => self.sum(index, field, summand),
-            _ => Err(wrong_count(
+            _ => Err(argument_count_error(
                 name,
                 span,
                 arguments.len(),
@@ -58,13 +73,15 @@ impl Resolver<'_> {
                 Ok(ExprKind::Diff(Box::new(Expr { kind, span }), times))
             }
             ExprKind::Dot(_) => Err(Diagnostic::error("dot(dot(...)) is an acceleration")
-                .at(span, "already a rate")
-                .help("a specification contains no accelerations: they follow from the energies")),
+                .with_span(span, "already a rate")
+                .with_help(
+                    "a specification contains no accelerations: they follow from the energies",
+                )),
             ExprKind::Input(input) => match self.names.input_rate(input) {
                 Some(rate) => Ok(ExprKind::Input(rate)),
                 None => Err(Diagnostic::error("the input has no given rate")
-                    .at(span, "this is an input")
-                    .help("add `rates = 2` to the input to supply its rates")),
+                    .with_span(span, "this is an input")
+                    .with_help("add `rates = 2` to the input to supply its rates")),
             },
             ExprKind::At {
                 field,
@@ -74,10 +91,10 @@ impl Resolver<'_> {
             ExprKind::Parameter(_)
             | ExprKind::Number(_)
             | ExprKind::Pi
-            | ExprKind::ModeShape(_) => Err(not_moving(span, "a constant")),
-            ExprKind::Time | ExprKind::Position(_) => Err(not_moving(span, "no coordinate")),
-            _ => Err(not_moving(span, "an expression")
-                .help("move the expression to [definitions] and write dot(NAME)")),
+            | ExprKind::ModeShape(_) => Err(no_rate_error(span, "a constant")),
+            ExprKind::Time | ExprKind::Position(_) => Err(no_rate_error(span, "no coordinate")),
+            _ => Err(no_rate_error(span, "an expression")
+                .with_help("move the expression to [definitions] and write dot(NAME)")),
         }
     }
 
@@ -87,8 +104,8 @@ impl Resolver<'_> {
             return Err(Diagnostic::error(
                 "the first argument of diff() must be a field, its rate or a mode shape",
             )
-            .at(value.span, "not a field")
-            .help("write diff(w, x, 2), diff(dot(w), x, 1) or diff(phi[i], x, 2)"));
+            .with_span(value.span, "not a field")
+            .with_help("write diff(w, x, 2), diff(dot(w), x, 1) or diff(phi[i], x, 2)"));
         };
         let names = &self.names.fields[field];
         if !matches!(&along.kind, SyntaxKind::Name(name) if *name == names.along) {
@@ -96,8 +113,8 @@ impl Resolver<'_> {
             return Err(Diagnostic::error(
                 "the second argument of diff() must be the position along the field",
             )
-            .at(along.span, "not the position")
-            .help(format!("the position along `{field}` is `{along_name}`")));
+            .with_span(along.span, "not the position")
+            .with_help(format!("the position along `{field}` is `{along_name}`")));
         }
         let (inner, before) = match resolved.kind {
             ExprKind::Diff(inner, before) => (inner, before),
@@ -105,14 +122,14 @@ impl Resolver<'_> {
         };
         let total = before.saturating_add(times);
         if f64::from(total) > MAX_DERIVATIVE {
-            return Err(derivative_range(value.span));
+            return Err(derivative_order_error(value.span));
         }
         Ok(ExprKind::Diff(inner, total))
     }
 
     fn at(&mut self, value: &Syntax, place: &Syntax) -> ResolvedKind {
         let field = self.field_in(value)?;
-        let value = self.within(field, value)?;
+        let value = self.resolve_in_field(field, value)?;
         let mut outside = Resolver::new(self.names, Scope::Parameters);
         let position = Box::new(outside.resolve(place)?);
         Ok(ExprKind::At {
@@ -123,13 +140,17 @@ impl Resolver<'_> {
     }
 
     fn integral(&mut self, integrand: &Syntax, field: &Syntax) -> ResolvedKind {
-        let field = self.field_named(field)?;
-        let integrand = self.within(field, integrand)?;
+        let field = self.resolve_field(field)?;
+        let integrand = self.resolve_in_field(field, integrand)?;
         Ok(ExprKind::Integral { field, integrand })
     }
 
     /// Resolves an expression of the position along `field`.
-    fn within(&mut self, field: FieldId, syntax: &Syntax) -> Result<Box<Expr>, Diagnostic> {
+    fn resolve_in_field(
+        &mut self,
+        field: FieldId,
+        syntax: &Syntax,
+    ) -> Result<Box<Expr>, Diagnostic> {
         self.domains.push(field);
         let resolved = self.resolve(syntax);
         self.domains.pop();
@@ -141,20 +162,20 @@ impl Resolver<'_> {
             return Err(Diagnostic::error(
                 "the first argument of sum() must be the name of an index",
             )
-            .at(index.span, "not a name")
-            .help("write sum(i, w, q[i]^2)"));
+            .with_span(index.span, "not a name")
+            .with_help("write sum(i, w, q[i]^2)"));
         };
         if let Some(symbol) = self.names.get(name) {
             return Err(
                 Diagnostic::error(format!("the index `{name}` is also {}", symbol.kind()))
-                    .at(index.span, "choose another name"),
+                    .with_span(index.span, "choose another name"),
             );
         }
-        let field_index = self.field_named(field)?;
+        let field_index = self.resolve_field(field)?;
         if self.sums.iter().any(|(_, known)| *known == field_index) {
             return Err(
                 Diagnostic::error("a sum over a field inside a sum over the same field")
-                    .at(field.span, "an enclosing sum has this field"),
+                    .with_span(field.span, "an enclosing sum has this field"),
             );
         }
         self.sums.push((name.clone(), field_index));
@@ -166,7 +187,7 @@ impl Resolver<'_> {
         })
     }
 
-    fn field_named(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
+    fn resolve_field(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
         if let SyntaxKind::Name(name) = &syntax.kind
             && let Some(Symbol::Field(field)) = self.names.get(name)
         {
@@ -179,8 +200,8 @@ impl Resolver<'_> {
             fields => format!("the fields are: {}", fields.join(", ")),
         };
         Err(Diagnostic::error("expected the name of a field")
-            .at(syntax.span, "not a field")
-            .help(help))
+            .with_span(syntax.span, "not a field")
+            .with_help(help))
     }
 
     /// Returns the field of an expression of the position.
@@ -196,11 +217,11 @@ impl Resolver<'_> {
             [] => Err(Diagnostic::error(
                 "the first argument of at() must be an expression of a field",
             )
-            .at(syntax.span, "this contains no field")
-            .help("write at(w, l) or at(diff(w, x, 1), l)")),
+            .with_span(syntax.span, "this contains no field")
+            .with_help("write at(w, l) or at(diff(w, x, 1), l)")),
             _ => Err(Diagnostic::error("at() of several fields")
-                .at(syntax.span, "the position is ambiguous")
-                .help("write a separate at(...) for each field")),
+                .with_span(syntax.span, "the position is ambiguous")
+                .with_help("write a separate at(...) for each field")),
         }
     }
 
@@ -278,18 +299,18 @@ fn derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
         {
             Ok(value as u8)
         }
-        _ => Err(derivative_range(syntax.span)),
+        _ => Err(derivative_order_error(syntax.span)),
     }
 }
 
-fn derivative_range(span: Span) -> Diagnostic {
+fn derivative_order_error(span: Span) -> Diagnostic {
     Diagnostic::error("the order of a derivative along a field must be 1, 2, 3 or 4")
-        .at(span, "invalid order")
+        .with_span(span, "invalid order")
 }
 
-fn not_moving(span: Span, what: &str) -> Diagnostic {
+fn no_rate_error(span: Span, what: &str) -> Diagnostic {
     Diagnostic::error(
         "the argument of dot() must be a coordinate, a definition, a field or at(...) of a field",
     )
-    .at(span, format!("this is {what}, which has no rate"))
+    .with_span(span, format!("this is {what}, which has no rate"))
 }

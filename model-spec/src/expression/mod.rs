@@ -5,9 +5,9 @@
 mod forms;
 
 use crate::ast::{Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, quoted};
-use crate::foreign::written_here;
-use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable};
+use crate::diagnostic::{Diagnostic, quote};
+use crate::foreign::find_equivalent;
+use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable_names};
 use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Expr, ExprKind, Function};
 use crate::names::{Names, Symbol};
@@ -52,13 +52,13 @@ impl<'n> Resolver<'n> {
     }
 
     /// Sets the fields of earlier coefficients.
-    pub fn knowing(mut self, per_mode: &'n [Vec<FieldId>]) -> Self {
+    pub fn with_coefficient_fields(mut self, per_mode: &'n [Vec<FieldId>]) -> Self {
         self.per_mode = per_mode;
         self
     }
 
     /// Sets the index and the field of an expression for each mode.
-    pub fn for_each(mut self, each: Option<(String, FieldId)>) -> Self {
+    pub fn with_mode_index(mut self, each: Option<(String, FieldId)>) -> Self {
         self.sums.extend(each);
         self
     }
@@ -79,7 +79,7 @@ impl<'n> Resolver<'n> {
                 arguments,
             } => self.call(function, *function_span, span, arguments)?,
             SyntaxKind::Vector(_) | SyntaxKind::Member { .. } => {
-                return Err(vectors_elsewhere(span));
+                return Err(vector_error(span));
             }
             SyntaxKind::Negate(operand) => ExprKind::Negate(Box::new(self.resolve(operand)?)),
             SyntaxKind::Binary(operator, left, right) => {
@@ -96,11 +96,11 @@ impl<'n> Resolver<'n> {
             "t" if self.scope == Scope::Motion || self.scope == Scope::Factor => {
                 return Ok(ExprKind::Time);
             }
-            "t" => return Err(self.out_of_scope("`t`", "the time", span)),
+            "t" => return Err(self.out_of_scope_error("`t`", "the time", span)),
             _ => {}
         }
         let Some(symbol) = self.names.get(name) else {
-            return Err(self.unknown(name, span));
+            return Err(self.unknown_name_error(name, span));
         };
         let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
         match symbol {
@@ -116,8 +116,8 @@ impl<'n> Resolver<'n> {
             }
             Symbol::Modes(_) if motion => {
                 Err(Diagnostic::error(format!("`{name}` denotes all modes"))
-                    .at(span, "no mode index")
-                    .help(format!(
+                    .with_span(span, "no mode index")
+                    .with_help(format!(
                         "write a sum over the modes: sum(i, {}, {name}[i])",
                         self.field_of(symbol)
                     )))
@@ -127,7 +127,7 @@ impl<'n> Resolver<'n> {
             }
             Symbol::Residual(index) if self.scope == Scope::Motion => Ok(ExprKind::Residual(index)),
             Symbol::Coefficient(index) => self.coefficient(index, name, span),
-            other => Err(self.out_of_scope(&quoted(name), other.kind(), span)),
+            other => Err(self.out_of_scope_error(&quote(name), other.kind(), span)),
         }
     }
 
@@ -148,30 +148,30 @@ impl<'n> Resolver<'n> {
                 let summed = |field: &FieldId| self.sums.iter().any(|(_, known)| known == field);
                 match fields.iter().find(|field| !summed(field)) {
                     None => Ok(ExprKind::Coefficient(index)),
-                    Some(field) => Err(self.one_per_mode(*field, name, span)),
+                    Some(field) => Err(self.missing_mode_error(*field, name, span)),
                 }
             }
             Scope::Coefficient(_) => Err(Diagnostic::error(format!(
                 "the coefficient `{name}` is not defined yet"
             ))
-            .at(span, "refers to itself or to a later entry")
-            .help("refer only to coefficients listed before this one")),
-            _ => Err(self.out_of_scope(&quoted(name), "a coefficient", span)),
+            .with_span(span, "refers to itself or to a later entry")
+            .with_help("refer only to coefficients listed before this one")),
+            _ => Err(self.out_of_scope_error(&quote(name), "a coefficient", span)),
         }
     }
 
-    fn one_per_mode(&self, field: FieldId, name: &str, span: Span) -> Diagnostic {
+    fn missing_mode_error(&self, field: FieldId, name: &str, span: Span) -> Diagnostic {
         let field = &self.names.fields[field].field;
         Diagnostic::error(format!(
             "the coefficient `{name}` exists for each mode of `{field}`"
         ))
-        .at(span, "no mode index")
-        .help(format!(
+        .with_span(span, "no mode index")
+        .with_help(format!(
             "use it inside sum(i, {field}, ...) or with each = \"{field}[i]\""
         ))
     }
 
-    fn out_of_scope(&self, what: &str, kind: &str, span: Span) -> Diagnostic {
+    fn out_of_scope_error(&self, what: &str, kind: &str, span: Span) -> Diagnostic {
         let rule = match self.scope {
             Scope::Factor if kind == "a state" => {
                 "coefficients are factors of coordinates, rates and inputs in an acceleration"
@@ -188,8 +188,8 @@ impl<'n> Resolver<'n> {
             format!("this is {kind}")
         };
         Diagnostic::error(format!("{what} cannot be used here"))
-            .at(span, label)
-            .help(rule)
+            .with_span(span, label)
+            .with_help(rule)
     }
 
     fn field(&self, field: FieldId, name: &str, span: Span) -> ResolvedKind {
@@ -198,8 +198,8 @@ impl<'n> Resolver<'n> {
         }
         Err(
             Diagnostic::error(format!("the field `{name}` is a function of the position"))
-                .at(span, "outside integral(...) and at(...)")
-                .help(format!(
+                .with_span(span, "outside integral(...) and at(...)")
+                .with_help(format!(
                     "write at({name}, POSITION) for its value at a position, or integral(..., {name})"
                 )),
         )
@@ -210,56 +210,58 @@ impl<'n> Resolver<'n> {
             Some(&field) if self.names.fields[field].along == name => Ok(ExprKind::Position(field)),
             _ => Err(
                 Diagnostic::error(format!("the position `{name}` has no value here"))
-                    .at(span, "outside the functions of its field")
-                    .help(format!(
+                    .with_span(span, "outside the functions of its field")
+                    .with_help(format!(
                         "use `{name}` only inside integral(..., FIELD) and at(...)"
                     )),
             ),
         }
     }
 
-    fn unknown(&self, name: &str, span: Span) -> Diagnostic {
-        let diagnostic = Diagnostic::error(format!("unknown name {}", quoted(name)));
-        if callable().any(|known| known == name) {
+    fn unknown_name_error(&self, name: &str, span: Span) -> Diagnostic {
+        let diagnostic = Diagnostic::error(format!("unknown name {}", quote(name)));
+        if callable_names().any(|known| known == name) {
             return Diagnostic::error(format!("the function `{name}` has no arguments"))
-                .at(span, "here")
-                .help(format!("write {name}(...)"));
+                .with_span(span, "here")
+                .with_help(format!("write {name}(...)"));
         }
         let modes = name.rsplit_once('_').map(|(stem, _)| stem);
         if let Some(Symbol::Modes(field)) = modes.and_then(|stem| self.names.get(stem)) {
             let names = &self.names.fields[field];
             let (field, modes) = (&names.field, &names.modes);
             return diagnostic
-                .at(span, "a single mode cannot be used")
-                .help(format!(
+                .with_span(span, "a single mode cannot be used")
+                .with_help(format!(
                     "the number of modes can change: write sum(i, {field}, ... {modes}[i] ...)"
                 ));
         }
         if self.names.is_observable(name) {
             return diagnostic
-                .at(span, "this is an observable")
-                .help("an observable is only an output: move the expression to [definitions]");
+                .with_span(span, "this is an observable")
+                .with_help(
+                    "an observable is only an output: move the expression to [definitions]",
+                );
         }
         let rate = name
             .strip_suffix("_dot")
             .filter(|stem| self.names.get(stem).is_some());
         let help = match rate {
             Some(stem) => Some(format!("write dot({stem}) for the rate")),
-            None => did_you_mean(name, self.names.known().chain(["t", "pi"])),
+            None => did_you_mean(name, self.names.known_names().chain(["t", "pi"])),
         };
-        diagnostic.at(span, "not declared").help_if(help)
+        diagnostic
+            .with_span(span, "not declared")
+            .with_optional_help(help)
     }
 
     /// Resolves `q[i]` or `phi[i]`.
     fn element(&self, name: &str, span: Span, index: &str, index_span: Span) -> ResolvedKind {
         let Some((_, field)) = self.sums.iter().rev().find(|(known, _)| known == index) else {
-            return Err(
-                Diagnostic::error(format!("unknown index {}", quoted(index)))
-                    .at(index_span, "no enclosing sum has this index")
-                    .help(format!(
-                        "write a sum over the modes: sum({index}, w, {name}[{index}])"
-                    )),
-            );
+            return Err(Diagnostic::error(format!("unknown index {}", quote(index)))
+                .with_span(index_span, "no enclosing sum has this index")
+                .with_help(format!(
+                    "write a sum over the modes: sum({index}, w, {name}[{index}])"
+                )));
         };
         let names = &self.names.fields[*field];
         if name == "phi" {
@@ -268,19 +270,19 @@ impl<'n> Resolver<'n> {
             }
             return Err(
                 Diagnostic::error("the mode shape `phi` is a function of the position")
-                    .at(span, "outside integral(...) and at(...)"),
+                    .with_span(span, "outside integral(...) and at(...)"),
             );
         }
         if name != names.modes {
             let (modes, field) = (&names.modes, &names.field);
-            return Err(Diagnostic::error(format!("{} has no modes", quoted(name)))
-                .at(span, format!("`{index}` counts the modes of `{field}`"))
-                .help(format!("write {modes}[{index}] or phi[{index}]")));
+            return Err(Diagnostic::error(format!("{} has no modes", quote(name)))
+                .with_span(span, format!("`{index}` counts the modes of `{field}`"))
+                .with_help(format!("write {modes}[{index}] or phi[{index}]")));
         }
         if matches!(self.scope, Scope::Motion | Scope::Factor) {
             Ok(ExprKind::ModeCoordinate(*field))
         } else {
-            Err(self.out_of_scope(&quoted(name), "a mode coordinate", span))
+            Err(self.out_of_scope_error(&quote(name), "a mode coordinate", span))
         }
     }
 
@@ -292,15 +294,15 @@ impl<'n> Resolver<'n> {
         arguments: &[Syntax],
     ) -> ResolvedKind {
         if FORMS.contains(&name) {
-            return self.form(name, name_span, span, arguments);
+            return self.resolve_form(name, name_span, span, arguments);
         }
-        let Some(function) = Function::named(name) else {
-            return Err(self.unknown_function(name, name_span));
+        let Some(function) = Function::from_name(name) else {
+            return Err(self.unknown_function_error(name, name_span));
         };
         let expected = function.arguments();
         if arguments.len() != expected.len() {
             let usage = format!("{name}({})", expected.join(", "));
-            return Err(wrong_count(name, span, arguments.len(), &usage));
+            return Err(argument_count_error(name, span, arguments.len(), &usage));
         }
         let arguments = arguments.iter().map(|argument| self.resolve(argument));
         Ok(ExprKind::Call(
@@ -309,38 +311,43 @@ impl<'n> Resolver<'n> {
         ))
     }
 
-    fn unknown_function(&self, name: &str, span: Span) -> Diagnostic {
+    fn unknown_function_error(&self, name: &str, span: Span) -> Diagnostic {
         if let Some(symbol) = self.names.get(name) {
             return Diagnostic::error(format!("`{name}` is {}, not a function", symbol.kind()))
-                .at(span, "called like a function")
-                .help(format!("write a product with `*`: {name}*(...)"));
+                .with_span(span, "called like a function")
+                .with_help(format!("write a product with `*`: {name}*(...)"));
         }
         if VECTOR_FUNCTIONS.contains(&name) {
-            return vectors_elsewhere(span);
+            return vector_error(span);
         }
-        let help = match written_here(name) {
+        let help = match find_equivalent(name) {
             Some(help) => Some(help.to_owned()),
-            None => did_you_mean(name, callable().chain(VECTOR_FUNCTIONS)),
+            None => did_you_mean(name, callable_names().chain(VECTOR_FUNCTIONS)),
         };
-        Diagnostic::error(format!("unknown function {}", quoted(name)))
-            .at(span, "not known")
-            .help_if(help)
+        Diagnostic::error(format!("unknown function {}", quote(name)))
+            .with_span(span, "not known")
+            .with_optional_help(help)
     }
 }
 
 /// Reports a vector in place of a scalar.
-fn vectors_elsewhere(span: Span) -> Diagnostic {
+fn vector_error(span: Span) -> Diagnostic {
     Diagnostic::error("a vector cannot be used here")
-        .at(span, "expected a scalar")
-        .help(
+        .with_span(span, "expected a scalar")
+        .with_help(
             "use vectors in [definitions], energies, [forces], [constraints], [observables], \
              [frames] and [bodies]",
         )
 }
 
-pub(super) fn wrong_count(name: &str, span: Span, count: usize, usage: &str) -> Diagnostic {
+pub(super) fn argument_count_error(
+    name: &str,
+    span: Span,
+    count: usize,
+    usage: &str,
+) -> Diagnostic {
     let plural = if count == 1 { "" } else { "s" };
     Diagnostic::error(format!("`{name}` does not accept {count} argument{plural}"))
-        .at(span, "here")
-        .help(format!("write {usage}"))
+        .with_span(span, "here")
+        .with_help(format!("write {usage}"))
 }

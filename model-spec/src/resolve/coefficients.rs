@@ -8,7 +8,7 @@ use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 use crate::names::Symbol;
 use crate::raw::{RawCoefficient, RawCoefficientKind};
-use crate::table::{Quantity, Written};
+use crate::table::{Quantity, StringValue};
 
 impl Builder {
     pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
@@ -25,15 +25,15 @@ impl Builder {
     /// Builds one coefficient; `before` are the fields of the earlier ones.
     fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<FieldId>]) -> Option<Coefficient> {
         let each = match &raw.each {
-            Some(written) => Some(self.each(written)?),
+            Some(written) => Some(self.parse_each(written)?),
             None => None,
         };
         let field = each.as_ref().map(|(_, field)| *field);
         let resolved = |quantity: &Quantity, scope: Scope, each: Option<(String, FieldId)>| {
-            let resolver = Resolver::new(&self.names, scope).for_each(each);
+            let resolver = Resolver::new(&self.names, scope).with_mode_index(each);
             quantity
                 .syntax()
-                .and_then(|syntax| resolver.knowing(before).resolve(&syntax))
+                .and_then(|syntax| resolver.with_coefficient_fields(before).resolve(&syntax))
         };
         let known = Scope::Coefficient(CoefficientId::new(before.len()));
         let kind = match &raw.kind {
@@ -41,7 +41,7 @@ impl Builder {
                 resolved(value, known, each).map(CoefficientKind::Value)
             }
             RawCoefficientKind::Factor(of, by, times) => {
-                let of = resolved(of, Scope::Factor, each.clone()).and_then(moving_quantity);
+                let of = resolved(of, Scope::Factor, each.clone()).and_then(check_coordinate);
                 of.and_then(|of| {
                     let by = resolved(by, Scope::Factor, each.clone())?;
                     // Each mode's equation may have its own factor.
@@ -54,7 +54,7 @@ impl Builder {
             }
         };
         Some(Coefficient {
-            kind: self.found.keep(kind)?,
+            kind: self.found.push_error(kind)?,
             name: raw.name.text,
             each: field,
             doc: raw.doc,
@@ -63,8 +63,8 @@ impl Builder {
     }
 
     /// Returns the index and the field of `each = "w[i]"`.
-    fn each(&mut self, written: &Written) -> Option<(String, FieldId)> {
-        let syntax = self.found.keep(written.syntax())?;
+    fn parse_each(&mut self, written: &StringValue) -> Option<(String, FieldId)> {
+        let syntax = self.found.push_error(written.syntax())?;
         if let SyntaxKind::Element { name, index, .. } = syntax.kind
             && let Some(Symbol::Field(field)) = self.names.get(&name)
         {
@@ -72,21 +72,21 @@ impl Builder {
         }
         self.found.push(
             Diagnostic::error("`each` must name a field and an index")
-                .at(syntax.span, "not a field with an index")
-                .help("write each = \"w[i]\" to give a coefficient for each mode of w"),
+                .with_span(syntax.span, "not a field with an index")
+                .with_help("write each = \"w[i]\" to give a coefficient for each mode of w"),
         );
         None
     }
 }
 
 /// Checks that `of` is a coordinate or the mode coordinates of a field.
-fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
+fn check_coordinate(of: Expr) -> Result<Expr, Diagnostic> {
     match of.kind {
         ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
         _ => Err(
             Diagnostic::error("`of` must be a coordinate or the mode coordinates of a field")
-                .at(of.span, "not a coordinate")
-                .help(
+                .with_span(of.span, "not a coordinate")
+                .with_help(
                     "name the coordinate of the equation, for example of = \"theta\" or of = \"q\"",
                 ),
         ),

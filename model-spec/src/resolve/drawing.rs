@@ -2,32 +2,32 @@
 //! lengths.
 
 use super::Builder;
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::diagnostic::{Diagnostic, quote};
 use crate::ids::{CoordinateId, ObservableId, PointId};
 use crate::model::{Drawing, DrawnLine, DrawnPoint, Ordinate};
 use crate::raw::{Document, RawLine, RawPoint};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::{Quantity, Written};
+use crate::table::{Quantity, StringValue};
 
 /// Name of the point (0, 0), which every drawing has.
 const ORIGIN: &str = "origin";
 
-struct Known<'d> {
+struct OrdinateNames<'d> {
     coordinates: Vec<&'d str>,
     observables: Vec<&'d str>,
 }
 
-impl Known<'_> {
+impl OrdinateNames<'_> {
     fn ordinate(&self, quantity: &Quantity) -> Result<Ordinate, Diagnostic> {
         let written = match quantity {
             Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
             Quantity::Expression(written) => written,
-            Quantity::Listed(..) | Quantity::Expansion(_) => {
+            Quantity::Vector(..) | Quantity::Expansion(_) => {
                 return Err(Diagnostic::error(
                     "the ordinate of a point must be a number or a name",
                 )
-                .at(quantity.span(), ""));
+                .with_span(quantity.span(), ""));
             }
         };
         let place = |names: &[&str]| names.iter().position(|name| *name == written.text);
@@ -39,10 +39,10 @@ impl Known<'_> {
         }
         let names = self.observables.iter().chain(&self.coordinates).copied();
         let help = "add the expression to [observables] and use its name";
-        let message = format!("unknown name {}", quoted(&written.text));
+        let message = format!("unknown name {}", quote(&written.text));
         Err(Diagnostic::error(message)
-            .at(written.span, "neither an observable nor a coordinate")
-            .help(did_you_mean(&written.text, names).unwrap_or(help.to_owned())))
+            .with_span(written.span, "neither an observable nor a coordinate")
+            .with_help(did_you_mean(&written.text, names).unwrap_or(help.to_owned())))
     }
 }
 
@@ -51,7 +51,7 @@ impl Builder {
         let raw = document.drawing.as_ref()?;
         let coordinates = document.coordinates.iter();
         let observables = document.observables.iter();
-        let known = Known {
+        let known = OrdinateNames {
             coordinates: coordinates.map(|c| c.name.text.as_str()).collect(),
             observables: observables.map(|(o, _)| o.name.text.as_str()).collect(),
         };
@@ -73,16 +73,16 @@ impl Builder {
         Some(Drawing { points, lines })
     }
 
-    fn point(&mut self, raw: &RawPoint, known: &Known<'_>) -> Option<DrawnPoint> {
+    fn point(&mut self, raw: &RawPoint, known: &OrdinateNames<'_>) -> Option<DrawnPoint> {
         if raw.name.text == ORIGIN {
             self.found.push(
                 Diagnostic::error(format!("the point `{ORIGIN}` is predefined"))
-                    .at(raw.name.span, "it is (0, 0)")
-                    .help("choose another name"),
+                    .with_span(raw.name.span, "it is (0, 0)")
+                    .with_help("choose another name"),
             );
         }
-        let x = self.found.keep(known.ordinate(&raw.x));
-        let y = self.found.keep(known.ordinate(&raw.y));
+        let x = self.found.push_error(known.ordinate(&raw.x));
+        let y = self.found.push_error(known.ordinate(&raw.y));
         Some(DrawnPoint {
             name: raw.name.text.clone(),
             x: x?,
@@ -93,7 +93,7 @@ impl Builder {
 
     fn line(&mut self, raw: &RawLine, names: &[&str]) -> DrawnLine {
         let points = raw.points.iter();
-        let points = points.filter_map(|point| self.found.keep(named(point, names)));
+        let points = points.filter_map(|point| self.found.push_error(find_point(point, names)));
         DrawnLine {
             name: raw.name.text.clone(),
             points: points.collect(),
@@ -101,13 +101,13 @@ impl Builder {
     }
 }
 
-fn named(written: &Written, names: &[&str]) -> Result<PointId, Diagnostic> {
+fn find_point(written: &StringValue, names: &[&str]) -> Result<PointId, Diagnostic> {
     let place = names.iter().position(|name| *name == written.text);
     place.map(PointId::new).ok_or_else(|| {
         let listed = format!("the points are {}", names.join(", "));
         let near = did_you_mean(&written.text, names.iter().copied());
-        Diagnostic::error(format!("unknown point {}", quoted(&written.text)))
-            .at(written.span, "not in [drawing.points]")
-            .help(near.unwrap_or(listed))
+        Diagnostic::error(format!("unknown point {}", quote(&written.text)))
+            .with_span(written.span, "not in [drawing.points]")
+            .with_help(near.unwrap_or(listed))
     })
 }

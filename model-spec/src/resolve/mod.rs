@@ -16,8 +16,8 @@ use crate::model::{
     State, Term, Uncertainty,
 };
 use crate::names::{Names, Symbol};
-use crate::order::{Reference, circular, order};
-use crate::rate_order::{WrittenOut, rate_order};
+use crate::order::{Reference, cycle_error, sort_by_references};
+use crate::rate_order::{Expanded, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
     RawState, RawTerm, RawUncertainty,
@@ -26,18 +26,18 @@ use crate::shape_table::ShapeTable;
 use crate::source::Source;
 use crate::space::{Demands, Inertia};
 use crate::span::Span;
-use crate::table::{Number, Quantity, Written};
+use crate::table::{Number, Quantity, StringValue};
 use crate::unit::Unit;
 
 /// Model before the check of units; definitions and observables are still dimensionless.
-pub struct Resolved {
+pub struct ResolvedModel {
     pub model: Model,
     /// Declared units of the observables, in their order.
-    pub declared: Vec<Option<Unit>>,
+    pub declared_units: Vec<Option<Unit>>,
     /// Quantities of short forms, each with its required unit and its name in messages.
-    pub demanded: Vec<(Expr, Dimension, String)>,
+    pub required_units: Vec<(Expr, Dimension, String)>,
     /// Components of vectors, which need one unit.
-    pub alike: Vec<Vec<Expr>>,
+    pub same_unit_vectors: Vec<Vec<Expr>>,
     pub inertias: Vec<Inertia<Expr>>,
 }
 
@@ -45,7 +45,7 @@ pub fn resolve(
     document: Document,
     demands: Demands,
     source: &Source,
-) -> Result<Resolved, Diagnostics> {
+) -> Result<ResolvedModel, Diagnostics> {
     let mut found = Diagnostics::new(source.clone());
     let names = Names::declare(&document, &mut found);
     let mut builder = Builder { names, found };
@@ -64,31 +64,31 @@ struct Builder {
 }
 
 impl Builder {
-    fn model(&mut self, document: Document, source: &Source) -> Resolved {
+    fn model(&mut self, document: Document, source: &Source) -> ResolvedModel {
         let drawing = self.drawing(&document);
-        let observables = self.all(document.observables, Self::observable);
+        let observables = self.build_all(document.observables, Self::observable);
         let (mut observables, mut declared): (Vec<_>, Vec<_>) = observables.into_iter().unzip();
-        let constraints = self.all(document.constraints, Self::constraint);
-        observables.extend(reported(&constraints));
+        let constraints = self.build_all(document.constraints, Self::constraint);
+        observables.extend(constraint_observables(&constraints));
         declared.resize(observables.len(), None);
-        let parameters = self.all(document.parameters, Self::parameter);
-        let definitions = self.all(document.definitions, Self::definition);
+        let parameters = self.build_all(document.parameters, Self::parameter);
+        let definitions = self.build_all(document.definitions, Self::definition);
         let mut model = Model {
             name: document.name.text,
             title: document.title,
             source: source.clone(),
-            coordinates: self.all(document.coordinates, Self::coordinate),
-            inputs: self.all(document.inputs, Self::input),
-            states: self.all(document.states, Self::state),
-            fields: self.all(document.fields, Self::field),
-            kinetic: self.all(document.kinetic, Self::term),
-            potential: self.all(document.potential, Self::term),
+            coordinates: self.build_all(document.coordinates, Self::coordinate),
+            inputs: self.build_all(document.inputs, Self::input),
+            states: self.build_all(document.states, Self::state),
+            fields: self.build_all(document.fields, Self::field),
+            kinetic: self.build_all(document.kinetic, Self::term),
+            potential: self.build_all(document.potential, Self::term),
             // Set by `demands`, after the names.
             rigid_tree: None,
-            dissipation: self.all(document.dissipation, Self::term),
-            forces: self.all(document.forces, Self::force),
+            dissipation: self.build_all(document.dissipation, Self::term),
+            forces: self.build_all(document.forces, Self::force),
             constraints,
-            impacts: self.all(document.impacts, Self::impact),
+            impacts: self.build_all(document.impacts, Self::impact),
             observables,
             coefficients: self.coefficients(document.coefficients),
             sensors: document.sensors.into_iter().map(sensor).collect(),
@@ -102,31 +102,31 @@ impl Builder {
             model.title.clone_from(&model.name);
         }
         if self.found.is_empty() {
-            self.put_in_order(&mut model);
+            self.sort_entries(&mut model);
         }
-        Resolved {
+        ResolvedModel {
             model,
-            declared,
-            demanded: Vec::new(),
-            alike: Vec::new(),
+            declared_units: declared,
+            required_units: Vec::new(),
+            same_unit_vectors: Vec::new(),
             inertias: Vec::new(),
         }
     }
 
-    fn demands(&mut self, demands: Demands, resolved: &mut Resolved) {
+    fn demands(&mut self, demands: Demands, resolved: &mut ResolvedModel) {
         if !self.found.is_empty() {
             return;
         }
         for demand in demands.units {
             if let Some(value) = self.expression(&demand.value, Scope::Motion) {
-                let demanded = (value, demand.dimension, demand.subject);
-                resolved.demanded.push(demanded);
+                let required_units = (value, demand.dimension, demand.subject);
+                resolved.required_units.push(required_units);
             }
         }
-        for vector in demands.alike {
+        for vector in demands.same_unit_vectors {
             let mut component = |value: &Quantity| self.expression(value, Scope::Motion);
             let components: Option<Vec<Expr>> = vector.iter().map(&mut component).collect();
-            resolved.alike.extend(components);
+            resolved.same_unit_vectors.extend(components);
         }
         for inertia in demands.inertias {
             let mut constant = |value: &Quantity| self.expression(value, Scope::Parameters);
@@ -148,11 +148,15 @@ impl Builder {
         if let Some(tree) = demands.rigid_tree.filter(|_| self.found.is_empty()) {
             let mut resolver = Resolver::new(&self.names, Scope::Motion);
             let tree = tree.try_map(|syntax| resolver.resolve(syntax));
-            resolved.model.rigid_tree = self.found.keep(tree);
+            resolved.model.rigid_tree = self.found.push_error(tree);
         }
     }
 
-    fn all<R, T>(&mut self, raw: Vec<R>, build: impl Fn(&mut Self, R) -> Option<T>) -> Vec<T> {
+    fn build_all<R, T>(
+        &mut self,
+        raw: Vec<R>,
+        build: impl Fn(&mut Self, R) -> Option<T>,
+    ) -> Vec<T> {
         let mut built = Vec::with_capacity(raw.len());
         for entry in raw {
             if self.found.is_full() {
@@ -163,14 +167,14 @@ impl Builder {
         built
     }
 
-    fn put_in_order(&mut self, model: &mut Model) {
+    fn sort_entries(&mut self, model: &mut Model) {
         let references: Vec<_> = model.parameters.iter().map(parameter_references).collect();
         let named = |index: usize| model.parameters[index].name.as_str();
-        match order(&references) {
+        match sort_by_references(&references) {
             Ok(sorted) => {
                 model.parameter_order = sorted.into_iter().map(ParameterId::new).collect()
             }
-            Err(circle) => self.found.push(circular("parameter", &circle, named)),
+            Err(circle) => self.found.push(cycle_error("parameter", &circle, named)),
         }
         let references: Vec<_> = model
             .definitions
@@ -178,47 +182,47 @@ impl Builder {
             .map(definition_references)
             .collect();
         let named = |index: usize| model.definitions[index].name.as_str();
-        match order(&references) {
+        match sort_by_references(&references) {
             Ok(sorted) => {
                 model.definition_order = sorted.into_iter().map(DefinitionId::new).collect()
             }
-            Err(circle) => self.found.push(circular("definition", &circle, named)),
+            Err(circle) => self.found.push(cycle_error("definition", &circle, named)),
         }
         // Cycles without a rate are reported above.
         if self.found.is_empty() && !model.states.is_empty() {
-            self.refuse_circular_rates(model);
+            self.reject_cyclic_rates(model);
         }
     }
 
-    fn refuse_circular_rates(&mut self, model: &Model) {
+    fn reject_cyclic_rates(&mut self, model: &Model) {
         let Err(circle) = rate_order(model) else {
             return;
         };
         let named = |index: usize| match circle[index].0 {
-            WrittenOut::Definition(id) | WrittenOut::RatesWithin(id) => {
+            Expanded::Definition(id) | Expanded::RatesWithin(id) => {
                 model.definitions[id].name.as_str()
             }
-            WrittenOut::Rate(id) => model.states[id].name.as_str(),
+            Expanded::Rate(id) => model.states[id].name.as_str(),
         };
         let places: Vec<Reference> = (0..circle.len()).map(|at| (at, circle[at].1)).collect();
-        let diagnostic = circular("rate of the state", &places, named);
+        let diagnostic = cycle_error("rate of the state", &places, named);
         self.found.push(diagnostic);
     }
 
-    fn unit(&mut self, written: Option<Written>) -> Option<Unit> {
+    fn unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
         let Some(written) = written else {
-            return Some(Unit::coherent(Dimension::NONE));
+            return Some(Unit::coherent(Dimension::DIMENSIONLESS));
         };
         let unit = Unit::parse(&written.text).map_err(|error| {
             Diagnostic::error(error.message)
-                .at(written.span, "not a unit")
-                .help_if(error.help)
+                .with_span(written.span, "not a unit")
+                .with_optional_help(error.help)
         });
-        self.found.keep(unit)
+        self.found.push_error(unit)
     }
 
     /// Parses a unit with scale 1.
-    fn coherent_unit(&mut self, written: Option<Written>) -> Option<Unit> {
+    fn coherent_unit(&mut self, written: Option<StringValue>) -> Option<Unit> {
         let span = written
             .as_ref()
             .map_or_else(Span::default, |written| written.span);
@@ -232,8 +236,8 @@ impl Builder {
         };
         self.found.push(
             Diagnostic::error(format!("the unit `{unit}` is not a coherent SI unit"))
-                .at(span, "only parameters may have such a unit")
-                .help(format!("write unit = \"{right}\"")),
+                .with_span(span, "only parameters may have such a unit")
+                .with_help(format!("write unit = \"{right}\"")),
         );
         None
     }
@@ -242,7 +246,7 @@ impl Builder {
         let resolved = quantity
             .syntax()
             .and_then(|syntax| Resolver::new(&self.names, scope).resolve(&syntax));
-        self.found.keep(resolved)
+        self.found.push_error(resolved)
     }
 
     fn parameter(&mut self, raw: RawParameter) -> Option<Parameter> {
@@ -250,21 +254,21 @@ impl Builder {
         let value = match &raw.value {
             Quantity::Number(number) => {
                 let unit = unit.as_ref()?;
-                ParameterValue::Number(self.in_si(unit, *number)?)
+                ParameterValue::Number(self.convert_to_si(unit, *number)?)
             }
-            Quantity::Expression(_) | Quantity::Listed(..) | Quantity::Expansion(_) => {
+            Quantity::Expression(_) | Quantity::Vector(..) | Quantity::Expansion(_) => {
                 ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
             }
         };
         let unit = unit?;
-        let mut bound = |number: Option<Number>| number.and_then(|n| self.in_si(&unit, n));
+        let mut bound = |number: Option<Number>| number.and_then(|n| self.convert_to_si(&unit, n));
         let (min, max) = (bound(raw.min), bound(raw.max));
         if let (Some(low), Some(high), Some(number)) = (min, max, raw.max)
             && low > high
         {
             self.found.push(
                 Diagnostic::error(format!("`{}` has no admissible value", raw.name.text))
-                    .at(number.span, "max is less than min"),
+                    .with_span(number.span, "max is less than min"),
             );
         }
         let uncertainty = raw
@@ -287,22 +291,23 @@ impl Builder {
         Some(match *raw {
             RawUncertainty::Relative(part) => Uncertainty::Relative(part.value),
             RawUncertainty::StandardDeviation(sd) => {
-                Uncertainty::StandardDeviation(self.in_si(unit, sd)?)
+                Uncertainty::StandardDeviation(self.convert_to_si(unit, sd)?)
             }
-            RawUncertainty::Between([low, high]) => {
-                Uncertainty::Between([self.in_si(unit, low)?, self.in_si(unit, high)?])
-            }
+            RawUncertainty::Between([low, high]) => Uncertainty::Between([
+                self.convert_to_si(unit, low)?,
+                self.convert_to_si(unit, high)?,
+            ]),
         })
     }
 
-    fn in_si(&mut self, unit: &Unit, number: Number) -> Option<f64> {
+    fn convert_to_si(&mut self, unit: &Unit, number: Number) -> Option<f64> {
         let value = unit.to_si(number.value);
         if value.is_finite() {
             return Some(value);
         }
         let message = format!("{} {unit} is too large in SI units", number.value);
         self.found
-            .push(Diagnostic::error(message).at(number.span, "here"));
+            .push(Diagnostic::error(message).with_span(number.span, "here"));
         None
     }
 
@@ -371,7 +376,7 @@ impl Builder {
             RawBasis::Table(file) => file,
         };
         let folder = self.found.source().folder.clone();
-        let table = self.found.keep(ShapeTable::read(
+        let table = self.found.push_error(ShapeTable::read(
             folder.as_deref(),
             file.span,
             &file.text,
@@ -382,8 +387,8 @@ impl Builder {
             let message = format!("the order {order} needs more shapes than {}", file.text);
             self.found.push(
                 Diagnostic::error(message)
-                    .at(span, "too high")
-                    .help(format!("the table has {shapes}")),
+                    .with_span(span, "too high")
+                    .with_help(format!("the table has {shapes}")),
             );
             return None;
         }
@@ -417,7 +422,7 @@ impl Builder {
         let from = self.expression(&raw.from, Scope::Parameters);
         let to = self.expression(&raw.to, Scope::Parameters);
         let basis = self.basis(raw.basis, raw.order);
-        let order = self.found.keep(field_order(raw.order));
+        let order = self.found.push_error(field_order(raw.order));
         Some(Field {
             name: raw.name.text,
             unit: unit?,
@@ -426,7 +431,7 @@ impl Builder {
             to: to?,
             basis: basis?,
             coordinates: raw.coordinates.text,
-            order: order?,
+            order: sort_by_references?,
             doc: raw.doc,
             span: raw.name.span,
         })
@@ -436,7 +441,7 @@ impl Builder {
         Some(Definition {
             value: self.expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
-            unit: Unit::coherent(Dimension::NONE),
+            unit: Unit::coherent(Dimension::DIMENSIONLESS),
             doc: raw.doc,
             span: raw.name.span,
         })
@@ -470,7 +475,7 @@ impl Builder {
             zero: self.expression(&raw.value, Scope::Motion)?,
             // `motion` and `units_check` set both.
             is_nonholonomic: false,
-            unit: Unit::coherent(Dimension::NONE),
+            unit: Unit::coherent(Dimension::DIMENSIONLESS),
             name: raw.name.text,
             doc: raw.doc,
             origin: raw.origin,
@@ -484,7 +489,7 @@ impl Builder {
             when: self.expression(&raw.value, Scope::Motion)?,
             restitution: restitution?,
             // `units_check` sets it.
-            unit: Unit::coherent(Dimension::NONE),
+            unit: Unit::coherent(Dimension::DIMENSIONLESS),
             name: raw.name.text,
             doc: raw.doc,
             origin: raw.origin,
@@ -494,7 +499,7 @@ impl Builder {
 
     fn observable(
         &mut self,
-        (raw, unit): (RawTerm, Option<Written>),
+        (raw, unit): (RawTerm, Option<StringValue>),
     ) -> Option<(Observable, Option<Unit>)> {
         let declared = match unit {
             Some(written) => Some(self.coherent_unit(Some(written))?),
@@ -504,7 +509,7 @@ impl Builder {
             rate_of: None,
             value: self.expression(&raw.value, Scope::Motion)?,
             name: raw.name.text,
-            unit: Unit::coherent(Dimension::NONE),
+            unit: Unit::coherent(Dimension::DIMENSIONLESS),
             doc: raw.doc,
             span: raw.name.span,
         };
@@ -528,7 +533,7 @@ fn sensor(raw: RawSensor) -> Sensor {
 }
 
 /// Returns the multiplier and the residual of each constraint as observables.
-fn reported(constraints: &[Constraint]) -> Vec<Observable> {
+fn constraint_observables(constraints: &[Constraint]) -> Vec<Observable> {
     let observable =
         |prefix: &str, kind: ExprKind, doc: &str, constraint: &Constraint| Observable {
             rate_of: None,
@@ -537,7 +542,7 @@ fn reported(constraints: &[Constraint]) -> Vec<Observable> {
                 kind,
                 span: constraint.span,
             },
-            unit: Unit::coherent(Dimension::NONE),
+            unit: Unit::coherent(Dimension::DIMENSIONLESS),
             doc: format!("{doc} of the constraint {}", constraint.name),
             span: constraint.span,
         };
@@ -561,12 +566,12 @@ fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
         Ok(order) if order <= MAX_ORDER => Ok(order),
         Ok(_) => Err(
             Diagnostic::error(format!("the order {order} is above the limit"))
-                .at(span, "too high")
-                .help(format!("the highest order is {MAX_ORDER}")),
+                .with_span(span, "too high")
+                .with_help(format!("the highest order is {MAX_ORDER}")),
         ),
         Err(_) => Err(Diagnostic::error(format!("the order {order} is negative"))
-            .at(span, "negative")
-            .help("give the number of modes, or 0 for a rigid body")),
+            .with_span(span, "negative")
+            .with_help("give the number of modes, or 0 for a rigid body")),
     }
 }
 
@@ -595,8 +600,8 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
 /// Returns a unit per s or per s^2; `None` if an exponent overflows.
 fn per_seconds(unit: &Unit, order: u8) -> Option<Unit> {
     let mut dimension = unit.dimension;
-    for _ in 0..order {
-        dimension = dimension.over(Dimension::TIME)?;
+    for _ in 0..sort_by_references {
+        dimension = dimension.divide(Dimension::TIME)?;
     }
     let text = match order {
         1 => format!("{unit}/s"),

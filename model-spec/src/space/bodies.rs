@@ -5,11 +5,11 @@ use super::definitions::Owner;
 use super::demands::{Inertia, UnitDemand};
 use super::expression::Reader;
 use super::frames::Motion;
-use super::known::Space;
-use super::scalar::{add, expansion, half, is, multiply, negate, number, square};
+use super::scalar::{add, expansion, half, is_literal, multiply, negate, number, square};
+use super::state::ExpansionState;
 use super::vector::{Vector, cross, inner, sum, zero};
 use crate::ast::Syntax;
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::dimension::Dimension;
 use crate::ids::FrameId;
 use crate::raw::{Document, RawBody, RawTerm};
@@ -23,7 +23,7 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 
 /// Adds the energies of all bodies to the document. Returns the declared bodies.
 pub fn expand(
     document: &mut Document,
-    space: &mut Space,
+    space: &mut ExpansionState,
     found: &mut Diagnostics,
 ) -> Vec<RigidBody<Syntax>> {
     let mut bodies = Vec::with_capacity(document.bodies.len());
@@ -33,23 +33,23 @@ pub fn expand(
         }
         let terms = document.kinetic.iter().chain(&document.potential);
         if let Some(term) = terms.into_iter().find(|t| t.name.text == body.name.text) {
-            let name = quoted(&body.name.text);
+            let name = quote(&body.name.text);
             found.push(
                 Diagnostic::error(format!("the name {name} is taken"))
-                    .at(body.name.span, "the energies of a body have its name")
-                    .also(term.name.span, "here")
-                    .help("choose another name"),
+                    .with_span(body.name.span, "the energies of a body have its name")
+                    .with_related_span(term.name.span, "here")
+                    .with_help("choose another name"),
             );
             continue;
         }
-        if found.keep(space.frames.get(&body.frame)).is_none() {
+        if found.push_error(space.frames.get(&body.frame)).is_none() {
             continue;
         }
         let Some(parts) = parts(&body, space, found) else {
             continue;
         };
         let frames = &space.frames;
-        let Some(frame) = frames.named(&body.frame.text) else {
+        let Some(frame) = frames.name_motion(&body.frame.text) else {
             continue;
         };
         let motion = &frame.motion;
@@ -60,7 +60,7 @@ pub fn expand(
             origin: body.origin.clone(),
         };
         let kinetic = kinetic(&parts, motion);
-        if !is(&kinetic, 0.0) {
+        if !is_literal(&kinetic, 0.0) {
             document.kinetic.push(term(kinetic));
         }
         if frames.gravity {
@@ -70,7 +70,7 @@ pub fn expand(
                 None => parts.mass.clone(),
             };
             let potential = negate(multiply(weight, way));
-            if !is(&potential, 0.0) {
+            if !is_literal(&potential, 0.0) {
                 document.potential.push(term(potential));
             }
         }
@@ -79,14 +79,14 @@ pub fn expand(
     bodies
 }
 
-struct Parts {
+struct BodyParts {
     mass: Syntax,
     centre: Vector,
     inertia: Vec<Syntax>,
     span: Span,
 }
 
-impl Parts {
+impl BodyParts {
     fn in_frame(self, name: String, frame: FrameId) -> RigidBody<Syntax> {
         let element = |place: usize| match self.inertia.get(place) {
             Some(element) => element.clone(),
@@ -103,7 +103,7 @@ impl Parts {
     }
 }
 
-fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<Parts> {
+fn parts(body: &RawBody, space: &mut ExpansionState, found: &mut Diagnostics) -> Option<BodyParts> {
     let own = &body.name;
     let owner = Owner::new(own, &body.doc);
     let mass = match &body.mass {
@@ -113,32 +113,36 @@ fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<P
                 dimension: Dimension::MASS,
                 subject: format!("the mass of `{}`", own.text),
             });
-            found.keep(mass.syntax())?
+            found.push_error(mass.syntax())?
         }
         None => number(0.0, own.span),
     };
     let subject = format!("the centre of `{}`", own.text);
     let centre = match &body.centre {
-        Some(centre) => {
-            found.keep(Reader::new(space, &owner).demanded(centre, &subject, Dimension::LENGTH))?
-        }
+        Some(centre) => found.push_error(Reader::new(space, &owner).evaluate_with_unit(
+            centre,
+            &subject,
+            Dimension::LENGTH,
+        ))?,
         None => zero(own.span),
     };
     let mut inertia = Vec::new();
     for value in body.inertia.iter().flatten() {
-        inertia.push(found.keep(value.syntax())?);
+        inertia.push(found.push_error(value.syntax())?);
         space.demands.units.push(UnitDemand {
             value: value.clone(),
-            dimension: Dimension::of([1, 2, 0, 0]),
+            dimension: Dimension::from_mechanical_exponents([1, 2, 0, 0]),
             subject: format!("the inertia of `{}`", own.text),
         });
     }
     for part in centre.iter().chain(&inertia).chain([&mass]) {
-        if space.definitions.moving.holds(part) {
+        if space.definitions.moving.has_rate(part) {
             found.push(
-                Diagnostic::error(format!("the body {} is not constant", quoted(&own.text)))
-                    .at(part.span, "this changes with the motion")
-                    .help("give constant mass, centre and inertia; a frame describes the motion"),
+                Diagnostic::error(format!("the body {} is not constant", quote(&own.text)))
+                    .with_span(part.span, "this changes with the motion")
+                    .with_help(
+                        "give constant mass, centre and inertia; a frame describes the motion",
+                    ),
             );
             return None;
         }
@@ -151,7 +155,7 @@ fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<P
         elements,
         span: span.unwrap_or(own.span),
     });
-    Some(Parts {
+    Some(BodyParts {
         mass,
         centre,
         inertia,
@@ -159,7 +163,7 @@ fn parts(body: &RawBody, space: &mut Space, found: &mut Diagnostics) -> Option<P
     })
 }
 
-fn kinetic(parts: &Parts, motion: &Motion) -> Syntax {
+fn kinetic(parts: &BodyParts, motion: &Motion) -> Syntax {
     let omega = &motion.omega;
     let velocity = sum(motion.velocity.clone(), cross(omega, &parts.centre));
     let [x, y, z] = velocity.map(square);

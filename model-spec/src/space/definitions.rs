@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::moving::Moving;
+use super::moving_names::MovingNames;
 use super::scalar::{call, expansion, is_plain, name, negate, number};
 use super::vector::{AXES, Vector};
 use crate::ast::{Syntax, SyntaxKind};
@@ -31,37 +31,37 @@ impl Owner {
 }
 
 pub struct Definitions {
-    written: Vec<RawTerm>,
-    taken: HashSet<String>,
+    generated: Vec<RawTerm>,
+    used_names: HashSet<String>,
     /// Largest number of a part, for each entry.
     parts: HashMap<String, usize>,
-    pub moving: Moving,
+    pub moving: MovingNames,
 }
 
 impl Definitions {
-    pub fn of(document: &Document) -> Self {
+    pub fn from_document(document: &Document) -> Self {
         Self {
-            written: Vec::new(),
-            taken: declared(document),
+            generated: Vec::new(),
+            used_names: declared_names(document),
             parts: HashMap::new(),
-            moving: Moving::of(document),
+            moving: MovingNames::from_document(document),
         }
     }
 
     /// Returns true if the specification declares a scalar of this name.
     pub fn is_declared(&self, name: &str) -> bool {
-        self.taken.contains(name)
+        self.used_names.contains(name)
     }
 
     pub fn take(&mut self) -> Vec<RawTerm> {
-        std::mem::take(&mut self.written)
+        std::mem::take(&mut self.generated)
     }
 
     pub fn define(&mut self, owner: &Owner, text: String, value: Syntax) -> Syntax {
         let span = value.span;
         let defined = name(&text, span);
-        self.moving.learn(&text, &value);
-        self.written.push(RawTerm {
+        self.moving.add_definition(&text, &value);
+        self.generated.push(RawTerm {
             name: Name {
                 text,
                 span: owner.name.span,
@@ -92,12 +92,12 @@ impl Definitions {
     }
 
     /// Returns a unique name for a part of an entry.
-    pub fn part(&mut self, owner: &Owner) -> String {
+    pub fn unique_part_name(&mut self, owner: &Owner) -> String {
         let last = self.parts.entry(owner.name.text.clone()).or_default();
         loop {
             *last += 1;
             let part = format!("part_{last}");
-            if self.taken.insert(owner.named(&part)) {
+            if self.used_names.insert(owner.named(&part)) {
                 return part;
             }
         }
@@ -107,7 +107,7 @@ impl Definitions {
     /// expression gets a definition.
     pub fn rate(&mut self, owner: &Owner, what: &str, value: Syntax) -> Syntax {
         let span = value.span;
-        if !self.moving.holds(&value) {
+        if !self.moving.has_rate(&value) {
             return number(0.0, span);
         }
         match value.kind {
@@ -127,7 +127,7 @@ impl Definitions {
 }
 
 /// Returns the declared names of scalars and definitions.
-pub fn declared(document: &Document) -> HashSet<String> {
+pub fn declared_names(document: &Document) -> HashSet<String> {
     let mut names: HashSet<String> = ["t", "pi"].map(str::to_owned).into();
     let mut add = |name: &Name| {
         names.insert(name.text.clone());

@@ -10,7 +10,7 @@ use crate::table::{Name, Quantity};
 pub struct Demands {
     pub units: Vec<UnitDemand>,
     /// Components of vectors, which need one unit.
-    pub alike: Vec<Vec<Quantity>>,
+    pub same_unit_vectors: Vec<Vec<Quantity>>,
     pub inertias: Vec<Inertia<Quantity>>,
     /// Vectors that nothing refers to.
     pub unused: Vec<Name>,

@@ -4,13 +4,13 @@
 
 use super::definitions::Owner;
 use super::demands::UnitDemand;
-use super::known::Space;
 use super::rotation::Factor;
-use super::scalar::{expansion, is_plain, negate, placed};
+use super::scalar::{expansion, is_plain, negate, set_span};
+use super::state::ExpansionState;
 use super::value::{Dimensions, Value};
 use super::vector::{AXES, Vector, component, zero};
 use crate::ast::{Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::diagnostic::{Diagnostic, quote};
 use crate::dimension::Dimension;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -30,24 +30,24 @@ pub const MEMBERS: [&str; 7] = [
 const MAX_REPEATED: usize = 10_000;
 
 pub struct Reader<'s> {
-    pub(super) space: &'s mut Space,
+    pub(super) space: &'s mut ExpansionState,
     pub(super) owner: &'s Owner,
     /// Number of open integrals, sums and `at`.
-    pub(super) inside: usize,
+    pub(super) open_scopes: usize,
 }
 
-pub(super) type Read = Result<Value, Diagnostic>;
+pub(super) type EvaluationResult = Result<Value, Diagnostic>;
 
 impl<'s> Reader<'s> {
-    pub fn new(space: &'s mut Space, owner: &'s Owner) -> Self {
+    pub fn new(space: &'s mut ExpansionState, owner: &'s Owner) -> Self {
         Self {
             space,
             owner,
-            inside: 0,
+            open_scopes: 0,
         }
     }
 
-    pub fn value(&mut self, syntax: &Syntax) -> Read {
+    pub fn value(&mut self, syntax: &Syntax) -> EvaluationResult {
         let span = syntax.span;
         match &syntax.kind {
             SyntaxKind::Number(_) | SyntaxKind::Element { .. } => Ok(Value::Scalar(syntax.clone())),
@@ -68,8 +68,8 @@ impl<'s> Reader<'s> {
                 }
                 rotation @ Value::Rotation(..) => {
                     Err(Diagnostic::error("a rotation has no negative")
-                        .at(span, rotation.kind())
-                        .help("write transpose(R) for the inverse rotation"))
+                        .with_span(span, rotation.kind())
+                        .with_help("write transpose(R) for the inverse rotation"))
                 }
             },
             SyntaxKind::Binary(operator, left, right) => {
@@ -97,8 +97,8 @@ impl<'s> Reader<'s> {
         match self.value(&syntax)? {
             Value::Scalar(scalar) => Ok(scalar),
             other => Err(Diagnostic::error(format!("{subject} is {}", other.kind()))
-                .at(syntax.span, "expected a scalar")
-                .help(help)),
+                .with_span(syntax.span, "expected a scalar")
+                .with_help(help)),
         }
     }
 
@@ -107,19 +107,19 @@ impl<'s> Reader<'s> {
         if is_plain(&value) {
             return Ok(value);
         }
-        if self.inside > 0 || self.is_reported(&value) {
+        if self.open_scopes > 0 || self.is_reported(&value) {
             // An expression of the position has no name outside its field, and a multiplier or
             // residual none outside observables.
             let mut size = 0;
             value.visit(&mut |_| size += 1);
             return match size > MAX_REPEATED {
                 true => Err(Diagnostic::error("this expression becomes too large")
-                    .at(value.span, "each product repeats it")
-                    .help("move vectors that do not depend on the position to [definitions]")),
+                    .with_span(value.span, "each product repeats it")
+                    .with_help("move vectors that do not depend on the position to [definitions]")),
                 false => Ok(value),
             };
         }
-        let part = self.space.definitions.part(self.owner);
+        let part = self.space.definitions.unique_part_name(self.owner);
         Ok(self.space.definitions.named(self.owner, &part, value))
     }
 
@@ -127,7 +127,7 @@ impl<'s> Reader<'s> {
         let mut reported = false;
         value.visit(&mut |part| {
             if let SyntaxKind::Name(name) = &part.kind {
-                reported |= self.space.reported.contains(name);
+                reported |= self.space.constraint_outputs.contains(name);
             }
         });
         reported
@@ -137,20 +137,22 @@ impl<'s> Reader<'s> {
         Ok([self.named(x)?, self.named(y)?, self.named(z)?])
     }
 
-    fn name(&self, name: &str, syntax: &Syntax) -> Read {
+    fn name(&self, name: &str, syntax: &Syntax) -> EvaluationResult {
         match self.space.vectors.get(name) {
             Some(Value::Vector(vector, dimensions)) => {
-                let at = |component: &Syntax| placed(component.clone(), syntax.span);
+                let at = |component: &Syntax| set_span(component.clone(), syntax.span);
                 return Ok(Value::Vector(vector.each_ref().map(at), *dimensions));
             }
             Some(rotation) => return Ok(rotation.clone()),
             None => {}
         }
-        if self.space.frames.named(name).is_some() && !self.space.definitions.is_declared(name) {
+        if self.space.frames.name_motion(name).is_some()
+            && !self.space.definitions.is_declared(name)
+        {
             return Err(
                 Diagnostic::error(format!("the frame `{name}` is not a quantity"))
-                    .at(syntax.span, "a frame")
-                    .help(format!(
+                    .with_span(syntax.span, "a frame")
+                    .with_help(format!(
                         "its members are {}: write for example {name}.origin",
                         MEMBERS.join(", ")
                     )),
@@ -163,7 +165,11 @@ impl<'s> Reader<'s> {
     ///
     /// # Errors
     /// Those of `value`, and a value of another kind.
-    pub fn in_space(&mut self, syntax: &Syntax, subject: &str) -> Result<Vector, Diagnostic> {
+    pub fn evaluate_spatial_vector(
+        &mut self,
+        syntax: &Syntax,
+        subject: &str,
+    ) -> Result<Vector, Diagnostic> {
         let read = match &syntax.kind {
             SyntaxKind::Vector(components) => self.components(components, syntax.span)?,
             _ => self.value(syntax)?,
@@ -171,19 +177,19 @@ impl<'s> Reader<'s> {
         match read {
             Value::Vector(vector, Dimensions::Three) => Ok(vector),
             other => Err(Diagnostic::error(format!("{subject} is {}", other.kind()))
-                .at(syntax.span, "expected a vector of 3 components")
-                .help("write [x, y, z]")),
+                .with_span(syntax.span, "expected a vector of 3 components")
+                .with_help("write [x, y, z]")),
         }
     }
 
-    pub fn demanded(
+    pub fn evaluate_with_unit(
         &mut self,
         written: &Quantity,
         subject: &str,
         dimension: Dimension,
     ) -> Result<Vector, Diagnostic> {
         let syntax = written.syntax()?;
-        let vector = self.in_space(&syntax, subject)?;
+        let vector = self.evaluate_spatial_vector(&syntax, subject)?;
         for (component, axis) in vector.iter().zip(AXES) {
             self.space.demands.units.push(UnitDemand {
                 value: expansion(component.clone()),
@@ -194,15 +200,15 @@ impl<'s> Reader<'s> {
         Ok(vector)
     }
 
-    fn literal(&mut self, components: &[Syntax], span: Span) -> Read {
+    fn literal(&mut self, components: &[Syntax], span: Span) -> EvaluationResult {
         let read = self.components(components, span)?;
         if let Value::Vector(vector, _) = &read {
-            self.alike(vector);
+            self.require_same_unit(vector);
         }
         Ok(read)
     }
 
-    fn components(&mut self, components: &[Syntax], span: Span) -> Read {
+    fn components(&mut self, components: &[Syntax], span: Span) -> EvaluationResult {
         let dimensions = match components.len() {
             2 => Dimensions::Two,
             3 => Dimensions::Three,
@@ -211,8 +217,8 @@ impl<'s> Reader<'s> {
                 return Err(Diagnostic::error(format!(
                     "a vector cannot have {count} component{plural}"
                 ))
-                .at(span, "expected 2 or 3")
-                .help("write [x, y, z], or [x, y] in the plane"));
+                .with_span(span, "expected 2 or 3")
+                .with_help("write [x, y, z], or [x, y] in the plane"));
             }
         };
         let mut vector = zero(span);
@@ -222,7 +228,7 @@ impl<'s> Reader<'s> {
                 other => {
                     return Err(
                         Diagnostic::error("a component of a vector must be a scalar")
-                            .at(component.span, format!("this is {}", other.kind())),
+                            .with_span(component.span, format!("this is {}", other.kind())),
                     );
                 }
             };
@@ -231,19 +237,27 @@ impl<'s> Reader<'s> {
     }
 
     /// Requires that components have one unit.
-    pub(super) fn alike(&mut self, vector: &Vector) {
-        if self.inside == 0 {
+    pub(super) fn require_same_unit(&mut self, vector: &Vector) {
+        if self.open_scopes == 0 {
             let components = vector.iter().map(|c| expansion(c.clone()));
-            self.space.demands.alike.push(components.collect());
+            self.space
+                .demands
+                .same_unit_vectors
+                .push(components.collect());
         }
     }
 
-    fn member(&mut self, of: &Syntax, (member, place): (&str, Span), span: Span) -> Read {
+    fn member(
+        &mut self,
+        of: &Syntax,
+        (member, place): (&str, Span),
+        span: Span,
+    ) -> EvaluationResult {
         if let SyntaxKind::Name(name) = &of.kind
             && !self.space.vectors.contains_key(name)
         {
-            if self.space.frames.named(name).is_some() {
-                return self.of_frame(name, member, place, span);
+            if self.space.frames.name_motion(name).is_some() {
+                return self.frame_member(name, member, place, span);
             }
             if !self.space.definitions.is_declared(name) {
                 return Err(self.unknown_owner(name, of.span));
@@ -253,41 +267,47 @@ impl<'s> Reader<'s> {
             Value::Vector(vector, dimensions) => {
                 let axes = &AXES[..dimensions.count()];
                 match axes.iter().position(|axis| *axis == member) {
-                    Some(axis) => Ok(Value::Scalar(placed(component(&vector, axis), span))),
+                    Some(axis) => Ok(Value::Scalar(set_span(component(&vector, axis), span))),
                     None => Err(Diagnostic::error(format!(
                         "a vector has no component {}",
-                        quoted(member)
+                        quote(member)
                     ))
-                    .at(place, "not known")
-                    .help(format!("its components are {}", axes.join(", ")))),
+                    .with_span(place, "not known")
+                    .with_help(format!("its components are {}", axes.join(", ")))),
                 }
             }
             other => Err(Diagnostic::error(format!(
                 "{} has no component {}",
                 other.kind(),
-                quoted(member)
+                quote(member)
             ))
-            .at(of.span, format!("this is {}", other.kind()))),
+            .with_span(of.span, format!("this is {}", other.kind()))),
         }
     }
 
     fn unknown_owner(&self, name: &str, span: Span) -> Diagnostic {
         let vectors = self.space.vectors.keys().map(String::as_str);
         let known = vectors.chain(self.space.frame_names.iter().map(String::as_str));
-        Diagnostic::error(format!("unknown name {}", quoted(name)))
-            .at(span, "neither a vector nor a frame")
-            .help_if(did_you_mean(name, known))
+        Diagnostic::error(format!("unknown name {}", quote(name)))
+            .with_span(span, "neither a vector nor a frame")
+            .with_optional_help(did_you_mean(name, known))
     }
 
     /// Returns a member of a frame, along the fixed axes.
-    fn of_frame(&mut self, name: &str, member: &str, place: Span, span: Span) -> Read {
-        let Space {
+    fn frame_member(
+        &mut self,
+        name: &str,
+        member: &str,
+        place: Span,
+        span: Span,
+    ) -> EvaluationResult {
+        let ExpansionState {
             frames,
             definitions,
             placements,
             ..
         } = &mut *self.space;
-        let Some(frame) = frames.named(name) else {
+        let Some(frame) = frames.name_motion(name) else {
             return Err(self.unknown_owner(name, span));
         };
         let vector = match member {
@@ -308,10 +328,10 @@ impl<'s> Reader<'s> {
                     let known = format!("the members of a frame are {}", MEMBERS.join(", "));
                     return Err(Diagnostic::error(format!(
                         "a frame has no member {}",
-                        quoted(member)
+                        quote(member)
                     ))
-                    .at(place, "not known")
-                    .help(did_you_mean(member, MEMBERS).unwrap_or(known)));
+                    .with_span(place, "not known")
+                    .with_help(did_you_mean(member, MEMBERS).unwrap_or(known)));
                 }
             },
         };
@@ -321,6 +341,6 @@ impl<'s> Reader<'s> {
 
 /// Returns a vector of three components with this position in the text.
 fn spatial(vector: Vector, span: Span) -> Value {
-    let at = |component| placed(component, span);
+    let at = |component| set_span(component, span);
     Value::Vector(vector.map(at), Dimensions::Three)
 }

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 
 use super::definitions::{Definitions, Owner};
 use super::rotation::Turn;
-use super::scalar::{add, is, number};
-use super::vector::{AXES, Vector, cross, inner, scaled, sum, zero};
+use super::scalar::{add, is_literal, number};
+use super::vector::{AXES, Vector, cross, inner, scale, sum, zero};
 use crate::ast::Syntax;
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::diagnostic::{Diagnostic, quote};
 use crate::ids::FrameId;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::Written;
+use crate::table::StringValue;
 
 /// Longest chain of frames; the energies of a longer one would exceed the depth of expressions.
 const MAX_CHAIN: usize = 100;
@@ -56,7 +56,7 @@ pub struct Frames {
 
 impl Frames {
     /// Creates the list of frames under a gravity, with only the fixed axes.
-    pub fn under(gravity: Option<Vector>, place: Span) -> Self {
+    pub fn with_gravity(gravity: Option<Vector>, place: Span) -> Self {
         let is_given = gravity.is_some();
         let (down, strength) = gravity.map_or((zero(place), None), direction);
         Self {
@@ -72,7 +72,7 @@ impl Frames {
         }
     }
 
-    pub fn named(&self, name: &str) -> Option<&Frame> {
+    pub fn name_motion(&self, name: &str) -> Option<&Frame> {
         self.frames.get(name)
     }
 
@@ -85,7 +85,7 @@ impl Frames {
     /// Returns the acceleration of free fall along the fixed axes, in m/s^2.
     pub fn acceleration_of_free_fall(&self) -> Vector {
         match &self.strength {
-            Some(strength) => scaled(&self.fixed.down, strength),
+            Some(strength) => scale(&self.fixed.down, strength),
             None => self.fixed.down.clone(),
         }
     }
@@ -94,9 +94,9 @@ impl Frames {
         self.frames.keys().map(String::as_str)
     }
 
-    pub fn get(&self, written: &Written) -> Result<&Frame, Diagnostic> {
-        self.named(&written.text)
-            .ok_or_else(|| unknown(written, self.names()))
+    pub fn get(&self, written: &StringValue) -> Result<&Frame, Diagnostic> {
+        self.name_motion(&written.text)
+            .ok_or_else(|| unknown_frame_error(written, self.names()))
     }
 
     pub fn place(
@@ -112,11 +112,11 @@ impl Frames {
             return Err(Diagnostic::error(format!(
                 "the chain of frames is longer than {MAX_CHAIN}"
             ))
-            .at(owner.name.span, "one frame too many"));
+            .with_span(owner.name.span, "one frame too many"));
         }
         let motion = before.map_or(&self.fixed, |frame| &frame.motion).clone();
-        let motion = moved(motion, &origin, &owner, definitions);
-        let motion = turned(motion, &turns, &owner, definitions);
+        let motion = translate_motion(motion, &origin, &owner, definitions);
+        let motion = rotate_motion(motion, &turns, &owner, definitions);
         let frame = Frame {
             parent: parent.map(str::to_owned),
             origin,
@@ -131,17 +131,23 @@ impl Frames {
     }
 }
 
-pub fn unknown<'n>(written: &Written, known: impl Iterator<Item = &'n str>) -> Diagnostic {
+pub fn unknown_frame_error<'n>(
+    written: &StringValue,
+    known: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
     let help = "declare a frame as [frames.NAME]";
-    Diagnostic::error(format!("unknown frame {}", quoted(&written.text)))
-        .at(written.span, "not in [frames]")
-        .help(did_you_mean(&written.text, known).unwrap_or(help.to_owned()))
+    Diagnostic::error(format!("unknown frame {}", quote(&written.text)))
+        .with_span(written.span, "not in [frames]")
+        .with_help(did_you_mean(&written.text, known).unwrap_or(help.to_owned()))
 }
 
 /// Splits gravity along one axis into a magnitude and a direction: the rotations then transform
 /// only numbers.
 fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
-    let mut along = gravity.iter().enumerate().filter(|(_, g)| !is(g, 0.0));
+    let mut along = gravity
+        .iter()
+        .enumerate()
+        .filter(|(_, g)| !is_literal(g, 0.0));
     let (Some((axis, strength)), None) = (along.next(), along.next()) else {
         return (gravity, None);
     };
@@ -151,7 +157,7 @@ fn direction(gravity: Vector) -> (Vector, Option<Syntax>) {
 }
 
 /// Returns the motion of a frame with this origin, along its parent's axes.
-fn moved(
+fn translate_motion(
     mut motion: Motion,
     origin: &Vector,
     owner: &Owner,
@@ -170,36 +176,36 @@ fn moved(
     motion
 }
 
-fn turned(
+fn rotate_motion(
     mut motion: Motion,
     turns: &[Turn],
     owner: &Owner,
     definitions: &mut Definitions,
 ) -> Motion {
-    for (turn, stem) in turns.iter().zip(stems(turns.len())) {
-        motion.omega = turn.of(&motion.omega);
+    for (turn, stem) in turns.iter().zip(rotation_prefixes(turns.len())) {
+        motion.omega = turn.rotate_axes(&motion.omega);
         let rate = definitions.rate(owner, &format!("{stem}angle"), turn.angle.clone());
         let about = motion.omega[turn.axis].clone();
         motion.omega[turn.axis] = add(about, rate);
-        motion.velocity = turn.of(&motion.velocity);
-        motion.down = turn.of(&motion.down);
-        motion = named(motion, &stem, owner, definitions);
+        motion.velocity = turn.rotate_axes(&motion.velocity);
+        motion.down = turn.rotate_axes(&motion.down);
+        motion = name_motion(motion, &stem, owner, definitions);
     }
     if turns.is_empty() {
-        motion = named(motion, "", owner, definitions);
+        motion = name_motion(motion, "", owner, definitions);
     }
     motion
 }
 
 /// Returns the prefixes of the names after each of `count` rotations; empty after the last.
-pub fn stems(count: usize) -> impl Iterator<Item = String> {
+pub fn rotation_prefixes(count: usize) -> impl Iterator<Item = String> {
     (1..=count).map(move |turn| match turn == count {
         true => String::new(),
         false => format!("turn_{turn}_"),
     })
 }
 
-fn named(motion: Motion, stem: &str, owner: &Owner, definitions: &mut Definitions) -> Motion {
+fn name_motion(motion: Motion, stem: &str, owner: &Owner, definitions: &mut Definitions) -> Motion {
     let mut name = |what: &str, vector| definitions.name_each(owner, what, vector);
     Motion {
         omega: name(&format!("{stem}omega"), motion.omega),

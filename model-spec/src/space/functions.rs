@@ -1,13 +1,13 @@
 //! Functions of vectors and rotations.
 
-use super::expression::{Read, Reader};
-use super::operations::{scalar_product, standing};
+use super::expression::{EvaluationResult, Reader};
+use super::operations::{scalar_product, set_span};
 use super::rotation::{Factor, Turn};
-use super::scalar::{call, is, number};
+use super::scalar::{call, is_literal, number};
 use super::value::{Dimensions, Value};
 use super::vector::{Vector, cross};
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::diagnostic::{Diagnostic, quote};
 use crate::functions::VECTOR_FUNCTIONS;
 use crate::span::Span;
 
@@ -17,16 +17,20 @@ impl Reader<'_> {
         (function, place): (&str, Span),
         arguments: &[Syntax],
         span: Span,
-    ) -> Read {
+    ) -> EvaluationResult {
         let made = match (function, arguments) {
             ("dot", [a, b]) => self.dot_product(a, b, span)?,
             ("dot", [operand]) => match self.value(operand)? {
                 Value::Vector(vector, dimensions) => Value::Vector(self.rates(vector)?, dimensions),
-                Value::Scalar(operand) => Value::Scalar(rebuilt(function, place, vec![operand])),
+                Value::Scalar(operand) => {
+                    Value::Scalar(rebuild_call(function, place, vec![operand]))
+                }
                 rotation @ Value::Rotation(..) => {
                     return Err(Diagnostic::error("a rotation has no rate")
-                        .at(operand.span, rotation.kind())
-                        .help("write FRAME.angular_velocity for the rotation rate of a frame"));
+                        .with_span(operand.span, rotation.kind())
+                        .with_help(
+                            "write FRAME.angular_velocity for the rotation rate of a frame",
+                        ));
                 }
             },
             ("cross", [a, b]) => self.cross_product(a, b)?,
@@ -37,7 +41,7 @@ impl Reader<'_> {
                 Value::Rotation(vec![turn], Dimensions::Two)
             }
             ("rotation", [axis, angle]) => {
-                let factor = self.about(axis, angle)?;
+                let factor = self.rotation_about(axis, angle)?;
                 Value::Rotation(vec![factor], Dimensions::Three)
             }
             ("rotation_x" | "rotation_y" | "rotation_z", [angle]) => {
@@ -49,20 +53,20 @@ impl Reader<'_> {
                 Value::Rotation(vec![self.turn(axis, angle)?], Dimensions::Three)
             }
             _ if VECTOR_FUNCTIONS.contains(&function) => {
-                return Err(usage(function, arguments, span));
+                return Err(argument_count_error(function, arguments, span));
             }
-            _ => Value::Scalar(self.of_scalars((function, place), arguments)?),
+            _ => Value::Scalar(self.call_of_scalars((function, place), arguments)?),
         };
-        Ok(standing(made, span))
+        Ok(set_span(made, span))
     }
 
-    fn of_scalars(
+    fn call_of_scalars(
         &mut self,
         (function, place): (&str, Span),
         arguments: &[Syntax],
     ) -> Result<Syntax, Diagnostic> {
         let is_along = matches!(function, "integral" | "sum" | "at");
-        self.inside += usize::from(is_along);
+        self.open_scopes += usize::from(is_along);
         let mut scalars = Vec::with_capacity(arguments.len());
         for argument in arguments {
             match self.value(argument)? {
@@ -72,24 +76,24 @@ impl Reader<'_> {
                         "abs" | "sqrt" => "write norm(v) for the length of a vector",
                         _ => "use a component, v.x, the length, norm(v), or a product, dot(a, b)",
                     };
-                    let message = format!("{} accepts only scalars", quoted(function));
+                    let message = format!("{} accepts only scalars", quote(function));
                     return Err(Diagnostic::error(message)
-                        .at(argument.span, format!("this is {}", other.kind()))
-                        .help(help));
+                        .with_span(argument.span, format!("this is {}", other.kind()))
+                        .with_help(help));
                 }
             }
         }
-        self.inside -= usize::from(is_along);
-        Ok(rebuilt(function, place, scalars))
+        self.open_scopes -= usize::from(is_along);
+        Ok(rebuild_call(function, place, scalars))
     }
 
-    fn dot_product(&mut self, a: &Syntax, b: &Syntax, span: Span) -> Read {
+    fn dot_product(&mut self, a: &Syntax, b: &Syntax, span: Span) -> EvaluationResult {
         let (left, right) = (self.value(a)?, self.value(b)?);
         match (left, right) {
             (Value::Vector(left, one), Value::Vector(right, other)) if one == other => {
                 Ok(Value::Scalar(scalar_product(left, right)))
             }
-            (left, right) => Err(two_vectors(
+            (left, right) => Err(vector_operands_error(
                 "dot(a, b)",
                 (&left, a.span),
                 (&right, b.span),
@@ -98,7 +102,7 @@ impl Reader<'_> {
         }
     }
 
-    fn cross_product(&mut self, a: &Syntax, b: &Syntax) -> Read {
+    fn cross_product(&mut self, a: &Syntax, b: &Syntax) -> EvaluationResult {
         let (left, right) = (self.value(a)?, self.value(b)?);
         match (left, right) {
             (Value::Vector(left, dimensions), Value::Vector(right, other))
@@ -112,7 +116,7 @@ impl Reader<'_> {
                     Dimensions::Three => Value::Vector(product, dimensions),
                 })
             }
-            (left, right) => Err(two_vectors(
+            (left, right) => Err(vector_operands_error(
                 "cross(a, b)",
                 (&left, a.span),
                 (&right, b.span),
@@ -128,20 +132,20 @@ impl Reader<'_> {
                 Ok(call("sqrt", scalar_product(vector.clone(), vector)))
             }
             other => Err(Diagnostic::error("`norm` accepts only a vector")
-                .at(of.span, format!("this is {}", other.kind()))
-                .help("write abs(x) for the magnitude of a scalar")),
+                .with_span(of.span, format!("this is {}", other.kind()))
+                .with_help("write abs(x) for the magnitude of a scalar")),
         }
     }
 
-    fn transposed(&mut self, of: &Syntax) -> Read {
+    fn transposed(&mut self, of: &Syntax) -> EvaluationResult {
         match self.value(of)? {
             Value::Rotation(factors, dimensions) => {
-                let back = factors.into_iter().rev().map(Factor::transposed);
+                let back = factors.into_iter().rev().map(Factor::transpose);
                 Ok(Value::Rotation(back.collect(), dimensions))
             }
             other => Err(Diagnostic::error("`transpose` accepts only a rotation")
-                .at(of.span, format!("this is {}", other.kind()))
-                .help(
+                .with_span(of.span, format!("this is {}", other.kind()))
+                .with_help(
                     "for example transpose(FRAME.rotation)*v gives the components of v along the axes of the frame",
                 )),
         }
@@ -150,7 +154,7 @@ impl Reader<'_> {
     fn turn(&mut self, axis: usize, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let mut angle = self.angle(angle)?;
         // A constant angle keeps its form: a quarter turn is then exact.
-        if self.space.definitions.moving.holds(&angle) {
+        if self.space.definitions.moving.has_rate(&angle) {
             angle = self.named(angle)?;
         }
         Ok(Factor::Turn(Turn { axis, angle }))
@@ -160,20 +164,20 @@ impl Reader<'_> {
         match self.value(angle)? {
             Value::Scalar(scalar) => Ok(scalar),
             other => Err(Diagnostic::error("an angle must be a scalar")
-                .at(angle.span, format!("this is {}", other.kind()))
-                .help("write rotation_z(ANGLE), or rotation(AXIS, ANGLE)")),
+                .with_span(angle.span, format!("this is {}", other.kind()))
+                .with_help("write rotation_z(ANGLE), or rotation(AXIS, ANGLE)")),
         }
     }
 
     /// Returns the rotation about a direction of any length but 0.
-    fn about(&mut self, axis: &Syntax, angle: &Syntax) -> Result<Factor, Diagnostic> {
+    fn rotation_about(&mut self, axis: &Syntax, angle: &Syntax) -> Result<Factor, Diagnostic> {
         let direction = match self.value(axis)? {
             Value::Vector(direction, Dimensions::Three) => direction,
             other => {
                 return Err(
                     Diagnostic::error("an axis must be a vector of 3 components")
-                        .at(axis.span, format!("this is {}", other.kind()))
-                        .help("for example rotation([0, 0, 1], ANGLE)"),
+                        .with_span(axis.span, format!("this is {}", other.kind()))
+                        .with_help("for example rotation([0, 0, 1], ANGLE)"),
                 );
             }
         };
@@ -181,7 +185,7 @@ impl Reader<'_> {
         let (cosine, sine) = Turn { axis: 2, angle }.cosine_and_sine();
         let direction = self.unit(direction, axis.span)?;
         let (cosine, sine) = (self.named(cosine)?, self.named(sine)?);
-        Ok(Factor::About(Box::new((direction, cosine, sine))))
+        Ok(Factor::AxisAngle(Box::new((direction, cosine, sine))))
     }
 
     fn unit(&mut self, vector: Vector, span: Span) -> Result<Vector, Diagnostic> {
@@ -196,16 +200,15 @@ impl Reader<'_> {
         if let [Some(x), Some(y), Some(z)] = numbers {
             let length = x.hypot(y).hypot(z);
             if length == 0.0 {
-                return Err(
-                    Diagnostic::error("an axis must not be zero").at(span, "its length is 0")
-                );
+                return Err(Diagnostic::error("an axis must not be zero")
+                    .with_span(span, "its length is 0"));
             }
             return Ok([x, y, z].map(|component| number(component / length, span)));
         }
         let vector = self.name_each(vector)?;
         let square = scalar_product(vector.clone(), vector.clone());
         let length = self.named(call("sqrt", square))?;
-        self.name_each(vector.map(|component| match is(&component, 0.0) {
+        self.name_each(vector.map(|component| match is_literal(&component, 0.0) {
             true => component,
             false => Syntax {
                 kind: SyntaxKind::Binary(
@@ -224,19 +227,19 @@ impl Reader<'_> {
 
     fn rate(&mut self, component: Syntax) -> Result<Syntax, Diagnostic> {
         let span = component.span;
-        if !self.space.definitions.moving.holds(&component) {
+        if !self.space.definitions.moving.has_rate(&component) {
             return Ok(number(0.0, span));
         }
-        if self.inside > 0 {
+        if self.open_scopes > 0 {
             return Ok(call("dot", component));
         }
-        let part = self.space.definitions.part(self.owner);
+        let part = self.space.definitions.unique_part_name(self.owner);
         let definitions = &mut self.space.definitions;
         Ok(definitions.rate(self.owner, &part, component))
     }
 }
 
-fn rebuilt(function: &str, place: Span, arguments: Vec<Syntax>) -> Syntax {
+fn rebuild_call(function: &str, place: Span, arguments: Vec<Syntax>) -> Syntax {
     Syntax {
         kind: SyntaxKind::Call {
             function: function.to_owned(),
@@ -247,7 +250,7 @@ fn rebuilt(function: &str, place: Span, arguments: Vec<Syntax>) -> Syntax {
     }
 }
 
-fn two_vectors(
+fn vector_operands_error(
     what: &str,
     (left, left_place): (&Value, Span),
     (right, right_place): (&Value, Span),
@@ -261,13 +264,13 @@ fn two_vectors(
         _ => "give two vectors [x, y, z], or two vectors [x, y]",
     };
     finding
-        .at(span, "expected two vectors")
-        .also(left_place, left.kind())
-        .also(right_place, right.kind())
-        .help(help)
+        .with_span(span, "expected two vectors")
+        .with_related_span(left_place, left.kind())
+        .with_related_span(right_place, right.kind())
+        .with_help(help)
 }
 
-fn usage(function: &str, arguments: &[Syntax], span: Span) -> Diagnostic {
+fn argument_count_error(function: &str, arguments: &[Syntax], span: Span) -> Diagnostic {
     let written = match function {
         "cross" => "cross(a, b)",
         "norm" => "norm(v)",
@@ -280,6 +283,6 @@ fn usage(function: &str, arguments: &[Syntax], span: Span) -> Diagnostic {
     Diagnostic::error(format!(
         "`{function}` does not accept {count} argument{plural}"
     ))
-    .at(span, "here")
-    .help(format!("write {written}"))
+    .with_span(span, "here")
+    .with_help(format!("write {written}"))
 }

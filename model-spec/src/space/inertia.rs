@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-9;
 /// Tolerance of the triangle inequality for measured principal moments, as a fraction of the
 /// trace. The moments of the PUMA 560 measured by Armstrong, Khatib and Burdick (1986) violate
 /// it by 0.046.
-const MEASURED: f64 = 0.05;
+const MEASUREMENT_TOLERANCE: f64 = 0.05;
 
 /// Checks masses and inertias at these values of the parameters. Reports a mass that is not
 /// positive, an inertia that is not positive semidefinite, and an inertia that no mass
@@ -30,8 +30,8 @@ pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnos
                 let name = &inertia.body.text;
                 found.push(
                     Diagnostic::error(format!("the mass of `{name}` is {kilograms} kg"))
-                        .at(mass.span, "not greater than 0")
-                        .help("remove `mass` if the body has only inertia"),
+                        .with_span(mass.span, "not greater than 0")
+                        .with_help("remove `mass` if the body has only inertia"),
                 );
                 continue;
             }
@@ -39,30 +39,33 @@ pub fn check(inertias: &[Inertia<Expr>], parameters: &[f64], found: &mut Diagnos
         let [xx, yy, zz] = [0, 1, 2].map(value);
         let [xy, yz, xz] = [3, 4, 5].map(value);
         let body = &inertia.body.text;
-        let half_trace = (0.5 + MEASURED) * (xx + yy + zz);
-        if !semidefinite([xx, yy, zz], [xy, yz, xz]) {
+        let half_trace = (0.5 + MEASUREMENT_TOLERANCE) * (xx + yy + zz);
+        if !is_positive_semidefinite([xx, yy, zz], [xy, yz, xz]) {
             found.push(
                 Diagnostic::error(format!(
                     "the inertia of `{body}` is not positive semidefinite"
                 ))
-                .at(inertia.span, "some rotation has negative energy")
-                .help("check the order: I_xx, I_yy, I_zz, I_xy, I_yz, I_xz"),
+                .with_span(inertia.span, "some rotation has negative energy")
+                .with_help("check the order: I_xx, I_yy, I_zz, I_xy, I_yz, I_xz"),
             );
-        } else if !semidefinite([xx, yy, zz].map(|own| half_trace - own), [-xy, -yz, -xz]) {
+        } else if !is_positive_semidefinite(
+            [xx, yy, zz].map(|own| half_trace - own),
+            [-xy, -yz, -xz],
+        ) {
             found.push(
                 Diagnostic::error(format!("no body has the inertia of `{body}`"))
-                    .at(
+                    .with_span(
                         inertia.span,
                         "a principal moment exceeds the sum of the other two",
                     )
-                    .help("give the moments about the centre of mass"),
+                    .with_help("give the moments about the centre of mass"),
             );
         }
     }
 }
 
 /// Returns true if all principal minors of a symmetric matrix are at least 0, within rounding.
-fn semidefinite([xx, yy, zz]: [f64; 3], [xy, yz, xz]: [f64; 3]) -> bool {
+fn is_positive_semidefinite([xx, yy, zz]: [f64; 3], [xy, yz, xz]: [f64; 3]) -> bool {
     let scale = xx.abs().max(yy.abs()).max(zz.abs());
     let scale = scale.max(xy.abs()).max(yz.abs()).max(xz.abs());
     if scale == 0.0 {

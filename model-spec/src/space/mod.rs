@@ -20,14 +20,14 @@ mod expression;
 mod frames;
 mod functions;
 mod inertia;
-mod known;
-mod moving;
+mod moving_names;
 mod operations;
 mod placement;
 mod references;
 mod rotation;
 mod scalar;
 mod sections;
+mod state;
 mod terms;
 mod tree;
 mod value;
@@ -46,7 +46,7 @@ pub use inertia::check as check_inertias;
 /// Cyclic or unknown frames, invalid rotations, bodies with variable mass or inertia, scalars
 /// in place of vectors and vectors in place of scalars.
 pub fn expand(document: &mut Document, source: &Source) -> Result<Demands, Diagnostics> {
-    if !sections::are_spatial(document) {
+    if !sections::has_vectors(document) {
         return Ok(Demands::default());
     }
     let mut found = Diagnostics::new(source.clone());

@@ -1,10 +1,10 @@
 //! Sums, products and quotients of scalars, vectors and rotations.
 
-use super::expression::{Read, Reader};
+use super::expression::{EvaluationResult, Reader};
 use super::rotation::Factor;
 use super::scalar::{add, multiply, negate, number};
 use super::value::Value;
-use super::vector::{Rows, Vector, scaled, sum, zero};
+use super::vector::{Rows, Vector, scale, sum, zero};
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
@@ -22,7 +22,7 @@ impl Reader<'_> {
         left: Operand,
         right: Operand,
         span: Span,
-    ) -> Read {
+    ) -> EvaluationResult {
         match (left.0, right.0) {
             (Value::Scalar(left), Value::Scalar(right)) => {
                 let kind = SyntaxKind::Binary(operator, Box::new(left), Box::new(right));
@@ -37,12 +37,12 @@ impl Reader<'_> {
                     BinaryOperator::Divide => self.quotient(left, right)?,
                     BinaryOperator::Power => return Err(power(&left, &right)),
                 };
-                Ok(standing(made, span))
+                Ok(set_span(made, span))
             }
         }
     }
 
-    fn sum(&mut self, left: Operand, right: Operand, minus: bool) -> Read {
+    fn sum(&mut self, left: Operand, right: Operand, minus: bool) -> EvaluationResult {
         match (left, right) {
             ((Value::Vector(a, one), _), (Value::Vector(b, other), _)) if one == other => {
                 let b = match minus {
@@ -50,19 +50,19 @@ impl Reader<'_> {
                     false => b,
                 };
                 let total = sum(a, b);
-                self.alike(&total);
+                self.require_same_unit(&total);
                 Ok(Value::Vector(total, one))
             }
-            (left, right) => Err(mixed(&left, &right)),
+            (left, right) => Err(addition_error(&left, &right)),
         }
     }
 
-    fn product(&mut self, left: Operand, right: Operand, span: Span) -> Read {
+    fn product(&mut self, left: Operand, right: Operand, span: Span) -> EvaluationResult {
         match (left, right) {
             ((Value::Scalar(by), _), (Value::Vector(vector, dimensions), _))
             | ((Value::Vector(vector, dimensions), _), (Value::Scalar(by), _)) => {
                 let by = self.named(by)?;
-                Ok(Value::Vector(scaled(&vector, &by), dimensions))
+                Ok(Value::Vector(scale(&vector, &by), dimensions))
             }
             ((Value::Rotation(mut first, one), _), (Value::Rotation(then, other), _))
                 if one == other =>
@@ -73,25 +73,25 @@ impl Reader<'_> {
             ((Value::Rotation(factors, one), _), (Value::Vector(vector, other), _))
                 if one == other =>
             {
-                Ok(Value::Vector(self.rotated(&factors, vector)?, one))
+                Ok(Value::Vector(self.rotate(&factors, vector)?, one))
             }
             (left @ (Value::Vector(..), _), right @ (Value::Vector(..), _)) => {
                 Err(Diagnostic::error("`*` of two vectors is ambiguous")
-                    .at(span, "`*` needs a scalar operand")
-                    .also(left.1, left.0.kind())
-                    .also(right.1, right.0.kind())
-                    .help("write dot(a, b) for the scalar product, cross(a, b) for the vector product"))
+                    .with_span(span, "`*` needs a scalar operand")
+                    .with_related_span(left.1, left.0.kind())
+                    .with_related_span(right.1, right.0.kind())
+                    .with_help("write dot(a, b) for the scalar product, cross(a, b) for the vector product"))
             }
             (left @ (Value::Vector(..), _), right @ (Value::Rotation(..), _)) => {
-                Err(mismatch(&left, &right)
-                    .help("write the rotation before the vector: R*v"))
+                Err(operand_error(&left, &right)
+                    .with_help("write the rotation before the vector: R*v"))
             }
-            (left, right) => Err(mismatch(&left, &right)
-                .help("multiply a rotation by a vector, R*v, or by another rotation, R*S")),
+            (left, right) => Err(operand_error(&left, &right)
+                .with_help("multiply a rotation by a vector, R*v, or by another rotation, R*S")),
         }
     }
 
-    fn quotient(&mut self, left: Operand, right: Operand) -> Read {
+    fn quotient(&mut self, left: Operand, right: Operand) -> EvaluationResult {
         match (left, right) {
             ((Value::Vector(vector, dimensions), _), (Value::Scalar(by), span)) => {
                 let by = self.named(by)?;
@@ -99,7 +99,7 @@ impl Reader<'_> {
                 Ok(Value::Vector(divided, dimensions))
             }
             (left, right) => {
-                Err(mismatch(&left, &right).help("divide a vector only by a scalar: v/m"))
+                Err(operand_error(&left, &right).with_help("divide a vector only by a scalar: v/m"))
             }
         }
     }
@@ -121,7 +121,7 @@ impl Reader<'_> {
         for axis in 0..3 {
             let mut column = zero(span);
             column[axis] = number(1.0, span);
-            let column = self.rotated(&factors, column)?;
+            let column = self.rotate(&factors, column)?;
             for (row, element) in rows.iter_mut().zip(self.name_each(column)?) {
                 row[axis] = element;
             }
@@ -130,7 +130,7 @@ impl Reader<'_> {
     }
 
     /// Rotates a vector by all factors, the last first.
-    pub(super) fn rotated(
+    pub(super) fn rotate(
         &mut self,
         factors: &[Factor],
         vector: Vector,
@@ -143,7 +143,7 @@ impl Reader<'_> {
     }
 }
 
-pub fn standing(value: Value, span: Span) -> Value {
+pub fn set_span(value: Value, span: Span) -> Value {
     let here = |component: Syntax| Syntax { span, ..component };
     match value {
         Value::Scalar(scalar) => Value::Scalar(here(scalar)),
@@ -153,7 +153,7 @@ pub fn standing(value: Value, span: Span) -> Value {
 }
 
 fn divided(component: Syntax, by: &Syntax, span: Span) -> Syntax {
-    if super::scalar::is(&component, 0.0) {
+    if super::scalar::is_literal(&component, 0.0) {
         return component;
     }
     let kind = SyntaxKind::Binary(
@@ -164,7 +164,7 @@ fn divided(component: Syntax, by: &Syntax, span: Span) -> Syntax {
     Syntax { kind, span }
 }
 
-pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
+pub fn addition_error(left: &Operand, right: &Operand) -> Diagnostic {
     let message = format!("{} and {} cannot be added", left.0.kind(), right.0.kind());
     let help = match (&left.0, &right.0) {
         (Value::Vector(..), Value::Vector(..)) => "give both vectors 3 components: write [x, y, 0]",
@@ -172,20 +172,20 @@ pub fn mixed(left: &Operand, right: &Operand) -> Diagnostic {
         _ => "write the scalar as a vector, for example [x, 0, 0], or use a component, v.x",
     };
     Diagnostic::error(message)
-        .at(right.1, format!("this is {}", right.0.kind()))
-        .also(left.1, left.0.kind())
-        .help(help)
+        .with_span(right.1, format!("this is {}", right.0.kind()))
+        .with_related_span(left.1, left.0.kind())
+        .with_help(help)
 }
 
-fn mismatch(left: &Operand, right: &Operand) -> Diagnostic {
+fn operand_error(left: &Operand, right: &Operand) -> Diagnostic {
     let message = format!(
         "{} and {} are not valid operands here",
         left.0.kind(),
         right.0.kind()
     );
     Diagnostic::error(message)
-        .at(right.1, format!("this is {}", right.0.kind()))
-        .also(left.1, left.0.kind())
+        .with_span(right.1, format!("this is {}", right.0.kind()))
+        .with_related_span(left.1, left.0.kind())
 }
 
 fn power(left: &Operand, right: &Operand) -> Diagnostic {
@@ -194,8 +194,8 @@ fn power(left: &Operand, right: &Operand) -> Diagnostic {
         _ => left,
     };
     Diagnostic::error(format!("{} cannot be raised to a power", value.kind()))
-        .at(*place, "expected a scalar")
-        .help("write dot(v, v) for the square of a vector, norm(v) for its length")
+        .with_span(*place, "expected a scalar")
+        .with_help("write dot(v, v) for the square of a vector, norm(v) for its length")
 }
 
 /// Returns `a_x b_x + ...`, with a square for two equal names.

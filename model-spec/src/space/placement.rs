@@ -4,9 +4,9 @@
 use std::collections::HashMap;
 
 use super::definitions::Definitions;
-use super::frames::{Frame, Frames, stems};
+use super::frames::{Frame, Frames, rotation_prefixes};
 use super::scalar::{add, number};
-use super::vector::{AXES, Rows, Vector, turned, zero};
+use super::vector::{AXES, Rows, Vector, rotate, zero};
 use crate::span::Span;
 
 #[derive(Default)]
@@ -32,8 +32,8 @@ impl Placements {
             return rows.clone();
         }
         let mut rows = self.parent_rows(frame, frames, definitions);
-        for (turn, stem) in frame.turns.iter().zip(stems(frame.turns.len())) {
-            rows = rows.map(|row| turn.of(&row));
+        for (turn, stem) in frame.turns.iter().zip(rotation_prefixes(frame.turns.len())) {
+            rows = rows.map(|row| turn.rotate_axes(&row));
             for (row, fixed) in rows.iter_mut().zip(AXES) {
                 for (element, own) in row.iter_mut().zip(AXES) {
                     // Component of the frame's axis along a fixed axis.
@@ -56,13 +56,16 @@ impl Placements {
         if let Some(origin) = self.origins.get(&owner.name.text) {
             return origin.clone();
         }
-        let parent = frame.parent.as_deref().and_then(|name| frames.named(name));
+        let parent = frame
+            .parent
+            .as_deref()
+            .and_then(|name| frames.name_motion(name));
         let before = match parent {
             Some(parent) => self.origin(parent, frames, definitions),
             None => zero(owner.name.span),
         };
         let rows = self.parent_rows(frame, frames, definitions);
-        let [x, y, z] = turned(&rows, &frame.origin);
+        let [x, y, z] = rotate(&rows, &frame.origin);
         let [bx, by, bz] = before;
         let origin = [add(bx, x), add(by, y), add(bz, z)];
         let origin = definitions.name_each(owner, "origin", origin);
@@ -103,7 +106,7 @@ impl Placements {
             return known.clone();
         }
         let rows = self.rows(frame, frames, definitions);
-        let motion = definitions.name_each(&frame.owner, what, turned(&rows, own));
+        let motion = definitions.name_each(&frame.owner, what, rotate(&rows, own));
         self.motions.insert(key, motion.clone());
         motion
     }
@@ -114,7 +117,11 @@ impl Placements {
         frames: &Frames,
         definitions: &mut Definitions,
     ) -> Rows {
-        match frame.parent.as_deref().and_then(|name| frames.named(name)) {
+        match frame
+            .parent
+            .as_deref()
+            .and_then(|name| frames.name_motion(name))
+        {
             Some(parent) => self.rows(parent, frames, definitions),
             None => identity(frame.owner.name.span),
         }

@@ -5,12 +5,12 @@ use std::collections::{HashMap, HashSet};
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::order::{Reference, circular, order};
+use crate::order::{Reference, cycle_error, sort_by_references};
 use crate::raw::{Document, RawFrame};
 use crate::span::Span;
 
-use super::definitions::declared;
-use super::frames::unknown;
+use super::definitions::declared_names;
+use super::frames::unknown_frame_error;
 
 pub struct FrameExpressions {
     pub origin: Option<Syntax>,
@@ -29,11 +29,17 @@ impl Expressions {
         let before = found.list().len();
         let definitions = document.definitions.iter();
         let definitions: Vec<Syntax> = definitions
-            .filter_map(|definition| found.keep(definition.value.syntax()))
+            .filter_map(|definition| found.push_error(definition.value.syntax()))
             .collect();
         let frames = document.frames.iter().map(|frame| FrameExpressions {
-            origin: frame.origin.as_ref().and_then(|o| found.keep(o.syntax())),
-            rotation: frame.rotation.as_ref().and_then(|r| found.keep(r.syntax())),
+            origin: frame
+                .origin
+                .as_ref()
+                .and_then(|o| found.push_error(o.syntax())),
+            rotation: frame
+                .rotation
+                .as_ref()
+                .and_then(|r| found.push_error(r.syntax())),
         });
         let frames = frames.collect();
         (found.list().len() == before).then_some(Self {
@@ -51,7 +57,7 @@ pub enum Entry {
     Frame(usize),
 }
 
-pub fn in_order(
+pub fn sort_entries(
     document: &Document,
     expressions: &Expressions,
     found: &mut Diagnostics,
@@ -67,7 +73,9 @@ pub fn in_order(
         if let Some(parent) = &frame.parent {
             match names.frames.get(parent.text.as_str()) {
                 Some(&index) => list.push((count + index, parent.span)),
-                None => found.push_with(|| unknown(parent, names.frames.keys().copied())),
+                None => {
+                    found.push_with(|| unknown_frame_error(parent, names.frames.keys().copied()))
+                }
             }
         }
         for syntax in own.origin.iter().chain(&own.rotation) {
@@ -78,13 +86,13 @@ pub fn in_order(
     if !found.is_empty() {
         return None;
     }
-    let sorted = order(&references).map_err(|circle| {
+    let sorted = sort_by_references(&references).map_err(|circle| {
         let first = circle.iter().position(|(entry, _)| *entry >= count);
         found.push(match first {
-            Some(first) => placed_in_itself(&circle, first, document),
+            Some(first) => cyclic_frame_error(&circle, first, document),
             None => {
                 let named = |index: usize| document.definitions[index].name.text.as_str();
-                circular("definition", &circle, named)
+                cycle_error("definition", &circle, named)
             }
         });
     });
@@ -110,7 +118,7 @@ impl<'d> Names<'d> {
                 .map(|(i, definition)| (definition.name.text.as_str(), i))
                 .collect(),
             frames: frames.map(|(i, f)| (f.name.text.as_str(), i)).collect(),
-            declared: declared(document),
+            declared: declared_names(document),
         }
     }
 
@@ -138,7 +146,7 @@ impl<'d> Names<'d> {
     }
 }
 
-fn placed_in_itself(circle: &[Reference], first: usize, document: &Document) -> Diagnostic {
+fn cyclic_frame_error(circle: &[Reference], first: usize, document: &Document) -> Diagnostic {
     let frame = |index: usize| -> Option<&RawFrame> {
         let frame = index.checked_sub(document.definitions.len())?;
         document.frames.get(frame)
@@ -158,6 +166,6 @@ fn placed_in_itself(circle: &[Reference], first: usize, document: &Document) -> 
         false => "one of them must not depend on the others",
     };
     Diagnostic::error(format!("the frame `{own}` is placed in itself"))
-        .at(place, format!("here: {} -> ...", named.join(" -> ")))
-        .help(help)
+        .with_span(place, format!("here: {} -> ...", named.join(" -> ")))
+        .with_help(help)
 }

@@ -3,7 +3,7 @@
 //! A rotation of vectors may also contain turns about any axis and the matrices of frames.
 
 use super::scalar::{add, call, multiply, negate, number};
-use super::vector::{Rows, Vector, cross, inner, scaled, sum, turned};
+use super::vector::{Rows, Vector, cross, inner, rotate, scale, sum};
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
@@ -22,23 +22,23 @@ pub enum Factor {
     /// Turn about a coordinate axis.
     Turn(Turn),
     /// Turn about a unit vector, with the cosine and the sine of the angle.
-    About(Box<(Vector, Syntax, Syntax)>),
+    AxisAngle(Box<(Vector, Syntax, Syntax)>),
     /// Rotation from a frame's axes to the fixed axes.
     Frame(Box<Rows>),
     /// Rotation from the fixed axes to a frame's.
-    IntoFrame(Box<Rows>),
+    InverseFrame(Box<Rows>),
 }
 
 impl Factor {
-    pub fn transposed(self) -> Self {
+    pub fn transpose(self) -> Self {
         match self {
-            Self::Turn(turn) => Self::Turn(turn.back()),
-            Self::About(about) => {
+            Self::Turn(turn) => Self::Turn(turn.inverse()),
+            Self::AxisAngle(about) => {
                 let (direction, cosine, sine) = *about;
-                Self::About(Box::new((direction, cosine, negate(sine))))
+                Self::AxisAngle(Box::new((direction, cosine, negate(sine))))
             }
-            Self::Frame(rows) => Self::IntoFrame(rows),
-            Self::IntoFrame(rows) => Self::Frame(rows),
+            Self::Frame(rows) => Self::InverseFrame(rows),
+            Self::InverseFrame(rows) => Self::Frame(rows),
         }
     }
 
@@ -50,19 +50,19 @@ impl Factor {
         let [x, y, z] = vector.clone();
         let vector = [name(x)?, name(y)?, name(z)?];
         Ok(match self {
-            Self::Turn(turn) => turn.back().of(&vector),
-            Self::Frame(rows) => turned(rows, &vector),
-            Self::IntoFrame(rows) => {
+            Self::Turn(turn) => turn.inverse().rotate_axes(&vector),
+            Self::Frame(rows) => rotate(rows, &vector),
+            Self::InverseFrame(rows) => {
                 let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| rows[i][j].clone()));
-                turned(&columns, &vector)
+                rotate(&columns, &vector)
             }
-            Self::About(about) => {
+            Self::AxisAngle(about) => {
                 let (n, cosine, sine) = about.as_ref();
                 // Rodrigues' formula: v cos + n x v sin + n (n.v)(1 - cos).
                 let rest = add(number(1.0, cosine.span), negate(cosine.clone()));
                 let along = name(multiply(inner(n, &vector), rest))?;
-                let across = sum(scaled(&vector, cosine), scaled(&cross(n, &vector), sine));
-                sum(across, scaled(n, &along))
+                let across = sum(scale(&vector, cosine), scale(&cross(n, &vector), sine));
+                sum(across, scale(n, &along))
             }
         })
     }
@@ -91,8 +91,8 @@ fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
                 rotation_z(ANGLE)";
     let refused = |span: Span, why: &str| {
         Diagnostic::error("this is not a rotation of a frame")
-            .at(span, why)
-            .help(help)
+            .with_span(span, why)
+            .with_help(help)
     };
     let SyntaxKind::Call {
         function,
@@ -118,7 +118,7 @@ fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
 }
 
 impl Turn {
-    pub fn back(&self) -> Self {
+    pub fn inverse(&self) -> Self {
         Self {
             axis: self.axis,
             angle: negate(self.angle.clone()),
@@ -126,7 +126,7 @@ impl Turn {
     }
 
     /// Returns the components of a vector along the rotated axes.
-    pub fn of(&self, vector: &Vector) -> Vector {
+    pub fn rotate_axes(&self, vector: &Vector) -> Vector {
         let (k, i, j) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
         let (cosine, sine) = self.cosine_and_sine();
         let product =
@@ -135,7 +135,7 @@ impl Turn {
         turned[i] = add(product(&cosine, i), product(&sine, j));
         turned[j] = add(product(&cosine, j), negate(product(&sine, i)));
         turned[k] = vector[k].clone();
-        turned
+        rotate
     }
 
     /// Returns cosine and sine of the angle, exact for quarter turns: axes that coincide then

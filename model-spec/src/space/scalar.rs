@@ -23,10 +23,10 @@ pub fn name(text: &str, span: Span) -> Syntax {
     }
 }
 
-pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
+pub fn set_span(mut syntax: Syntax, span: Span) -> Syntax {
     syntax.span = span;
     match &mut syntax.kind {
-        SyntaxKind::Negate(operand) => **operand = placed((**operand).clone(), span),
+        SyntaxKind::Negate(operand) => **operand = set_span((**operand).clone(), span),
         SyntaxKind::Call {
             function_span,
             arguments,
@@ -34,7 +34,7 @@ pub fn placed(mut syntax: Syntax, span: Span) -> Syntax {
         } => {
             *function_span = span;
             for argument in arguments {
-                *argument = placed(argument.clone(), span);
+                *argument = set_span(argument.clone(), span);
             }
         }
         _ => {}
@@ -65,7 +65,7 @@ pub fn is_plain(value: &Syntax) -> bool {
     }
 }
 
-pub fn is(syntax: &Syntax, value: f64) -> bool {
+pub fn is_literal(syntax: &Syntax, value: f64) -> bool {
     syntax.kind == SyntaxKind::Number(value)
 }
 
@@ -82,10 +82,10 @@ pub fn negate(a: Syntax) -> Syntax {
 }
 
 pub fn add(a: Syntax, b: Syntax) -> Syntax {
-    if is(&a, 0.0) {
+    if is_literal(&a, 0.0) {
         return b;
     }
-    if is(&b, 0.0) {
+    if is_literal(&b, 0.0) {
         return a;
     }
     let span = a.span;
@@ -96,16 +96,16 @@ pub fn add(a: Syntax, b: Syntax) -> Syntax {
 }
 
 pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
-    if is(&a, 0.0) || is(&b, 1.0) {
+    if is_literal(&a, 0.0) || is_literal(&b, 1.0) {
         return a;
     }
-    if is(&b, 0.0) || is(&a, 1.0) {
+    if is_literal(&b, 0.0) || is_literal(&a, 1.0) {
         return b;
     }
-    if is(&a, -1.0) {
+    if is_literal(&a, -1.0) {
         return negate(b);
     }
-    if is(&b, -1.0) {
+    if is_literal(&b, -1.0) {
         return negate(a);
     }
     let span = b.span;

@@ -7,11 +7,11 @@ use super::definitions::{Definitions, Owner};
 use super::demands::{Demands, UnitDemand};
 use super::expression::Reader;
 use super::frames::Frames;
-use super::known::{Space, is_spatial};
 use super::placement::Placements;
-use super::references::{Entry, Expressions, FrameExpressions, in_order};
+use super::references::{Entry, Expressions, FrameExpressions, sort_entries};
 use super::rotation::{Turn, turns};
-use super::scalar::{expansion, is, is_plain, name, number};
+use super::scalar::{expansion, is_literal, is_plain, name, number};
+use super::state::{ExpansionState, is_spatial};
 use super::tree::tree;
 use super::value::{Dimensions, Value};
 use super::vector::{self, AXES, Vector};
@@ -22,7 +22,7 @@ use crate::dimension::Dimension;
 use crate::raw::{Document, RawFrame, RawTerm};
 use crate::table::{Name, Quantity};
 
-pub fn are_spatial(document: &Document) -> bool {
+pub fn has_vectors(document: &Document) -> bool {
     let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();
     // `resolve` reports syntax errors.
     let mut read = quantities(document).filter_map(|quantity| quantity.syntax().ok());
@@ -47,29 +47,30 @@ fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
 /// Replaces all vectors, frames and bodies; `None` if definitions cannot be sorted.
 pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demands> {
     let expressions = Expressions::read(document, found)?;
-    let order = in_order(document, &expressions, found)?;
-    let mentioned = mentioned(document);
-    let mut space = Space {
+    let order = sort_entries(document, &expressions, found)?;
+    let mentioned = referenced_names(document);
+    let mut space = ExpansionState {
         vectors: Default::default(),
-        frames: Frames::under(None, document.name.span),
+        frames: Frames::with_gravity(None, document.name.span),
         frame_names: document
             .frames
             .iter()
             .map(|f| f.name.text.clone())
             .collect(),
         placements: Placements::default(),
-        definitions: Definitions::of(document),
+        definitions: Definitions::from_document(document),
         demands: Demands::default(),
-        reported: HashSet::new(),
-        broken: HashSet::new(),
+        constraint_outputs: HashSet::new(),
+        invalid_entries: HashSet::new(),
     };
     if let Some(gravity) = document.gravity.take() {
         let owner = Owner::new(&document.name, "");
         let span = document.name.span;
-        let written = Quantity::Listed(gravity, span);
-        let dimension = Dimension::of([0, 1, -2, 0]);
-        let along = Reader::new(&mut space, &owner).demanded(&written, "gravity", dimension);
-        space.frames = Frames::under(Some(found.keep(along)?), span);
+        let written = Quantity::Vector(gravity, span);
+        let dimension = Dimension::from_mechanical_exponents([0, 1, -2, 0]);
+        let along =
+            Reader::new(&mut space, &owner).evaluate_with_unit(&written, "gravity", dimension);
+        space.frames = Frames::with_gravity(Some(found.push_error(along)?), span);
     }
     let mut replaced: Vec<Vec<RawTerm>> = Vec::new();
     replaced.resize_with(document.definitions.len(), Vec::new);
@@ -107,7 +108,7 @@ pub fn expand(document: &mut Document, found: &mut Diagnostics) -> Option<Demand
     Some(space.demands)
 }
 
-fn mentioned(document: &Document) -> HashSet<String> {
+fn referenced_names(document: &Document) -> HashSet<String> {
     let mut names = HashSet::new();
     let frames = document.frames.iter();
     let frames = frames.filter_map(|frame| frame.origin.as_ref());
@@ -127,7 +128,7 @@ fn mentioned(document: &Document) -> HashSet<String> {
 
 /// Returns the scalar definitions that replace a definition.
 fn definition(
-    space: &mut Space,
+    space: &mut ExpansionState,
     document: &mut Document,
     term: RawTerm,
     syntax: &Syntax,
@@ -135,22 +136,22 @@ fn definition(
 ) -> Vec<RawTerm> {
     let name = &term.name.text;
     if space.is_broken(syntax) {
-        space.broken.insert(name.clone());
+        space.invalid_entries.insert(name.clone());
         return vec![];
     }
-    if !space.touches(syntax) {
-        space.definitions.moving.learn(name, syntax);
+    if !space.contains_vectors(syntax) {
+        space.definitions.moving.add_definition(name, syntax);
         return vec![term];
     }
     let owner = Owner::new(&term.name, &term.doc);
     let read = Reader::new(space, &owner).value(syntax);
-    let Some(value) = found.keep(read) else {
-        space.broken.insert(name.clone());
+    let Some(value) = found.push_error(read) else {
+        space.invalid_entries.insert(name.clone());
         return vec![];
     };
     let (vector, dimensions) = match value {
         Value::Scalar(scalar) => {
-            space.definitions.moving.learn(name, &scalar);
+            space.definitions.moving.add_definition(name, &scalar);
             let value = expansion(scalar);
             return vec![RawTerm { value, ..term }];
         }
@@ -158,13 +159,13 @@ fn definition(
         Value::Rotation(factors, dimensions) => {
             document.vectors.push(term.name.clone());
             let mut reader = Reader::new(space, &owner);
-            match found.keep(reader.shared_rotation(factors, syntax.span)) {
+            match found.push_error(reader.shared_rotation(factors, syntax.span)) {
                 Some(shared) => {
                     let rotation = Value::Rotation(shared, dimensions);
                     space.vectors.insert(name.clone(), rotation);
                 }
                 None => {
-                    space.broken.insert(name.clone());
+                    space.invalid_entries.insert(name.clone());
                 }
             }
             return vec![];
@@ -173,13 +174,13 @@ fn definition(
     if let Some(frame) = document.frames.iter().find(|f| f.name.text == *name) {
         found.push(
             Diagnostic::error(format!("the name `{name}` is taken"))
-                .at(term.name.span, "used by a frame, and both have members")
-                .also(frame.name.span, "here")
-                .help("choose another name"),
+                .with_span(term.name.span, "used by a frame, and both have members")
+                .with_related_span(frame.name.span, "here")
+                .with_help("choose another name"),
         );
     }
     document.vectors.push(term.name.clone());
-    let (written, vector) = by_components(space, &term, vector, dimensions);
+    let (written, vector) = define_components(space, &term, vector, dimensions);
     space
         .vectors
         .insert(name.clone(), Value::Vector(vector, dimensions));
@@ -187,8 +188,8 @@ fn definition(
 }
 
 /// Returns the definitions of a vector's components, and the vector of their names.
-fn by_components(
-    space: &mut Space,
+fn define_components(
+    space: &mut ExpansionState,
     term: &RawTerm,
     vector: Vector,
     dimensions: Dimensions,
@@ -201,7 +202,7 @@ fn by_components(
             return component;
         }
         let text = format!("{}_{axis}", term.name.text);
-        space.definitions.moving.learn(&text, &component);
+        space.definitions.moving.add_definition(&text, &component);
         let by_name = match is_plain(&component) {
             true => component.clone(),
             false => name(&text, component.span),
@@ -218,7 +219,7 @@ fn by_components(
         by_name
     });
     for (axis, term) in written.iter_mut().enumerate() {
-        if is(&vector[axis], 0.0) {
+        if is_literal(&vector[axis], 0.0) {
             term.value = expansion(vector::component(&vector, axis));
         }
     }
@@ -226,42 +227,42 @@ fn by_components(
 }
 
 fn frame(
-    space: &mut Space,
+    space: &mut ExpansionState,
     raw: &RawFrame,
     expressions: &FrameExpressions,
     found: &mut Diagnostics,
 ) {
     let name = &raw.name.text;
-    let broken = |space: &Space, syntax: &Option<Syntax>| {
+    let broken = |space: &ExpansionState, syntax: &Option<Syntax>| {
         syntax
             .as_ref()
             .is_some_and(|syntax| space.is_broken(syntax))
     };
     let parent = raw.parent.as_ref().map(|parent| parent.text.as_str());
-    if parent.is_some_and(|parent| space.frames.named(parent).is_none())
+    if parent.is_some_and(|parent| space.frames.name_motion(parent).is_none())
         || broken(space, &expressions.origin)
         || broken(space, &expressions.rotation)
     {
-        space.broken.insert(name.clone());
+        space.invalid_entries.insert(name.clone());
         return;
     }
     let owner = Owner::new(&raw.name, &raw.doc);
     let placed = placement(space, &owner, raw, expressions);
     let placed = placed.and_then(|placed| {
-        let Space {
+        let ExpansionState {
             frames,
             definitions,
             ..
         } = space;
         frames.place(owner, parent, placed, definitions)
     });
-    if found.keep(placed).is_none() {
-        space.broken.insert(name.clone());
+    if found.push_error(placed).is_none() {
+        space.invalid_entries.insert(name.clone());
     }
 }
 
 fn placement(
-    space: &mut Space,
+    space: &mut ExpansionState,
     owner: &Owner,
     raw: &RawFrame,
     expressions: &FrameExpressions,
@@ -270,7 +271,7 @@ fn placement(
     let origin = match &raw.origin {
         Some(origin) => {
             let subject = format!("the origin of `{}`", name.text);
-            Reader::new(space, owner).demanded(origin, &subject, Dimension::LENGTH)?
+            Reader::new(space, owner).evaluate_with_unit(origin, &subject, Dimension::LENGTH)?
         }
         None => [0, 1, 2].map(|_| number(0.0, name.span)),
     };
@@ -285,7 +286,7 @@ fn placement(
         turn.angle = reader.scalar(&written, &subject, "give a scalar")?;
         space.demands.units.push(UnitDemand {
             value: expansion(turn.angle.clone()),
-            dimension: Dimension::NONE,
+            dimension: Dimension::DIMENSIONLESS,
             subject,
         });
     }

@@ -2,8 +2,8 @@
 
 use super::definitions::Owner;
 use super::expression::Reader;
-use super::known::Space;
-use super::scalar::{expansion, half, is, name, number, placed};
+use super::scalar::{expansion, half, is_literal, name, number, set_span};
+use super::state::ExpansionState;
 use super::value::{Dimensions, Value};
 use super::vector::{self, AXES, Vector, cross};
 use crate::ast::Syntax;
@@ -14,7 +14,7 @@ use crate::span::Span;
 use crate::table::{Name, Quantity};
 
 /// Replaces vectors in all sections other than definitions and frames.
-pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostics) {
+pub fn expand(document: &mut Document, space: &mut ExpansionState, found: &mut Diagnostics) {
     let product = "give a scalar, for example 1/2*m*dot(v, v)";
     for (terms, subject) in [
         (&mut document.kinetic, "this term of the kinetic energy"),
@@ -55,7 +55,7 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
     for prefix in [MULTIPLIER, RESIDUAL] {
         let constraints = document.constraints.iter();
         let names = constraints.map(|constraint| format!("{prefix}{}", constraint.name.text));
-        space.reported.extend(names);
+        space.constraint_outputs.extend(names);
     }
     let observables = std::mem::take(&mut document.observables);
     for (term, unit) in observables {
@@ -68,34 +68,34 @@ pub fn expand(document: &mut Document, space: &mut Space, found: &mut Diagnostic
 
 /// Evaluates an expression; `None` without vectors or after an error.
 fn read(
-    space: &mut Space,
+    space: &mut ExpansionState,
     owner: &Owner,
     quantity: &Quantity,
     found: &mut Diagnostics,
 ) -> Option<Value> {
-    let syntax = touched(space, quantity)?;
-    found.keep(Reader::new(space, owner).value(&syntax))
+    let syntax = parse_if_spatial(space, quantity)?;
+    found.push_error(Reader::new(space, owner).value(&syntax))
 }
 
 /// Returns the expression if it contains vectors and refers to no entry with an error.
-fn touched(space: &Space, quantity: &Quantity) -> Option<Syntax> {
+fn parse_if_spatial(space: &ExpansionState, quantity: &Quantity) -> Option<Syntax> {
     // `resolve` reports syntax errors.
     let syntax = quantity.syntax().ok()?;
-    (space.touches(&syntax) && !space.is_broken(&syntax)).then_some(syntax)
+    (space.contains_vectors(&syntax) && !space.is_broken(&syntax)).then_some(syntax)
 }
 
 fn scalar(
-    space: &mut Space,
+    space: &mut ExpansionState,
     owner: &Owner,
     quantity: &mut Quantity,
     (subject, help): (&str, &str),
     found: &mut Diagnostics,
 ) {
-    if touched(space, quantity).is_none() {
+    if parse_if_spatial(space, quantity).is_none() {
         return;
     }
     let read = Reader::new(space, owner).scalar(quantity, subject, help);
-    if let Some(scalar) = found.keep(read) {
+    if let Some(scalar) = found.push_error(read) {
         *quantity = expansion(scalar);
     }
 }
@@ -112,7 +112,7 @@ fn component(term: &RawTerm, axis: &str, value: Syntax) -> RawTerm {
     }
 }
 
-fn of_components(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Vec<RawTerm> {
+fn component_terms(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Vec<RawTerm> {
     let components = vector.into_iter().zip(AXES).take(dimensions.count());
     components
         .map(|(value, axis)| component(term, axis, value))
@@ -120,7 +120,7 @@ fn of_components(term: &RawTerm, vector: Vector, dimensions: Dimensions) -> Vec<
 }
 
 /// Replaces a vector by one observable per component.
-fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+fn observables(space: &mut ExpansionState, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
     match read(space, &owner, &term.value, found) {
@@ -131,13 +131,13 @@ fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
         }
         Some(Value::Vector(vector, dimensions)) => {
             let columns = [0, 1, 2].map(|axis| vector::component(&vector, axis));
-            of_components(&term, columns, dimensions)
+            component_terms(&term, columns, dimensions)
         }
         Some(Value::Rotation(..)) => {
             found.push(
                 Diagnostic::error("an observable must be a scalar or a vector")
-                    .at(place, "this is a rotation")
-                    .help("report a rotated vector, R*v, or an axis of a frame, FRAME.x"),
+                    .with_span(place, "this is a rotation")
+                    .with_help("report a rotated vector, R*v, or an axis of a frame, FRAME.x"),
             );
             vec![]
         }
@@ -146,7 +146,7 @@ fn observables(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
 
 /// Replaces a vector by one constraint per component. A component that is the literal 0 gives
 /// no constraint.
-fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
+fn constraints(space: &mut ExpansionState, term: RawTerm, found: &mut Diagnostics) -> Vec<RawTerm> {
     let owner = Owner::new(&term.name, &term.doc);
     let place = term.value.span();
     match read(space, &owner, &term.value, found) {
@@ -161,7 +161,7 @@ fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
                 let mut axes = AXES.into_iter();
                 let components = vector.each_ref().map(|component| {
                     let axis = axes.next().unwrap_or_default();
-                    match is(component, 0.0) {
+                    match is_literal(component, 0.0) {
                         true => component.clone(),
                         false => name(&format!("{reported}_{axis}"), place),
                     }
@@ -169,13 +169,13 @@ fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
                 let value = Value::Vector(components, dimensions);
                 space.vectors.insert(reported, value);
             }
-            let mut terms = of_components(&term, vector.clone(), dimensions);
+            let mut terms = component_terms(&term, vector.clone(), dimensions);
             let mut components = vector.iter();
-            terms.retain(|_| components.next().is_none_or(|c| !is(c, 0.0)));
+            terms.retain(|_| components.next().is_none_or(|c| !is_literal(c, 0.0)));
             if terms.is_empty() {
                 found.push(
                     Diagnostic::error(format!("the constraint `{}` has no effect", term.name.text))
-                        .at(place, "this is identically 0"),
+                        .with_span(place, "this is identically 0"),
                 );
             }
             terms
@@ -183,8 +183,8 @@ fn constraints(space: &mut Space, term: RawTerm, found: &mut Diagnostics) -> Vec
         Some(Value::Rotation(..)) => {
             found.push(
                 Diagnostic::error("a constraint cannot be a rotation")
-                    .at(place, "this is a rotation")
-                    .help("keep axes parallel by scalar products: dot(A.x, B.y) and so on"),
+                    .with_span(place, "this is a rotation")
+                    .with_help("keep axes parallel by scalar products: dot(A.x, B.y) and so on"),
             );
             vec![]
         }
@@ -195,9 +195,9 @@ type Force = (RawTerm, Quantity);
 
 /// Replaces a force vector at a point by its components, and a torque by forces on the ends of
 /// axes.
-fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<Force> {
+fn forces(space: &mut ExpansionState, (term, on): Force, found: &mut Diagnostics) -> Vec<Force> {
     let owner = Owner::new(&term.name, &term.doc);
-    if touched(space, &term.value).is_none() && touched(space, &on).is_none() {
+    if parse_if_spatial(space, &term.value).is_none() && parse_if_spatial(space, &on).is_none() {
         return vec![(term, on)];
     }
     let (place, on_place) = (term.value.span(), on.span());
@@ -205,7 +205,7 @@ fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<
         let syntax = quantity.syntax().ok()?;
         match space.is_broken(&syntax) {
             true => None,
-            false => found.keep(Reader::new(space, &owner).value(&syntax)),
+            false => found.push_error(Reader::new(space, &owner).value(&syntax)),
         }
     };
     let (Some(value), Some(on)) = (value_of(&term.value), value_of(&on)) else {
@@ -217,16 +217,16 @@ fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<
             vec![(RawTerm { value, ..term }, expansion(on))]
         }
         (Value::Vector(value, one), Value::Vector(on, other)) if one == other => {
-            let forces = of_components(&term, value, one).into_iter().zip(on);
-            moving(space, forces.collect())
+            let forces = component_terms(&term, value, one).into_iter().zip(on);
+            keep_moving(space, forces.collect())
         }
         (Value::Vector(torque, Dimensions::Three), Value::Rotation(factors, Dimensions::Three)) => {
             let made = torques(space, &owner, &term, torque, &factors, on_place);
-            let forces = found.keep(made).unwrap_or_default();
-            moving(space, forces)
+            let forces = found.push_error(made).unwrap_or_default();
+            keep_moving(space, forces)
         }
         (value, on) => {
-            found.push(work(&value, place, &on, on_place));
+            found.push(force_error(&value, place, &on, on_place));
             vec![]
         }
     }
@@ -234,8 +234,8 @@ fn forces(space: &mut Space, (term, on): Force, found: &mut Diagnostics) -> Vec<
 
 /// Keeps the forces on points that move; the first if none moves, for the error in a later
 /// step.
-fn moving(space: &Space, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
-    let moves = |(_, on): &&(RawTerm, Syntax)| space.definitions.moving.holds(on);
+fn keep_moving(space: &ExpansionState, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
+    let moves = |(_, on): &&(RawTerm, Syntax)| space.definitions.moving.has_rate(on);
     if forces.iter().any(|force| moves(&force)) {
         forces.retain(|force| moves(&force));
     } else {
@@ -248,7 +248,7 @@ fn moving(space: &Space, mut forces: Vec<(RawTerm, Syntax)>) -> Vec<Force> {
 /// Expands a torque t on axes e_k. A small rotation d moves their ends by d x e_k, and the sum
 /// of 1/2 (t x e_k).(d x e_k) over three axes is t.d.
 fn torques(
-    space: &mut Space,
+    space: &mut ExpansionState,
     owner: &Owner,
     term: &RawTerm,
     torque: Vector,
@@ -264,21 +264,21 @@ fn torques(
     for (axis, own) in AXES.into_iter().enumerate() {
         let mut unit = [0, 1, 2].map(|_| number(0.0, place));
         unit[axis] = number(1.0, place);
-        let end = reader.rotated(factors, unit)?;
+        let end = reader.rotate(factors, unit)?;
         let end = reader.name_each(end)?;
         for ((value, on), along) in cross(&halves, &end).into_iter().zip(end).zip(AXES) {
             let value = Syntax {
                 span: value_span,
                 ..value
             };
-            let on = placed(on, place);
+            let on = set_span(on, place);
             forces.push((component(term, &format!("{own}_{along}"), value), on));
         }
     }
     Ok(forces)
 }
 
-fn work(value: &Value, place: Span, on: &Value, on_place: Span) -> Diagnostic {
+fn force_error(value: &Value, place: Span, on: &Value, on_place: Span) -> Diagnostic {
     let message = format!("{} does no work on {}", value.kind(), on.kind());
     let help = match (value, on) {
         (Value::Scalar(_), Value::Vector(..)) => {
@@ -293,7 +293,7 @@ fn work(value: &Value, place: Span, on: &Value, on_place: Span) -> Diagnostic {
         _ => "give both the same number of components",
     };
     Diagnostic::error(message)
-        .at(place, format!("this is {}", value.kind()))
-        .also(on_place, format!("on {}", on.kind()))
-        .help(help)
+        .with_span(place, format!("this is {}", value.kind()))
+        .with_related_span(on_place, format!("on {}", on.kind()))
+        .with_help(help)
 }

@@ -13,7 +13,7 @@ pub fn tree(frames: &Frames, bodies: Vec<RigidBody<Syntax>>) -> Option<RigidTree
         parent: frame
             .parent
             .as_ref()
-            .and_then(|name| Some(frames.named(name)?.id)),
+            .and_then(|name| Some(frames.name_motion(name)?.id)),
         origin: frame.origin.clone(),
         turns: frame.turns.iter().map(axis_turn).collect(),
     };

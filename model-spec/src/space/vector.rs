@@ -1,6 +1,6 @@
 //! Vectors of three expressions along the axes of one frame.
 
-use super::scalar::{add, is, is_plain, multiply, negate, number, zero_times};
+use super::scalar::{add, is_literal, is_plain, multiply, negate, number, zero_times};
 use crate::ast::Syntax;
 use crate::span::Span;
 
@@ -23,9 +23,9 @@ pub fn component(vector: &Vector, axis: usize) -> Syntax {
     let own = &vector[axis];
     let other = vector
         .iter()
-        .find(|other| is_plain(other) && !is(other, 0.0));
+        .find(|other| is_plain(other) && !is_literal(other, 0.0));
     match other {
-        Some(other) if is(own, 0.0) => zero_times(other, own.span),
+        Some(other) if is_literal(own, 0.0) => zero_times(other, own.span),
         _ => own.clone(),
     }
 }
@@ -34,7 +34,7 @@ pub fn sum([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
     [add(ax, bx), add(ay, by), add(az, bz)]
 }
 
-pub fn scaled(vector: &Vector, by: &Syntax) -> Vector {
+pub fn scale(vector: &Vector, by: &Syntax) -> Vector {
     vector
         .clone()
         .map(|component| multiply(by.clone(), component))
@@ -58,6 +58,6 @@ pub fn inner([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Syntax {
 }
 
 /// Rotates a vector from a frame's axes to the fixed axes.
-pub fn turned(rows: &Rows, vector: &Vector) -> Vector {
+pub fn rotate(rows: &Rows, vector: &Vector) -> Vector {
     [0, 1, 2].map(|axis| inner(&rows[axis], vector))
 }

@@ -215,7 +215,7 @@ fn missing_targets_have_specific_errors() {
 fn edits_to_an_invalid_model_are_rejected() {
     let failed = |edits: &[Edit]| apply(&source(), edits).expect_err("no model");
     let taken = failed(&[parameter(), parameter()]);
-    assert!(matches!(taken, EditError::Taken { .. }), "{taken}");
+    assert!(matches!(taken, EditError::NameTaken { .. }), "{taken}");
     let unknown = failed(&[force()]);
     assert!(
         unknown.to_string().contains("unknown name `T_c`"),

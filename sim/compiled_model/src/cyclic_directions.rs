@@ -130,7 +130,7 @@ impl Instance<'_> {
         let mut units = self.model().model().coordinates.iter();
         units
             .nth(coordinate)
-            .is_some_and(|known| known.unit.dimension.is_none())
+            .is_some_and(|known| known.unit.dimension.is_dimensionless())
     }
 
     /// Returns the accelerations and the rates of first-order states.
@@ -158,7 +158,7 @@ impl Instance<'_> {
         let ranges = model
             .coordinate_ranges()
             .map_err(|error| Error::from_model_error(model, error))?;
-        let of_kind = |dimension: Dimension| dimension.is_none().then_some(1.0);
+        let of_kind = |dimension: Dimension| dimension.is_dimensionless().then_some(1.0);
         let coordinates = model
             .coordinates
             .iter()

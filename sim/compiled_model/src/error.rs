@@ -26,7 +26,10 @@ pub enum Error {
 impl Error {
     /// Converts an error of the model into an error at its place in the specification.
     pub(crate) fn from_model_error(model: &Model, error: ModelError) -> Self {
-        Self::Specification(Diagnostics::one(model.source.clone(), error.diagnostic()))
+        Self::Specification(Diagnostics::from_one(
+            model.source.clone(),
+            error.diagnostic(),
+        ))
     }
 }
 

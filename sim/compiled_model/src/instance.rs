@@ -86,8 +86,8 @@ impl<'m> Instance<'m> {
             let message =
                 format!("`{name}` is given by an expression, which is part of the equations");
             let wrong = Diagnostic::error(message);
-            let wrong = wrong.help("set it in the model before the model is derived");
-            return Err(Diagnostics::one(declared.source.clone(), wrong).into());
+            let wrong = wrong.with_help("set it in the model before the model is derived");
+            return Err(Diagnostics::from_one(declared.source.clone(), wrong).into());
         }
         let values = model.parameter_values().map_err(refused)?;
         let mut instance = Self {

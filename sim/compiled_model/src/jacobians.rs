@@ -283,12 +283,12 @@ impl Instance<'_> {
             model.name
         );
         let diagnostic = Diagnostic::error(message)
-            .at(first.span, self.singularity(first, point))
-            .help(SMOOTH_FORMS);
+            .with_span(first.span, self.singularity(first, point))
+            .with_help(SMOOTH_FORMS);
         let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| {
-            diagnostic.also(other.span, self.singularity(other, point))
+            diagnostic.with_related_span(other.span, self.singularity(other, point))
         });
-        Diagnostics::one(model.source.clone(), diagnostic).into()
+        Diagnostics::from_one(model.source.clone(), diagnostic).into()
     }
 
     /// Returns the message for a state or an input so large that its powers overflow.

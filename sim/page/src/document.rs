@@ -1,6 +1,6 @@
 //! HTML document around a page's body.
 
-use eomgen_model_spec::visible::{is_hidden, visible};
+use eomgen_model_spec::hidden_characters::{escape_hidden, is_hidden};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Style of every page, with a dark scheme by `prefers-color-scheme`.
@@ -55,7 +55,7 @@ fn data_text(json: &str) -> String {
             '<' => text += "\\u003c",
             letter if is_hidden(letter) => {
                 text.push('\\');
-                text += &visible(letter.encode_utf8(&mut [0; 4]));
+                text += &escape_hidden(letter.encode_utf8(&mut [0; 4]));
             }
             letter => text.push(letter),
         }
@@ -79,7 +79,7 @@ fn wrap_body(title: &str, policy: &str, head: &Markup, body: &Markup) -> String 
         }
         "\n"
     };
-    visible(&page.into_string()).into_owned()
+    escape_hidden(&page.into_string()).into_owned()
 }
 
 #[cfg(test)]

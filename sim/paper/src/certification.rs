@@ -35,7 +35,8 @@ pub fn certify_source(
     emitted: String,
 ) -> Result<Certificate, Error> {
     let order = one_order(model, orders)?;
-    let refused = |error: ModelError| Diagnostics::one(model.source.clone(), error.diagnostic());
+    let refused =
+        |error: ModelError| Diagnostics::from_one(model.source.clone(), error.diagnostic());
     let values = model.parameter_values().map_err(refused)?;
     let reference_equations = reference_equations(model, order, &values);
     let certificate = certificate(model, order, outputs, emitted, &reference_equations);

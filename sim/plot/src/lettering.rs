@@ -1,6 +1,6 @@
 //! Text in a figure: conservative width, truncation, and SVG with subscripts.
 
-use eomgen_model_spec::visible::visible;
+use eomgen_model_spec::hidden_characters::escape_hidden;
 use maud::html;
 
 use super::symbol::Symbol;
@@ -26,7 +26,7 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
 }
 
 pub(super) fn truncate_to_width(text: &str, size: f64, available: f64) -> String {
-    let text = visible(text);
+    let text = escape_hidden(text);
     let room = (available / (size * CHARACTER_WIDTH)).max(1.0);
     let excess: f64 = text.chars().map(|c| relative_width(c) - 1.0).sum();
     if text_width(&text, size) + excess * size * CHARACTER_WIDTH <= available {
@@ -79,7 +79,7 @@ pub(super) fn svg_spans(text: &str, size: f64) -> String {
 
 /// Returns text as XML character data on one line, with visible escapes of hidden characters.
 pub(super) fn escape_xml(text: &str) -> String {
-    let shown: String = visible(text)
+    let shown: String = escape_hidden(text)
         .chars()
         .map(|c| match c {
             '\n' | '\t' => ' ',

@@ -7,7 +7,7 @@ use crate::experiment::{self, ExperimentBounds, ExperimentUnits};
 use crate::given_motion;
 use crate::motion_rates::GivenColumn;
 use crate::units::parse_unit;
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
 use eomgen_model_spec::suggest::did_you_mean;
@@ -41,13 +41,13 @@ pub fn bind_description<'d>(
 ) -> Result<BoundDescription<'d>, Diagnostics> {
     let mut found = Diagnostics::new(description.source.clone());
     check_lists(description, &mut found);
-    let time = found.keep(time_unit(description));
+    let time = found.push_error(time_unit(description));
     let inputs = bind_inputs(description, model, &mut found);
     let input_priors = input_priors(description, model, &mut found);
     let motion = given_motion::given_columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
     for entry in &description.channels {
-        if let Some((channel, unit)) = found.keep(bind_channel(entry, description, model)) {
+        if let Some((channel, unit)) = found.push_error(bind_channel(entry, description, model)) {
             channels.push(channel);
             channel_units.push(unit);
         }
@@ -58,7 +58,7 @@ pub fn bind_description<'d>(
     let initial = bind_initial(&description.initial, model, &mut found);
     let mut uncertain = Vec::new();
     for (name, relative) in &description.uncertain {
-        uncertain.extend(found.keep(bind_uncertain(name, *relative, model)));
+        uncertain.extend(found.push_error(bind_uncertain(name, *relative, model)));
     }
     let input_units: Vec<Option<Unit>> = (inputs.iter())
         .map(|fed| fed.as_ref().map(|(_, unit)| unit.clone()))
@@ -102,7 +102,7 @@ pub fn bind_inputs<'d>(
             return None;
         }
         let column = columns.find(|column| column.name.text == input.name)?;
-        let unit = found.keep(parse_unit(&column.column.unit, &input.unit.text))?;
+        let unit = found.push_error(parse_unit(&column.column.unit, &input.unit.text))?;
         Some((&column.column, unit))
     };
     model.inputs.iter().map(of).collect()
@@ -122,8 +122,8 @@ fn input_priors(
         if let (Some(delay), true) = (column.delay, model.inputs.len() > 1) {
             found.push(
                 Diagnostic::error("a delay of a single input is only estimated if the model has one input".to_owned())
-                    .at(delay.sd.span, "the model has several inputs")
-                    .help("write a delay that all inputs share as a delay of the channels, or shift the late column in the record"),
+                    .with_span(delay.sd.span, "the model has several inputs")
+                    .with_help("write a delay that all inputs share as a delay of the channels, or shift the late column in the record"),
             );
         }
     }
@@ -131,7 +131,7 @@ fn input_priors(
         let mut inputs = model.inputs.iter();
         let input = inputs.find(|input| input.name == column.name.text)?;
         let own = parse_unit(&column.column.unit, &input.unit.text).ok()?;
-        let one = Unit::coherent(Dimension::NONE);
+        let one = Unit::coherent(Dimension::DIMENSIONLESS);
         Some(InputPriors {
             name: input.name.clone(),
             gain: column.gain.map(|gain| prior_in_si(gain, &one)),
@@ -153,16 +153,16 @@ fn check_lists(description: &Description, found: &mut Diagnostics) {
         if files.is_empty() {
             found.push(
                 Diagnostic::error(format!("[records] lists no {kind} record"))
-                    .at(records.span, "train and test are both required")
-                    .help(format!("write {kind} = [\"{kind}.csv\"]")),
+                    .with_span(records.span, "train and test are both required")
+                    .with_help(format!("write {kind} = [\"{kind}.csv\"]")),
             );
         }
     }
     if description.channels.is_empty() {
         found.push(
             Diagnostic::error("there is no [channels.NAME], so there is nothing to compare")
-                .at(records.span, "no channel of these records")
-                .help("describe at least one measured quantity, with column, unit and noise"),
+                .with_span(records.span, "no channel of these records")
+                .with_help("describe at least one measured quantity, with column, unit and noise"),
         );
     }
 }
@@ -194,23 +194,23 @@ fn bind_channel(
                 true => "observable, coordinate or state",
                 false => "observable or input",
             },
-            quoted(asked)
+            quote(asked)
         ))
-        .at(span, "not a quantity of the model")
-        .help(did_you_mean(asked, known()).unwrap_or(listed))
+        .with_span(span, "not a quantity of the model")
+        .with_help(did_you_mean(asked, known()).unwrap_or(listed))
     })?;
     given_motion::check_channel(quantity, !description.motion.is_empty(), asked, span)?;
     let unit = parse_unit(&entry.column.unit, &expected)?;
     let noise = unit.to_si(entry.noise.value);
     if !(noise.is_finite() && noise > 0.0) {
         return Err(
-            Diagnostic::error(format!("noise cannot be {}", entry.noise.value)).at(
+            Diagnostic::error(format!("noise cannot be {}", entry.noise.value)).with_span(
                 entry.noise.span,
                 "expected a standard deviation greater than 0",
             ),
         );
     }
-    let one = Unit::coherent(Dimension::NONE);
+    let one = Unit::coherent(Dimension::DIMENSIONLESS);
     let channel = Channel {
         name: entry.name.text.clone(),
         observable: match quantity {
@@ -268,7 +268,7 @@ fn find_quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
     if let Some(place) = within("", "_dot").or_else(|| within("dot(", ")")) {
         return Some((Quantity::Rate(place), format!("{}/s", unit(place))));
     }
-    let rate = ObservedRate::named(model, name)?;
+    let rate = ObservedRate::from_name(model, name)?;
     Some((Quantity::ObservedRate(rate), rate.unit(model).text))
 }
 
@@ -285,9 +285,9 @@ fn bind_initial(written: &InitialState, model: &Model, found: &mut Diagnostics) 
             let known = names.iter().map(String::as_str);
             let listed = format!("its states are {}", names.join(", "));
             found.push(
-                Diagnostic::error(format!("the model has no state {}", quoted(&name.text)))
-                    .at(name.span, "not a state of the model")
-                    .help(did_you_mean(&name.text, known).unwrap_or(listed)),
+                Diagnostic::error(format!("the model has no state {}", quote(&name.text)))
+                    .with_span(name.span, "not a state of the model")
+                    .with_help(did_you_mean(&name.text, known).unwrap_or(listed)),
             );
         }
     }
@@ -301,27 +301,27 @@ fn bind_initial(written: &InitialState, model: &Model, found: &mut Diagnostics) 
 
 fn bind_uncertain(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Diagnostic> {
     let parameter = model.parameters.iter().find(|p| p.name == name.text);
-    let wrong = |message: &str| Diagnostic::error(format!("{} {message}", quoted(&name.text)));
+    let wrong = |message: &str| Diagnostic::error(format!("{} {message}", quote(&name.text)));
     match parameter.map(|parameter| &parameter.value) {
         None => {
             let known = model.parameters.iter().map(|p| p.name.as_str());
             Err(wrong("is not a parameter of the model")
-                .at(name.span, "not in the model")
-                .help_if(did_you_mean(&name.text, known)))
+                .with_span(name.span, "not in the model")
+                .with_optional_help(did_you_mean(&name.text, known)))
         }
         Some(ParameterValue::Expression(_)) => Err(wrong("is defined by an expression")
-            .at(name.span, "computed from other parameters")
-            .help("list the parameters in the expression")),
+            .with_span(name.span, "computed from other parameters")
+            .with_help("list the parameters in the expression")),
         Some(ParameterValue::Number(0.0)) => Err(wrong("is 0 in the specification")
-            .at(
+            .with_span(
                 name.span,
                 "a relative standard deviation of 0 is 0, so it cannot be refitted",
             )
-            .help("set its expected value in the specification, or remove it here")),
+            .with_help("set its expected value in the specification, or remove it here")),
         Some(ParameterValue::Number(_)) => {
             if !(RELATIVE_SD_RANGE.0..=RELATIVE_SD_RANGE.1).contains(&relative.value) {
                 let (least, most) = RELATIVE_SD_RANGE;
-                return Err(wrong("has an invalid standard deviation").at(
+                return Err(wrong("has an invalid standard deviation").with_span(
                     relative.span,
                     format!("expected a fraction of its value, from {least:e} to {most:e}"),
                 ));

@@ -73,15 +73,17 @@ fn check_delays(dataset: &Dataset, description: &Description) -> Result<(), Refu
                 "a delay of {} s is {samples:.1} samples of the records",
                 mean.value
             ))
-            .at(
+            .with_span(
                 mean.span,
                 format!(
                     "expected {} to {MAX_DELAY_SAMPLES} samples",
                     -MAX_LEAD_SAMPLES
                 ),
             )
-            .help("shift the column in the record, or keep fewer samples with `every` in [time]");
-            return Err(Diagnostics::one(description.source.clone(), wrong).into());
+            .with_help(
+                "shift the column in the record, or keep fewer samples with `every` in [time]",
+            );
+            return Err(Diagnostics::from_one(description.source.clone(), wrong).into());
         }
     }
     Ok(())

@@ -23,7 +23,8 @@ pub(crate) fn check_coverage(
     dataset: &Dataset,
     description: &Description,
 ) -> Result<Vec<String>, Refusal> {
-    let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
+    let wrong =
+        |diagnostic: Diagnostic| Diagnostics::from_one(description.source.clone(), diagnostic);
     let mut notes = Vec::new();
     for (set, records) in [("training", &dataset.train), ("test", &dataset.test)] {
         if let Some(length) = description.windows.length {
@@ -37,7 +38,8 @@ pub(crate) fn check_coverage(
 
 /// Checks that a record can be split into windows, before it is split at gaps.
 pub(crate) fn check_splittable(record: &Record, description: &Description) -> Result<(), Refusal> {
-    let wrong = |diagnostic: Diagnostic| Diagnostics::one(description.source.clone(), diagnostic);
+    let wrong =
+        |diagnostic: Diagnostic| Diagnostics::from_one(description.source.clone(), diagnostic);
     match description.windows.length {
         Some(length) => {
             check_length(length, record).map_err(wrong)?;
@@ -57,7 +59,7 @@ fn check_length(length: Number, record: &Record) -> Result<(), Diagnostic> {
         "a window of {} s contains fewer than {MIN_SAMPLES_PER_WINDOW} samples of {}",
         length.value, record.name
     ))
-    .at(
+    .with_span(
         length.span,
         format!("its samples are {step:.3e} s apart; expected a longer window, or another unit of [time]"),
     ))
@@ -94,11 +96,11 @@ fn check_window_fits(length: Number, set: &str, records: &[Record]) -> Result<()
         "no {set} record is as long as one window of {} s, so there is nothing to compare",
         length.value
     ))
-    .at(
+    .with_span(
         length.span,
         format!("the longest {set} record lasts {longest:.6} s"),
     )
-    .help(format!(
+    .with_help(format!(
         "write a length of at most {longest:.6}, or \"record\" for one window per record"
     )))
 }
@@ -167,7 +169,7 @@ fn check_motion(
     Err(Diagnostic::error(format!(
         "the {set} records contain only noise: no channel varies by {MIN_VARIATION_OVER_NOISE} standard deviations of its noise"
     ))
-    .at(
+    .with_span(
         entry.noise.span,
         format!(
             "`{}` varies by {:.1e} standard deviations",
@@ -175,5 +177,5 @@ fn check_motion(
             deviations(place)
         ),
     )
-    .help("write one standard deviation of the sensor's noise, in the column's unit"))
+    .with_help("write one standard deviation of the sensor's noise, in the column's unit"))
 }

@@ -27,7 +27,7 @@ use crate::samples::MIN_SAMPLES;
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
     if let Some(refused) = check_prescribed_columns(&description, model) {
-        return Err(Diagnostics::one(description.source.clone(), refused).into());
+        return Err(Diagnostics::from_one(description.source.clone(), refused).into());
     }
     if let Some(constraint) = model.constraints.first() {
         return Err(Refusal::Record(format!(
@@ -125,8 +125,8 @@ fn check_prescribed_columns(description: &Description, model: &Model) -> Option<
             "input `{}` is a prescribed motion (rates = 2), which `compare` and `discover` do not support",
             name.text
         ))
-        .at(name.span, "these commands hold inputs constant between samples")
-        .help("remove this section to keep the input at rest, or use `simulate --record`, which supports prescribed motion"),
+        .with_span(name.span, "these commands hold inputs constant between samples")
+        .with_help("remove this section to keep the input at rest, or use `simulate --record`, which supports prescribed motion"),
     )
 }
 

@@ -1,6 +1,6 @@
 //! Bounds of the next experiment in SI, and the units of its columns.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::unit::Unit;
@@ -64,8 +64,8 @@ pub(crate) fn bind_experiment(
                 "an experiment of {:.0} samples is too long",
                 duration.value / sample.value
             ))
-            .at(duration.span, format!("expected at most {MAX_SAMPLES:.0}"))
-            .also(sample.span, "sample time"),
+            .with_span(duration.span, format!("expected at most {MAX_SAMPLES:.0}"))
+            .with_related_span(sample.span, "sample time"),
         );
     }
     for input in &said.inputs {
@@ -80,10 +80,10 @@ pub(crate) fn bind_experiment(
             found.push(
                 Diagnostic::error(format!(
                     "no record has a column for an input {}",
-                    quoted(&input.name.text)
+                    quote(&input.name.text)
                 ))
-                .at(input.name.span, "expected one of [inputs]")
-                .help_if(did_you_mean(&input.name.text, known)),
+                .with_span(input.name.span, "expected one of [inputs]")
+                .with_optional_help(did_you_mean(&input.name.text, known)),
             );
             continue;
         };
@@ -102,9 +102,9 @@ pub(crate) fn bind_experiment(
                 let known = description.channels.iter();
                 let known = known.map(|channel| channel.name.text.as_str());
                 found.push(
-                    Diagnostic::error(format!("there is no channel {}", quoted(&name.text)))
-                        .at(name.span, "expected one of [channels]")
-                        .help_if(did_you_mean(&name.text, known)),
+                    Diagnostic::error(format!("there is no channel {}", quote(&name.text)))
+                        .with_span(name.span, "expected one of [channels]")
+                        .with_optional_help(did_you_mean(&name.text, known)),
                 );
             }
         }

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::table::Written;
+use eomgen_model_spec::table::StringValue;
 
 use crate::description::Description;
 use crate::description::records::Stretch;
@@ -29,7 +29,7 @@ pub fn find_record<'d>(description: &'d Description, record: &str) -> Result<&'d
 }
 
 /// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.
-pub fn resolve_record_path(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
+pub fn resolve_record_path(dataset: &Path, file: &StringValue) -> Result<PathBuf, Diagnostic> {
     let relative = Path::new(&file.text);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let folder = match dataset.parent() {
@@ -47,7 +47,7 @@ pub fn resolve_record_path(dataset: &Path, file: &Written) -> Result<PathBuf, Di
         return Err(Diagnostic::error(format!(
             "the record \"{name}\" is outside the dataset's folder"
         ))
-        .at(
+        .with_span(
             file.span,
             "expected a file in the folder of the dataset file or below",
         ));

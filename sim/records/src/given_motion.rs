@@ -1,6 +1,6 @@
 //! Requirements on dataset files that give the motion and measure forces and torques.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::span::Span;
 use eomgen_model_spec::suggest::did_you_mean;
@@ -28,9 +28,9 @@ pub(crate) fn given_columns<'d>(
         if own().all(|coordinate| coordinate != name) {
             let listed = format!("it has {}", own().collect::<Vec<&str>>().join(", "));
             found.push(
-                Diagnostic::error(format!("the model has no coordinate {}", quoted(name)))
-                    .at(given.name.span, "expected the name of a coordinate")
-                    .help(did_you_mean(name, own()).unwrap_or(listed)),
+                Diagnostic::error(format!("the model has no coordinate {}", quote(name)))
+                    .with_span(given.name.span, "expected the name of a coordinate")
+                    .with_help(did_you_mean(name, own()).unwrap_or(listed)),
             );
         }
     }
@@ -40,20 +40,22 @@ pub(crate) fn given_columns<'d>(
         found.push(
             Diagnostic::error(format!(
                 "[motion] cannot give the motion of {}",
-                quoted(name)
+                quote(name)
             ))
-            .at(
+            .with_span(
                 first.name.span,
                 "[motion] requires a model with coordinates only",
             )
-            .help("remove [motion]; list forces as [inputs] and measured quantities as [channels]"),
+            .with_help(
+                "remove [motion]; list forces as [inputs] and measured quantities as [channels]",
+            ),
         );
     }
     if !matches!(description.initial, InitialState::Estimate) {
         found.push(
             Diagnostic::error("[initial] is not used if the motion is given")
-                .at(first.name.span, "the motion is given here")
-                .help("remove [initial]"),
+                .with_span(first.name.span, "the motion is given here")
+                .with_help("remove [initial]"),
         );
     }
     let mut columns = Vec::with_capacity(model.coordinates.len());
@@ -62,15 +64,15 @@ pub(crate) fn given_columns<'d>(
         match given.find(|given| given.name.text == coordinate.name) {
             Some(given) => {
                 let start = initial_position(model, &coordinate.name);
-                columns.extend(found.keep(given_column(given, &coordinate.unit, start)));
+                columns.extend(found.push_error(given_column(given, &coordinate.unit, start)));
             }
             None if found.list().len() == before => found.push(
                 Diagnostic::error(format!(
                     "the motion of {} is not given",
-                    quoted(&coordinate.name)
+                    quote(&coordinate.name)
                 ))
-                .at(first.name.span, "give either all coordinates or none")
-                .help(format!("write [motion.{}]", coordinate.name)),
+                .with_span(first.name.span, "give either all coordinates or none")
+                .with_help(format!("write [motion.{}]", coordinate.name)),
             ),
             None => {}
         }
@@ -97,22 +99,23 @@ fn given_column<'d>(
         if given.column.wrap.is_some() {
             return Err(
                 Diagnostic::error("`wrap` is not used: a speed does not wrap around")
-                    .at(written.span, "this is the unit of a speed")
-                    .help("remove `wrap`, or give the unit of a position"),
+                    .with_span(written.span, "this is the unit of a speed")
+                    .with_help("remove `wrap`, or give the unit of a position"),
             );
         }
         let initial = given.initial.map_or(initial, |number| number.value);
         return Ok(kind_and_unit(GivenKind::Speed { initial }, unit));
     }
-    let unit = parse_unit(written, &own.to_string())
-        .map_err(|wrong| wrong.help(format!("a position is in {own}, a speed in {of_speed}")))?;
+    let unit = parse_unit(written, &own.to_string()).map_err(|wrong| {
+        wrong.with_help(format!("a position is in {own}, a speed in {of_speed}"))
+    })?;
     match given.initial {
         Some(number) => Err(Diagnostic::error(
             "`initial` is not used: the column contains the position",
         )
-        .at(number.span, "only for a column of speeds")
-        .also(written.span, "this is the unit of a position")
-        .help(format!(
+        .with_span(number.span, "only for a column of speeds")
+        .with_related_span(written.span, "this is the unit of a position")
+        .with_help(format!(
             "remove `initial`, or give the unit of a speed, such as {of_speed}"
         ))),
         None => Ok(kind_and_unit(GivenKind::Position, unit)),
@@ -156,21 +159,21 @@ pub(crate) fn check_channel(
     let wrong = match (quantity, gives_motion) {
         (Quantity::Input(_), false) => Diagnostic::error(format!(
             "{} is an input of the model: it can be a channel only if the motion is given",
-            quoted(asked)
+            quote(asked)
         ))
-        .at(span, "the model does not compute this quantity")
-        .help(
+        .with_span(span, "the model does not compute this quantity")
+        .with_help(
             "give the motion of every coordinate in [motion.NAME], or list the column under [inputs]",
         ),
         (Quantity::State(_), true) => {
-            Diagnostic::error(format!("{} does not follow from the motion of the coordinates", quoted(asked)))
-                .at(span, "first-order states are not computed along a given motion")
-                .help("remove [motion], and list the coordinates as channels")
+            Diagnostic::error(format!("{} does not follow from the motion of the coordinates", quote(asked)))
+                .with_span(span, "first-order states are not computed along a given motion")
+                .with_help("remove [motion], and list the coordinates as channels")
         }
         (Quantity::Coordinate(_) | Quantity::Rate(_) | Quantity::Acceleration(_), true) => {
-            Diagnostic::error(format!("{} is given by [motion]", quoted(asked)))
-                .at(span, "a channel cannot measure a given quantity")
-                .help("remove the channel; list the torques and forces that drive the machine as channels")
+            Diagnostic::error(format!("{} is given by [motion]", quote(asked)))
+                .with_span(span, "a channel cannot measure a given quantity")
+                .with_help("remove the channel; list the torques and forces that drive the machine as channels")
         }
         _ => return Ok(()),
     };
@@ -198,13 +201,13 @@ pub(crate) fn required_inputs(
             found.push(
                 Diagnostic::error(format!(
                     "{} is both an input and a channel",
-                    quoted(&column.name.text)
+                    quote(&column.name.text)
                 ))
-                .at(
+                .with_span(
                     column.name.span,
                     "this input is computed from the given motion",
                 )
-                .help("remove it from [inputs]"),
+                .with_help("remove it from [inputs]"),
             );
         }
     }
@@ -218,8 +221,8 @@ pub(crate) fn required_inputs(
                 "measured inputs: {inputs}, coordinates: {coordinates}; a given motion requires one measured \
                  input per coordinate"
             ))
-            .at(first.name.span, "the motion is given here")
-            .help("add a channel for each torque or force that drives the machine, with observable = \"INPUT\""),
+            .with_span(first.name.span, "the motion is given here")
+            .with_help("add a channel for each torque or force that drives the machine, with observable = \"INPUT\""),
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eomgen_model_spec::visible::visible;
+use eomgen_model_spec::hidden_characters::escape_hidden;
 
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
@@ -50,7 +50,7 @@ pub fn find_columns(
             (None, _) => {
                 let list = there.join(", ");
                 let shown: String = list.chars().take(200).collect();
-                let shown = visible(&shown);
+                let shown = escape_hidden(&shown);
                 let parted = match guess_separator(there) {
                     _ if there[0].starts_with(COMMENT) => format!(
                         ": this line is a comment; write comment = \"{COMMENT}\" in [format], or set skip to the number of lines \

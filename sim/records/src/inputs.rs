@@ -28,11 +28,11 @@ pub fn read_inputs(
     if let Some(given) = description.motion.first() {
         found.push(
             Diagnostic::error("the records give the motion, but no inputs to simulate it")
-                .at(given.name.span, "here")
-                .help("use `compare` or `discover`: they compute the forces that such a motion requires"),
+                .with_span(given.name.span, "here")
+                .with_help("use `compare` or `discover`: they compute the forces that such a motion requires"),
         );
     }
-    let time = found.keep(binding::time_unit(&description));
+    let time = found.push_error(binding::time_unit(&description));
     let inputs = binding::bind_inputs(&description, model, &mut found);
     let Some(time) = time.filter(|_| found.is_empty()) else {
         return Err(found.into());

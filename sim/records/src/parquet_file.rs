@@ -165,12 +165,12 @@ mod tests {
     use parquet::schema::types::Type;
 
     use eomgen_model_spec::span::Span;
-    use eomgen_model_spec::table::Written;
+    use eomgen_model_spec::table::StringValue;
 
     use super::{ColumnKey, read_columns};
 
     fn column_keys(names: [&str; 2]) -> [ColumnKey; 2] {
-        names.map(|name| ColumnKey::Name(Written::inferred(name, Span::default())))
+        names.map(|name| ColumnKey::Name(StringValue::without_text(name, Span::default())))
     }
 
     /// Returns a file with the columns `t` (double, compressed) and `n` (integers, some missing).

@@ -84,8 +84,9 @@ impl RecordReader<'_> {
         stretch: &Stretch,
         notes: &mut Vec<String>,
     ) -> Result<Record, Refusal> {
-        let wrong =
-            |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
+        let wrong = |diagnostic: Diagnostic| {
+            Diagnostics::from_one(self.description.source.clone(), diagnostic)
+        };
         let place = resolve_record_path(self.path, &stretch.file).map_err(wrong)?;
         let mut table = self.read_table(&place, name, stretch, notes)?;
         self.add_rates(&place, &mut table)?;
@@ -162,7 +163,7 @@ impl RecordReader<'_> {
         check_times(place, &table.columns[0], &table.lines, 1)?;
         let (from, to) = self.stretch_ends(stretch);
         let gaps = unwrap_columns(&read, (place, from..to), &mut table)
-            .map_err(|wrong| Diagnostics::one(self.description.source.clone(), wrong))?;
+            .map_err(|wrong| Diagnostics::from_one(self.description.source.clone(), wrong))?;
         notes.extend(gaps.into_iter().map(|gap| format!("{name}: {gap}")));
         Ok(table)
     }
@@ -229,9 +230,9 @@ impl RecordReader<'_> {
                 self.time.from_si(last),
                 self.description.time.column.unit.text
             ));
-            return Err(Diagnostics::one(
+            return Err(Diagnostics::from_one(
                 self.description.source.clone(),
-                nothing.at(
+                nothing.with_span(
                     span,
                     "expected a time of the record, in the unit of its column",
                 ),

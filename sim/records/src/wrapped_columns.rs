@@ -68,7 +68,7 @@ impl<'d> ReadColumn<'d> {
 }
 
 fn full_turn(unit: &Unit) -> Option<f64> {
-    (unit.dimension == Dimension::NONE).then(|| unit.from_si(TAU))
+    (unit.dimension == Dimension::DIMENSIONLESS).then(|| unit.from_si(TAU))
 }
 
 pub(crate) fn to_column_unit(unit: &Unit) -> ColumnUnit {
@@ -80,7 +80,7 @@ pub(crate) fn to_column_unit(unit: &Unit) -> ColumnUnit {
 
 /// Returns true for angles, counts and lengths, which can wrap around.
 pub(crate) fn can_wrap(unit: &Unit) -> bool {
-    [Dimension::NONE, Dimension::LENGTH].contains(&unit.dimension)
+    [Dimension::DIMENSIONLESS, Dimension::LENGTH].contains(&unit.dimension)
 }
 
 /// Unwraps the declared columns and returns notes. `range` is the file and the time range in use.
@@ -118,8 +118,9 @@ fn check_period(
 ) -> Result<(), Diagnostic> {
     let (name, unit, period) = (column.name, column.unit, column.period_in_si(number));
     let wrong = |message: String, help: String| {
-        let wrong = Diagnostic::error(message).at(number.span, "not the period of the column");
-        Err(wrong.help(help))
+        let wrong =
+            Diagnostic::error(message).with_span(number.span, "not the period of the column");
+        Err(wrong.with_help(help))
     };
     let spanned = span(values);
     if spanned > MAX_RANGE_PERIODS * period {
@@ -184,8 +185,8 @@ fn unwrap_column(
             return Err(Diagnostic::error(format!(
                 "`{name}` is missing {place}, and its speed changes there: the number of turns is not known"
             ))
-            .at(column.column.column.span(), "in this column")
-            .help("list the parts of the file before and after the gap, with from and to"));
+            .with_span(column.column.column.span(), "in this column")
+            .with_help("list the parts of the file before and after the gap, with from and to"));
         }
     }
     *values = found.values;
@@ -217,8 +218,8 @@ fn refuse_wrapped(
     let cure = proposed_key(pattern, size, &format!(" in [{table}.{name}]"));
     if pattern.is_wrapped(table == "inputs") {
         return Err(Diagnostic::error(jumps)
-            .at(column.column.column.span(), "the values wrap around")
-            .help(format!("{cure}, or wrap = \"none\" if the jumps are real")));
+            .with_span(column.column.column.span(), "the values wrap around")
+            .with_help(format!("{cure}, or wrap = \"none\" if the jumps are real")));
     }
     Ok((table != "inputs").then(|| format!("{jumps}; if it wraps around, {cure}")))
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::Model;
-use eomgen_model_spec::uncertainty::{Law, Spread};
+use eomgen_model_spec::uncertainty::{Distribution, Law};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -60,8 +60,8 @@ pub enum SampledParameter {
     },
 }
 
-impl From<Spread> for SampledParameter {
-    fn from(Spread { name, law }: Spread) -> Self {
+impl From<Distribution> for SampledParameter {
+    fn from(Distribution { name, law }: Distribution) -> Self {
         match law {
             Law::Normal {
                 mean,
@@ -85,7 +85,7 @@ impl Samples {
     /// # Errors
     /// No uncertain parameter, an undefined uncertainty, or an invalid number of samples.
     pub fn new(model: &Model, count: usize, seed: u64) -> Result<Self, SweepError> {
-        let spreads = model.spreads();
+        let spreads = model.distributions();
         let spreads = spreads.map_err(|error| SweepError::Request(error.to_string()))?;
         if spreads.is_empty() {
             return Err(SweepError::Request(format!(

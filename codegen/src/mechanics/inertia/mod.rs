@@ -119,7 +119,7 @@ impl Machine<'_> {
             Defect::Entry(place, value) => self.single_diagnostic(*place, *value),
             Defect::Direction { rates, negative } => self.combined_diagnostic(rates, *negative),
         }
-        .help_if(Some(self.help()))
+        .with_optional_help(Some(self.help()))
     }
 
     fn single_diagnostic(&self, place: usize, value: f64) -> Diagnostic {
@@ -135,7 +135,7 @@ impl Machine<'_> {
             "{} `{name}` has {what} at the initial state: the mass matrix is not positive definite",
             self.kind(place)
         );
-        Diagnostic::error(message).at(
+        Diagnostic::error(message).with_span(
             self.span(place),
             "its kinetic energy does not grow with its rate",
         )
@@ -169,12 +169,12 @@ impl Machine<'_> {
         let mut places = moving.iter().map(|place| self.span(*place));
         let mut found = Diagnostic::error(message);
         if let Some(first) = places.next() {
-            found = found.at(first, label);
+            found = found.with_span(first, label);
             // All modes of a field have one place.
             let mut others: Vec<Span> = places.filter(|place| *place != first).collect();
             others.dedup();
             for other in others {
-                found = found.also(other, "moves with it");
+                found = found.with_related_span(other, "moves with it");
             }
         }
         found

@@ -179,7 +179,7 @@ fn text_from_outside_stays_text() {
 fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
     let hostile = "\u{1b}[31m\u{202e}x";
     for page in [discovery(hostile).page(), comparison(hostile).page()] {
-        let is_hidden = eomgen_model_spec::visible::is_hidden;
+        let is_hidden = eomgen_model_spec::hidden_characters::is_hidden;
         assert!(!page.contains(is_hidden), "{page}");
         assert!(page.matches("\\u{1b}[31m\\u{202e}x").count() >= 8, "{page}");
         let policy = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'";

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
+use eomgen_model_spec::table::{Entry, Name, Number, Record, StringValue};
 
 use super::keys;
 use super::required_entry::require_entry;
@@ -13,7 +13,7 @@ const DECIMATION_RANGE: std::ops::RangeInclusive<i64> = 1..=1_000_000;
 #[derive(Clone, Debug)]
 pub enum ColumnKey {
     /// Name of the column.
-    Name(Written),
+    Name(StringValue),
     /// Number of the column, from 1.
     Number(usize, Span),
 }
@@ -34,7 +34,7 @@ pub struct Column {
     /// Name or number.
     pub column: ColumnKey,
     /// Unit of the values.
-    pub unit: Written,
+    pub unit: StringValue,
     /// Wrapping of the values, if declared.
     pub wrap: Option<Wrap>,
 }
@@ -95,7 +95,7 @@ pub struct ChannelColumn {
     /// Standard deviation of the noise, in the column's unit.
     pub noise: Number,
     /// Measured quantity, if it is not the channel's name.
-    pub observable: Option<Written>,
+    pub observable: Option<StringValue>,
     /// Prior of the gain.
     pub gain: Option<Prior>,
     /// Prior of the bias, in the column's unit.
@@ -125,7 +125,7 @@ fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     let column = require_entry(record, "column", "\"its name in the records\"", found).cloned();
     let unit = require_entry(record, "unit", "\"m\"", found).cloned();
     let column = column.and_then(|entry| read_key(&entry, found));
-    let unit = unit.and_then(|entry| found.keep(entry.written()));
+    let unit = unit.and_then(|entry| found.push_error(entry.written()));
     let wrap = read_wrap(record, found);
     Some(Column {
         column: column?,
@@ -139,16 +139,17 @@ fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap
         return Some(None);
     };
     if entry.written().is_ok() {
-        let never = found.keep(entry.word(&[("none", Wrap::Never)]))?;
+        let never = found.push_error(entry.keyword(&[("none", Wrap::Never)]))?;
         return Some(Some(never));
     }
-    let period = found.keep(entry.number())?;
+    let period = found.push_error(entry.number())?;
     if period.value <= 0.0 {
         found.push(
-            Diagnostic::error(format!("values cannot wrap around after {}", period.value)).at(
-                period.span,
-                "expected a number greater than 0, in the column's unit, or \"none\"",
-            ),
+            Diagnostic::error(format!("values cannot wrap around after {}", period.value))
+                .with_span(
+                    period.span,
+                    "expected a number greater than 0, in the column's unit, or \"none\"",
+                ),
         );
         return None;
     }
@@ -156,15 +157,15 @@ fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap
 }
 
 fn read_key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
-    let Ok((number, span)) = entry.whole() else {
-        return found.keep(entry.written()).map(ColumnKey::Name);
+    let Ok((number, span)) = entry.integer() else {
+        return found.push_error(entry.written()).map(ColumnKey::Name);
     };
     match usize::try_from(number) {
         Ok(number) if number > 0 => Some(ColumnKey::Number(number, span)),
         _ => {
             found.push(
                 Diagnostic::error(format!("there is no column {number}"))
-                    .at(span, "columns are numbered from 1"),
+                    .with_span(span, "columns are numbered from 1"),
             );
             None
         }
@@ -175,19 +176,21 @@ pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ti
     let record = entry.record(&keys::TIME, "{ column = \"t\", unit = \"s\" }", found)?;
     let every = match record.get("every") {
         Some(every) => {
-            let (count, span) = found.keep(every.whole())?;
+            let (count, span) = found.push_error(every.integer())?;
             if !DECIMATION_RANGE.contains(&count) {
-                found.push(Diagnostic::error(format!("`every` cannot be {count}")).at(
-                    span,
-                    "expected the number of samples that become one, from 1 on",
-                ));
+                found.push(
+                    Diagnostic::error(format!("`every` cannot be {count}")).with_span(
+                        span,
+                        "expected the number of samples that become one, from 1 on",
+                    ),
+                );
             }
             usize::try_from(count).unwrap_or(1).max(1)
         }
         None => 1,
     };
     let filter = match record.get("filter") {
-        Some(filter) => found.keep(filter.word(&[("low-pass", true), ("none", false)]))?,
+        Some(filter) => found.push_error(filter.keyword(&[("low-pass", true), ("none", false)]))?,
         None => true,
     };
     Some(Time {
@@ -201,7 +204,7 @@ pub(super) fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<I
     let example = "{ column = \"u\", unit = \"N\" }";
     let record = entry.record(&keys::INPUT, example, found)?;
     if let Some(hold) = record.get("hold") {
-        found.keep(hold.word(&[("zero-order", ())]));
+        found.push_error(hold.keyword(&[("zero-order", ())]));
     }
     let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(InputColumn {
@@ -227,7 +230,7 @@ pub(super) fn read_channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
     let example = "{ column = \"x\", unit = \"m\", noise = 1e-6 }";
     let record = entry.record(&keys::CHANNEL, example, found)?;
     let noise = require_entry(&record, "noise", "1e-6, one standard deviation", found).cloned();
-    let noise = noise.and_then(|noise| found.keep(noise.number()));
+    let noise = noise.and_then(|noise| found.push_error(noise.number()));
     let observable = record.written("observable", found);
     let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(ChannelColumn {
@@ -247,7 +250,7 @@ fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option
     };
     let record = entry.record(&keys::PRIOR, "{ sd = 0.02 }", found)?;
     let mean = match record.get("mean") {
-        Some(mean) => Some(found.keep(mean.number())?),
+        Some(mean) => Some(found.push_error(mean.number())?),
         None => None,
     };
     let sd = require_entry(
@@ -256,11 +259,11 @@ fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option
         "0.02, one standard deviation, or 0 if it is known",
         found,
     )?;
-    let sd = found.keep(sd.number())?;
+    let sd = found.push_error(sd.number())?;
     if sd.value < 0.0 {
         found.push(
             Diagnostic::error(format!("`sd` cannot be {}", sd.value))
-                .at(sd.span, "expected one standard deviation, 0 or greater"),
+                .with_span(sd.span, "expected one standard deviation, 0 or greater"),
         );
     }
     Some(Some(Prior { mean, sd }))

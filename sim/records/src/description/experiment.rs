@@ -48,12 +48,12 @@ pub(super) fn read_experiment(entry: &Entry<'_>, found: &mut Diagnostics) -> Opt
         ..Experiment::default()
     };
     if let Some(entry) = record.get("inputs") {
-        let entries = found.keep(entry.table("{ u = { range = [-1, 1] } }"))?;
+        let entries = found.push_error(entry.table("{ u = { range = [-1, 1] } }"))?;
         let inputs = entries.iter().filter_map(|entry| read_input(entry, found));
         experiment.inputs = inputs.collect();
     }
     if let Some(entry) = record.get("limits") {
-        let entries = found.keep(entry.table("{ x = [-0.1, 0.1] }"))?;
+        let entries = found.push_error(entry.table("{ x = [-0.1, 0.1] }"))?;
         for entry in &entries {
             let limit = read_range(entry, found)?;
             experiment.limits.push((entry.name.clone(), limit));
@@ -73,7 +73,7 @@ fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds>
     if let Some(band) = band.filter(|band| band.low.value < 0.0) {
         found.push(
             Diagnostic::error(format!("a frequency cannot be {}", band.low.value))
-                .at(band.low.span, "expected Hz, 0 or greater"),
+                .with_span(band.low.span, "expected Hz, 0 or greater"),
         );
     }
     Some(InputBounds {
@@ -85,7 +85,7 @@ fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds>
 }
 
 fn read_range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange> {
-    let elements = found.keep(entry.list("[-1, 1]"))?;
+    let elements = found.push_error(entry.list("[-1, 1]"))?;
     let [low, high] = &elements[..] else {
         found.push(
             Diagnostic::error(format!(
@@ -93,11 +93,14 @@ fn read_range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange>
                 entry.name.text,
                 elements.len()
             ))
-            .at(entry.span(), "expected two, the lower one first"),
+            .with_span(entry.span(), "expected two, the lower one first"),
         );
         return None;
     };
-    let (low, high) = (found.keep(low.number()), found.keep(high.number()));
+    let (low, high) = (
+        found.push_error(low.number()),
+        found.push_error(high.number()),
+    );
     let (low, high) = (low?, high?);
     if low.value >= high.value {
         found.push(
@@ -105,7 +108,7 @@ fn read_range(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<NumberRange>
                 "the range from {} to {} is empty",
                 low.value, high.value
             ))
-            .at(entry.span(), "expected two numbers, the lower one first"),
+            .with_span(entry.span(), "expected two numbers, the lower one first"),
         );
         return None;
     }
@@ -116,7 +119,7 @@ fn require_positive(number: Option<Number>, key: &str, found: &mut Diagnostics) 
     if let Some(number) = number.filter(|number| number.value <= 0.0) {
         found.push(
             Diagnostic::error(format!("`{key}` cannot be {}", number.value))
-                .at(number.span, "expected a number greater than 0"),
+                .with_span(number.span, "expected a number greater than 0"),
         );
         return None;
     }

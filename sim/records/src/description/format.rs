@@ -1,6 +1,6 @@
 //! Table `[format]`: layout of a text file with numbers.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::{Entry, Record};
 
@@ -64,11 +64,11 @@ pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format>
     let record = entry.record(&keys::FORMAT, "{ separator = \";\" }", found)?;
     let usual = Format::default();
     let separator = match record.get("separator") {
-        Some(separator) => found.keep(separator.word(&SEPARATORS))?,
+        Some(separator) => found.push_error(separator.keyword(&SEPARATORS))?,
         None => usual.separator,
     };
     let decimal = match record.get("decimal") {
-        Some(decimal) => found.keep(decimal.word(&DECIMALS))?,
+        Some(decimal) => found.push_error(decimal.keyword(&DECIMALS))?,
         None => usual.decimal,
     };
     let format = Format {
@@ -83,8 +83,8 @@ pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format>
         let decimal = record.get("decimal").map_or(entry.span(), Entry::span);
         found.push(
             Diagnostic::error("a comma cannot be both the separator and the decimal sign")
-                .at(decimal, "this is also the separator")
-                .help("write separator = \";\", or the separator of the file"),
+                .with_span(decimal, "this is also the separator")
+                .with_help("write separator = \";\", or the separator of the file"),
         );
     }
     Some(format)
@@ -97,7 +97,7 @@ fn read_boolean(
     found: &mut Diagnostics,
 ) -> Option<bool> {
     match record.get(key) {
-        Some(entry) => found.keep(entry.truth()),
+        Some(entry) => found.push_error(entry.boolean()),
         None => Some(usual),
     }
 }
@@ -106,7 +106,7 @@ fn read_skip(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {
     let Some(entry) = record.get("skip") else {
         return Some(0);
     };
-    let (count, span) = found.keep(entry.whole())?;
+    let (count, span) = found.push_error(entry.integer())?;
     match usize::try_from(count)
         .ok()
         .filter(|_| count <= MAX_SKIPPED_LINES)
@@ -120,7 +120,7 @@ fn read_skip(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {
 }
 
 fn line_count_error(count: i64, span: Span) -> Diagnostic {
-    Diagnostic::error(format!("`skip` cannot be {count}")).at(
+    Diagnostic::error(format!("`skip` cannot be {count}")).with_span(
         span,
         format!("expected the number of lines before the columns, 0 to {MAX_SKIPPED_LINES}"),
     )
@@ -130,13 +130,13 @@ fn read_comment(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<u
     let Some(entry) = record.get("comment") else {
         return Some(None);
     };
-    let written = found.keep(entry.written())?;
+    let written = found.push_error(entry.written())?;
     match written.text.as_bytes() {
         [one] if one.is_ascii_punctuation() => Some(Some(*one)),
         _ => {
             found.push(
-                Diagnostic::error(format!("`comment` cannot be {}", quoted(&written.text)))
-                    .at(written.span, "expected one character, such as \"#\""),
+                Diagnostic::error(format!("`comment` cannot be {}", quote(&written.text)))
+                    .with_span(written.span, "expected one character, such as \"#\""),
             );
             None
         }

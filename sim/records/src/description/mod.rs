@@ -94,7 +94,7 @@ fn read_tables(
         text: "the dataset".to_owned(),
         span: Span::new(0, 0),
     };
-    let top = Record::of(file, entries.to_vec(), &keys::first_level_keys(), found);
+    let top = Record::new(file, entries.to_vec(), &keys::first_level_keys(), found);
     let title = top.text("title", found);
     top.text("source", found);
     let records = top
@@ -152,11 +152,11 @@ fn check_column_numbers(description: &Description, found: &mut Diagnostics) {
             let number = name.text.parse::<usize>().unwrap_or(2);
             found.push(
                 Diagnostic::error(format!("there is no column \"{}\"", name.text))
-                    .at(
+                    .with_span(
                         name.span,
                         "the columns have no names: names = false in [format]",
                     )
-                    .help(format!(
+                    .with_help(format!(
                         "give the column's number, from 1 on: column = {number}"
                     )),
             );
@@ -167,7 +167,7 @@ fn check_column_numbers(description: &Description, found: &mut Diagnostics) {
 fn read_uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
     let record = entry.record(&keys::UNCERTAIN, "{ relative = 0.05 }", found)?;
     let relative = require_entry(&record, "relative", "0.05", found)?;
-    Some((entry.name.clone(), found.keep(relative.number())?))
+    Some((entry.name.clone(), found.push_error(relative.number())?))
 }
 
 fn read_entries<T>(
@@ -179,7 +179,7 @@ fn read_entries<T>(
     let Some(entry) = top.get(name) else {
         return Vec::new();
     };
-    let entries = found.keep(entry.table("{ ... }")).unwrap_or_default();
+    let entries = found.push_error(entry.table("{ ... }")).unwrap_or_default();
     entries
         .iter()
         .filter_map(|entry| of(entry, found))

@@ -44,24 +44,24 @@ pub(super) fn read_initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
         ("estimate", InitialWord::Estimate),
         ("given", InitialWord::Given),
     ];
-    let word = found.keep(state.word(&words))?;
+    let word = found.push_error(state.keyword(&words))?;
     let values = record.get("values");
     match (word, values) {
         (InitialWord::Given, Some(values)) => read_values(values, found),
         (InitialWord::Given, None) => {
             found.push(
                 Diagnostic::error("no state is given")
-                    .at(state.span(), "`values` are missing")
-                    .help("write [initial.values] with the states by name, in SI"),
+                    .with_span(state.span(), "`values` are missing")
+                    .with_help("write [initial.values] with the states by name, in SI"),
             );
             None
         }
         (_, Some(values)) => {
             found.push(
                 Diagnostic::error("`values` are not used")
-                    .at(values.name.span, "only used with state = \"given\"")
-                    .also(state.span(), "beside this")
-                    .help("write state = \"given\", or remove the values"),
+                    .with_span(values.name.span, "only used with state = \"given\"")
+                    .with_related_span(state.span(), "beside this")
+                    .with_help("write state = \"given\", or remove the values"),
             );
             None
         }
@@ -71,17 +71,17 @@ pub(super) fn read_initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
 }
 
 fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
-    let values = found.keep(entry.table("{ x = 0.1 }"))?;
+    let values = found.push_error(entry.table("{ x = 0.1 }"))?;
     if values.is_empty() {
         found.push(
             Diagnostic::error("no state is given")
-                .at(entry.span(), "empty table")
-                .help("give states by name in SI, such as x = 0.1"),
+                .with_span(entry.span(), "empty table")
+                .with_help("give states by name in SI, such as x = 0.1"),
         );
     }
     let mut given = Vec::with_capacity(values.len());
     for value in values {
-        given.push((value.name.clone(), found.keep(value.number())?));
+        given.push((value.name.clone(), found.push_error(value.number())?));
     }
     Some(InitialState::Values(given))
 }
@@ -89,19 +89,19 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
 pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
     let record = entry.record(&keys::WINDOWS, "{ length = 0.5 }", found)?;
     let smoothed = match record.get("start") {
-        Some(start) => found.keep(start.word(&[("fitted", false), ("smoothed", true)])),
+        Some(start) => found.push_error(start.keyword(&[("fitted", false), ("smoothed", true)])),
         None => Some(false),
     };
     let length = require_entry(&record, "length", "0.5, in s, or \"record\"", found)?;
     let length = match length.written() {
-        Ok(_) => found.keep(length.word(&[("record", None)])),
-        Err(_) => found.keep(length.number()).map(Some),
+        Ok(_) => found.push_error(length.keyword(&[("record", None)])),
+        Err(_) => found.push_error(length.number()).map(Some),
     };
     let length = length?;
     if let Some(length) = length.filter(|length| length.value <= 0.0) {
         found.push(
             Diagnostic::error(format!("a window cannot last {} s", length.value))
-                .at(length.span, "expected seconds, more than 0, or \"record\""),
+                .with_span(length.span, "expected seconds, more than 0, or \"record\""),
         );
     }
     Some(Windows {

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Number, Written};
+use eomgen_model_spec::table::{Entry, Number, StringValue};
 
 use super::keys;
 use super::required_entry::require_entry;
@@ -22,7 +22,7 @@ pub struct Records {
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// Path of the file.
-    pub file: Written,
+    pub file: StringValue,
     /// First time, in the unit of the time column.
     pub from: Option<Number>,
     /// End time, which is not included.
@@ -37,7 +37,7 @@ pub(super) fn read_records(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
             return Vec::new();
         };
         let elements = found
-            .keep(entry.list("[\"record.csv\"]"))
+            .push_error(entry.list("[\"record.csv\"]"))
             .unwrap_or_default();
         let stretches = elements.iter();
         stretches
@@ -53,7 +53,7 @@ pub(super) fn read_records(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
 
 fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
     if !entry.is_table() {
-        let file = found.keep(entry.written())?;
+        let file = found.push_error(entry.written())?;
         return Some(Stretch {
             file,
             from: None,
@@ -72,12 +72,12 @@ fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
                 "the part from {} to {} is empty",
                 from.value, to.value
             ))
-            .at(to.span, "expected a later time")
-            .also(from.span, "than this"),
+            .with_span(to.span, "expected a later time")
+            .with_related_span(from.span, "than this"),
         );
     }
     Some(Stretch {
-        file: found.keep(file)?,
+        file: found.push_error(file)?,
         from,
         to,
     })

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use eomgen_model_spec::hidden_characters::{escape_hidden_in_strings, is_hidden};
 use eomgen_model_spec::model::ParameterValue;
-use eomgen_model_spec::visible::{is_hidden, visible_in_strings};
 
 use super::DetectedRecord;
 use super::matching::{FileColumn, Match};
@@ -61,7 +61,7 @@ fn quote_text(text: &str) -> String {
         .fold(text.to_owned(), |text, (letter, escape)| {
             text.replace(letter, escape)
         });
-    format!("\"{}\"", visible_in_strings(&escaped))
+    format!("\"{}\"", escape_hidden_in_strings(&escaped))
 }
 
 fn records_table(found: &DetectedRecord<'_>, name: &str) -> String {

@@ -110,7 +110,7 @@ fn list_observed_rates(model: &Model) -> impl Iterator<Item = ObservedRate> {
         let observables = model.observables.iter().enumerate();
         let differentiated = observables.filter(move |(_, observable)| {
             !["energy", "power"].contains(&observable.name.as_str())
-                && (times == 1 || !model.holds_rate(&observable.value))
+                && (times == 1 || !model.contains_rate(&observable.value))
         });
         differentiated.map(move |(observable, _)| ObservedRate { observable, times })
     })
@@ -141,7 +141,7 @@ const MATCHING_RULES: [(Rule, &str); 5] = [
         "a similar name: please check",
     ),
     (
-        |c, q| c.unit.is_some() && !q.unit.dimension.is_none() && q.is_found_by_unit,
+        |c, q| c.unit.is_some() && !q.unit.dimension.is_dimensionless() && q.is_found_by_unit,
         "the only remaining column with this unit: please check",
     ),
 ];

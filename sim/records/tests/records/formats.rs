@@ -424,7 +424,7 @@ fn hidden_characters_in_names_survive_proposals() {
     let text = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
     let text = text.unwrap_or_else(|refusal| panic!("{refusal}"));
     assert!(
-        !text.contains(eomgen_model_spec::visible::is_hidden),
+        !text.contains(eomgen_model_spec::hidden_characters::is_hidden),
         "{text}"
     );
     assert!(text.contains("\\u001b[31m\\u202e"), "{text}");

@@ -11,11 +11,11 @@ impl Oracle {
     pub(super) fn bounds(&self, tree: &Tree, imposed: PrescribedSides<'_>) -> Interval {
         let of = |tree: &Tree| self.bounds(tree, imposed);
         let within = |range: Option<(f64, f64)>| {
-            range.map_or(Interval::ALL, |(low, high)| Interval::between(low, high))
+            range.map_or(Interval::ALL, |(low, high)| Interval::from_ends(low, high))
         };
         let entry = |place: usize| within(self.ranges.state.get(place).copied().flatten());
         match tree {
-            Tree::Constant(value) => Interval::between(*value, *value),
+            Tree::Constant(value) => Interval::from_ends(*value, *value),
             Tree::Coordinate(index) => entry(*index),
             Tree::State(index) => entry(2 * self.size() + index),
             Tree::Input(index) | Tree::PrescribedInput { input: index, .. } => {
@@ -25,12 +25,12 @@ impl Oracle {
                 let definition = self.system.definitions.get(*index);
                 definition.map_or(Interval::ALL, of)
             }
-            Tree::Negate(operand) => of(operand).negated(),
+            Tree::Negate(operand) => of(operand).negate(),
             Tree::Binary(BinaryOperator::Multiply, left, right) if left == right => {
-                of(left).power(2.0)
+                of(left).raise(2.0)
             }
             Tree::Binary(operator, left, right) => combine_bounds(*operator, of(left), of(right)),
-            Tree::Power(base, exponent) => of(base).power(*exponent),
+            Tree::Power(base, exponent) => of(base).raise(*exponent),
             Tree::Call(function, arguments) => {
                 let bounds: Vec<Interval> = arguments.iter().map(of).collect();
                 let side = imposed.side(*function, arguments);
@@ -43,10 +43,10 @@ impl Oracle {
 
 fn combine_bounds(operator: BinaryOperator, left: Interval, right: Interval) -> Interval {
     match operator {
-        BinaryOperator::Add => left.plus(right),
-        BinaryOperator::Subtract => left.plus(right.negated()),
-        BinaryOperator::Multiply => left.times(right),
-        BinaryOperator::Divide => left.times(right.reciprocal()),
+        BinaryOperator::Add => left.add_interval(right),
+        BinaryOperator::Subtract => left.add_interval(right.negate()),
+        BinaryOperator::Multiply => left.multiply(right),
+        BinaryOperator::Divide => left.multiply(right.reciprocal()),
         BinaryOperator::Power => Interval::ALL,
     }
 }
@@ -59,9 +59,9 @@ fn bound_call(function: Function, bounds: &[Interval], side: Option<Side>) -> In
         }
         (_, Some(side)) if has_levels(function, side) => {
             let value = functions::evaluate_on_side(function, side, &vec![0.0; bounds.len()]);
-            value.map_or(Interval::ALL, |value| Interval::between(value, value))
+            value.map_or(Interval::ALL, |value| Interval::from_ends(value, value))
         }
-        _ => Interval::of_function(function, bounds),
+        _ => Interval::apply_function(function, bounds),
     }
 }
 

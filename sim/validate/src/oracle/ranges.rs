@@ -37,7 +37,7 @@ impl Ranges {
 fn parameter_sizes(model: &Model, parameters: &[f64], dimension: Dimension) -> Vec<f64> {
     let known = model.parameters.iter().zip(parameters);
     let of_dimension = known.filter(|(parameter, _)| {
-        dimension != Dimension::NONE && parameter.unit.dimension == dimension
+        dimension != Dimension::DIMENSIONLESS && parameter.unit.dimension == dimension
     });
     of_dimension
         .map(|(_, value)| value.abs())

@@ -14,13 +14,13 @@ pub fn is_hidden(letter: char) -> bool {
 }
 
 /// Writes hidden characters as `\u{202e}`.
-pub fn visible(text: &str) -> Cow<'_, str> {
+pub fn escape_hidden(text: &str) -> Cow<'_, str> {
     escaped(text, |letter| format!("\\u{{{:x}}}", u32::from(letter)))
 }
 
 /// Writes hidden characters as `\u202e`, which strings of JSON and quoted strings of TOML
 /// allow.
-pub fn visible_in_strings(text: &str) -> Cow<'_, str> {
+pub fn escape_hidden_in_strings(text: &str) -> Cow<'_, str> {
     // All hidden characters have four hexadecimal digits.
     escaped(text, |letter| format!("\\u{:04x}", u32::from(letter)))
 }
@@ -41,16 +41,16 @@ fn escaped(text: &str, escape: impl Fn(char) -> String) -> Cow<'_, str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{visible, visible_in_strings};
+    use super::{escape_hidden, escape_hidden_in_strings};
 
     #[test]
     fn only_hidden_characters_are_escaped() {
         let plain = "θ [°]\n\tשלום 转速";
-        assert_eq!(visible(plain), plain);
+        assert_eq!(escape_hidden(plain), plain);
         let hostile = "a\u{1b}[2J\u{202e}b\u{9b}\r";
-        assert_eq!(visible(hostile), "a\\u{1b}[2J\\u{202e}b\\u{9b}\\u{d}");
+        assert_eq!(escape_hidden(hostile), "a\\u{1b}[2J\\u{202e}b\\u{9b}\\u{d}");
         assert_eq!(
-            visible_in_strings(hostile),
+            escape_hidden_in_strings(hostile),
             "a\\u001b[2J\\u202eb\\u009b\\u000d"
         );
     }

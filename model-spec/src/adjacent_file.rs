@@ -7,17 +7,17 @@ use std::path::{Component, Path, PathBuf};
 const MAX_SIZE: u64 = 8 << 20;
 
 /// Cause, as the rest of a sentence that begins with the file's name, and cure.
-pub struct Refused(pub String, pub &'static str);
+pub struct FileError(pub String, pub &'static str);
 
 /// Reads the file of that name.
 ///
 /// # Errors
 /// A name outside the folder; a file that cannot be read, is too large or is not UTF-8.
-pub fn read(folder: &Path, name: &str) -> Result<String, Refused> {
-    let bytes = bytes(&beside(folder, name)?)?;
+pub fn read(folder: &Path, name: &str) -> Result<String, FileError> {
+    let bytes = bytes(&resolve_path(folder, name)?)?;
     match text(&bytes) {
         Ok(text) => Ok(text.to_owned()),
-        Err(line) => Err(Refused(
+        Err(line) => Err(FileError(
             format!("is not UTF-8 text: line {line}"),
             "save the file as UTF-8",
         )),
@@ -25,7 +25,7 @@ pub fn read(folder: &Path, name: &str) -> Result<String, Refused> {
 }
 
 /// Resolves a name, following symbolic links before the check.
-fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
+fn resolve_path(folder: &Path, name: &str) -> Result<PathBuf, FileError> {
     let relative = Path::new(name);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let folder = match folder.as_os_str().is_empty() {
@@ -39,7 +39,7 @@ fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
         _ => false,
     };
     if name.is_empty() || leads_out || !relative.components().all(inside) {
-        return Err(Refused(
+        return Err(FileError(
             "is outside the specification's folder".to_owned(),
             "move the file into the folder of the specification or below",
         ));
@@ -47,16 +47,16 @@ fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
     Ok(place)
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, Refused> {
+fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let help = "give the path of a file, relative to the specification";
-    let unreadable = |error: std::io::Error| Refused(format!("cannot be read: {error}"), help);
+    let unreadable = |error: std::io::Error| FileError(format!("cannot be read: {error}"), help);
     let too_large = || {
         let limit = MAX_SIZE >> 20;
-        Refused(format!("is larger than {limit} MiB"), "give a smaller file")
+        FileError(format!("is larger than {limit} MiB"), "give a smaller file")
     };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
-        return Err(Refused("is not a file".to_owned(), help));
+        return Err(FileError("is not a file".to_owned(), help));
     }
     if metadata.len() > MAX_SIZE {
         return Err(too_large());

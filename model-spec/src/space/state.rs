@@ -10,7 +10,7 @@ use super::value::Value;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::functions::VECTOR_FUNCTIONS;
 
-pub struct Space {
+pub struct ExpansionState {
     pub vectors: HashMap<String, Value>,
     pub frames: Frames,
     /// Names of all frames, added or not.
@@ -20,14 +20,14 @@ pub struct Space {
     pub definitions: Definitions,
     pub demands: Demands,
     /// Names of multipliers and residuals of constraints.
-    pub reported: HashSet<String>,
+    pub constraint_outputs: HashSet<String>,
     /// Definitions and frames with errors, which are not reported again.
-    pub broken: HashSet<String>,
+    pub invalid_entries: HashSet<String>,
 }
 
-impl Space {
+impl ExpansionState {
     /// Returns true if an expression contains vectors, directly or by name.
-    pub fn touches(&self, syntax: &Syntax) -> bool {
+    pub fn contains_vectors(&self, syntax: &Syntax) -> bool {
         let mut touches = is_spatial(syntax);
         syntax.visit(&mut |part| {
             if let SyntaxKind::Name(name) = &part.kind {
@@ -44,7 +44,7 @@ impl Space {
         let mut broken = false;
         syntax.visit(&mut |part| {
             if let SyntaxKind::Name(name) = &part.kind {
-                broken |= self.broken.contains(name);
+                broken |= self.invalid_entries.contains(name);
             }
         });
         broken

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::raw::Document;
 
-pub struct Moving {
+pub struct MovingNames {
     names: HashSet<String>,
 }
 
-impl Moving {
+impl MovingNames {
     /// Collects the names of a specification, without its definitions.
-    pub fn of(document: &Document) -> Self {
+    pub fn from_document(document: &Document) -> Self {
         let mut names: HashSet<String> = ["t".to_owned()].into();
         names.extend(document.coordinates.iter().map(|c| c.name.text.clone()));
         names.extend(document.inputs.iter().map(|input| input.name.text.clone()));
@@ -23,13 +23,13 @@ impl Moving {
     }
 
     /// Adds a definition, after those that it refers to.
-    pub fn learn(&mut self, name: &str, value: &Syntax) {
-        if self.holds(value) {
+    pub fn add_definition(&mut self, name: &str, value: &Syntax) {
+        if self.has_rate(value) {
             self.names.insert(name.to_owned());
         }
     }
 
-    pub fn holds(&self, syntax: &Syntax) -> bool {
+    pub fn has_rate(&self, syntax: &Syntax) -> bool {
         let mut holds = false;
         syntax.visit(&mut |part| {
             if let SyntaxKind::Name(name) | SyntaxKind::Element { name, .. } = &part.kind {
