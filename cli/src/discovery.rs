@@ -41,7 +41,7 @@ pub fn compare(task: &Task<'_>) -> Result<Value> {
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     write_json(&task.out.join("comparison.json"), &document)?;
-    write_file(&task.out.join("report.html"), found.page().as_bytes())?;
+    write_file(&task.out.join("report.html"), found.to_html().as_bytes())?;
     Ok(document)
 }
 
@@ -68,7 +68,7 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     let out = task.out;
     write_file(&out.join("extended.toml"), found.extended.as_bytes())?;
-    write_file(&out.join("report.html"), found.page().as_bytes())?;
+    write_file(&out.join("report.html"), found.to_html().as_bytes())?;
     for experiment in &found.experiments {
         write_file(&out.join(&experiment.name), experiment.text.as_bytes())?;
     }

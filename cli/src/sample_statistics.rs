@@ -45,7 +45,7 @@ pub fn statistics(job: &Job, table: &Table) -> Option<Statistics> {
             measured.push(ColumnStatistics {
                 column: column.clone(),
                 drawn: is_drawn.then(|| measure.quantity.clone()),
-                summary: Summary::of(values),
+                summary: Summary::from_values(values),
                 correlations: parameters.map(|of| rank_correlation(of, values)).collect(),
             });
         }

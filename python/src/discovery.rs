@@ -36,7 +36,7 @@ pub fn discover(
     Ok((
         found.to_json().to_string(),
         found.extended.clone(),
-        found.page(),
+        found.to_html(),
         found
             .experiments
             .iter()

@@ -59,7 +59,7 @@ impl Discovery {
         let rejected = self.rejected.iter().map(|r| rejected(r, None));
         let not_testable = self.untestable.iter();
         let not_testable = not_testable.map(|r| self::rejected(r, Some(&self.experiments)));
-        document["verdict"] = json!(self.verdict.word());
+        document["verdict"] = json!(self.verdict.name());
         document["summary"] = json!(Summary::from_discovery(self).to_text());
         document["effects"] = json!(effects);
         document["rejected"] = Value::Array(rejected.collect());
@@ -149,7 +149,7 @@ fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
 
 fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
     let mut entry = at(&of.at);
-    entry["status"] = json!(of.status.word());
+    entry["status"] = json!(of.status.name());
     entry["equivalent"] = of.equivalents.iter().map(at).collect();
     entry["parameters"] = estimates_to_json(&of.parameters);
     entry["term"] = json!(of.term);

@@ -182,7 +182,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Returns the name in documents.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::EffectsFound => "effects_found",
             Self::NoSignificantGap => "no_significant_gap",
@@ -216,7 +216,7 @@ pub enum EffectStatus {
 
 impl EffectStatus {
     /// Returns the name in documents.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Named => "named",
             Self::Provisional => "provisional",

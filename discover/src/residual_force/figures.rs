@@ -47,7 +47,8 @@ pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> S
             let most = most(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
             let is_drawn = known.count() >= thresholds::MIN_DRAWN_POINTS;
-            let is_told = !picture.by_window || profile.part > thresholds::MIN_FORCE_FRACTION;
+            let is_told =
+                !picture.by_window || profile.explained_fraction > thresholds::MIN_FORCE_FRACTION;
             is_drawn && is_told && (picture.axes != Axes::Time || is_resolved(before))
         })
         .collect();

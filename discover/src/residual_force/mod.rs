@@ -132,14 +132,16 @@ pub fn estimate_residual_force(
     found.equations.clone_from(&equations.list);
     found.best_equation = ranking.best;
     if ranking.is_significant {
-        found.part = ranking.explained_fraction;
+        found.explained_fraction = ranking.explained_fraction;
         found.kind = Some(match ranking.is_state {
             false => ForceKind::Time,
             true => find_simple_functions(&regressed, ranking.family, few),
         });
-    } else if found.frequency.part > thresholds::MIN_FORCE_FRACTION && equation == ranking.best {
+    } else if found.frequency.explained_fraction > thresholds::MIN_FORCE_FRACTION
+        && equation == ranking.best
+    {
         // A line may stand between the bends over time.
-        found.part = found.frequency.part;
+        found.explained_fraction = found.frequency.explained_fraction;
         found.kind = Some(ForceKind::Time);
     }
     Some(found)

@@ -43,7 +43,7 @@ impl ProfileInputs<'_> {
                 arguments: regressed.families[family].knots.clone(),
                 sd: deviations(&found, inflation),
                 values: found.values.iter().copied().collect(),
-                part: regressed.explained_fraction(family),
+                explained_fraction: regressed.explained_fraction(family),
                 peak: None,
             }
         };
@@ -62,8 +62,8 @@ impl ProfileInputs<'_> {
                 .sd
                 .push((0.5 * (sd[0] * sd[0] + sd[1] * sd[1])).sqrt());
             let part = regressed.explained_fraction(id);
-            if part > order.part {
-                order.part = part;
+            if part > order.explained_fraction {
+                order.explained_fraction = part;
                 order.peak = Some(order.arguments.len() - 1);
             }
         }
@@ -74,7 +74,7 @@ impl ProfileInputs<'_> {
             best_equation: self.equation,
             equation: self.equation,
             kind: None,
-            part: 0.0,
+            explained_fraction: 0.0,
             rate: over(by_rate),
             position: over(by_position),
             time: self.over_time(regressed, level),
@@ -93,7 +93,7 @@ impl ProfileInputs<'_> {
         let found = regressed
             .regression
             .fit_per_window(regressed.column_range(family), level);
-        profile.part = found.explained_fraction;
+        profile.explained_fraction = found.explained_fraction;
         for (id, sizes) in self.linearisation.point.windows.iter().zip(&found.windows) {
             let window = &self.linearisation.problem.train.windows[*id];
             let (Some(sizes), 0) = (sizes, window.record) else {
@@ -145,8 +145,8 @@ impl ProfileInputs<'_> {
                 .regression
                 .fit_per_window(range, level)
                 .explained_fraction;
-            if part > profile.part {
-                profile.part = part;
+            if part > profile.explained_fraction {
+                profile.explained_fraction = part;
                 profile.peak = Some(profile.arguments.len() - 1);
             }
         }

@@ -13,7 +13,7 @@ pub struct Profile {
     /// Standard deviation.
     pub sd: Vec<f64>,
     /// Explained fraction of the squares; for several waves, of the best one.
-    pub part: f64,
+    pub explained_fraction: f64,
     /// Index of the best wave.
     pub peak: Option<usize>,
 }
@@ -79,7 +79,7 @@ pub struct ResidualForce {
     /// Argument of the force in the best equation; `None` if no force is significant.
     pub kind: Option<ForceKind>,
     /// Explained fraction of the squares.
-    pub part: f64,
+    pub explained_fraction: f64,
     /// Profile over the rate.
     pub rate: Profile,
     /// Profile over the position, or within a turn.

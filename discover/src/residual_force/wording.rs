@@ -15,7 +15,7 @@ pub fn describe_residual_force(force: &ResidualForce) -> String {
         "The residual is best explained by a force on {}: {}; it explains {:.0} % of the squares.",
         equation.name,
         shape(force, kind),
-        100.0 * force.part
+        100.0 * force.explained_fraction
     );
     let own = |ranking: &crate::residual_force::types::RankedEquation| match kind {
         ForceKind::Time => ranking.fraction_by_time,
@@ -25,7 +25,8 @@ pub fn describe_residual_force(force: &ResidualForce) -> String {
         .ranking
         .iter()
         .filter(|r| r.equation != force.best_equation);
-    let as_well = others.filter(|r| own(r) > thresholds::MIN_FRACTION_OF_BEST * force.part);
+    let as_well =
+        others.filter(|r| own(r) > thresholds::MIN_FRACTION_OF_BEST * force.explained_fraction);
     let names: Vec<&str> = as_well
         .map(|r| force.equations[r.equation].name.as_str())
         .collect();
@@ -63,11 +64,16 @@ fn shape(force: &ResidualForce, kind: &ForceKind) -> String {
             let (rate, place) = words(equation);
             let text = format!("it is a function of neither the {rate} nor the {place}");
             match frequencies.peak {
-                Some(peak) if is_looked_at && frequencies.part > 0.5 * force.part => format!(
-                    "{text}, most of it near {:.3} Hz with an amplitude of {}",
-                    frequencies.arguments[peak],
-                    in_unit(frequencies.values[peak], equation.force_unit())
-                ),
+                Some(peak)
+                    if is_looked_at
+                        && frequencies.explained_fraction > 0.5 * force.explained_fraction =>
+                {
+                    format!(
+                        "{text}, most of it near {:.3} Hz with an amplitude of {}",
+                        frequencies.arguments[peak],
+                        in_unit(frequencies.values[peak], equation.force_unit())
+                    )
+                }
                 _ => text,
             }
         }

@@ -113,7 +113,7 @@ pub(crate) fn connected_modes(
         block_eigenvalues::eigenvalues(&balanced.matrix).ok_or_else(not_converged)?;
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let pencil = Pencil::new(&balanced, degrees);
-    let mut rigid = pencil.rigid().ok_or_else(not_converged)?;
+    let mut rigid = pencil.rigid_motions().ok_or_else(not_converged)?;
     if states > 2 * degrees {
         let count = zero_eigenvalues(balanced.matrix.clone());
         rigid.multiplicity = count.ok_or_else(not_converged)?;
@@ -123,7 +123,7 @@ pub(crate) fn connected_modes(
     let moving = eigenvalues.into_iter().skip(rigid.multiplicity);
     for eigenvalue in moving.filter(|eigenvalue| eigenvalue.im >= 0.0) {
         let shape = null_vector(
-            |at| pencil.at(at),
+            |at| pencil.evaluate(at),
             eigenvalue,
             &vectors_of_eigenvalue(&modes, eigenvalue),
         );
@@ -131,7 +131,7 @@ pub(crate) fn connected_modes(
     }
     let scaled = modes.into_iter().map(|(eigenvalue, shape)| NaturalMode {
         eigenvalue: balanced.eigenvalue(eigenvalue),
-        shape: pencil.in_si(&shape),
+        shape: pencil.to_si(&shape),
     });
     Ok(scaled.collect())
 }

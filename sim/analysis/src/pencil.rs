@@ -24,7 +24,7 @@ pub(crate) struct Pencil {
 }
 
 /// Motions with the eigenvalue 0.
-pub(crate) struct Rigid {
+pub(crate) struct RigidMotions {
     pub shapes: Vec<DVector<Complex<f64>>>,
     /// Algebraic multiplicity of the eigenvalue 0.
     pub multiplicity: usize,
@@ -75,7 +75,7 @@ impl Pencil {
 
     /// Evaluates lambda (lambda/ratio) - (lambda/ratio) D - K; the rates are lambda/ratio times the
     /// coordinates.
-    pub fn at(&self, eigenvalue: Complex<f64>) -> SparseRows {
+    pub fn evaluate(&self, eigenvalue: Complex<f64>) -> SparseRows {
         let entry = |row: usize, column: usize| {
             let rate = eigenvalue / self.ratio[column];
             let inertia = match row == column {
@@ -92,7 +92,7 @@ impl Pencil {
 
     /// Computes the motions with the eigenvalue 0. Returns `None` if the iteration does not
     /// converge.
-    pub fn rigid(&self) -> Option<Rigid> {
+    pub fn rigid_motions(&self) -> Option<RigidMotions> {
         let equilibrated = equilibrate_rows(self.stiffness.clone());
         let (right, left) = (
             null_space(&equilibrated)?,
@@ -103,7 +103,7 @@ impl Pencil {
             .map(|size| if size > 0.0 { size } else { 1.0 })
             .collect();
         if right.ncols() == 0 {
-            return Some(Rigid {
+            return Some(RigidMotions {
                 shapes: Vec::new(),
                 multiplicity: 0,
             });
@@ -124,7 +124,7 @@ impl Pencil {
             .filter(|value| **value <= RANK_TOLERANCE * most)
             .count();
         let complex = |column: nalgebra::DVectorView<'_, f64>| column.map(Complex::from);
-        Some(Rigid {
+        Some(RigidMotions {
             shapes: right.column_iter().map(complex).collect(),
             multiplicity: right.ncols() + again,
         })
@@ -132,7 +132,7 @@ impl Pencil {
 
     /// Converts a shape to SI, with the largest coordinate 1 and first-order states after the
     /// coordinates.
-    pub fn in_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
+    pub fn to_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
         let amplitudes: Vec<Complex<f64>> = shape
             .iter()
             .zip(&self.sizes)

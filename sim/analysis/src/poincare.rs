@@ -6,11 +6,11 @@ use super::error::{AnalysisError, check_positive, check_values};
 /// Longest period searched, in forcing periods, and largest number of clusters counted.
 pub const LONGEST_PERIOD: usize = 64;
 /// Number of last points used for the dimension: two million pairs.
-const DIMENSION_POINTS: usize = 2000;
+const MAX_DIMENSION_POINTS: usize = 2000;
 /// Smallest number of points for an estimate of the dimension.
-const LEAST_DIMENSION_POINTS: usize = 200;
+const MIN_DIMENSION_POINTS: usize = 200;
 /// Shares of the pairs whose distances bound the estimate of the dimension.
-const SHARES: (f64, f64) = (0.01, 0.05);
+const DIMENSION_PAIR_SHARES: (f64, f64) = (0.01, 0.05);
 
 /// States once per forcing period, in order of time.
 ///
@@ -107,9 +107,12 @@ impl Section<'_> {
 
     fn dimension(&self, extent: &[(f64, f64)], tolerance: f64) -> Option<f64> {
         let width = self.scale.len();
-        let first = self.points.len().saturating_sub(DIMENSION_POINTS * width);
+        let first = self
+            .points
+            .len()
+            .saturating_sub(MAX_DIMENSION_POINTS * width);
         let recent = self.points.get(first..)?;
-        if recent.len() < LEAST_DIMENSION_POINTS * width {
+        if recent.len() < MIN_DIMENSION_POINTS * width {
             return None;
         }
         // A coordinate that varies by less than the tolerance is constant: its noise has no
@@ -126,10 +129,11 @@ impl Section<'_> {
             .enumerate()
             .flat_map(|(i, a)| points.iter().take(i).map(|b| distance(a, b)))
             .collect();
-        let far = quantile(&mut distances, SHARES.1)?;
-        let near = quantile(&mut distances, SHARES.0)?;
+        let far = quantile(&mut distances, DIMENSION_PAIR_SHARES.1)?;
+        let near = quantile(&mut distances, DIMENSION_PAIR_SHARES.0)?;
         let ratio = (far / near).ln();
-        (near > 0.0 && ratio > 0.0).then(|| (SHARES.1 / SHARES.0).ln() / ratio)
+        (near > 0.0 && ratio > 0.0)
+            .then(|| (DIMENSION_PAIR_SHARES.1 / DIMENSION_PAIR_SHARES.0).ln() / ratio)
     }
 }
 

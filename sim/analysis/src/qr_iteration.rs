@@ -7,10 +7,10 @@
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn, SVD, Schur, SymmetricEigen};
 
 /// Largest number of iterations per eigenvalue; two or three are usual.
-const ITERATIONS: usize = 400;
+const MAX_ITERATIONS_PER_EIGENVALUE: usize = 400;
 
 /// Number of reflections that are tried.
-const OTHER_BASES: usize = 3;
+const MAX_REFLECTIONS: usize = 3;
 
 /// Computes the Schur form Q T Q^H of a square matrix: unitary Q, and upper triangular T (with
 /// blocks of two on the diagonal for a real matrix). Returns `None` if the iteration converges in
@@ -18,7 +18,7 @@ const OTHER_BASES: usize = 3;
 pub fn schur_form<T: ComplexField<RealField = f64>>(
     matrix: &DMatrix<T>,
 ) -> Option<(DMatrix<T>, DMatrix<T>)> {
-    let Iterated { reflection, schur } = iterated(matrix)?;
+    let ConvergedSchur { reflection, schur } = converge_schur(matrix)?;
     let (unitary, triangle) = schur.unpack();
     Some(match reflection {
         Some(reflection) => (reflection * unitary, triangle),
@@ -29,7 +29,7 @@ pub fn schur_form<T: ComplexField<RealField = f64>>(
 /// Computes the eigenvalues of a square matrix, in no order. Returns `None` without a
 /// [`schur_form`].
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let schur = iterated(matrix)?.schur;
+    let schur = converge_schur(matrix)?.schur;
     Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
@@ -39,7 +39,7 @@ pub fn svd(matrix: &DMatrix<f64>) -> Option<SVD<f64, Dyn, Dyn>> {
     if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
         return None;
     }
-    let most = ITERATIONS * matrix.nrows().max(matrix.ncols());
+    let most = MAX_ITERATIONS_PER_EIGENVALUE * matrix.nrows().max(matrix.ncols());
     SVD::try_new(matrix.clone(), true, true, 5.0 * f64::EPSILON, most)
 }
 
@@ -49,32 +49,34 @@ pub fn symmetric_eigen(matrix: &DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>
     if matrix.is_empty() || !matrix.iter().all(|entry| entry.is_finite()) {
         return None;
     }
-    let most = ITERATIONS * matrix.nrows();
+    let most = MAX_ITERATIONS_PER_EIGENVALUE * matrix.nrows();
     SymmetricEigen::try_new(matrix.clone(), f64::EPSILON, most)
 }
 
 /// Converged iteration of the matrix, or of its reflection.
-struct Iterated<T: ComplexField<RealField = f64>> {
+struct ConvergedSchur<T: ComplexField<RealField = f64>> {
     reflection: Option<DMatrix<T>>,
     schur: Schur<T, Dyn>,
 }
 
-fn iterated<T: ComplexField<RealField = f64>>(matrix: &DMatrix<T>) -> Option<Iterated<T>> {
+fn converge_schur<T: ComplexField<RealField = f64>>(
+    matrix: &DMatrix<T>,
+) -> Option<ConvergedSchur<T>> {
     let size = matrix.nrows();
-    let most = ITERATIONS * size.max(1);
+    let most = MAX_ITERATIONS_PER_EIGENVALUE * size.max(1);
     let iterate = |matrix| Schur::try_new(matrix, f64::EPSILON, most);
     if let Some(schur) = iterate(matrix.clone()) {
-        return Some(Iterated {
+        return Some(ConvergedSchur {
             reflection: None,
             schur,
         });
     }
-    (1..=OTHER_BASES).find_map(|basis| {
+    (1..=MAX_REFLECTIONS).find_map(|basis| {
         let normal = DVector::from_fn(size, |place, _| T::from_real(1.0 / (place + basis) as f64));
         let factor = T::from_real(2.0 / normal.norm_squared());
         let reflection = DMatrix::identity(size, size) - &normal * normal.transpose() * factor;
         let schur = iterate(&reflection * matrix * &reflection)?;
-        Some(Iterated {
+        Some(ConvergedSchur {
             reflection: Some(reflection),
             schur,
         })

@@ -32,10 +32,10 @@ const LINE_HALF_WIDTH: usize = 2;
 /// Half-width of the background of a line, in frequency steps.
 const BACKGROUND_REACH: usize = 24;
 /// Largest share of the power that counts as rounding: 1e-9 of the amplitude.
-const ROUNDING: f64 = 1e-18;
+const MAX_ROUNDING_POWER_SHARE: f64 = 1e-18;
 /// Least ratio of a line to its background. A density of noise averaged over eight or more segments
 /// exceeds four times its median once in about 10^6 values.
-const PROMINENCE: f64 = 20.0;
+const MIN_PEAK_OVER_BACKGROUND: f64 = 20.0;
 
 /// Estimates the density of `values`, sampled every `interval` s, from segments of `segment`
 /// samples.
@@ -79,7 +79,7 @@ pub fn welch(
     let weight: f64 = window.iter().map(|weight| weight * weight).sum();
     let pieces = values.windows(segment).step_by(segment / 2);
     let windowed = pieces.map(|piece| {
-        let mut windowed = without_trend(piece, trend);
+        let mut windowed = subtract_trend(piece, trend);
         for (value, weight) in windowed.iter_mut().zip(&window) {
             *value *= weight;
         }
@@ -148,7 +148,7 @@ fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f6
 /// Subtracts the mean over all periods of `period` samples: the forcing line and its harmonics,
 /// which every forced motion has. Samples after the last whole period are omitted. Returns `None`
 /// if only rounding remains, for a motion with the forcing period, or if there is no whole period.
-pub fn without_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
+pub fn subtract_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
     let periods = values.len().checked_div(period)?;
     let mut repeated = vec![0.0; period];
     for cycle in values.chunks_exact(period) {
@@ -162,7 +162,7 @@ pub fn without_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
     let power = |series: &[f64]| series.iter().map(|x| x * x).sum::<f64>();
     let average = super::error::mean(values);
     let varying: Vec<f64> = values.iter().map(|value| value - average).collect();
-    (power(&rest) > ROUNDING * power(&varying)).then_some(rest)
+    (power(&rest) > MAX_ROUNDING_POWER_SHARE * power(&varying)).then_some(rest)
 }
 
 impl PowerSpectrum {
@@ -226,7 +226,8 @@ impl PowerSpectrum {
         let middle = background.len() / 2;
         let (_, median, _) = background.select_nth_unstable_by(middle, f64::total_cmp);
         let median = *median;
-        (peak > PROMINENCE * median).then(|| lobe.iter().map(|d| (d - median).max(0.0)).sum())
+        (peak > MIN_PEAK_OVER_BACKGROUND * median)
+            .then(|| lobe.iter().map(|d| (d - median).max(0.0)).sum())
     }
 }
 
@@ -238,7 +239,7 @@ fn hann(length: usize) -> Vec<f64> {
         .collect()
 }
 
-fn without_trend(piece: &[f64], trend: Trend) -> Vec<f64> {
+fn subtract_trend(piece: &[f64], trend: Trend) -> Vec<f64> {
     let mean = super::error::mean(piece);
     let middle = (piece.len() as f64 - 1.0) / 2.0;
     let offset = |n: usize| n as f64 - middle;
@@ -391,14 +392,14 @@ mod tests {
         };
         let noisy = forced(&noise(count));
         assert!(share(&noisy)?.unwrap() > 0.999, "the forcing's lines");
-        let rest = without_harmonics(&noisy, period).unwrap();
+        let rest = subtract_harmonics(&noisy, period).unwrap();
         assert!(share(&rest)?.unwrap() < 0.01);
         let lines = forced(&sine(1.0, 7.3, 1e-3, count));
-        let rest = without_harmonics(&lines, period).unwrap();
+        let rest = subtract_harmonics(&lines, period).unwrap();
         assert!(share(&rest)?.unwrap() > 0.99);
-        assert_eq!(without_harmonics(&forced(&vec![0.0; count]), period), None);
-        assert_eq!(without_harmonics(&[1.0; 5], 0), None);
-        assert_eq!(without_harmonics(&[1.0; 5], 6), None);
+        assert_eq!(subtract_harmonics(&forced(&vec![0.0; count]), period), None);
+        assert_eq!(subtract_harmonics(&[1.0; 5], 0), None);
+        assert_eq!(subtract_harmonics(&[1.0; 5], 6), None);
         Ok(())
     }
 

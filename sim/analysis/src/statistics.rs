@@ -17,7 +17,7 @@ pub struct Summary {
 
 impl Summary {
     /// Summarises the finite values. Returns `None` without finite values.
-    pub fn of(values: &[f64]) -> Option<Self> {
+    pub fn from_values(values: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let (low, high) = (*sorted.first()?, *sorted.last()?);
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn moments_and_quantiles_match_hand_calculation() {
-        let found = Summary::of(&[4.0, f64::NAN, 1.0, 3.0, 2.0]).expect("four values");
+        let found = Summary::from_values(&[4.0, f64::NAN, 1.0, 3.0, 2.0]).expect("four values");
         assert_eq!((found.count, found.mean), (4, 2.5));
         // (1.5^2 + 0.5^2) 2/3 = 5/3
         assert!((found.sd.expect("four") - (5.0_f64 / 3.0).sqrt()).abs() < 1e-15);
@@ -105,13 +105,13 @@ mod tests {
             [1.0, 2.5, 4.0]
         );
         assert!((found.quantile(0.1) - 1.3).abs() < 1e-15);
-        let one = Summary::of(&[7.0]).expect("one value");
+        let one = Summary::from_values(&[7.0]).expect("one value");
         assert_eq!((one.mean, one.sd, one.quantile(0.3)), (7.0, None, 7.0));
-        assert_eq!(Summary::of(&[f64::INFINITY]), None);
-        let large = Summary::of(&[-1e308, 1e308]).expect("two values");
+        assert_eq!(Summary::from_values(&[f64::INFINITY]), None);
+        let large = Summary::from_values(&[-1e308, 1e308]).expect("two values");
         assert!(large.mean.abs() < 1e293 && large.sd.is_some_and(f64::is_finite));
         // A common offset does not reduce the precision of the spread.
-        let far = Summary::of(&[1e9, 1e9 + 1.0])
+        let far = Summary::from_values(&[1e9, 1e9 + 1.0])
             .and_then(|of| of.sd)
             .expect("two values");
         assert!((far - 0.5_f64.sqrt()).abs() < 1e-12, "{far}");

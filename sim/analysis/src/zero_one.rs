@@ -9,11 +9,11 @@ use std::f64::consts::PI;
 use super::error::{AnalysisError, check_values, mean};
 
 /// Number of angles c for the median, as in the paper.
-const ANGLES: usize = 100;
+const ANGLE_COUNT: usize = 100;
 /// Smallest number of values with enough lags for a correlation.
-const LEAST: usize = 100;
+const MIN_VALUES: usize = 100;
 /// Largest variation, relative to the greatest magnitude, that counts as rounding.
-const CONSTANT: f64 = 1e-10;
+const MAX_CONSTANT_VARIATION: f64 = 1e-10;
 
 /// Computes the growth rate K: near 1 for chaos, near 0 for periodic and quasi-periodic motion.
 ///
@@ -34,19 +34,21 @@ const CONSTANT: f64 = 1e-10;
 ///
 /// Fewer than 100 values, values that are not finite.
 pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
-    check_values(values, LEAST)?;
+    check_values(values, MIN_VALUES)?;
     let average = mean(values);
     let series: Vec<f64> = values.iter().map(|value| value - average).collect();
     let largest = |series: &[f64]| series.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let spread = largest(&series);
-    if spread <= CONSTANT * largest(values) {
+    if spread <= MAX_CONSTANT_VARIATION * largest(values) {
         return Ok(0.0);
     }
     // Scaling prevents overflow and underflow of squares.
     let series: Vec<f64> = series.iter().map(|value| value / spread).collect();
     let mut rates: Vec<f64> = angles().map(|angle| growth(&series, angle)).collect();
     rates.sort_by(f64::total_cmp);
-    let middle = rates.get(ANGLES / 2 - 1..=ANGLES / 2).unwrap_or_default();
+    let middle = rates
+        .get(ANGLE_COUNT / 2 - 1..=ANGLE_COUNT / 2)
+        .unwrap_or_default();
     Ok(mean(middle))
 }
 
@@ -54,7 +56,7 @@ pub fn chaos_indicator(values: &[f64]) -> Result<f64, AnalysisError> {
 /// not resonant with motions of short period.
 fn angles() -> impl Iterator<Item = f64> {
     let golden = (5_f64.sqrt() - 1.0) / 2.0;
-    (1..=ANGLES).map(move |i| PI / 5.0 + 3.0 * PI / 5.0 * (i as f64 * golden).fract())
+    (1..=ANGLE_COUNT).map(move |i| PI / 5.0 + 3.0 * PI / 5.0 * (i as f64 * golden).fract())
 }
 
 /// Computes K_c, the linearity of the growth of the mean-square displacement.

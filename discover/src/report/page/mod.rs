@@ -24,7 +24,7 @@ use crate::report::result::{CommonResult, Comparison, Discovery};
 
 impl Comparison {
     /// Returns the page as a self-contained HTML document.
-    pub fn page(&self) -> String {
+    pub fn to_html(&self) -> String {
         let compared = &self.compared;
         whole(
             compared,
@@ -39,7 +39,7 @@ impl Comparison {
 
 impl Discovery {
     /// Returns the page as a self-contained HTML document.
-    pub fn page(&self) -> String {
+    pub fn to_html(&self) -> String {
         let compared = &self.compared;
         whole(
             compared,

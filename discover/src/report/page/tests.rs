@@ -163,8 +163,8 @@ fn elements(page: &str) -> Vec<&str> {
 fn text_from_outside_stays_text() {
     let hostile = "</pre></title>\"'><script>alert(\"1\")</script>&<img src=x onerror='a'>";
     let pages = [
-        (discovery(hostile).page(), discovery("plain").page()),
-        (comparison(hostile).page(), comparison("plain").page()),
+        (discovery(hostile).to_html(), discovery("plain").to_html()),
+        (comparison(hostile).to_html(), comparison("plain").to_html()),
     ];
     for (page, plain) in pages {
         for forbidden in ["<script", "<img", "alert(\"1", "&<"] {
@@ -178,7 +178,7 @@ fn text_from_outside_stays_text() {
 #[test]
 fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
     let hostile = "\u{1b}[31m\u{202e}x";
-    for page in [discovery(hostile).page(), comparison(hostile).page()] {
+    for page in [discovery(hostile).to_html(), comparison(hostile).to_html()] {
         let is_hidden = eomgen_model_spec::hidden_characters::is_hidden;
         assert!(!page.contains(is_hidden), "{page}");
         assert!(page.matches("\\u{1b}[31m\\u{202e}x").count() >= 8, "{page}");
@@ -211,7 +211,7 @@ fn what_leaves_much_is_said_to_be_uncertain_first() {
     let first = "The named effects may be substitutes for others: the extended model closes 60 % of the gap between model \
                  and measurement on held-out records and leaves 41 noise floors.";
     assert!(summary(&found).starts_with(first), "{}", summary(&found));
-    assert!(found.page().contains(first), "{}", found.page());
+    assert!(found.to_html().contains(first), "{}", found.to_html());
 }
 
 #[test]
@@ -251,7 +251,7 @@ fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
 
 #[test]
 fn nothing_refers_to_the_outside() {
-    let page = discovery("x").page();
+    let page = discovery("x").to_html();
     for forbidden in [
         "http:", "https:", "//", "<script", "<link", "src=", "url(", "href",
     ] {

@@ -8,7 +8,7 @@
 use eomgen_analysis::classify::{Evidence, Verdict};
 use eomgen_analysis::modes::{BandPower, TipShares, band_power, tip_shares};
 use eomgen_analysis::poincare::Shape;
-use eomgen_analysis::spectrum::{Trend, welch, without_harmonics};
+use eomgen_analysis::spectrum::{Trend, subtract_harmonics, welch};
 use eomgen_sim::piecewise_linear::Propagator;
 
 use super::arm::{Arm, Case, ConversionFactors};
@@ -242,7 +242,7 @@ fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>
     if x_sp.len() < MIN_SEGMENTS * PERIODS_PER_SEGMENT * samples / 2 {
         return Ok(None);
     }
-    let Some(rest) = without_harmonics(x_sp, samples) else {
+    let Some(rest) = subtract_harmonics(x_sp, samples) else {
         return Ok(None);
     };
     Ok(welch(&rest, interval, PERIODS_PER_SEGMENT * samples, Trend::Mean)?.line_share())
