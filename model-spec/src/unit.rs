@@ -390,12 +390,12 @@ mod tests {
             ("furlong", "unknown unit", "SI units"),
             ("rpm", "unknown unit", "rad/s"),
             ("µm", "unknown unit", "um"),
-            ("m^x", "no exponent", "m^2"),
-            ("m^99", "no exponent", "up to 12"),
-            ("/s", "between two units", "1/s"),
-            ("m/", "between two units", "1/s"),
+            ("m^x", "not a valid exponent", "m^2"),
+            ("m^99", "not a valid exponent", "up to 12"),
+            ("/s", "needs a unit on both sides", "1/s"),
+            ("m/", "needs a unit on both sides", "1/s"),
             ("2 m", "unknown unit `2`", "SI units"),
-            ("m^2147483648", "no exponent", "up to 12"),
+            ("m^2147483648", "not a valid exponent", "up to 12"),
         ] {
             let error = Unit::parse(text).expect_err(text);
             assert!(error.message.contains(message), "{text}: {error:?}");

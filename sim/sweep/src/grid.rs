@@ -265,7 +265,7 @@ mod tests {
             ("b=0:inf:3", "finite"),
             ("b=NaN:1:3", "finite"),
             ("b=-1e308:1e308:3", "too wide"),
-            ("b=1:1:3", "the same"),
+            ("b=1:1:3", "equal"),
             ("b=0:1:99999999999", "10000000 points"),
             ("b,=0:1:3", "a name is missing"),
             ("=0:1:3", "a name is missing"),

@@ -288,8 +288,8 @@ fn invalid_requests_are_rejected() {
     };
     refused(&[0.0, 0.0], (0.0, 1.0), &[], 1e-9, "entries");
     refused(&[f64::INFINITY], (0.0, 1.0), &[], 1e-9, "finite");
-    refused(&[0.0], (0.0, 0.0), &[], 1e-9, "after");
-    refused(&[0.0], (0.0, f64::NAN), &[], 1e-9, "after");
+    refused(&[0.0], (0.0, 0.0), &[], 1e-9, "later");
+    refused(&[0.0], (0.0, f64::NAN), &[], 1e-9, "later");
     refused(&[0.0], (0.0, 1.0), &[0.5, 0.2], 1e-9, "ascend");
     refused(&[0.0], (0.0, 1.0), &[1.5], 1e-9, "ascend");
     refused(&[0.0], (0.0, 1.0), &[], 1.0, "tolerance");

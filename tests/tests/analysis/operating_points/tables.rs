@@ -241,7 +241,7 @@ fn too_few_or_dependent_shapes_are_rejected() {
         let model = with_table(folder.path(), BEAM, table(third));
         let message = refused(&["check", &model]);
         assert!(
-            message.contains("modes.csv:1:1: phi_3 is a combination"),
+            message.contains("modes.csv:1:1: phi_3 is zero or a linear combination"),
             "{message}"
         );
     }
@@ -298,7 +298,7 @@ fn paths_outside_the_folder_are_rejected() {
         (
             "elastic =",
             "spring = \"1/2*B/l^3*at(w, 2*x_0)^2\"\nelastic =",
-            "a fixed fraction of its length",
+            "a fixed fraction of the length",
         ),
     ] {
         assert!(BEAM.contains(part));
