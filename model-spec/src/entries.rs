@@ -357,7 +357,7 @@ pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> 
     };
     Some(RawBody {
         name: entry.name.clone(),
-        frame: read_frame?,
+        frame: frame?,
         mass,
         centre,
         inertia,
@@ -419,7 +419,7 @@ pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSens
     let observable = record.written("observable", found);
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
-        read_observable,
+        observable,
         channel: entry.name.clone(),
         gain: number("gain", 1.0),
         bias: number("bias", 0.0),

@@ -431,7 +431,7 @@ impl Builder {
             to: to?,
             basis: basis?,
             coordinates: raw.coordinates.text,
-            order: sort_by_references?,
+            order: order?,
             doc: raw.doc,
             span: raw.name.span,
         })
@@ -600,7 +600,7 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
 /// Returns a unit per s or per s^2; `None` if an exponent overflows.
 fn per_seconds(unit: &Unit, order: u8) -> Option<Unit> {
     let mut dimension = unit.dimension;
-    for _ in 0..sort_by_references {
+    for _ in 0..order {
         dimension = dimension.divide(Dimension::TIME)?;
     }
     let text = match order {

@@ -135,7 +135,7 @@ impl Turn {
         turned[i] = add(product(&cosine, i), product(&sine, j));
         turned[j] = add(product(&cosine, j), negate(product(&sine, i)));
         turned[k] = vector[k].clone();
-        rotate
+        turned
     }
 
     /// Returns cosine and sine of the angle, exact for quarter turns: axes that coincide then
