@@ -15,7 +15,7 @@ use eomgen_validate::variant::Variant;
 use crate::models::variant;
 
 /// Returns the model of a valid specification.
-pub fn checked(text: &str) -> Model {
+pub fn check_model(text: &str) -> Model {
     match eomgen_model_spec::check(Source::new("model.toml", text)) {
         Ok(checked) => checked.model,
         Err(found) => panic!("{}\n{text}", found.render(false)),
@@ -23,12 +23,12 @@ pub fn checked(text: &str) -> Model {
 }
 
 /// Certifies the equations of `subject` against `model`.
-pub fn certificate(model: &Model, subject: &Model) -> Certificate {
-    certificate_with(model, subject, &[])
+pub fn certify(model: &Model, subject: &Model) -> Certificate {
+    certify_outputs(model, subject, &[])
 }
 
 /// Certifies the equations and the requested `outputs` of `subject` against `model`.
-pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
+pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {
         let evaluator = variant(subject, order).evaluator;

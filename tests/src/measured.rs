@@ -64,7 +64,7 @@ pub struct Moment {
 
 /// Returns a record of t, force, q with dry friction in N; `turn` changes the input.
 pub fn record(friction: f64, turn: f64) -> String {
-    record_of(&dry(friction), turn)
+    record_with_force(&dry(friction), turn)
 }
 
 /// Returns dry friction with a steep slope at zero speed.
@@ -73,7 +73,7 @@ fn dry(friction: f64) -> impl Fn(Moment) -> f64 {
 }
 
 /// Returns a record of a stage with an additional force, in N.
-pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
+pub fn record_with_force(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
     let (mass, viscous) = (95.0, 210.0);
     let (mut q, mut v): (f64, f64) = (0.0, 0.0);
     let mut text = "t,force,q\n".to_owned();
@@ -104,17 +104,17 @@ pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
 impl Measured {
     /// Writes two valid records of a stage with this dry friction, N.
     pub fn stage(friction: f64) -> Self {
-        Self::stage_with(&dry(friction))
+        Self::stage_with_force(&dry(friction))
     }
 
     /// Writes two valid records of a stage with an additional force, in N.
-    pub fn stage_with(other: &dyn Fn(Moment) -> f64) -> Self {
+    pub fn stage_with_force(other: &dyn Fn(Moment) -> f64) -> Self {
         let measured = Self {
             folder: tempfile::tempdir().expect("a folder"),
         };
         measured.write("dataset.toml", DESCRIPTION.as_bytes());
-        measured.write("train.csv", record_of(other, 0.0).as_bytes());
-        measured.write("test.csv", record_of(other, 1.0).as_bytes());
+        measured.write("train.csv", record_with_force(other, 0.0).as_bytes());
+        measured.write("test.csv", record_with_force(other, 1.0).as_bytes());
         measured
     }
 
@@ -150,16 +150,16 @@ impl Measured {
     }
 
     /// Returns the message of the rejected dataset; asserts that nothing is written.
-    pub fn refused(&self) -> String {
+    pub fn rejection(&self) -> String {
         let arguments = self.arguments("compare", "refused");
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let message = program::refused(&arguments);
+        let message = program::run_rejected(&arguments);
         assert!(!self.file("refused").exists(), "{message}");
         message
     }
 
     /// Runs `command`; returns its document and its messages.
-    pub fn answered(&self, command: &str, out: &str) -> (serde_json::Value, String) {
+    pub fn run_command(&self, command: &str, out: &str) -> (serde_json::Value, String) {
         let arguments = self.arguments(command, out);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         let output = program::run(&arguments);

@@ -17,7 +17,7 @@ pub fn project() -> &'static Path {
 }
 
 /// Returns the paths of all shipped specifications, sorted by name.
-pub fn shipped() -> Vec<PathBuf> {
+pub fn shipped_specifications() -> Vec<PathBuf> {
     let folder = project().join("model-spec/models");
     let entries = std::fs::read_dir(folder).expect("the folder of the shipped specifications");
     let mut paths: Vec<PathBuf> = entries

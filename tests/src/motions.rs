@@ -112,7 +112,7 @@ impl Spec {
 }
 
 /// Model of one order with its initial state and inputs.
-pub struct Subject {
+pub struct TestMotion {
     /// Model.
     pub model: Model,
     /// Order of every field.
@@ -123,7 +123,7 @@ pub struct Subject {
     pub inputs: HeldInputs,
 }
 
-impl Subject {
+impl TestMotion {
     /// Starts the model from its declared initial state, with zero inputs.
     pub fn new(model: Model, order: usize) -> Self {
         let orders = vec![order; model.fields.len()];
@@ -138,7 +138,7 @@ impl Subject {
     }
 
     /// Replaces the initial state.
-    pub fn from(mut self, initial: &[f64]) -> Self {
+    pub fn with_initial_state(mut self, initial: &[f64]) -> Self {
         self.initial = initial.to_vec();
         self
     }
@@ -150,15 +150,21 @@ impl Subject {
     }
 
     /// Simulates a time span, s, with the exact solver.
-    pub fn try_exact(&self, span: (f64, f64), times: &[f64]) -> Result<Trajectory, ExactError> {
+    pub fn try_simulate_exactly(
+        &self,
+        span: (f64, f64),
+        times: &[f64],
+    ) -> Result<Trajectory, ExactError> {
         let mut propagator = self.propagator()?;
         propagator.simulate(&self.initial, span, times, &self.inputs, &mut |_| {})
     }
 
     /// Simulates like [`try_exact`](Self::try_exact); asserts success and that every sample is
     /// present.
-    pub fn exact(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
-        let trajectory = self.try_exact(span, times).expect("an exact motion");
+    pub fn simulate_exactly(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
+        let trajectory = self
+            .try_simulate_exactly(span, times)
+            .expect("an exact motion");
         assert_eq!(trajectory.times, times, "every sample is there");
         trajectory
     }
@@ -171,17 +177,17 @@ impl Subject {
     }
 
     /// Simulates with the Runge-Kutta method of the general solver.
-    pub fn general(
+    pub fn simulate_generally(
         &self,
         span: (f64, f64),
         times: &[f64],
         tolerance: f64,
     ) -> Result<Trajectory, SolveError> {
-        self.general_by(Method::DormandPrince853, span, times, tolerance)
+        self.simulate_by_method(Method::DormandPrince853, span, times, tolerance)
     }
 
     /// Simulates with the given method of the general solver.
-    pub fn general_by(
+    pub fn simulate_by_method(
         &self,
         method: Method,
         span: (f64, f64),

@@ -6,7 +6,7 @@ use crate::models::project;
 
 /// Command printed in a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Printed {
+pub struct PrintedCommand {
     /// Path of the page in the project's folder.
     pub page: String,
     /// Command on one line, without a comment after `#`.
@@ -17,7 +17,7 @@ pub struct Printed {
 
 /// Block of output without a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Loose {
+pub struct OutputBlock {
     /// Path of the page in the project's folder.
     pub page: String,
     /// Lines of the block.
@@ -43,7 +43,7 @@ pub fn pages() -> Vec<(String, String)> {
 
 /// Returns all commands in console blocks, in the order of the page, and the blocks without a
 /// command.
-pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
+pub fn commands_in_blocks() -> (Vec<PrintedCommand>, Vec<OutputBlock>) {
     let (mut printed, mut loose) = (Vec::new(), Vec::new());
     for (page, text) in pages() {
         for block in text.split("```console\n").skip(1) {
@@ -51,7 +51,7 @@ pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
             let lines: Vec<String> = block.lines().map(str::to_owned).collect();
             if !lines.iter().any(|line| line.starts_with("$ ")) {
                 let page = page.clone();
-                loose.push(Loose { page, lines });
+                loose.push(OutputBlock { page, lines });
                 continue;
             }
             assert!(lines[0].starts_with("$ "), "{page}: {block}");
@@ -61,7 +61,7 @@ pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
     (printed, loose)
 }
 
-fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
+fn commands(page: &str, lines: &[String], printed: &mut Vec<PrintedCommand>) {
     let mut goes_on = false;
     for line in lines {
         let begun = line.strip_prefix("$ ");
@@ -79,7 +79,7 @@ fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
                 last.command = format!("{} {}", last.command, words());
             }
             Some(last) if begun.is_none() => last.output.push(line.clone()),
-            _ => printed.push(Printed {
+            _ => printed.push(PrintedCommand {
                 page: page.to_owned(),
                 command: words(),
                 output: Vec::new(),
@@ -90,7 +90,7 @@ fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
 }
 
 /// Returns all commands in running text and tables.
-pub fn in_text() -> Vec<Printed> {
+pub fn commands_in_text() -> Vec<PrintedCommand> {
     let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/"];
     let mut printed = Vec::new();
     for (page, text) in pages() {
@@ -99,7 +99,7 @@ pub fn in_text() -> Vec<Printed> {
         for code in prose.split('`').skip(1).step_by(2) {
             let code = code.split_whitespace().collect::<Vec<_>>().join(" ");
             if begins.iter().any(|begin| code.starts_with(begin)) && code.split(' ').count() > 2 {
-                printed.push(Printed {
+                printed.push(PrintedCommand {
                     page: page.clone(),
                     command: code,
                     output: Vec::new(),

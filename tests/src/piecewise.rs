@@ -5,7 +5,7 @@
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
 
-use crate::motions::Subject;
+use crate::motions::TestMotion;
 
 const NUMBERS: [f64; 5] = [0.0, 0.125, 0.25, 0.5, 1.0];
 
@@ -15,7 +15,7 @@ const LEAVES: [&str; 8] = ["x", "y", "x", "y", "(x - y)", "(x + y)", "tau*dot(x)
 
 /// Returns a random machine of two masses with a random initial state and, in some cases, a held
 /// input.
-pub fn machine(random: &mut Random, deepest: usize) -> Subject {
+pub fn machine(random: &mut Random, deepest: usize) -> TestMotion {
     let mut text = HEAD.to_owned();
     let count = 1 + (2.0 * random.unit()) as usize;
     for index in 0..count {
@@ -31,7 +31,7 @@ pub fn machine(random: &mut Random, deepest: usize) -> Subject {
         Ok(checked) => checked.model,
         Err(found) => panic!("{text}\n{}", found.render(false)),
     };
-    let mut subject = Subject::new(model, 0);
+    let mut subject = TestMotion::new(model, 0);
     subject.initial = (0..4).map(|_| 1.5 * random.symmetric()).collect();
     let held = [-1.0, 0.0, 1.0, 0.25, 0.0];
     let values = (0..4).map(|_| random.pick(&held).copied().unwrap_or(0.0));

@@ -65,7 +65,7 @@ pub fn run(arguments: &[&str]) -> Output {
 }
 
 /// Runs the program, asserts exit status 2 and returns its message.
-pub fn refused(arguments: &[&str]) -> String {
+pub fn run_rejected(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = text(&output.stderr);
     let shown = arguments.join(" ");
@@ -77,7 +77,7 @@ pub fn refused(arguments: &[&str]) -> String {
 }
 
 /// Runs the program, asserts success and returns its stdout.
-pub fn accepted(arguments: &[&str]) -> String {
+pub fn run_accepted(arguments: &[&str]) -> String {
     let output = run(arguments);
     let shown = arguments.join(" ");
     assert_eq!(
@@ -91,9 +91,9 @@ pub fn accepted(arguments: &[&str]) -> String {
 
 /// Runs `compare` or `discover` on a specification and a dataset with output to a folder; asserts
 /// success and returns the document.
-pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
+pub fn run_on_dataset(command: &str, paths: [&PathBuf; 3]) -> Value {
     let [specification, dataset, out] = paths.map(|path| path.display().to_string());
-    accepted(&[command, &specification, &dataset, "--out", &out]);
+    run_accepted(&[command, &specification, &dataset, "--out", &out]);
     let name = match command {
         "compare" => "comparison.json",
         _ => "discovery.json",
@@ -103,7 +103,7 @@ pub fn answered(command: &str, paths: [&PathBuf; 3]) -> Value {
 }
 
 /// Writes the texts to a temporary folder and runs [`answered`].
-pub fn answered_to(command: &str, texts: Texts<'_>) -> Value {
+pub fn run_on_texts(command: &str, texts: Texts<'_>) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     for (name, text) in [
@@ -115,7 +115,7 @@ pub fn answered_to(command: &str, texts: Texts<'_>) -> Value {
         std::fs::write(place(name), text).expect("a file");
     }
     let paths = ["spec.toml", "dataset.toml", "found"].map(place);
-    answered(command, paths.each_ref())
+    run_on_dataset(command, paths.each_ref())
 }
 
 /// Input files of `compare` or `discover`; the dataset names the records `train.csv` and

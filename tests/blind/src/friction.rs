@@ -3,7 +3,7 @@
 
 /// Law of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Dry {
+pub enum FrictionLaw {
     /// Bristles that bend before they slide with the full friction. Their damping follows from the
     /// inertia of the axis (force unit s^2 per axis unit).
     Bristles {
@@ -24,7 +24,7 @@ pub enum Dry {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisForces {
     /// Law of dry friction.
-    pub dry: Dry,
+    pub dry: FrictionLaw,
     /// Sliding friction.
     pub coulomb: f64,
     /// Excess of static over sliding friction, and the Stribeck speed.
@@ -44,12 +44,12 @@ pub struct AxisForces {
     /// Ripple: periods per revolution, cosine and sine.
     pub ripple: (f64, f64, f64),
     /// Force outside the catalogue.
-    pub strange: Strange,
+    pub strange: UncataloguedForce,
 }
 
 /// Force outside the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Strange {
+pub enum UncataloguedForce {
     /// No such force.
     None,
     /// Friction that increases with the square of the displacement: -size x^2 x'.
@@ -62,7 +62,7 @@ pub enum Strange {
 
 impl AxisForces {
     /// Returns forces with nothing hidden.
-    pub fn none(dry: Dry) -> Self {
+    pub fn none(dry: FrictionLaw) -> Self {
         Self {
             dry,
             coulomb: 0.0,
@@ -74,7 +74,7 @@ impl AxisForces {
             restraint: 0.0,
             gravity: (0.0, 0.0),
             ripple: (0.0, 0.0, 0.0),
-            strange: Strange::None,
+            strange: UncataloguedForce::None,
         }
     }
 
@@ -84,10 +84,10 @@ impl AxisForces {
         let (dry, bending) = self.dry_friction(v, z);
         let per_turn = self.ripple.0 * x;
         let strange = match self.strange {
-            Strange::None => 0.0,
-            Strange::Worn(size) => -size * x * x * v,
-            Strange::Hum(size, f) => size * (2.0 * std::f64::consts::PI * f * t).sin(),
-            Strange::Weakening(size) => -size * x * input,
+            UncataloguedForce::None => 0.0,
+            UncataloguedForce::Worn(size) => -size * x * x * v,
+            UncataloguedForce::Hum(size, f) => size * (2.0 * std::f64::consts::PI * f * t).sin(),
+            UncataloguedForce::Weakening(size) => -size * x * input,
         };
         let smooth = self.offset
             - self.viscous * v
@@ -106,12 +106,12 @@ impl AxisForces {
         }
         let level = self.coulomb + near_rest * (-(v / fall) * (v / fall)).exp();
         match self.dry {
-            Dry::Steep { speed } => (level * (v / speed).tanh(), 0.0),
+            FrictionLaw::Steep { speed } => (level * (v / speed).tanh(), 0.0),
             // Bristles with a large Stribeck excess would need shorter integration steps.
-            Dry::Bristles { .. } if self.coulomb < near_rest => {
+            FrictionLaw::Bristles { .. } if self.coulomb < near_rest => {
                 (level * (v / (0.01 * fall)).tanh(), 0.0)
             }
-            Dry::Bristles { reach, inertia } => {
+            FrictionLaw::Bristles { reach, inertia } => {
                 let stiffness = (self.coulomb + near_rest) / reach;
                 let bending = v - stiffness * v.abs() * z / level;
                 // Damping ratio of one half, vanishing as the bristles slide.
@@ -135,7 +135,7 @@ fn sinusoid((cosine, sine): (f64, f64), angle: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{AxisForces, Dry};
+    use super::{AxisForces, FrictionLaw};
 
     /// Returns the force after long sliding at constant speed, with fully bent bristles.
     fn sliding_force(forces: &AxisForces, v: f64) -> f64 {
@@ -156,11 +156,11 @@ mod tests {
                 sliding_force(&forces, v)
             };
             let expected = -v.signum() * (4.0 + 2.0 * (-(v / 0.1) * (v / 0.1)).exp());
-            let bristles = of(Dry::Bristles {
+            let bristles = of(FrictionLaw::Bristles {
                 reach: 1e-5,
                 inertia: 0.01,
             });
-            let steep = of(Dry::Steep { speed: 1e-4 });
+            let steep = of(FrictionLaw::Steep { speed: 1e-4 });
             assert!((bristles - expected).abs() < 1e-6, "{bristles} {expected}");
             assert!((steep - expected).abs() < 1e-6, "{steep} {expected}");
         }
@@ -174,23 +174,23 @@ mod tests {
             forces.stribeck = (8.0, 0.02);
             forces.force(0.0, 0.0, 0.5, 0.0, 0.0)
         };
-        let bristles = force(Dry::Bristles {
+        let bristles = force(FrictionLaw::Bristles {
             reach: 5e-6,
             inertia: 95.0,
         });
-        assert_eq!(bristles, force(Dry::Steep { speed: 2e-4 }));
+        assert_eq!(bristles, force(FrictionLaw::Steep { speed: 2e-4 }));
     }
 
     #[test]
     fn forces_have_the_correct_sign() {
-        let mut forces = AxisForces::none(Dry::Steep { speed: 1e-4 });
+        let mut forces = AxisForces::none(FrictionLaw::Steep { speed: 1e-4 });
         forces.viscous = 2.0;
         forces.drag = 3.0;
         assert_eq!(
             forces.force(0.0, 0.0, -2.0, 0.0, 0.0).0,
             2.0 * 2.0 + 3.0 * 4.0
         );
-        let mut forces = AxisForces::none(Dry::Steep { speed: 1e-4 });
+        let mut forces = AxisForces::none(FrictionLaw::Steep { speed: 1e-4 });
         forces.asymmetric = 1.5;
         assert_eq!(forces.force(0.0, 0.0, -2.0, 0.0, 0.0).0, -3.0);
         forces.asymmetric = 0.0;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::friction::Strange;
+use crate::friction::UncataloguedForce;
 use crate::machines::two_bodies::Form;
 use crate::machines::{Machine, Setup};
 
@@ -78,7 +78,7 @@ pub struct Sensors {
 
 impl Sensors {
     /// Returns sensors without errors.
-    pub fn right(channels: usize) -> Self {
+    pub fn ideal(channels: usize) -> Self {
         Self {
             gain: vec![0.0; channels],
             bias: vec![0.0; channels],
@@ -92,7 +92,7 @@ impl Sensors {
     /// Returns sensors with these errors of gain, bias and delay per channel, in standard
     /// deviations of their priors.
     pub fn within_priors(setup: &Setup, deviations: &[f64]) -> Self {
-        let mut sensors = Self::right(setup.channels.len());
+        let mut sensors = Self::ideal(setup.channels.len());
         for (place, channel) in setup.channels.iter().enumerate() {
             let of = &deviations[3 * place..3 * place + 3];
             sensors.gain[place] = GAIN_PRIOR * of[0];
@@ -195,9 +195,9 @@ impl Hidden {
             Effect::ElasticRestraint => axis.restraint = amount,
             Effect::Gravity => axis.gravity = (repeating.1, repeating.2),
             Effect::TorqueRipple => axis.ripple = repeating,
-            Effect::WornFriction => axis.strange = Strange::Worn(amount),
-            Effect::ForeignHum => axis.strange = Strange::Hum(amount, self.order),
-            Effect::WeakeningDrive => axis.strange = Strange::Weakening(amount),
+            Effect::WornFriction => axis.strange = UncataloguedForce::Worn(amount),
+            Effect::ForeignHum => axis.strange = UncataloguedForce::Hum(amount, self.order),
+            Effect::WeakeningDrive => axis.strange = UncataloguedForce::Weakening(amount),
             other => panic!("{other:?} is not an effect on an axis"),
         }
     }

@@ -23,7 +23,7 @@ pub fn heading() -> String {
 ///
 /// # Errors
 /// Returns an error if the table has other columns.
-pub fn with(table: &str, run: &Run, score: &Score) -> Result<String, String> {
+pub fn append_run(table: &str, run: &Run, score: &Score) -> Result<String, String> {
     let heading = heading();
     if !table.starts_with(&heading) {
         return Err(format!(
@@ -83,8 +83,8 @@ fn figures(score: &[&Score]) -> [(&'static str, String); 21] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Run, heading, with};
-    use crate::score::summed;
+    use super::{Run, append_run, heading};
+    use crate::score::sum_judgements;
 
     const KEPT: &str = include_str!("../history.csv");
 
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn line_has_the_columns_of_the_header() {
-        let table = with(&heading(), &run(), &summed(Vec::new())).expect("a table");
+        let table = append_run(&heading(), &run(), &sum_judgements(Vec::new())).expect("a table");
         let counts: Vec<usize> = table.lines().map(|line| line.split(',').count()).collect();
         assert_eq!(counts, [24, 24], "{table}");
         assert!(table.contains("\n2026-01-02,abc,--seed 7 --cases 0..24,0,0/0,"));
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn checked_in_table_can_be_extended() {
-        assert!(with(KEPT, &run(), &summed(Vec::new())).is_ok());
-        assert!(with("date,other\n", &run(), &summed(Vec::new())).is_err());
+        assert!(append_run(KEPT, &run(), &sum_judgements(Vec::new())).is_ok());
+        assert!(append_run("date,other\n", &run(), &sum_judgements(Vec::new())).is_err());
     }
 }

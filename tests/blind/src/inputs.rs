@@ -8,7 +8,7 @@ use crate::random::Draw;
 /// Kind of excitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Manner {
+pub enum Excitation {
     /// Reversals, a sweep and steps.
     Usual,
     /// Constant direction.
@@ -37,7 +37,13 @@ struct Ingredients {
 }
 
 /// Draws the excitation of record `place`; test records follow the training records.
-pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut Draw) -> Drive {
+pub fn drive(
+    kind: Kind,
+    setup: &Setup,
+    manner: Excitation,
+    place: usize,
+    draw: &mut Draw,
+) -> Drive {
     let samples = (setup.duration / setup.sample).round() as usize + 1;
     let test = place >= setup.records.0;
     let machine = kind.nominal();
@@ -50,7 +56,7 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             start[1] = draw.between(-0.5, 0.5);
             vec![0.0; samples]
         }
-        (Kind::Stage, Manner::OneWay) => {
+        (Kind::Stage, Excitation::OneWay) => {
             // The speed varies by half, so that the viscous friction is observable.
             start[1] = draw.between(0.3, 0.4);
             let lasting = viscous(&machine) * start[1];
@@ -70,7 +76,7 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
                 draw,
             )
         }
-        (Kind::Arm, Manner::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
+        (Kind::Arm, Excitation::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
         (Kind::Stage, _) => combine_components(
             setup,
             samples,

@@ -77,7 +77,7 @@ fn run_suite(options: &Options) -> Result<(), String> {
     let work = || -> Result<(), String> {
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
             let told = |error: std::io::Error| format!("case {}: {error}", case.number);
-            records::make(case, options.seed, specifications(), &options.out).map_err(told)?;
+            records::make_case(case, options.seed, specifications(), &options.out).map_err(told)?;
             run::run(&program, &options.out, case.number, limit).map_err(told)?;
             eprint!(
                 "\r{} of {} ",
@@ -121,7 +121,7 @@ fn keep(options: &Options, score: &Score) -> Result<(), String> {
         commit: git(&["describe", "--always", "--dirty=+"]),
         command: command(options),
     };
-    let kept = history::with(&kept, &run, score)?;
+    let kept = history::append_run(&kept, &run, score)?;
     records::write_whole(path, &kept).map_err(|error| error.to_string())
 }
 

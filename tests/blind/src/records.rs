@@ -49,7 +49,7 @@ pub struct Truth {
 }
 
 /// Returns the sensor readings of a motion: one column per channel, SI.
-pub fn seen(
+pub fn sensor_readings(
     machine: &Machine,
     setup: &Setup,
     drive: &Drive,
@@ -88,7 +88,7 @@ pub fn seen(
 ///
 /// # Errors
 /// Returns an error if a file cannot be written.
-pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::io::Result<()> {
+pub fn make_case(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::io::Result<()> {
     let label_file = out.join("labels").join(format!("{:03}.json", case.number));
     if label_file.exists() {
         return Ok(());
@@ -97,7 +97,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
     let mut draw = Draw::new(seed, 1 + case.number as u64);
     let mut machine = case.machine.nominal();
     machine.choose_dry(&mut draw);
-    let mut sensors = Sensors::right(setup.channels.len());
+    let mut sensors = Sensors::ideal(setup.channels.len());
     let declared = case
         .nuisances
         .draw(&setup, &mut machine, &mut sensors, &mut draw);
@@ -107,7 +107,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
         .collect();
     let mut truths = Vec::new();
     for planned in &case.hidden {
-        let sized = size::sized(
+        let sized = size::determine_size(
             &machine,
             &setup,
             &drives,
@@ -119,7 +119,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
             effect: sized.hidden.name(),
             parameters: sized.hidden.parameters(&machine),
             floors: sized.floors,
-            alike: planned.alike.clone(),
+            alike: planned.indistinguishable.clone(),
             hidden: sized.hidden,
         });
     }
@@ -137,7 +137,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
     }
     let columns: Vec<Vec<Vec<f64>>> = drives
         .iter()
-        .map(|drive| seen(&machine, &setup, drive, &sensors, &mut draw))
+        .map(|drive| sensor_readings(&machine, &setup, drive, &sensors, &mut draw))
         .collect();
     let folder = out.join("cases").join(format!("{:03}", case.number));
     write_case(&folder, &setup, case, specifications, &drives, &columns)?;

@@ -1,9 +1,9 @@
 //! The hand-written equations: energy is conserved or dissipated correctly, steps are short enough,
 //! and the residual of missing modes is below the noise floor.
 
-use eomgen_blind::friction::{AxisForces, Dry};
+use eomgen_blind::friction::{AxisForces, FrictionLaw};
 use eomgen_blind::hidden::Sensors;
-use eomgen_blind::inputs::{Drive, Manner, drive};
+use eomgen_blind::inputs::{Drive, Excitation, drive};
 use eomgen_blind::integrate::{Motion, Stepper};
 use eomgen_blind::machines::arm::Arm;
 use eomgen_blind::machines::axes::Pendulum;
@@ -70,7 +70,7 @@ fn lossless_arm_conserves_energy() {
 #[test]
 fn losses_of_arm_match_their_power() {
     let mut arm = lossless_arm(0.0);
-    arm.on_carrier = AxisForces::none(Dry::Steep { speed: 0.01 });
+    arm.on_carrier = AxisForces::none(FrictionLaw::Steep { speed: 0.01 });
     arm.on_carrier.viscous = 0.3;
     let start = state_in_motion(false);
     let (mut state, mut lost) = (start.clone(), 0.0);
@@ -110,7 +110,7 @@ fn pendulum_conserves_energy_and_has_small_amplitude_period() {
 #[test]
 fn two_bodies_conserve_energy_without_losses_only() {
     for form in [Form::TwoMass, Form::Crane, Form::QuarterCar] {
-        let declared = TwoBodies::drawn(form, 8);
+        let declared = TwoBodies::random(form, 8);
         let mut bodies = declared.clone();
         bodies.viscous = [0.0; 2];
         bodies.spring.damping = 0.0;
@@ -130,7 +130,7 @@ fn two_bodies_conserve_energy_without_losses_only() {
 
 fn drives(kind: Kind, setup: &Setup, seed: u64) -> Vec<Drive> {
     let mut draw = Draw::new(seed, 0);
-    vec![drive(kind, setup, Manner::Usual, 0, &mut draw)]
+    vec![drive(kind, setup, Excitation::Usual, 0, &mut draw)]
 }
 
 /// Returns the RMS difference over 0.1 s windows between steps and steps of half the size from the
@@ -174,7 +174,7 @@ fn integration_steps_are_short_enough() {
             Kind::Stage => (5.0, (5e-6, 95.0)),
             Kind::Pendulum => (1e-3, (3e-4, 3.3e-3)),
             Kind::TwoBodies { form, seed } => {
-                let bodies = TwoBodies::drawn(form, seed);
+                let bodies = TwoBodies::random(form, seed);
                 (0.2 * bodies.usual_input(), bodies.bristles()[0])
             }
         };
@@ -188,7 +188,7 @@ fn integration_steps_are_short_enough() {
             axis.coulomb = level;
             if bends {
                 let (reach, inertia) = bristles;
-                axis.dry = Dry::Bristles { reach, inertia };
+                axis.dry = FrictionLaw::Bristles { reach, inertia };
             }
             let error = step_error(&machine, &setup, &drives(kind, &setup, 5)[0]);
             println!("{kind:?}, bristles {bends}: {error} noises");
@@ -218,9 +218,9 @@ fn sensors_have_declared_noise_and_delay() {
     let machine = Kind::Stage.nominal();
     let drive = &drives(Kind::Stage, &setup, 3)[0];
     let mut draw = Draw::new(3, 1);
-    let mut sensors = Sensors::right(1);
+    let mut sensors = Sensors::ideal(1);
     let clean = window(&machine, &setup, drive, &drive.start, 0, drive.input.len());
-    let seen = eomgen_blind::records::seen(&machine, &setup, drive, &sensors, &mut draw);
+    let seen = eomgen_blind::records::sensor_readings(&machine, &setup, drive, &sensors, &mut draw);
     let noise = setup.channels[0].noise;
     let square = |(a, b): (&f64, &Vec<f64>)| ((a - b[0]) / noise).powi(2);
     let mean = seen[0].iter().zip(&clean).map(square).sum::<f64>() / clean.len() as f64;
@@ -230,7 +230,7 @@ fn sensors_have_declared_noise_and_delay() {
         "{mean}"
     );
     sensors.delay[0] = 2.0 * setup.sample;
-    let late = eomgen_blind::records::seen(&machine, &setup, drive, &sensors, &mut draw);
+    let late = eomgen_blind::records::sensor_readings(&machine, &setup, drive, &sensors, &mut draw);
     let worst = late[0][2..]
         .iter()
         .zip(&clean)

@@ -63,14 +63,14 @@ pub struct Arm<T> {
 
 impl<T: Scalar> Arm<T> {
     /// Returns the arm of a case.
-    pub fn of(case: Case) -> Self {
-        let number = T::exactly;
+    pub fn from_case(case: Case) -> Self {
+        let number = T::from_f64;
         let pressure_angle = number(24.6) * T::PI / number(180.0);
         let (_, cos) = pressure_angle.sin_cos();
         let module = number(3.0) / number(1000.0);
-        let r_s = module * cos.times(27.0 / 2.0);
-        let r_c = module.times((27.0 + 36.0) / 2.0);
-        let carrier = (number(6.29) + number(0.66).times(3.0)) * r_c * r_c;
+        let r_s = module * cos.scaled_by(27.0 / 2.0);
+        let r_c = module.scaled_by((27.0 + 36.0) / 2.0);
+        let carrier = (number(6.29) + number(0.66).scaled_by(3.0)) * r_c * r_c;
         let beam = Beam::steel();
         let modes: Vec<ArmMode<T>> = (1..=case.order).map(|r| beam.mode(r)).collect();
         let whole = carrier + beam.inertia();
@@ -107,15 +107,15 @@ impl<T: Scalar> Beam<T> {
     /// Returns the paper's arm with the assumed cross-section.
     fn steel() -> Self {
         Self {
-            mass: T::exactly(7900.0) * T::exactly(1e-4),
-            stiffness: T::exactly(2e11) * T::exactly(8.333e-10),
-            length: T::exactly(0.5),
+            mass: T::from_f64(7900.0) * T::from_f64(1e-4),
+            stiffness: T::from_f64(2e11) * T::from_f64(8.333e-10),
+            length: T::from_f64(0.5),
         }
     }
 
     /// Returns rho A l^3/3, in kg m^2.
     fn inertia(&self) -> T {
-        self.mass * self.length * self.length * self.length / T::exactly(3.0)
+        self.mass * self.length * self.length * self.length / T::from_f64(3.0)
     }
 
     /// Returns mode `r` with h = rho A int x phi, M = rho A int phi^2, K = E I int phi''^2.

@@ -15,7 +15,7 @@ const HALVINGS: u32 = 50;
 /// coefficients are in ascending powers. A polynomial that starts above zero and rises, as after a
 /// step that ended on the root, gives 0.
 pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
-    let zero = T::exactly(0.0);
+    let zero = T::from_f64(0.0);
     if stays_negative(coefficients) {
         return None;
     }
@@ -28,7 +28,7 @@ pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
 
 /// Returns true if the first coefficient is more negative than all others can compensate.
 fn stays_negative<T: Scalar>(coefficients: &[T]) -> bool {
-    let mut doubles = coefficients.iter().map(|coefficient| coefficient.nearest());
+    let mut doubles = coefficients.iter().map(|coefficient| coefficient.to_f64());
     let start = doubles.next().unwrap_or(0.0);
     // The rounding of a sum of fifty doubles is below 1e-14 of it.
     start < 0.0 && doubles.map(f64::abs).sum::<f64>() < -0.999 * start
@@ -41,7 +41,7 @@ fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
     let mut binomial = 1.0;
     let mut values = Vec::with_capacity(coefficients.len());
     for (k, coefficient) in coefficients.iter().enumerate() {
-        values.push(*coefficient / T::exactly(binomial));
+        values.push(*coefficient / T::from_f64(binomial));
         // Exact up to degree 56.
         binomial = binomial * (degree - k) as f64 / (k + 1) as f64;
     }
@@ -62,7 +62,7 @@ fn rise_within<T: Scalar>(
     width: f64,
     halvings: u32,
 ) -> Option<T> {
-    let zero = T::exactly(0.0);
+    let zero = T::from_f64(0.0);
     let changes = values
         .windows(2)
         .filter(|pair| (pair[0] > zero) != (pair[1] > zero))
@@ -74,8 +74,8 @@ fn rise_within<T: Scalar>(
     if changes == 1 || (halvings == 0 && rises) {
         return Some(root(
             coefficients,
-            T::exactly(from),
-            T::exactly(from + width),
+            T::from_f64(from),
+            T::from_f64(from + width),
         ));
     }
     let halvings = halvings.checked_sub(1)?;
@@ -92,7 +92,7 @@ fn halve<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
     left.push(values[0]);
     for last in (0..degree).rev() {
         for k in 0..=last {
-            values[k] = (values[k] + values[k + 1]).times(0.5);
+            values[k] = (values[k] + values[k + 1]).scaled_by(0.5);
         }
         left.push(values[0]);
     }
@@ -102,7 +102,7 @@ fn halve<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
 
 /// Returns the value and the derivative of a polynomial in powers, by Horner's rule.
 fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
-    let zero = T::exactly(0.0);
+    let zero = T::from_f64(0.0);
     coefficients
         .iter()
         .rev()
@@ -114,19 +114,19 @@ fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
 /// Returns the only root in `low..=high` of a rising polynomial by Newton's method, with bisection
 /// if an iterate leaves the bracket.
 fn root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
-    let mut at = (low + high).times(0.5);
+    let mut at = (low + high).scaled_by(0.5);
     for _ in 0..200 {
         let (value, slope) = value_and_slope(coefficients, at);
-        if value > T::exactly(0.0) {
+        if value > T::from_f64(0.0) {
             high = at;
         } else {
             low = at;
         }
         let mut next = at - value / slope;
         if !(next >= low && next <= high) {
-            next = (low + high).times(0.5);
+            next = (low + high).scaled_by(0.5);
         }
-        let moved = (next - at).magnitude().nearest();
+        let moved = (next - at).magnitude().to_f64();
         at = next;
         if moved <= 2.0 * T::EPSILON {
             break;

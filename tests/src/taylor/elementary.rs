@@ -44,15 +44,15 @@ impl Scalar for DoubleDouble {
     const DEGREE: usize = 48;
     const PI: Self = PI;
 
-    fn exactly(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         Self::exactly(value)
     }
 
-    fn nearest(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self.high
     }
 
-    fn times(self, factor: f64) -> Self {
+    fn scaled_by(self, factor: f64) -> Self {
         self.times(factor)
     }
 

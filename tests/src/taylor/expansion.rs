@@ -93,24 +93,24 @@ pub struct Series<T> {
 impl<T: Scalar> Expander<T> {
     /// Prepares the series of an arm with a time unit in s, a power of two.
     pub fn new(arm: Arm<T>, sigma: f64) -> Self {
-        let one = T::exactly(1.0);
+        let one = T::from_f64(1.0);
         let inverses = (0..T::DEGREE)
-            .map(|k| one / T::exactly(((k + 1) * (k + 2)) as f64))
+            .map(|k| one / T::from_f64(((k + 1) * (k + 2)) as f64))
             .collect();
         let stiffness: Vec<T> = (arm.modes.iter())
-            .map(|mode| mode.stiffness.times(sigma * sigma))
+            .map(|mode| mode.stiffness.scaled_by(sigma * sigma))
             .collect();
         let loads = (arm.modes.iter().zip(&stiffness))
             .map(|(mode, stiffness)| mode.h * *stiffness)
             .collect();
         Self {
             scaled: Scaled {
-                k: arm.k.times(sigma * sigma),
-                c: arm.c.times(sigma),
-                drive: arm.drive.times(sigma * sigma),
-                drag: arm.drag.times(sigma),
-                ripple: arm.ripple.times(sigma * sigma),
-                omega: arm.omega.times(sigma),
+                k: arm.k.scaled_by(sigma * sigma),
+                c: arm.c.scaled_by(sigma),
+                drive: arm.drive.scaled_by(sigma * sigma),
+                drag: arm.drag.scaled_by(sigma),
+                ripple: arm.ripple.scaled_by(sigma * sigma),
+                omega: arm.omega.scaled_by(sigma),
                 stiffness,
                 loads,
             },
@@ -124,7 +124,7 @@ impl<T: Scalar> Expander<T> {
     }
 
     /// Returns the expander with half the time unit.
-    pub fn finer(&self) -> Self {
+    pub fn with_half_time_unit(&self) -> Self {
         Self::new(self.arm.clone(), self.sigma / 2.0)
     }
 
@@ -149,7 +149,7 @@ impl<T: Scalar> Expander<T> {
         let width = self.width();
         let mut coefficients = Vec::with_capacity((T::DEGREE + 1) * width);
         coefficients.extend_from_slice(&state.positions);
-        coefficients.extend(state.rates.iter().map(|rate| rate.times(self.sigma)));
+        coefficients.extend(state.rates.iter().map(|rate| rate.scaled_by(self.sigma)));
         let torque = self.torque(time);
         for (k, torque) in torque.into_iter().enumerate() {
             self.next(k, torque, sides, &mut coefficients);
@@ -173,7 +173,7 @@ impl<T: Scalar> Expander<T> {
                 2 => -(factor * sin),
                 _ => -(factor * cos),
             });
-            factor = factor * self.scaled.omega / T::exactly((k + 1) as f64);
+            factor = factor * self.scaled.omega / T::from_f64((k + 1) as f64);
         }
         series[0] = series[0] + self.scaled.drive;
         series
@@ -183,14 +183,14 @@ impl<T: Scalar> Expander<T> {
     fn next(&self, k: usize, torque: T, sides: [Side; 2], coefficients: &mut Vec<T>) {
         let (arm, scaled) = (&self.arm, &self.scaled);
         let (now, after) = coefficients[k * self.width()..].split_at(self.width());
-        let rate = |j: usize| after[j].times((k + 1) as f64);
+        let rate = |j: usize| after[j].scaled_by((k + 1) as f64);
         let [f_sp, f_pr] = [0, 1].map(|mesh| self.force(k, sides[mesh], now[mesh], rate(mesh)));
-        let sun_rate = rate(0) + rate(1) + rate(2).times(2.0);
-        let sun = (torque - scaled.drag * sun_rate - f_sp.times(3.0)) * self.inverse_m_s;
+        let sun_rate = rate(0) + rate(1) + rate(2).scaled_by(2.0);
+        let sun = (torque - scaled.drag * sun_rate - f_sp.scaled_by(3.0)) * self.inverse_m_s;
         let planet = (f_sp - f_pr) * self.inverse_m_p;
         let bending = (scaled.loads.iter().zip(&now[3..]))
-            .fold(T::exactly(0.0), |sum, (load, q)| sum + *load * *q);
-        let angle = ((f_sp + f_pr).times(3.0) * arm.lever + bending) * self.inverse_inertia;
+            .fold(T::from_f64(0.0), |sum, (load, q)| sum + *load * *q);
+        let angle = ((f_sp + f_pr).scaled_by(3.0) * arm.lever + bending) * self.inverse_inertia;
         let carrier = angle * arm.lever;
         let modes: Vec<T> = (arm.modes.iter().zip(&scaled.stiffness).zip(&now[3..]))
             .map(|((mode, stiffness), q)| -(*stiffness * *q + mode.share * angle))
@@ -203,11 +203,11 @@ impl<T: Scalar> Expander<T> {
     /// Returns coefficient `k` of sigma^2 k f_k + sigma c f_c, Eq. (6) to (9), of one mesh.
     fn force(&self, k: usize, side: Side, deflection: T, rate: T) -> T {
         if side == Side::Free {
-            return T::exactly(0.0);
+            return T::from_f64(0.0);
         }
         // The edge of the backlash is constant, so only the first coefficient contains it.
         let edge = if k == 0 { side.sign() } else { 0.0 };
-        self.scaled.k * (deflection - self.arm.b.times(edge)) + self.scaled.c * rate
+        self.scaled.k * (deflection - self.arm.b.scaled_by(edge)) + self.scaled.c * rate
     }
 }
 
@@ -217,7 +217,7 @@ impl<T: Scalar> Series<T> {
     }
 
     /// Returns the coefficients of one displacement, in m.
-    pub fn of(&self, displacement: usize) -> Vec<T> {
+    pub fn displacement_series(&self, displacement: usize) -> Vec<T> {
         (self.coefficients.iter())
             .skip(displacement)
             .step_by(self.width)
@@ -229,13 +229,13 @@ impl<T: Scalar> Series<T> {
     /// remainder of a whole step.
     pub fn tail(&self) -> f64 {
         (self.coefficients.iter().rev().take(2 * self.width))
-            .map(|coefficient| coefficient.nearest().abs())
+            .map(|coefficient| coefficient.to_f64().abs())
             .fold(0.0, f64::max)
     }
 
     /// Returns the state at u = `at` in 0..=1, by Horner's rule.
     pub fn state(&self, at: T) -> State<T> {
-        let zero = T::exactly(0.0);
+        let zero = T::from_f64(0.0);
         let mut positions = vec![zero; self.width];
         let mut rates = vec![zero; self.width];
         for k in (0..=T::DEGREE).rev() {
@@ -249,13 +249,13 @@ impl<T: Scalar> Series<T> {
 
     /// Returns the state at u = 1.
     pub fn end(&self) -> State<T> {
-        let zero = T::exactly(0.0);
+        let zero = T::from_f64(0.0);
         let mut positions = vec![zero; self.width];
         let mut rates = vec![zero; self.width];
         for k in (0..=T::DEGREE).rev() {
             for (j, coefficient) in self.row(k).iter().enumerate() {
                 positions[j] = positions[j] + *coefficient;
-                rates[j] = rates[j] + coefficient.times(k as f64);
+                rates[j] = rates[j] + coefficient.scaled_by(k as f64);
             }
         }
         self.in_seconds(positions, rates)
@@ -263,7 +263,7 @@ impl<T: Scalar> Series<T> {
 
     fn in_seconds(&self, positions: Vec<T>, rates: Vec<T>) -> State<T> {
         let rates = (rates.into_iter())
-            .map(|rate| rate.times(1.0 / self.sigma))
+            .map(|rate| rate.scaled_by(1.0 / self.sigma))
             .collect();
         State { positions, rates }
     }

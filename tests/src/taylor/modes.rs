@@ -31,19 +31,19 @@ impl<T: Scalar> Mode<T> {
         let z: T = root(r);
         let (sin, cos) = z.sin_cos();
         let decay = (-z).exp();
-        let one = T::exactly(1.0);
+        let one = T::from_f64(1.0);
         // Numerator and denominator are multiplied by exp(-z) to avoid overflow.
-        let sines = decay * sin + (one - decay * decay).times(0.5);
-        let cosines = decay * cos + (one + decay * decay).times(0.5);
+        let sines = decay * sin + (one - decay * decay).scaled_by(0.5);
+        let cosines = decay * cos + (one + decay * decay).scaled_by(0.5);
         let xi = -sines / cosines;
         let square = xi * xi;
         Self {
             z,
             xi,
-            moment: xi.times(-2.0) / (z * z),
+            moment: xi.scaled_by(-2.0) / (z * z),
             square,
             bending: z * z * z * z * square,
-            tip: xi.times(if r.is_multiple_of(2) { 2.0 } else { -2.0 }),
+            tip: xi.scaled_by(if r.is_multiple_of(2) { 2.0 } else { -2.0 }),
         }
     }
 }
@@ -51,12 +51,12 @@ impl<T: Scalar> Mode<T> {
 /// Returns the r-th positive root of cos z + 1/cosh z by Newton's method from (r - 1/2) pi, whose
 /// error is 0.3 at r = 1 and 2 exp(-z) for larger r.
 fn root<T: Scalar>(r: usize) -> T {
-    let one = T::exactly(1.0);
-    let mut z = T::PI.times(r as f64 - 0.5);
+    let one = T::from_f64(1.0);
+    let mut z = T::PI.scaled_by(r as f64 - 0.5);
     for _ in 0..12 {
         let (sin, cos) = z.sin_cos();
         let decay = (-z).exp();
-        let secant = decay.times(2.0) / (one + decay * decay);
+        let secant = decay.scaled_by(2.0) / (one + decay * decay);
         let tangent = (one - decay * decay) / (one + decay * decay);
         z = z + (cos + secant) / (sin + secant * tangent);
     }

@@ -6,7 +6,7 @@ use super::expansion::{Expander, Series, Side, State};
 use super::scalar::Scalar;
 
 /// Maximum step size, in s.
-pub const LONGEST: f64 = 1.0 / 1024.0;
+pub const MAX_STEP_S: f64 = 1.0 / 1024.0;
 
 /// Magnitude in m of the motions that steps resolve to the rounding of the arithmetic: 1/25 of the
 /// reference's half backlash.
@@ -39,8 +39,8 @@ pub struct Run<T> {
 impl<T: Scalar> Run<T> {
     /// Integrates from rest at zero through `times`, in s and ascending. Steps are at most
     /// `longest`, in s and a power of two; with [`LONGEST`] the motion determines them.
-    pub fn of(case: Case, times: &[f64], longest: f64) -> Self {
-        let arm = Arm::<T>::of(case);
+    pub fn simulate(case: Case, times: &[f64], longest: f64) -> Self {
+        let arm = Arm::<T>::from_case(case);
         let tips = arm.modes.iter().map(|mode| mode.tip).collect();
         let mut motion = Motion::at_rest(Expander::new(arm, longest));
         let mut run = Self {
@@ -59,11 +59,11 @@ impl<T: Scalar> Run<T> {
     /// Returns the deflection of the arm's end at the time of index `sample`, in m.
     pub fn tip(&self, sample: usize) -> T {
         let positions = &self.states[sample].positions[3..];
-        (self.tips.iter().zip(positions)).fold(T::exactly(0.0), |tip, (phi, q)| tip + *phi * *q)
+        (self.tips.iter().zip(positions)).fold(T::from_f64(0.0), |tip, (phi, q)| tip + *phi * *q)
     }
 
     /// Returns the number of switches of each mesh.
-    pub fn counts(&self) -> [usize; 2] {
+    pub fn switch_counts(&self) -> [usize; 2] {
         [0, 1].map(|mesh| {
             self.switches
                 .iter()
@@ -83,7 +83,7 @@ struct Motion<T> {
 
 impl<T: Scalar> Motion<T> {
     fn at_rest(expander: Expander<T>) -> Self {
-        let rest = vec![T::exactly(0.0); expander.width()];
+        let rest = vec![T::from_f64(0.0); expander.width()];
         let state = State {
             positions: rest.clone(),
             rates: rest,
@@ -91,7 +91,7 @@ impl<T: Scalar> Motion<T> {
         let sides = initial_sides(&expander, &state);
         Self {
             expander,
-            time: T::exactly(0.0),
+            time: T::from_f64(0.0),
             state,
             sides,
         }
@@ -102,15 +102,15 @@ impl<T: Scalar> Motion<T> {
         let series = self.resolved_series();
         let sigma = self.expander.sigma();
         let switch = self.first_switch(&series);
-        let until = switch.map_or(T::exactly(1.0), |(at, ..)| at);
+        let until = switch.map_or(T::from_f64(1.0), |(at, ..)| at);
         while let Some(time) = times.get(run.states.len()) {
-            let at = (T::exactly(*time) - self.time).times(1.0 / sigma);
+            let at = (T::from_f64(*time) - self.time).scaled_by(1.0 / sigma);
             if at > until {
                 break;
             }
             run.states.push(series.state(at));
         }
-        self.time = self.time + until.times(sigma);
+        self.time = self.time + until.scaled_by(sigma);
         let Some((at, mesh, to)) = switch else {
             self.state = series.end();
             return;
@@ -131,7 +131,7 @@ impl<T: Scalar> Motion<T> {
             if series.tail() <= T::EPSILON * RESOLUTION_M {
                 return series;
             }
-            self.expander = self.expander.finer();
+            self.expander = self.expander.with_half_time_unit();
         }
     }
 
@@ -140,7 +140,7 @@ impl<T: Scalar> Motion<T> {
         let b = self.expander.arm().b;
         let mut first: Option<(T, usize, Side)> = None;
         for (mesh, side) in self.sides.into_iter().enumerate() {
-            let deflection = series.of(mesh);
+            let deflection = series.displacement_series(mesh);
             for (outside, to) in distances_beyond_edges(&deflection, side, b) {
                 let Some(at) = first_rise(&outside) else {
                     continue;
@@ -157,11 +157,11 @@ impl<T: Scalar> Motion<T> {
 /// Returns, per contact state reachable from `side`, the series of the distance beyond the edge.
 fn distances_beyond_edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
     let beyond = |sign: f64, edge: T| {
-        let mut outside: Vec<T> = deflection.iter().map(|x| x.times(sign)).collect();
+        let mut outside: Vec<T> = deflection.iter().map(|x| x.scaled_by(sign)).collect();
         outside[0] = outside[0] - edge;
         outside
     };
-    let without_play = b == T::exactly(0.0);
+    let without_play = b == T::from_f64(0.0);
     match side {
         Side::Free => vec![
             (beyond(1.0, b), Side::Positive),
@@ -178,15 +178,19 @@ fn distances_beyond_edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<
 /// derivative: both contacts have the same equations then, and up to that derivative the mesh
 /// carries no force.
 fn initial_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
-    let zero = T::exactly(0.0);
+    let zero = T::from_f64(0.0);
     if expander.arm().b > zero {
         return [Side::Free; 2];
     }
     let series = expander.expand(zero, rest, [Side::Positive; 2]);
-    [0, 1].map(
-        |mesh| match series.of(mesh).into_iter().find(|x| *x != zero) {
+    [0, 1].map(|mesh| {
+        match series
+            .displacement_series(mesh)
+            .into_iter()
+            .find(|x| *x != zero)
+        {
             Some(leading) if leading < zero => Side::Negative,
             _ => Side::Positive,
-        },
-    )
+        }
+    })
 }

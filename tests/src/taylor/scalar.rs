@@ -27,13 +27,13 @@ pub trait Scalar:
     const PI: Self;
 
     /// Returns the number with exactly this value.
-    fn exactly(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
 
     /// Returns the nearest double.
-    fn nearest(self) -> f64;
+    fn to_f64(self) -> f64;
 
     /// Returns the product with a double, which is cheaper than one with a number of this type.
-    fn times(self, factor: f64) -> Self;
+    fn scaled_by(self, factor: f64) -> Self;
 
     /// Returns sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
@@ -43,7 +43,7 @@ pub trait Scalar:
 
     /// Returns the magnitude.
     fn magnitude(self) -> Self {
-        if self < Self::exactly(0.0) {
+        if self < Self::from_f64(0.0) {
             -self
         } else {
             self
@@ -56,15 +56,15 @@ impl Scalar for f64 {
     const DEGREE: usize = 24;
     const PI: Self = std::f64::consts::PI;
 
-    fn exactly(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value
     }
 
-    fn nearest(self) -> f64 {
+    fn to_f64(self) -> f64 {
         self
     }
 
-    fn times(self, factor: f64) -> Self {
+    fn scaled_by(self, factor: f64) -> Self {
         self * factor
     }
 

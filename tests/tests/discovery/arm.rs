@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use eomgen_blind::friction::AxisForces;
 use eomgen_blind::hidden::Sensors;
-use eomgen_blind::inputs::{Manner, drive};
+use eomgen_blind::inputs::{Excitation, drive};
 use eomgen_blind::machines::{Kind, Machine, Setup};
 use eomgen_blind::random::Draw;
-use eomgen_blind::records::seen;
+use eomgen_blind::records::sensor_readings;
 use eomgen_tests::models::path;
 use eomgen_tests::program;
 use serde_json::Value;
@@ -41,9 +41,9 @@ fn write_records(folder: &Path) {
     let machine = arm_with_friction();
     let mut draw = Draw::new(16, 1);
     for (place, name) in ["train.csv", "test.csv"].iter().enumerate() {
-        let drive = drive(Kind::Arm, &setup, Manner::Usual, place, &mut draw);
-        let sensors = Sensors::right(setup.channels.len());
-        let columns = seen(&machine, &setup, &drive, &sensors, &mut draw);
+        let drive = drive(Kind::Arm, &setup, Excitation::Usual, place, &mut draw);
+        let sensors = Sensors::ideal(setup.channels.len());
+        let columns = sensor_readings(&machine, &setup, &drive, &sensors, &mut draw);
         let mut text = "t,u,theta_s,theta_c,tip\n".to_owned();
         for (sample, input) in drive.input.iter().enumerate() {
             text += &format!("{:.6},{input:.8e}", sample as f64 * setup.sample);

@@ -17,7 +17,7 @@ const SEED: u64 = 2026;
 fn make_cases(cases: &[&Case], out: &Path) {
     let specifications = project().join("model-spec/models");
     for case in cases {
-        records::make(case, SEED, &specifications, out).expect("the case is written");
+        records::make_case(case, SEED, &specifications, out).expect("the case is written");
     }
 }
 
@@ -248,7 +248,7 @@ fn scores_are_summed_correctly() {
     let alarm = score::judge(&label(Group::Nothing, &[]), &alarm);
     // The interval of 1.645 standard deviations of 0.1 contains 2 from 2.16, but not from 2.17.
     let cases = vec![single(2.16), single(2.17), single(-2.0), nothing, alarm];
-    let score: Score = score::summed(cases);
+    let score: Score = score::sum_judgements(cases);
     assert_eq!(score.named, (3, 3));
     assert_eq!(score.false_alarms, (1, 2));
     assert_eq!(score.intervals, (1, 3));
@@ -330,7 +330,7 @@ fn correct_answers_and_class_sizes_are_counted() {
             vec![],
         ),
     ] {
-        assert_eq!(judged.says_nothing_false(), is_true, "{judged:#?}");
+        assert_eq!(judged.has_no_false_effect(), is_true, "{judged:#?}");
         assert_eq!(judged.classes, classes, "{judged:#?}");
     }
 }
@@ -379,7 +379,7 @@ fn closure_is_counted_with_a_gap_or_without_an_answer() {
             unexplained.clone(),
         ];
         let judged = |outcome: &Outcome| score::judge(&label(group, &hidden), outcome);
-        let score = score::summed(outcomes.iter().map(judged).collect());
+        let score = score::sum_judgements(outcomes.iter().map(judged).collect());
         let closure = match group {
             Group::Single => score.single_closure,
             _ => score.pair_closure,

@@ -47,7 +47,7 @@ fn assert_rejects(measured: &Measured, cases: &[(&str, &str, &str, &str)]) {
 fn rejection(measured: &Measured, effects: &str) -> String {
     let arguments = arguments(measured, effects, "refused");
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let message = program::refused(&arguments);
+    let message = program::run_rejected(&arguments);
     assert!(!measured.file("refused").exists(), "{message}");
     message
 }
@@ -65,7 +65,7 @@ fn discover(measured: &Measured, effects: &str) -> (Value, String) {
 #[test]
 fn user_defined_effect_is_found_with_its_name() {
     let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
-    let measured = Measured::stage_with(&hidden);
+    let measured = Measured::stage_with_force(&hidden);
     let (result, message) = discover(&measured, EFFECTS);
     let effects = result["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{message}{effects:#?}");
@@ -272,7 +272,7 @@ fn invalid_effects_files_are_rejected() {
         let last = arguments.len() - 1;
         arguments[last] = path.display().to_string();
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let message = program::refused(&arguments);
+        let message = program::run_rejected(&arguments);
         assert!(message.contains("cannot read"), "{message}");
     }
 }
@@ -307,7 +307,7 @@ fn effect_without_site_is_reported_as_untested() {
 #[test]
 fn effects_with_the_same_name_are_all_tested() {
     let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
-    let measured = Measured::stage_with(&hidden);
+    let measured = Measured::stage_with_force(&hidden);
     let other = EFFECTS
         .replacen("abs({on})*", "", 1)
         .replacen("/{unit}", "", 1);

@@ -297,7 +297,7 @@ impl Machine {
         let lines: String = inputs.iter().map(|(t, u)| format!("{t},{u}\n")).collect();
         std::fs::write(folder.join(file), format!("t,u\n{lines}")).expect("a file");
         let place = |name: &str| folder.join(name).display().to_string();
-        program::accepted(&[
+        program::run_accepted(&[
             "simulate",
             &place("truth.toml"),
             "--record",

@@ -11,7 +11,7 @@ use eomgen_discover::catalogue::sites::find_sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
-use eomgen_tests::models::shipped;
+use eomgen_tests::models::shipped_specifications;
 
 /// Returns the candidates of an effect in a model: the first order per place and angle.
 fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
@@ -32,7 +32,7 @@ fn candidates_of(model: &Model, effect: &Effect) -> Vec<Candidate> {
 fn catalogue_effects_keep_shipped_specifications_valid() {
     let effects = load_effects(None).expect("the catalogue");
     let mut homes: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
-    for path in shipped() {
+    for path in shipped_specifications() {
         let name = path
             .file_stem()
             .expect("a name")
@@ -72,7 +72,7 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
     let of_axis = axis
         .and_then(|axis| homes.get(&axis))
         .map_or(0, BTreeSet::len);
-    assert_eq!(of_axis, shipped().len(), "{homes:?}");
+    assert_eq!(of_axis, shipped_specifications().len(), "{homes:?}");
 }
 
 const ON_SPRINGS: &str = r#"

@@ -26,8 +26,8 @@ fn parameter(text: &str, name: &str) -> f64 {
 fn force_outside_catalogue_becomes_an_expression() {
     // Guides whose friction increases towards one side, N s/m^2.
     let tighter = 60.0;
-    let measured = Measured::stage_with(&|at| -tighter * at.q * at.v);
-    let (found, _) = measured.answered("discover", "found");
+    let measured = Measured::stage_with_force(&|at| -tighter * at.q * at.v);
+    let (found, _) = measured.run_command("discover", "found");
     assert_eq!(found["verdict"], "effects_found", "{found:#}");
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
@@ -100,8 +100,8 @@ fn force_outside_catalogue_becomes_an_expression() {
 fn force_with_threshold_becomes_expression_with_kink() {
     // Cable that is stretched from 60 mm on, N/m; the model has no spring.
     let (from, stiffness) = (0.06, 2e3);
-    let measured = Measured::stage_with(&|at| -stiffness * (at.q - from).max(0.0));
-    let (found, _) = measured.answered("discover", "found");
+    let measured = Measured::stage_with_force(&|at| -stiffness * (at.q - from).max(0.0));
+    let (found, _) = measured.run_command("discover", "found");
     let effects = found["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     let effect = &effects[0];
@@ -121,8 +121,8 @@ fn force_with_threshold_becomes_expression_with_kink() {
 
 #[test]
 fn external_force_stays_unexplained() {
-    let measured = Measured::stage_with(&|at| 6.0 * (TAU * 17.3 * at.t).sin());
-    let (found, message) = measured.answered("discover", "found");
+    let measured = Measured::stage_with_force(&|at| 6.0 * (TAU * 17.3 * at.t).sin());
+    let (found, message) = measured.run_command("discover", "found");
     assert_eq!(found["verdict"], "unexplained", "{found:#}");
     assert_eq!(found["effects"], serde_json::json!([]));
     assert!(message.contains(SEARCH_MESSAGE), "{message}");
@@ -138,7 +138,7 @@ fn external_force_stays_unexplained() {
 fn no_expression_is_searched_if_nothing_is_missing_or_effect_is_named() {
     for (friction, verdict) in [(0.0, "no_significant_gap"), (3.0, "effects_found")] {
         let measured = Measured::stage(friction);
-        let (found, message) = measured.answered("discover", "found");
+        let (found, message) = measured.run_command("discover", "found");
         assert_eq!(found["verdict"], verdict, "{found:#}");
         assert!(!message.contains(SEARCH_MESSAGE), "{message}");
     }

@@ -123,7 +123,7 @@ fn discover(records: [(String, f64); 2]) -> Value {
         write(name, text);
     }
     let paths = ["pendulum.toml", "dataset.toml", "found"].map(place);
-    program::answered("discover", paths.each_ref())
+    program::run_on_dataset("discover", paths.each_ref())
 }
 
 fn assert_friction_found(found: &Value) {

@@ -112,7 +112,7 @@ fn discover(per_load: f64, constant: f64) -> Value {
         std::fs::write(file(name), text).expect("a file");
     }
     let paths = ["drive.toml", "dataset.toml", "out"].map(file);
-    program::answered("discover", paths.each_ref())
+    program::run_on_dataset("discover", paths.each_ref())
 }
 
 /// Asserts that the only effect is this one on the motor's shaft, with about this size.

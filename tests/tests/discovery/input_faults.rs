@@ -146,7 +146,7 @@ fn discover_in(dataset: &str, specification: &str, records: &[String; 2]) -> (Va
         std::fs::write(file(name), text).expect("a file");
     }
     let paths = ["pendulum.toml", "dataset.toml", "out"].map(file);
-    let document = program::answered("discover", paths.each_ref());
+    let document = program::run_on_dataset("discover", paths.each_ref());
     let extended = std::fs::read_to_string(file("out/extended.toml"));
     (document, extended.expect("a file"))
 }
@@ -217,7 +217,7 @@ fn declared_input_uncertainty_is_refitted_within_prior() {
         std::fs::write(file(name), record(1.0, 0.0, turn)).expect("a file");
     }
     let (model, dataset, out) = (file("other.toml"), file("dataset.toml"), file("out"));
-    let message = program::refused(&["discover", &model, &dataset, "--out", &out]);
+    let message = program::run_rejected(&["discover", &model, &dataset, "--out", &out]);
     assert!(message.contains("u_gain"), "{message}");
     // Beyond three standard deviations of the prior it is an effect.
     let (document, _) = discover(&said("gain = { sd = 0.01 }"), PENDULUM, (0.9, 0.0));

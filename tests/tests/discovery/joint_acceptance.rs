@@ -75,7 +75,7 @@ fn friction_and_ripple_significant_only_together_are_both_named() {
         std::fs::write(place(&format!("{from:.1}.csv")), swing(from)).expect("a file");
     }
     let paths = [path("pendulum"), place("dataset.toml"), place("found")];
-    let found = program::answered("discover", paths.each_ref());
+    let found = program::run_on_dataset("discover", paths.each_ref());
     let effects = found["effects"].as_array().expect("a list");
     let mut names: Vec<&str> = effects
         .iter()

@@ -4,16 +4,17 @@
 use std::fs;
 use std::path::Path;
 
-use eomgen_tests::program::refused;
+use eomgen_tests::program::run_rejected;
 
 use super::machines::{
-    BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, Table, answered, description, mass, spread,
+    BEAM, CYLINDER, Machine, PENDULUM, SAMPLES, STEP, Table, description, mass_on_spring,
+    run_command, standard_deviation,
 };
 
 /// Asserts that both commands find no gap, and a residual far below the noise.
 fn assert_no_gap(folder: &Path, description: &str, noise: f64, shown: &str) {
     for command in ["compare", "discover"] {
-        let answer = answered(folder, command, description);
+        let answer = run_command(folder, command, description);
         assert_eq!(
             answer["verdict"], "no_significant_gap",
             "{command} {shown}: {answer:#}"
@@ -37,9 +38,9 @@ fn assert_no_gap(folder: &Path, description: &str, noise: f64, shown: &str) {
 fn assert_no_gap_in_any_channel(machine: &Machine) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let train = machine.records(folder);
+    let train = machine.write_records(folder);
     for channel in &machine.channels {
-        let noise = 2e-3 * spread(&train.column(channel.1));
+        let noise = 2e-3 * standard_deviation(&train.column(channel.1));
         let description = description(machine, channel, noise);
         assert_no_gap(folder, &description, noise, &format!("{channel:?}"));
     }
@@ -47,19 +48,19 @@ fn assert_no_gap_in_any_channel(machine: &Machine) {
 
 #[test]
 fn channels_of_linear_model_show_no_gap() {
-    assert_no_gap_in_any_channel(&mass("1/2*k*x^2", "k*x", "u", ""));
+    assert_no_gap_in_any_channel(&mass_on_spring("1/2*k*x^2", "k*x", "u", ""));
 }
 
 #[test]
 fn channels_of_piecewise_linear_model_show_no_gap() {
     let spring = "1/2*k*deadzone(x, b)^2";
-    assert_no_gap_in_any_channel(&mass(spring, "k*deadzone(x, b)", "u", ""));
+    assert_no_gap_in_any_channel(&mass_on_spring(spring, "k*deadzone(x, b)", "u", ""));
 }
 
 #[test]
 fn channels_of_model_with_dry_friction_show_no_gap() {
     let drive = "u - F*sign(dot(x))";
-    let machine = mass("1/2*k*x^2", "k*x", drive, "");
+    let machine = mass_on_spring("1/2*k*x^2", "k*x", drive, "");
     assert_no_gap_in_any_channel(&machine);
 }
 
@@ -79,13 +80,13 @@ fn channels_of_nonlinear_model_show_no_gap() {
 #[test]
 fn channels_of_model_with_small_nonlinear_term_show_no_gap() {
     let spring = "1/2*k*x^2 + 1/4*k_3*x^4";
-    assert_no_gap_in_any_channel(&mass(spring, "k*x + k_3*x^3", "u", ""));
+    assert_no_gap_in_any_channel(&mass_on_spring(spring, "k*x + k_3*x^3", "u", ""));
 }
 
 #[test]
 fn channels_of_linear_model_with_state_show_no_gap() {
     let states = "[states]\nz = { unit = \"N\", rate = \"(u - z)/tau\" }\n";
-    let mut machine = mass("1/2*k*x^2", "k*x", "z", states);
+    let mut machine = mass_on_spring("1/2*k*x^2", "k*x", "z", states);
     machine.channels.push(("z", "z", "N"));
     assert_no_gap_in_any_channel(&machine);
 }
@@ -121,11 +122,11 @@ fn tip_acceleration_of_beam_matches_difference_quotient() {
     let machine = Machine::new(BEAM, ("N m", 0.5), &[channel]);
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    machine.records(folder);
+    machine.write_records(folder);
     let mut noise = 0.0;
     for (name, turn) in [("test", 1.0), ("train", 0.0)] {
         let h = STEP / PARTS as f64;
-        let speeds = machine.motion(folder, name, turn, h).column("v_o");
+        let speeds = machine.simulate(folder, name, turn, h).column("v_o");
         let mut table = Table::read(&folder.join(format!("{name}.csv")));
         let accelerations = (0..SAMPLES).map(|sample| match PARTS * sample {
             first if first + 2 < speeds.len() => {
@@ -135,7 +136,7 @@ fn tip_acceleration_of_beam_matches_difference_quotient() {
             _ => f64::NAN,
         });
         let accelerations: Vec<f64> = accelerations.collect();
-        noise = 5e-3 * spread(&accelerations[..SAMPLES - 1]);
+        noise = 5e-3 * standard_deviation(&accelerations[..SAMPLES - 1]);
         table.add("a_o", accelerations);
         table.write(&folder.join(format!("{name}.csv")));
     }
@@ -154,10 +155,10 @@ fn missing_spring_is_found_from_acceleration_of_a_point() {
         specification: PENDULUM.replace("u - c*dot(x)", "u - c*dot(x) - m*g*l*x/10"),
         ..machine.clone()
     };
-    let noise = 2e-3 * spread(&truth.records(folder).column("a_o"));
+    let noise = 2e-3 * standard_deviation(&truth.write_records(folder).column("a_o"));
     fs::write(folder.join("model.toml"), PENDULUM).expect("a file");
     let description = description(&machine, &channel, noise);
-    let answer = answered(folder, "discover", &description);
+    let answer = run_command(folder, "discover", &description);
     let effect = &answer["effects"][0];
     assert_eq!(effect["effect"], "elastic_restraint", "{answer:#}");
     let parameters = effect["parameters"].as_object().expect("parameters");
@@ -166,7 +167,7 @@ fn missing_spring_is_found_from_acceleration_of_a_point() {
     assert!((found / 0.4905 - 1.0).abs() < 0.05, "{answer:#}");
     let written = fs::read_to_string(folder.join("answer/extended.toml")).expect("a file");
     fs::write(folder.join("model.toml"), written).expect("a file");
-    let again = answered(folder, "compare", &description);
+    let again = run_command(folder, "compare", &description);
     assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
 }
 
@@ -177,7 +178,7 @@ fn undefined_acceleration_is_rejected() {
     let machine = Machine::new(CYLINDER, ("V", 1.0), &[channel]);
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    machine.records(folder);
+    machine.write_records(folder);
     let dataset = folder.join("dataset.toml");
     fs::write(&dataset, description(&machine, &channel, 1.0)).expect("a file");
     for command in ["compare", "discover"] {
@@ -187,7 +188,7 @@ fn undefined_acceleration_is_rejected() {
             folder.join("answer"),
         ];
         let [specification, dataset, out] = paths.map(|path| path.display().to_string());
-        let message = refused(&[command, &specification, &dataset, "--out", &out]);
+        let message = run_rejected(&[command, &specification, &dataset, "--out", &out]);
         assert!(
             message.contains("`o` needs the rate of an input"),
             "{message}"
@@ -197,15 +198,15 @@ fn undefined_acceleration_is_rejected() {
 
 #[test]
 fn inputs_along_given_motion_show_no_gap() {
-    let spring = mass("1/2*k*x^2", "k*x", "u", "");
+    let spring = mass_on_spring("1/2*k*x^2", "k*x", "u", "");
     let pendulum = Machine::new(PENDULUM, ("N m", 1.5), &[("u", "u", "N m")]);
     for (machine, unit) in [(spring, "m"), (pendulum, "rad")] {
         let folder = tempfile::tempdir().expect("a folder");
         let folder = folder.path();
-        let train = machine.records(folder);
+        let train = machine.write_records(folder);
         // The input is a held one, but the curve through the samples has no jumps in its second
         // rate.
-        let noise = 0.3 * spread(&train.column("u"));
+        let noise = 0.3 * standard_deviation(&train.column("u"));
         let channel = ("u", "u", machine.input.0);
         let description = description(&machine, &channel, noise);
         let (before, after) = description.split_once("[inputs.u]").expect("an input");

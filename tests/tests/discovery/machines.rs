@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use eomgen_tests::program::accepted;
+use eomgen_tests::program::run_accepted;
 use serde_json::Value;
 
 #[derive(Clone)]
@@ -48,7 +48,7 @@ a_x = "(DRIVE - c*dot(x) - (PULL))/m"
 "#;
 
 /// Returns a mass with this spring, drive and states.
-pub fn mass(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
+pub fn mass_on_spring(spring: &str, pull: &str, drive: &str, states: &str) -> Machine {
     let specification = (MASS.replace("SPRING", spring).replace("PULL", pull))
         .replace("DRIVE", drive)
         .replace("STATES", states);
@@ -170,14 +170,14 @@ impl Machine {
     }
 
     /// Writes the model and its records `train.csv` and `test.csv`; returns the first.
-    pub fn records(&self, folder: &Path) -> Table {
+    pub fn write_records(&self, folder: &Path) -> Table {
         fs::write(folder.join("model.toml"), &self.specification).expect("a file");
         self.record(folder, "test", 1.0);
         self.record(folder, "train", 0.0)
     }
 
     fn record(&self, folder: &Path, name: &str, turn: f64) -> Table {
-        let mut table = self.motion(folder, name, turn, STEP);
+        let mut table = self.simulate(folder, name, turn, STEP);
         table.add(
             "u",
             Table::read(&folder.join(format!("{name}_input.csv"))).column("u"),
@@ -187,11 +187,11 @@ impl Machine {
     }
 
     /// Simulates the model with its input, with samples `step` s apart.
-    pub fn motion(&self, folder: &Path, name: &str, turn: f64, step: f64) -> Table {
-        self.motion_by("auto", folder, name, turn, step)
+    pub fn simulate(&self, folder: &Path, name: &str, turn: f64, step: f64) -> Table {
+        self.simulate_with_solver("auto", folder, name, turn, step)
     }
 
-    pub fn motion_by(
+    pub fn simulate_with_solver(
         &self,
         solver: &str,
         folder: &Path,
@@ -218,7 +218,7 @@ impl Machine {
         let specification = folder.join("model.toml").display().to_string();
         let until = STEP * (SAMPLES - 1) as f64;
         let (until, step) = (format!("{until:.2}"), step.to_string());
-        accepted(&[
+        run_accepted(&[
             "simulate",
             &specification,
             "--until",
@@ -282,13 +282,13 @@ impl Table {
     }
 }
 
-pub fn spread(values: &[f64]) -> f64 {
+pub fn standard_deviation(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-pub fn answered(folder: &Path, command: &str, description: &str) -> Value {
+pub fn run_command(folder: &Path, command: &str, description: &str) -> Value {
     let paths = ["model.toml", "dataset.toml", "answer"].map(|name| folder.join(name));
     fs::write(&paths[1], description).expect("a file");
     let [specification, dataset, out] = paths.map(|path| path.display().to_string());
@@ -296,7 +296,7 @@ pub fn answered(folder: &Path, command: &str, description: &str) -> Value {
     if command == "discover" {
         arguments.extend(["--limit", "20"]);
     }
-    serde_json::from_str(&accepted(&arguments)).expect("JSON")
+    serde_json::from_str(&run_accepted(&arguments)).expect("JSON")
 }
 
 /// Returns a dataset file with the single channel `c`.

@@ -108,7 +108,7 @@ fn run_on_records(command: &str, (resistance, drag): (f64, f64), dataset: &str) 
         train: &record(resistance, drag, 0.0),
         test: &record(resistance, drag, 1.0),
     };
-    program::answered_to(command, texts)
+    program::run_on_texts(command, texts)
 }
 
 #[test]

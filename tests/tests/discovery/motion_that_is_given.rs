@@ -164,7 +164,7 @@ fn write_arm_records(friction: f64, encoders: f64, dataset: &str) -> TempDir {
 
 fn run_on_folder(command: &str, folder: &TempDir) -> Value {
     let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
-    let answer = program::answered(command, paths.each_ref());
+    let answer = program::run_on_dataset(command, paths.each_ref());
     let page = folder.path().join("out/report.html");
     let page = std::fs::read_to_string(page).expect("a page");
     assert!(
@@ -249,7 +249,7 @@ fn torque_ripple_of_unusual_order_is_found_at_constant_speed() {
         [uncertain]\nc = { relative = 0.3 }\n";
     let folder = write_files(specification, dataset, [0.0, 1.0].map(rotor));
     let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
-    let found = program::answered("discover", paths.each_ref());
+    let found = program::run_on_dataset("discover", paths.each_ref());
     let effects = found["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{found:#}");
     assert_eq!(effects[0]["effect"], "torque_ripple", "{found:#}");

@@ -92,7 +92,7 @@ impl Machine<'_> {
         let place = |name: &str| folder.join(name);
         std::fs::write(place("dataset.toml"), self.dataset(train, test)).expect("a file");
         let paths = ["spec.toml", "dataset.toml", out].map(place);
-        program::answered(command, paths.each_ref())
+        program::run_on_dataset(command, paths.each_ref())
     }
 
     /// Returns the class of equivalent effects that the first records give.

@@ -10,7 +10,7 @@ fn rejection(measured: &Measured) -> String {
     let [compare, discover] = ["compare", "discover"].map(|command| {
         let arguments = measured.arguments(command, "refused");
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let message = program::refused(&arguments);
+        let message = program::run_rejected(&arguments);
         assert!(!measured.file("refused").exists(), "{message}");
         message
     });
@@ -54,7 +54,7 @@ fn windows_longer_than_records_are_rejected() {
     for length in ["2", "1.995", "\"record\""] {
         let description = DESCRIPTION.replacen("0.25", length, 1);
         measured.write("dataset.toml", description.as_bytes());
-        let (result, _) = measured.answered("compare", "whole");
+        let (result, _) = measured.run_command("compare", "whole");
         assert_eq!(result["verdict"], "gap_found", "{length}: {result:#}");
     }
 }
@@ -82,7 +82,7 @@ fn record_shorter_than_half_a_window_is_noted() {
         .replacen("[\"train.csv\"]", "[\"train.csv\", \"short.csv\"]", 1)
         .replacen("0.25", "0.8", 1);
     measured.write("dataset.toml", description.as_bytes());
-    let (result, warned) = measured.answered("compare", "short");
+    let (result, warned) = measured.run_command("compare", "short");
     let note = "train[1]: the record lasts 0.295000 s, less than half a window, and is ignored";
     assert!(warned.contains(note), "{warned}");
     assert!(result["notes"].to_string().contains(note), "{result:#}");
@@ -125,7 +125,7 @@ fn model_that_diverges_in_windows_is_rejected() {
         let mut arguments = measured.arguments(command, "refused");
         arguments[1] = measured.file("unstable.toml").display().to_string();
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let message = program::refused(&arguments);
+        let message = program::run_rejected(&arguments);
         let part = "the simulation of the model fails in 8 of 8 windows, first at t = 0.000000 s of train[0]";
         assert!(message.contains(part), "{message}");
         assert!(!measured.file("refused").exists(), "{message}");

@@ -88,7 +88,7 @@ impl Machine<'_> {
             train: &self.record(0.0),
             test: &self.record(1.0),
         };
-        program::answered_to("discover", texts)
+        program::run_on_texts("discover", texts)
     }
 
     /// Asserts that only this effect is found at this place; returns it.

@@ -156,7 +156,7 @@ fn answer_of(specification: &str, dataset: &str, shaft: Shaft) -> (Value, String
         std::fs::write(place(name), text).expect("a file");
     }
     let paths = ["spec.toml", "dataset.toml", "found"].map(place);
-    let found = program::answered("discover", paths.each_ref());
+    let found = program::run_on_dataset("discover", paths.each_ref());
     let extended = std::fs::read_to_string(place("found/extended.toml"));
     (found, extended.expect("a file"))
 }

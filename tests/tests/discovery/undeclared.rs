@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 
 /// Returns the only effect found in records of a stage with no related uncertain parameter.
 fn only_effect(other: &dyn Fn(Moment) -> f64) -> Value {
-    let measured = Measured::stage_with(other);
+    let measured = Measured::stage_with_force(other);
     let declared = "[uncertain]\nF_v = { relative = 0.05 }\n";
     let description = DESCRIPTION.replace(declared, "");
     assert_ne!(description, DESCRIPTION);
     measured.write("dataset.toml", description.as_bytes());
-    let (document, _) = measured.answered("discover", "found");
+    let (document, _) = measured.run_command("discover", "found");
     let effects = document["effects"].as_array().expect("a list");
     assert_eq!(effects.len(), 1, "{effects:#?}");
     effects[0].clone()

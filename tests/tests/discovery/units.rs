@@ -7,7 +7,8 @@ use eomgen_model_spec::unit::Unit;
 use serde_json::Value;
 
 use super::machines::{
-    BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, answered, description, mass, spread,
+    BEAM, CYLINDER, Channel, Machine, PENDULUM, STEP, Table, description, mass_on_spring,
+    run_command, standard_deviation,
 };
 
 const ROUNDING: f64 = 1e-6;
@@ -91,14 +92,14 @@ fn assert_same_results(truth: &str, machine: &Machine, channel: &Channel, others
         specification: truth.to_owned(),
         ..machine.clone()
     };
-    let noise = 2e-3 * spread(&made.records(folder).column(channel.1));
+    let noise = 2e-3 * standard_deviation(&made.write_records(folder).column(channel.1));
     for command in ["compare", "discover"] {
         let answer = |units: Units| {
             let folder = tempfile::tempdir_in(folder).expect("a folder");
             write_in_units(folder.path(), machine, channel, units);
             let noise = noise * factor(channel.2, units);
             let description = description(machine, channel, noise);
-            let answer = answered(folder.path(), command, &description);
+            let answer = run_command(folder.path(), command, &description);
             (answer["verdict"].clone(), numbers(&answer, units))
         };
         let own = answer([0; 3]);
@@ -151,7 +152,7 @@ fn assert_same_trajectories(machine: &Machine, solver: &str, columns: &[(&str, &
             channels: Vec::new(),
         };
         fs::write(folder.path().join("model.toml"), &own.specification).expect("a file");
-        own.motion_by(solver, folder.path(), "train", 0.0, STEP)
+        own.simulate_with_solver(solver, folder.path(), "train", 0.0, STEP)
     };
     let own = motion([0; 3]);
     for units in [[-17, -20, 0], [17, 20, 0], [-20, 20, 10], [40, 40, -30]] {
@@ -177,8 +178,8 @@ fn trajectories_are_independent_of_units() {
     let positions = [("x", "m"), ("x_dot", "m/s"), ("energy", "J")];
     let cylinder = Machine::new(CYLINDER, ("V", 1.0), &[]);
     let friction = "u - F*sign(dot(x)) - k_3*x^3";
-    let stick = mass("1/2*k*x^2", "k*x", friction, "");
-    let linear = mass("1/2*k*deadzone(x, b)^2", "k*deadzone(x, b)", "u", "");
+    let stick = mass_on_spring("1/2*k*x^2", "k*x", friction, "");
+    let linear = mass_on_spring("1/2*k*deadzone(x, b)^2", "k*deadzone(x, b)", "u", "");
     for solver in ["rk", "radau"] {
         assert_same_trajectories(
             &cylinder,
@@ -215,8 +216,8 @@ fn results_for_model_with_field_are_independent_of_units() {
 
 #[test]
 fn missing_dry_friction_is_found_in_all_units() {
-    let machine = mass("1/2*k*x^2", "k*x", "u", "");
-    let truth = mass("1/2*k*x^2", "k*x", "u - F*sign(dot(x))", "").specification;
+    let machine = mass_on_spring("1/2*k*x^2", "k*x", "u", "");
+    let truth = mass_on_spring("1/2*k*x^2", "k*x", "u - F*sign(dot(x))", "").specification;
     assert_same_results(&truth, &machine, &("x", "x", "m"), &OTHERS);
 }
 
@@ -250,11 +251,11 @@ fn results_are_independent_of_the_unit_of_a_state() {
         specification: CYLINDER.replace("value = 500", "value = 510"),
         ..machine.clone()
     };
-    let noise = 2e-3 * spread(&truth.records(folder).column("x"));
+    let noise = 2e-3 * standard_deviation(&truth.write_records(folder).column("x"));
     let description = description(&machine, &channel, noise);
     let answer = |unit: f64| {
         fs::write(folder.join("model.toml"), in_unit(unit)).expect("a file");
-        let answer = answered(folder, "compare", &description);
+        let answer = run_command(folder, "compare", &description);
         (answer["verdict"].clone(), numbers(&answer, [0; 3]))
     };
     let (verdict, own) = answer(1.0);

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use eomgen_tests::models::{path, project};
-use eomgen_tests::program::{accepted, text};
+use eomgen_tests::program::{run_accepted, text};
 
 fn run_bench(folder: &Path, options: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -42,7 +42,7 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
     let out = folder.path().display().to_string();
     let with = "bias_forces,inverse_dynamics,guard_rates,jacobians,products,linearisation,bench";
     let generate = ["generate", &spec, "--with", with, "--out", &out];
-    accepted(&generate);
+    run_accepted(&generate);
     // With the versions of this workspace, nothing is downloaded.
     std::fs::copy(
         project().join("Cargo.lock"),
@@ -62,7 +62,7 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
     let manifest = folder.path().join("Cargo.toml");
     let own = std::fs::read_to_string(&manifest).expect("a manifest") + "# mine\n";
     std::fs::write(&manifest, &own).expect("a file can be written");
-    accepted(&generate);
+    run_accepted(&generate);
     let kept = std::fs::read_to_string(&manifest).expect("a manifest");
     assert_eq!(kept, own, "an existing manifest is not replaced");
     let second = run_bench(folder.path(), &["--baseline", "before"]);
@@ -72,7 +72,13 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
 #[test]
 fn unknown_output_is_rejected_and_bench_is_listed() {
     let spec = path("pendulum").display().to_string();
-    let refused =
-        eomgen_tests::program::refused(&["generate", &spec, "--with", "benchmark", "--out", "x"]);
+    let refused = eomgen_tests::program::run_rejected(&[
+        "generate",
+        &spec,
+        "--with",
+        "benchmark",
+        "--out",
+        "x",
+    ]);
     assert!(refused.contains("lanes, hessians, bench"), "{refused}");
 }

@@ -8,7 +8,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_paper::reference_equations::reference_equations;
 use eomgen_sim::piecewise_linear::PiecewiseLinear;
-use eomgen_tests::models::{load, project, shipped, variant};
+use eomgen_tests::models::{load, project, shipped_specifications, variant};
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::model_certificate::certificate;
 
@@ -138,7 +138,7 @@ fn arm_with_sixty_four_modes_passes() {
 
 #[test]
 fn shipped_specifications_pass_at_declared_order() {
-    for path in shipped() {
+    for path in shipped_specifications() {
         let name = path
             .file_stem()
             .expect("a name")

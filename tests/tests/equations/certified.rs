@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eomgen_model_spec::source::sha256;
-use eomgen_tests::program::{accepted, run, text};
+use eomgen_tests::program::{run, run_accepted, text};
 use serde_json::Value;
 
 /// A lever that pushes a ram through a joint with play.
@@ -107,19 +107,19 @@ fn certificate_holds_hashes_of_its_source() {
     let place = out.display().to_string();
     let asked = ["--with", "inverse_dynamics"];
     let generate = ["generate", &spec, "--certify", "--out", &place];
-    accepted(&[&generate[..], &asked].concat());
+    run_accepted(&[&generate[..], &asked].concat());
     let certificate = document(&read(&out, "certificate.json"));
     assert_eq!(certificate["schema"], 2);
     assert_eq!(certificate["model"], "stamping_lever");
     assert_eq!(certificate["passed"], true);
     assert_eq!(certificate["specification_sha256"], sha256(LEVER));
     assert_eq!(certificate["source_sha256"], sha256(read(&out, "lib.rs")));
-    let version = accepted(&["--version"]);
+    let version = run_accepted(&["--version"]);
     assert_eq!(certificate["generator"], version.trim());
     assert_eq!(certificate["parameters"]["l"], 0.4, "in SI");
     assert_eq!(certificate["parameters"]["b"], 0.001, "derived");
     let file = folder.path().join("validated.json").display().to_string();
-    accepted(&[&["validate", &spec, "--out", &file][..], &asked].concat());
+    run_accepted(&[&["validate", &spec, "--out", &file][..], &asked].concat());
     let same = read(folder.path(), "validated.json") == read(&out, "certificate.json");
     assert!(
         same,
@@ -132,7 +132,7 @@ fn generate_without_certify_writes_no_certificate() {
     let folder = tempfile::tempdir().expect("a folder");
     let spec = write_lever(folder.path());
     let out = folder.path().join("out");
-    accepted(&["generate", &spec, "--out", &out.display().to_string()]);
+    run_accepted(&["generate", &spec, "--out", &out.display().to_string()]);
     assert!(!out.join("certificate.json").exists());
 }
 

@@ -6,7 +6,7 @@ use eomgen_codegen::symbolic::formula::full_formula;
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
-use eomgen_tests::models::{load, shipped};
+use eomgen_tests::models::{load, shipped_specifications};
 
 fn kind_of(text: &str) -> String {
     let source = Source::new("test.toml", text);
@@ -39,7 +39,7 @@ fn with_force(force: &str) -> String {
 
 #[test]
 fn shipped_models_are_classified_correctly() {
-    for path in shipped() {
+    for path in shipped_specifications() {
         let name = path
             .file_stem()
             .and_then(|name| name.to_str())

@@ -11,7 +11,7 @@
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_model_spec::model::Model;
-use eomgen_tests::certified::{certificate, certificate_with, checked};
+use eomgen_tests::certified::{certify, certify_outputs, check_model};
 use eomgen_tests::models::variant;
 use eomgen_tests::smooth_models::{SmoothModel, SmoothModels};
 
@@ -38,7 +38,7 @@ fn has_valid_initial_state(model: &Model) -> bool {
 fn next_valid_model(models: &mut SmoothModels) -> (SmoothModel, Model) {
     loop {
         let written = models.model();
-        let model = checked(&written.text);
+        let model = check_model(&written.text);
         if has_valid_initial_state(&model) {
             return (written, model);
         }
@@ -55,7 +55,7 @@ fn certificates_of_correct_models_pass() {
     let mut alarms = Vec::new();
     for place in 0..count {
         let (written, model) = next_valid_model(&mut models);
-        let certificate = certificate(&model, &model);
+        let certificate = certify(&model, &model);
         if !certificate.passed {
             let failures: Vec<_> = certificate.failures().collect();
             alarms.push(format!("# {place}\n{}{failures:#?}", written.text));
@@ -91,7 +91,7 @@ fn requested_outputs_of_correct_models_pass() {
     let mut alarms = Vec::new();
     for place in 0..count {
         let (written, model) = next_valid_model(&mut models);
-        let certificate = certificate_with(&model, &model, &OUTPUTS);
+        let certificate = certify_outputs(&model, &model, &OUTPUTS);
         let made = certificate
             .checks
             .iter()
@@ -138,8 +138,8 @@ fn relative_error_of_1e_7_in_a_term_is_detected() {
             let is_seen = |factor: &str| {
                 let wrong = format!("\"({term})*{factor}\"");
                 let wrong = line.replace(&format!("\"{term}\""), &wrong);
-                let subject = checked(&written.text.replace(line, &wrong));
-                !certificate(&model, &subject).passed
+                let subject = check_model(&written.text.replace(line, &wrong));
+                !certify(&model, &subject).passed
             };
             faults += 1;
             if is_seen("1.0000001") {

@@ -2,7 +2,7 @@
 //! states.
 
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Subject, grid};
+use eomgen_tests::motions::{TestMotion, grid};
 
 /// Releases the arm from the horizontal without friction and torque for half a second; both links
 /// swing and bend. The relative error of a step is 1e-11 of each state, so about a thousand steps
@@ -14,10 +14,10 @@ fn frictionless_fall_conserves_energy() {
             .with_parameters(&[("c_1", 0.0), ("c_2", 0.0)])
             .expect("both are parameters");
         let size = 2 + 2 * order;
-        let subject = Subject::new(model, order).from(&vec![0.0; 2 * size]);
+        let subject = TestMotion::new(model, order).with_initial_state(&vec![0.0; 2 * size]);
         let times = grid(0.5, 10);
         let motion = subject
-            .general((0.0, 0.5), &times, 1e-11)
+            .simulate_generally((0.0, 0.5), &times, 1e-11)
             .expect("a motion");
         let energies = subject.energies(&times, &motion.states);
         // Energy (J) exchanged between T and V by a fall of about half a metre.

@@ -1,7 +1,7 @@
 //! Energy audit of `simulate`: only unexplained energy gives a warning.
 
 use eomgen_compiled_model::{Audit, CompiledModel, Orders, Request, Solver};
-use eomgen_tests::models::{load, shipped};
+use eomgen_tests::models::{load, shipped_specifications};
 use eomgen_tests::program::{run, text};
 use serde_json::Value;
 
@@ -98,7 +98,7 @@ fn audit(model: &CompiledModel, until: f64, solver: Solver, tolerance: f64) -> A
 
 #[test]
 fn shipped_models_gain_no_energy_at_any_tolerance() {
-    for path in shipped() {
+    for path in shipped_specifications() {
         let name = path.file_stem().expect("a name").to_string_lossy();
         let model = CompiledModel::derive(load(&name), Orders::Declared).expect("a model");
         let limits = [1e-9, 1e-6, 1e-3, 1e-2].map(|tolerance| (Solver::Rk, tolerance));

@@ -11,7 +11,7 @@ use eomgen_compiled_model::{CompiledModel, Orders, Solver};
 use eomgen_sim::ode::{Method, SolveError, Trajectory};
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 use proptest::prelude::*;
 
 const MAX_SOLVE_TIME: Duration = Duration::from_secs(2);
@@ -27,14 +27,14 @@ fn config() -> ProptestConfig {
     }
 }
 
-fn exact(subject: &Subject, until: f64, times: &[f64]) -> Result<Trajectory, ExactError> {
+fn exact(subject: &TestMotion, until: f64, times: &[f64]) -> Result<Trajectory, ExactError> {
     let begun = Instant::now();
-    let motion = subject.try_exact((0.0, until), times);
+    let motion = subject.try_simulate_exactly((0.0, until), times);
     assert!(begun.elapsed() < MAX_SOLVE_TIME, "{:?}", begun.elapsed());
     motion
 }
 
-fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseError> {
+fn compare_solvers(subject: &TestMotion, until: f64, smallest: f64) -> Result<(), TestCaseError> {
     let times = grid(until, 16);
     let exact = match exact(subject, until, &times) {
         Ok(motion) => motion,
@@ -43,8 +43,8 @@ fn compare_solvers(subject: &Subject, until: f64, smallest: f64) -> Result<(), T
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
     prop_assert_eq!(&exact.times, &times);
-    let general = |tolerance: f64| subject.general((0.0, until), &times, tolerance);
-    let adams = subject.general_by(Method::Adams, (0.0, until), &times, 1e-12);
+    let general = |tolerance: f64| subject.simulate_generally((0.0, until), &times, tolerance);
+    let adams = subject.simulate_by_method(Method::Adams, (0.0, until), &times, 1e-12);
     let (Ok(coarse), Ok(fine), Ok(adams)) = (general(1e-10), general(1e-12), adams) else {
         // The motion stays on a surface, or the model is too stiff for the general solver.
         return Ok(());
@@ -92,14 +92,14 @@ proptest! {
             ("a_m", motor.0), ("F_w", motor.1), ("b_m", motor.2), ("omega", omega),
         ];
         let model = load("planetary_arm").with_parameters(&values).expect("values within bounds");
-        let subject = Subject::new(model, order);
+        let subject = TestMotion::new(model, order);
         let mut initial = subject.initial.clone();
         let half = initial.len() / 2;
         for mesh in 0..2 {
             initial[mesh] = deflections[mesh] * play[mesh].max(1e-6);
             initial[half + mesh] = rates[mesh];
         }
-        compare_solvers(&subject.from(&initial), 5e-4, 1e-6)?;
+        compare_solvers(&subject.with_initial_state(&initial), 5e-4, 1e-6)?;
     }
 }
 
@@ -122,11 +122,11 @@ fn exact_matches_general_solver_for_play_with_strong_damper() {
         ("omega", 0.0),
     ];
     let model = load("planetary_arm").with_parameters(&values);
-    let subject = Subject::new(model.expect("values within bounds"), 0);
+    let subject = TestMotion::new(model.expect("values within bounds"), 0);
     let mut initial = subject.initial.clone();
     let half = initial.len() / 2;
     initial[half + 1] = -0.29280426769815593;
-    let subject = subject.from(&initial);
+    let subject = subject.with_initial_state(&initial);
     compare_solvers(&subject, 5e-4, 1e-6).expect("the same motion");
 }
 
@@ -239,7 +239,7 @@ proptest! {
         starts in [[-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64]],
         terms in proptest::collection::vec((term(), 0..3_usize, 0..3_usize), 1..=6),
     ) {
-        let subject = Subject::new(machine(&masses, &starts, &terms).model(), 0);
+        let subject = TestMotion::new(machine(&masses, &starts, &terms).model(), 0);
         compare_solvers(&subject, 0.3, 1e-4)?;
     }
 }
@@ -256,7 +256,7 @@ fn exact_matches_general_solver_for_sticking_masses_with_filter() {
     ];
     let starts = [[0.0, 0.0], [-0.05756814641021024, 0.0], [0.0, 0.0]];
     let spec = machine(&[1.0, 0.12259264311719222, 1.0], &starts, &terms);
-    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
 /// A spring behind a fast filter between two slow masses, one of them with drag.
@@ -272,7 +272,7 @@ fn exact_matches_general_solver_for_fast_filter() {
         &[[0.0; 2]; 3],
         &terms,
     );
-    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
 /// A mass on a one-sided spring, with friction against a free mass, and a separate oscillator:
@@ -286,7 +286,7 @@ fn exact_matches_general_solver_for_symmetric_eigenvalues() {
     ];
     let starts = [[0.0, 0.0], [0.0, 0.633536162812156], [0.0, 0.0]];
     let spec = machine(&[1.0, 1.0, 0.7818489250388482], &starts, &terms);
-    compare_solvers(&Subject::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
+    compare_solvers(&TestMotion::new(spec.model(), 0), 0.3, 1e-4).expect("the same motion");
 }
 
 /// The implicit solver with the models' Jacobians against the best solver for each model.

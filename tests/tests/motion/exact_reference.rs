@@ -18,7 +18,7 @@ use eomgen_sim::piecewise_linear::PiecewiseLinear;
 use eomgen_tests::models::load;
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::double_double::DoubleDouble;
-use eomgen_tests::taylor::run::{LONGEST, Run};
+use eomgen_tests::taylor::run::{MAX_STEP_S, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 
 /// The paper's higher excitation frequency, 10 pi rad/s.
@@ -72,7 +72,7 @@ impl Reference {
             b,
             omega: OMEGA,
         };
-        let run = Run::of(case, &times, LONGEST);
+        let run = Run::simulate(case, &times, MAX_STEP_S);
         Self { case, times, run }
     }
 
@@ -80,8 +80,8 @@ impl Reference {
         let [x_sp, tip] = [x_sp, tip].map(DoubleDouble::exactly);
         let state = &self.run.states[sample];
         Deviation {
-            x_sp: (x_sp - state.positions[0]).nearest().abs(),
-            tip: (tip - self.run.tip(sample)).nearest().abs(),
+            x_sp: (x_sp - state.positions[0]).to_f64().abs(),
+            tip: (tip - self.run.tip(sample)).to_f64().abs(),
         }
     }
 
@@ -92,7 +92,7 @@ impl Reference {
         let end = (self.times.len() - 1) as f64;
         for (sample, state) in states.enumerate() {
             let shapes = self.run.tips.iter().zip(&state[3..]);
-            let tip = shapes.map(|(phi, q)| phi.nearest() * q).sum();
+            let tip = shapes.map(|(phi, q)| phi.to_f64() * q).sum();
             let deviation = self.deviation(sample, state[0], tip);
             for (growth, part) in growth.iter_mut().zip(PARTS) {
                 if sample as f64 <= part * end {
@@ -107,8 +107,8 @@ impl Reference {
     fn rounding(&self) -> Growth {
         let mut rounding = Growth::default();
         for power in [10, 17, 18] {
-            let run = Run::<f64>::of(self.case, &self.times, 0.5_f64.powi(power));
-            assert_eq!(run.counts(), self.run.counts(), "switches");
+            let run = Run::<f64>::simulate(self.case, &self.times, 0.5_f64.powi(power));
+            assert_eq!(run.switch_counts(), self.run.switch_counts(), "switches");
             let growth = self.growth(run.states.iter().map(|state| &state.positions[..]));
             for (largest, growth) in rounding.iter_mut().zip(growth) {
                 *largest = largest.max(growth);
@@ -139,7 +139,7 @@ fn compare(order: usize, b: f64, until: f64) -> Comparison {
     Comparison {
         rounding: reference.rounding(),
         exact: reference.growth(displacements),
-        switches: reference.run.counts(),
+        switches: reference.run.switch_counts(),
         exact_switches: after_start.count(),
     }
 }

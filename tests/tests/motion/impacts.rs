@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
-use eomgen_tests::program::refused;
+use eomgen_tests::program::run_rejected;
 use nalgebra::{DMatrix, DVector};
 
 struct Numbers(u64);
@@ -742,7 +742,7 @@ fn hosts_without_impacts_reject_them() {
             &out,
         ],
     ] {
-        let message = refused(arguments);
+        let message = run_rejected(arguments);
         assert!(
             message.contains("impacts (`table`)"),
             "{arguments:?}: {message}"

@@ -11,25 +11,25 @@ use eomgen_model_spec::source::Source;
 use eomgen_sim::ode::Trajectory;
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::variant;
-use eomgen_tests::motions::{Subject, difference, grid};
+use eomgen_tests::motions::{TestMotion, difference, grid};
 use eomgen_tests::piecewise::machine;
 use eomgen_validate::compiler::{self, Compiler, Optimization};
 use eomgen_validate::random::Random;
 
 const MAX_DIFFERENCE: f64 = 1e-8;
 
-fn subject(text: &str) -> Subject {
+fn subject(text: &str) -> TestMotion {
     match eomgen_model_spec::check(Source::new("made.toml", text)) {
-        Ok(checked) => Subject::new(checked.model, 0),
+        Ok(checked) => TestMotion::new(checked.model, 0),
         Err(found) => panic!("{text}\n{}", found.render(false)),
     }
 }
 
 /// Returns the exact motion after comparing it with the general solver.
-fn compare_and_simulate(subject: &Subject, until: f64) -> Trajectory {
+fn compare_and_simulate(subject: &TestMotion, until: f64) -> Trajectory {
     let times = grid(until, 40);
-    let exact = subject.exact((0.0, until), &times);
-    let general = subject.general((0.0, until), &times, 1e-12);
+    let exact = subject.simulate_exactly((0.0, until), &times);
+    let general = subject.simulate_generally((0.0, until), &times, 1e-12);
     let general = general.expect("a motion without sticking");
     let found = difference(&exact.states, &general.states, 1e-3);
     assert!(found < MAX_DIFFERENCE, "{found:e}");
@@ -37,7 +37,7 @@ fn compare_and_simulate(subject: &Subject, until: f64) -> Trajectory {
 }
 
 /// Returns a mass of 0.1 kg under gravity on a floor with a spring and the force `pad`.
-fn ball(pad: &str) -> Subject {
+fn ball(pad: &str) -> TestMotion {
     subject(&format!(
         r#"
 [model]
@@ -61,7 +61,7 @@ pad = {{ on = "y", value = "{pad}" }}
 }
 
 /// Returns a driven mass with this force; m, N and kg are of order one.
-fn driven_mass(force: &str) -> Subject {
+fn driven_mass(force: &str) -> TestMotion {
     subject(&format!(
         r#"
 [model]
@@ -131,8 +131,8 @@ fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
     let force = |friction: &str| format!("-{friction} - 0.3*k*y");
     let sudden = driven_mass(&force("F0*sign(deadzone(dot(y), v))"));
     let steep = driven_mass(&force("F0*min(max(deadzone(dot(y), v)/(1e-6*v), -1), 1)"));
-    let exact = sudden.exact((0.0, 4.0), &times);
-    let near = steep.exact((0.0, 4.0), &times);
+    let exact = sudden.simulate_exactly((0.0, 4.0), &times);
+    let near = steep.simulate_exactly((0.0, 4.0), &times);
     let apart = difference(&exact.states, &near.states, 1e-3);
     assert!(apart < 1e-4, "{apart:e}");
     let held = exact
@@ -166,7 +166,7 @@ push = { on = "y", value = "F*sign(u)" }
     let times = vec![0.0, 1.0, 2.0, 3.0];
     let inputs = eomgen_sim::inputs::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
     subject.inputs = inputs.expect("ascending times");
-    let motion = subject.exact((0.0, 4.0), &[1.0, 2.0, 3.0, 4.0]);
+    let motion = subject.simulate_exactly((0.0, 4.0), &[1.0, 2.0, 3.0, 4.0]);
     let rates: Vec<f64> = motion.states.iter().map(|state| state[1]).collect();
     for (found, expected) in rates.iter().zip([0.0, 1.5, 1.5, 0.0]) {
         assert!((found - expected).abs() < 1e-12, "{rates:?}");
@@ -240,7 +240,7 @@ fn random_machines_agree_between_solvers_rates_and_kernels() {
 }
 
 /// Returns random states with their rates, none on a surface; `None` if rounding decides a side.
-fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<Vec<Sample>> {
+fn samples(subject: &TestMotion, random: &mut Random, tally: &mut Tally) -> Option<Vec<Sample>> {
     let mut evaluator = variant(&subject.model, 0).evaluator;
     let guards = evaluator.guard_count();
     let mut samples = Vec::new();
@@ -278,7 +278,7 @@ fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<
     Some(samples)
 }
 
-fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut Tally) {
+fn compare_rates(subject: &TestMotion, samples: &[Sample], place: &str, tally: &mut Tally) {
     let mut propagator = subject.propagator().expect("a piecewise linear model");
     for sample in samples {
         let found = propagator.evaluate_rates(sample.t, &sample.state, &[sample.input]);
@@ -297,10 +297,10 @@ fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut
     }
 }
 
-fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
+fn compare_motions(subject: &TestMotion, place: &str, tally: &mut Tally) {
     let times = grid(1.2, 24);
-    let general = |tolerance| subject.general((0.0, 1.2), &times, tolerance);
-    let exact = subject.try_exact((0.0, 1.2), &times);
+    let general = |tolerance| subject.simulate_generally((0.0, 1.2), &times, tolerance);
+    let exact = subject.try_simulate_exactly((0.0, 1.2), &times);
     let (coarse, fine) = match (general(1e-11), general(1e-13)) {
         (Ok(coarse), Ok(fine)) => (coarse, fine),
         _ => {
@@ -332,7 +332,7 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
     tally.switches += exact.switches.len();
 }
 
-fn emit_kernels(subject: &Subject) -> String {
+fn emit_kernels(subject: &TestMotion) -> String {
     let derived = Variant::derive_with(&subject.model, &[], &[Output::Regimes]);
     let program = derived.expect("a model that can be derived").program;
     emit(&program, Packaging::Module).expect("names valid in Rust")

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::accepted;
+use eomgen_tests::program::run_accepted;
 
 /// Trajectory from two codes in quadruple precision that agree in all digits, with a row per 0.01
 /// s.
@@ -96,7 +96,7 @@ fn simulate(
     let ripple = ["--set", "omega=31.41592653589793"];
     let mut arguments = vec!["simulate", &arm, "--json", "--out", &file];
     arguments.extend(case.iter().chain(&play).chain(&ripple).chain(solver));
-    let work = serde_json::from_str(&accepted(&arguments)).expect("one document");
+    let work = serde_json::from_str(&run_accepted(&arguments)).expect("one document");
     let table = std::fs::read_to_string(&file).expect("a table");
     (columns(&table), work)
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Output;
 use std::time::{Duration, Instant};
 
-use eomgen_tests::program::{accepted, run, text};
+use eomgen_tests::program::{run, run_accepted, text};
 
 /// Mass dragged by a belt.
 const BELT: &str = r#"
@@ -207,7 +207,7 @@ fn sticking_with_adams_keeps_the_rows_so_far() {
     let (spec, out) = (write_spec(folder.path(), BELT), folder.path().join("a.csv"));
     let shown = out.display().to_string();
     for solver in ["auto", "exact", "rk", "radau"] {
-        accepted(&[
+        run_accepted(&[
             "simulate", &spec, "--until", "2", "--solver", solver, "--out", &shown,
         ]);
     }
@@ -274,7 +274,7 @@ fn relay_with_lead_slides() {
     let of = |solver| {
         let out = folder.path().join(format!("{solver}.csv"));
         let shown = out.display().to_string();
-        accepted(&[
+        run_accepted(&[
             "simulate", &spec, "--until", "20", "--solver", solver, "--out", &shown,
         ]);
         let table = std::fs::read_to_string(&out).expect("a table");

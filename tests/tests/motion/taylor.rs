@@ -5,7 +5,7 @@ use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::crossing::first_rise;
 use eomgen_tests::taylor::double_double::DoubleDouble;
 use eomgen_tests::taylor::modes::Mode;
-use eomgen_tests::taylor::run::{LONGEST, Run};
+use eomgen_tests::taylor::run::{MAX_STEP_S, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 use serde_json::Value;
 
@@ -19,7 +19,7 @@ fn pair(high: f64, low: f64) -> DoubleDouble {
 }
 
 fn relative(a: DoubleDouble, b: DoubleDouble) -> f64 {
-    ((a - b) / b).nearest().abs()
+    ((a - b) / b).to_f64().abs()
 }
 
 /// Parses a decimal number of up to thirty digits; only the last bits may be wrong.
@@ -111,10 +111,10 @@ fn product(roots: &[f64]) -> Vec<DoubleDouble> {
 fn first_rise_is_found_however_short() {
     // Positive only between the first two roots, for 1e-9 of the step.
     let found = first_rise(&product(&[0.3, 0.3 + 1e-9, 0.9, 1.5, 2.0]));
-    assert!(found.is_some_and(|at| (at.nearest() - 0.3).abs() < 1e-15));
+    assert!(found.is_some_and(|at| (at.to_f64() - 0.3).abs() < 1e-15));
     // Negative between the roots, then a rise.
     let found = first_rise(&product(&[0.25, 0.75]));
-    assert!(found.is_some_and(|at| (at.nearest() - 0.75).abs() < 1e-15));
+    assert!(found.is_some_and(|at| (at.to_f64() - 0.75).abs() < 1e-15));
     // Falls at the only root within the step; rises beyond the step.
     assert!(first_rise(&product(&[0.25, 1.25])).is_none());
     // A complex pair of roots near the axis: the minimum is 1e-20 above zero.
@@ -124,7 +124,7 @@ fn first_rise_is_found_however_short() {
     assert!(first_rise(&touching).is_none());
     // Starts at the edge, beyond it by rounding, and moves out or in.
     let start = |slope: f64| [1e-40, slope, 0.0].map(DoubleDouble::exactly);
-    assert!(first_rise(&start(1.0)).is_some_and(|at| at.nearest() == 0.0));
+    assert!(first_rise(&start(1.0)).is_some_and(|at| at.to_f64() == 0.0));
     assert!(first_rise(&start(-1.0)).is_none());
 }
 
@@ -144,15 +144,15 @@ fn milliseconds(until: usize) -> Vec<f64> {
 #[test]
 fn motion_is_independent_of_step_size() {
     let times = milliseconds(2000);
-    let chosen = Run::<DoubleDouble>::of(case(4, 100e-6), &times, LONGEST);
-    let finer = Run::<DoubleDouble>::of(case(4, 100e-6), &times, 1.0 / 32768.0);
+    let chosen = Run::<DoubleDouble>::simulate(case(4, 100e-6), &times, MAX_STEP_S);
+    let finer = Run::<DoubleDouble>::simulate(case(4, 100e-6), &times, 1.0 / 32768.0);
     assert!(
         finer.steps * 2 > chosen.steps * 3,
         "the smaller step needs too few steps"
     );
-    assert_eq!(chosen.counts(), finer.counts());
+    assert_eq!(chosen.switch_counts(), finer.switch_counts());
     let deviations =
-        (0..times.len()).map(|sample| (chosen.tip(sample) - finer.tip(sample)).nearest());
+        (0..times.len()).map(|sample| (chosen.tip(sample) - finer.tip(sample)).to_f64());
     let worst = deviations.fold(0.0, |worst: f64, deviation| worst.max(deviation.abs()));
     println!(
         "tip, b = 100 um: {worst:.1e} m in {} and {} steps",
@@ -165,8 +165,8 @@ fn motion_is_independent_of_step_size() {
 #[test]
 fn papers_case_matches_reference_to_last_digits() {
     let times: Vec<f64> = (0..=200).map(|k| f64::from(k) / 100.0).collect();
-    let run = Run::<DoubleDouble>::of(case(4, 25e-6), &times, LONGEST);
-    assert_eq!(run.counts().iter().sum::<usize>(), 965);
+    let run = Run::<DoubleDouble>::simulate(case(4, 25e-6), &times, MAX_STEP_S);
+    assert_eq!(run.switch_counts().iter().sum::<usize>(), 965);
     let rows: Vec<Vec<f64>> = TRAJECTORY
         .lines()
         .skip(1)
@@ -182,7 +182,7 @@ fn papers_case_matches_reference_to_last_digits() {
         let [x_sp, x_pr, x_c] = [0, 1, 2].map(|j| run.states[sample].positions[j]);
         let found = [x_sp, x_pr, x_c, run.tip(sample)];
         for ((worst, found), expected) in worst.iter_mut().zip(found).zip(&row[1..]) {
-            let deviation = (found - DoubleDouble::exactly(*expected)).nearest().abs();
+            let deviation = (found - DoubleDouble::exactly(*expected)).to_f64().abs();
             *worst = worst.max(deviation);
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use eomgen_tests::models::project;
-use eomgen_tests::program::{accepted, eomgen, refused, text};
+use eomgen_tests::program::{eomgen, run_accepted, run_rejected, text};
 use serde_json::Value;
 
 fn run_study(name: &str, out: &Path) -> Value {
@@ -178,7 +178,7 @@ fn remaining_studies_run_and_reproduce_documented_figures() {
 
 #[test]
 fn invalid_studies_are_rejected() {
-    assert!(refused(&["paper", "study", "fly", "--out", "never-made"]).contains("backlash"));
-    assert!(refused(&["paper", "study", "order"]).contains("--out"));
-    assert!(accepted(&["paper", "study", "--help"]).contains("eomgen paper study backlash"));
+    assert!(run_rejected(&["paper", "study", "fly", "--out", "never-made"]).contains("backlash"));
+    assert!(run_rejected(&["paper", "study", "order"]).contains("--out"));
+    assert!(run_accepted(&["paper", "study", "--help"]).contains("eomgen paper study backlash"));
 }

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use eomgen_tests::models::project;
-use eomgen_tests::program::{self, accepted, eomgen, refused, text};
+use eomgen_tests::program::{self, eomgen, run_accepted, run_rejected, text};
 use serde_json::Value;
 
 /// One set of a well-damped machine, so that a search takes seconds.
@@ -104,7 +104,7 @@ fn killed_search_resumes_to_same_bytes() {
     let bars = |line: &str| line.matches('|').count() - line.matches("\\|").count();
     assert!(table.lines().all(|line| bars(line) == 9), "{table}");
     let other = whole.display().to_string();
-    let error = refused(&[
+    let error = run_rejected(&[
         "paper", "claims", "--sets", "2", "--seed", "6", "--out", &other,
     ]);
     assert!(error.contains("different search"), "{error}");
@@ -185,12 +185,12 @@ fn invalid_options_are_rejected() {
         ("--sets", "few"),
         ("--seed", "first"),
     ] {
-        let error = refused(&[&nowhere[..], &[option, value]].concat());
+        let error = run_rejected(&[&nowhere[..], &[option, value]].concat());
         assert!(error.contains(option) && error.contains(value), "{error}");
     }
     assert!(!Path::new("never-made").exists());
-    assert!(refused(&["paper", "claims", "--sets", "2"]).contains("--out"));
-    assert!(accepted(&["paper", "claims", "--help"]).contains("eomgen paper claims --sets"));
+    assert!(run_rejected(&["paper", "claims", "--sets", "2"]).contains("--out"));
+    assert!(run_accepted(&["paper", "claims", "--help"]).contains("eomgen paper claims --sets"));
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn unwritable_output_is_rejected_before_the_search() {
     // Builds the program first, outside the timing.
     program::path();
     let began = Instant::now();
-    let error = refused(&["paper", "claims", "--out", &file.display().to_string()]);
+    let error = run_rejected(&["paper", "claims", "--out", &file.display().to_string()]);
     assert!(error.contains("file"), "{error}");
     assert!(
         began.elapsed() < Duration::from_secs(10),

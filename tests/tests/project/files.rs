@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{self, accepted, refused, text};
+use eomgen_tests::program::{self, run_accepted, run_rejected, text};
 
 fn spec(name: &str) -> String {
     path(name).display().to_string()
@@ -23,16 +23,16 @@ fn same_input_gives_same_bytes() {
         let out = folder.path().join(run);
         let arm = spec("planetary_arm");
         let table = path_text(&out.join("a.csv"));
-        accepted(&["simulate", &arm, "--until", "0.02", "--out", &table]);
-        accepted(&["generate", &arm, "--order", "3", "--out", &path_text(&out)]);
+        run_accepted(&["simulate", &arm, "--until", "0.02", "--out", &table]);
+        run_accepted(&["generate", &arm, "--order", "3", "--out", &path_text(&out)]);
         let certificate = path_text(&out.join("certificate.json"));
-        accepted(&["validate", &spec("emps"), "--out", &certificate]);
+        run_accepted(&["validate", &spec("emps"), "--out", &certificate]);
         let mut contents: Vec<Vec<u8>> = ["a.csv", "lib.rs", "certificate.json"]
             .iter()
             .map(|name| std::fs::read(out.join(name)).expect("a file"))
             .collect();
         for format in ["text", "latex", "json"] {
-            contents.push(accepted(&["derive", &arm, "--format", format]).into_bytes());
+            contents.push(run_accepted(&["derive", &arm, "--format", format]).into_bytes());
         }
         contents
     };
@@ -52,12 +52,12 @@ fn output_in_place_of_a_non_file_is_rejected() {
         path_text(&file.join("a.csv")),
         "/".to_owned(),
     ] {
-        let message = refused(&["simulate", &pendulum, "--until", "1", "--out", &out]);
+        let message = run_rejected(&["simulate", &pendulum, "--until", "1", "--out", &out]);
         assert!(message.contains("cannot write"), "{message}");
-        let message = refused(&["validate", &pendulum, "--out", &out]);
+        let message = run_rejected(&["validate", &pendulum, "--out", &out]);
         assert!(message.contains("cannot write"), "{message}");
     }
-    let message = refused(&["generate", &pendulum, "--out", &path_text(&file)]);
+    let message = run_rejected(&["generate", &pendulum, "--out", &path_text(&file)]);
     assert!(message.contains("is not a folder"), "{message}");
     assert_eq!(std::fs::read(&file).expect("the file"), b"kept");
 }
@@ -130,7 +130,7 @@ fn output_can_go_to_stdout_or_a_device() {
         &["simulate", &spec("pendulum"), "--until", "1"][..],
         &["validate", &spec("emps")],
     ] {
-        let message = refused(&[command, &["--json", "--out", "-"]].concat());
+        let message = run_rejected(&[command, &["--json", "--out", "-"]].concat());
         assert!(message.contains("both write to stdout"), "{message}");
     }
     if cfg!(unix) {
@@ -154,7 +154,7 @@ fn unwritable_folder_is_rejected() {
         return;
     }
     let out = path_text(&closed.join("a.csv"));
-    let message = refused(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out]);
+    let message = run_rejected(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out]);
     assert!(message.contains("cannot write"), "{message}");
 }
 

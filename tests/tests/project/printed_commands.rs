@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::{path, project};
-use eomgen_tests::pages::{Printed, in_blocks, in_text, pages};
+use eomgen_tests::pages::{PrintedCommand, commands_in_blocks, commands_in_text, pages};
 use eomgen_tests::program::{self, text};
 
 const TIMEOUT: Duration = Duration::from_secs(300);
@@ -373,15 +373,15 @@ fn printed_commands_give_the_printed_output() {
     let folder = reader_folder();
     let place = folder.file(".");
     let ci = std::fs::read_to_string(project().join(".ci/run")).expect(".ci/run");
-    let (in_blocks, _) = in_blocks();
+    let (in_blocks, _) = commands_in_blocks();
     assert!(in_blocks.len() > 20, "{in_blocks:#?}");
     let mut outputs: BTreeMap<String, String> = BTreeMap::new();
     let scipy = has_scipy();
-    for Printed {
+    for PrintedCommand {
         page,
         command,
         output,
-    } in in_text().into_iter().chain(in_blocks)
+    } in commands_in_text().into_iter().chain(in_blocks)
     {
         let meant = runnable_command(&command);
         let mut once = |run: &dyn Fn() -> String| {
@@ -422,7 +422,7 @@ fn printed_commands_give_the_printed_output() {
 
 #[test]
 fn output_without_command_is_compared_in_another_test() {
-    for block in in_blocks().1 {
+    for block in commands_in_blocks().1 {
         let known = SHOWN_ELSEWHERE
             .iter()
             .find(|(first, _)| block.lines[0] == *first);
@@ -461,7 +461,10 @@ fn figures_of_the_pages_have_commands() {
 
 #[test]
 fn listed_commands_occur_in_the_pages() {
-    let all: Vec<Printed> = in_text().into_iter().chain(in_blocks().0).collect();
+    let all: Vec<PrintedCommand> = commands_in_text()
+        .into_iter()
+        .chain(commands_in_blocks().0)
+        .collect();
     let printed = |text: &str| all.iter().any(|printed| printed.command.contains(text));
     for text in REDUCED
         .iter()

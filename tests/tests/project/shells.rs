@@ -1,9 +1,9 @@
 //! Shell completions and man pages.
 
-use eomgen_tests::program::{accepted, refused, run, text};
+use eomgen_tests::program::{run, run_accepted, run_rejected, text};
 
 fn commands() -> Vec<String> {
-    let help = accepted(&["--help"]);
+    let help = run_accepted(&["--help"]);
     let (_, list) = help.split_once("Commands:\n").expect("a list of commands");
     let (list, _) = list.split_once("\n\n").expect("its end");
     let name = |line: &str| {
@@ -19,7 +19,7 @@ fn commands() -> Vec<String> {
 #[test]
 fn completions_of_every_shell_contain_commands_and_options() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = accepted(&["completions", shell]);
+        let script = run_accepted(&["completions", shell]);
         for command in commands() {
             assert!(script.contains(&command), "{shell}: {command}");
         }
@@ -27,14 +27,14 @@ fn completions_of_every_shell_contain_commands_and_options() {
             assert!(script.contains(option), "{shell}: {option}");
         }
     }
-    assert!(refused(&["completions", "cmd"]).contains("powershell"));
+    assert!(run_rejected(&["completions", "cmd"]).contains("powershell"));
 }
 
 #[test]
 fn bash_completes_an_option() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("eomgen");
-    std::fs::write(&file, accepted(&["completions", "bash"])).expect("a file");
+    std::fs::write(&file, run_accepted(&["completions", "bash"])).expect("a file");
     // Requests the completions of `eomgen simulate --sol`.
     let script = format!(
         "source {} && COMP_WORDS=(eomgen simulate --sol) COMP_CWORD=2 && \
@@ -55,7 +55,7 @@ fn bash_completes_an_option() {
 fn man_pages_of_all_commands_have_an_example() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("man1");
-    let said = accepted(&["man", "--out", &out.display().to_string()]);
+    let said = run_accepted(&["man", "--out", &out.display().to_string()]);
     let commands: Vec<String> = commands()
         .into_iter()
         .filter(|name| name != "help")

@@ -2,7 +2,7 @@
 
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, eomgen, refused};
+use eomgen_tests::program::{eomgen, run_accepted, run_rejected};
 
 /// Commands that take a specification.
 const COMMANDS: [&str; 9] = [
@@ -81,28 +81,30 @@ fn stop_message(options: &[&str]) -> String {
 
 #[test]
 fn unknown_commands_and_options_are_rejected() {
-    assert!(refused(&["fly"]).contains("fly"));
-    assert!(refused(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
-    assert!(refused(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
-    assert!(refused(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust, c99"));
-    let unknown = refused(&["generate", &spec("pendulum"), "--with", "jacobian"]);
+    assert!(run_rejected(&["fly"]).contains("fly"));
+    assert!(run_rejected(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
+    assert!(run_rejected(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
+    assert!(
+        run_rejected(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust, c99")
+    );
+    let unknown = run_rejected(&["generate", &spec("pendulum"), "--with", "jacobian"]);
     assert!(unknown.contains("unknown output `jacobian`"), "{unknown}");
     assert!(unknown.contains("jacobians, products"), "{unknown}");
-    assert!(refused(&["check"]).contains("<SPEC>"));
-    assert!(refused(&["generate", &spec("pendulum")]).contains("--out"));
-    assert!(refused(&["generate", "--all", &spec("pendulum")]).contains("--all"));
-    assert!(refused(&["simulate", &spec("pendulum"), "--out", "a.csv"]).contains("--until"));
+    assert!(run_rejected(&["check"]).contains("<SPEC>"));
+    assert!(run_rejected(&["generate", &spec("pendulum")]).contains("--out"));
+    assert!(run_rejected(&["generate", "--all", &spec("pendulum")]).contains("--all"));
+    assert!(run_rejected(&["simulate", &spec("pendulum"), "--out", "a.csv"]).contains("--until"));
 }
 
 #[test]
 fn help_succeeds_and_has_an_example() {
-    assert!(accepted(&["--help"]).contains("simulate"));
-    assert!(accepted(&["--version"]).starts_with("eomgen "));
+    assert!(run_accepted(&["--help"]).contains("simulate"));
+    assert!(run_accepted(&["--version"]).starts_with("eomgen "));
     for command in COMMANDS
         .into_iter()
         .chain(["dataset", "sweep", "merge", "paper", "tour"])
     {
-        let help = accepted(&[command, "--help"]);
+        let help = run_accepted(&[command, "--help"]);
         // The usage line contains the command, too.
         let example = help.split_once("Example").map(|(_, example)| example);
         assert!(
@@ -115,7 +117,7 @@ fn help_succeeds_and_has_an_example() {
 #[test]
 fn earlier_names_work_but_are_not_listed() {
     let pendulum = spec("pendulum");
-    let out = |arguments: &[&str]| accepted(arguments);
+    let out = |arguments: &[&str]| run_accepted(arguments);
     for command in ["linearise", "modes"] {
         let current = out(&[command, &pendulum, "--json", "--state", "theta=pi"]);
         assert_eq!(
@@ -167,7 +169,7 @@ fn earlier_names_work_but_are_not_listed() {
 /// A motion that starts at the nearest equilibrium stays there.
 #[test]
 fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
-    let motion = accepted(&[
+    let motion = run_accepted(&[
         "simulate",
         &spec("pendulum"),
         "--until",
@@ -197,7 +199,7 @@ fn simulate_starts_at_the_equilibrium_nearest_to_a_state() {
 #[test]
 fn page_starts_at_given_parameters_and_state() {
     let pendulum = spec("pendulum");
-    let page = |more: &[&str]| accepted(&[&["page", &pendulum, "--out", "-"], more].concat());
+    let page = |more: &[&str]| run_accepted(&[&["page", &pendulum, "--out", "-"], more].concat());
     assert!(!page(&[]).contains("\"initial\":0.7"));
     let given = page(&["--state", "theta=0.7", "--set", "a=0.375"]);
     assert!(given.contains("\"initial\":0.7"));
@@ -214,8 +216,8 @@ fn generate_check_without_all_is_rejected() {
         let refusal = rejection(&arguments("generate", "pendulum", more));
         assert!(refusal.contains("generate --all --check"), "{refusal}");
     }
-    refused(&["generate", "--check"]);
-    refused(&["generate", "--all", "--check", "--target", "c99"]);
+    run_rejected(&["generate", "--check"]);
+    run_rejected(&["generate", "--all", "--check", "--target", "c99"]);
 }
 
 #[test]
@@ -223,24 +225,28 @@ fn proposed_dataset_file_is_complete_or_absent() {
     let measured = Measured::stage(0.0);
     let record = measured.file("train.csv").display().to_string();
     let out = measured.file("proposed.toml").display().to_string();
-    accepted(&["dataset", &record, &spec("emps"), "--out", &out]);
+    run_accepted(&["dataset", &record, &spec("emps"), "--out", &out]);
     assert!(measured.read("proposed.toml").contains("[inputs.force]"));
-    let printed = accepted(&["dataset", &record, &spec("emps")]);
+    let printed = run_accepted(&["dataset", &record, &spec("emps")]);
     assert_eq!(printed, measured.read("proposed.toml"));
-    let json: serde_json::Value =
-        serde_json::from_str(&accepted(&["dataset", &record, &spec("emps"), "--json"]))
-            .expect("JSON");
+    let json: serde_json::Value = serde_json::from_str(&run_accepted(&[
+        "dataset",
+        &record,
+        &spec("emps"),
+        "--json",
+    ]))
+    .expect("JSON");
     assert_eq!(json["dataset"], printed);
     let elsewhere = tempfile::tempdir().expect("a folder");
     let outside = elsewhere.path().join("a.toml");
     let text = outside.display().to_string();
-    let found = refused(&["dataset", &record, &spec("emps"), "--out", &text]);
+    let found = run_rejected(&["dataset", &record, &spec("emps"), "--out", &text]);
     assert!(
         found.contains("in the folder of its records or above it"),
         "{found}"
     );
     assert!(!outside.exists());
-    let found = refused(&["dataset", &record, &spec("double_pendulum")]);
+    let found = run_rejected(&["dataset", &record, &spec("double_pendulum")]);
     assert!(found.contains("no column is an observable"), "{found}");
 }
 
@@ -279,9 +285,9 @@ fn certificate_with_different_orders_is_rejected() {
     let two = include_str!("../../features/two_fields.toml").replacen("order = 3", "order = 1", 1);
     std::fs::write(&spec, two).expect("a file");
     let spec = spec.display().to_string();
-    assert!(accepted(&["check", &spec]).contains("order 1, 3"));
-    assert!(refused(&["validate", &spec]).contains("give --order"));
-    assert!(accepted(&["validate", &spec, "--order", "1"]).contains("passed"));
+    assert!(run_accepted(&["check", &spec]).contains("order 1, 3"));
+    assert!(run_rejected(&["validate", &spec]).contains("give --order"));
+    assert!(run_accepted(&["validate", &spec, "--order", "1"]).contains("passed"));
 }
 
 #[test]
@@ -323,7 +329,7 @@ fn coordinates_without_inertia_are_rejected() {
         &["validate", &spec],
         &["simulate", &spec, "--until", "1", "--out", &out],
     ] {
-        let found = refused(command);
+        let found = run_rejected(command);
         assert!(
             found.contains("`x`, `y` together have no inertia"),
             "{found}"
@@ -336,7 +342,7 @@ fn coordinates_without_inertia_are_rejected() {
         .expect("it can be run");
     let record: serde_json::Value = serde_json::from_slice(&record.stdout).expect("JSON");
     assert_eq!(record["diagnostics"][0]["line"], 6);
-    assert!(accepted(&["derive", &spec]).contains("M[x, y] = m"));
+    assert!(run_accepted(&["derive", &spec]).contains("M[x, y] = m"));
 }
 
 #[test]
@@ -542,10 +548,10 @@ fn comparison_rejects_inputs_out_of_range() {
         lines[9] = cells.join(",");
         measured.write("train.csv", (lines.join("\n") + "\n").as_bytes());
         if is_rejected {
-            let message = measured.refused();
+            let message = measured.rejection();
             assert!(message.contains("(SI) at t = "), "{message}");
         } else {
-            measured.answered("compare", "out");
+            measured.run_command("compare", "out");
         }
     }
 }

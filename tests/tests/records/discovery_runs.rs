@@ -30,14 +30,14 @@ fn killed_run_leaves_no_partial_file() {
         }
     }
     // The run can be repeated in the same folder.
-    measured.answered("discover", "killed");
+    measured.run_command("discover", "killed");
 }
 
 #[test]
 fn same_seed_gives_same_bytes() {
     let measured = Measured::stage(3.0);
     let [one, other] = ["one", "other"].map(|out| {
-        let (mut result, _) = measured.answered("discover", out);
+        let (mut result, _) = measured.run_command("discover", out);
         result["seconds"] = 0.into();
         let texts = ["extended.toml", "report.html"].map(|f| measured.read(&format!("{out}/{f}")));
         (result, texts)

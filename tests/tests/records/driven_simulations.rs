@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 
 struct Dataset {
     folder: tempfile::TempDir,
@@ -53,7 +53,7 @@ impl Dataset {
         std::fs::remove_file(self.file("a.csv")).ok();
         let arguments = self.arguments(more);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let message = refused(&arguments);
+        let message = run_rejected(&arguments);
         assert!(!self.file("a.csv").exists(), "{message}");
         message
     }
@@ -62,7 +62,7 @@ impl Dataset {
     fn simulate(&self, more: &[&str]) -> Vec<[f64; 3]> {
         let arguments = self.arguments(more);
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        accepted(&arguments);
+        run_accepted(&arguments);
         rows(&self.file("a.csv"))
     }
 }
@@ -265,7 +265,7 @@ fn invalid_datasets_are_rejected() {
     }
     for dataset in ["/nowhere/dataset.toml", "/"] {
         let emps = path("emps").display().to_string();
-        let message = refused(&[
+        let message = run_rejected(&[
             "simulate",
             &emps,
             "--record",
@@ -362,7 +362,7 @@ fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
     std::fs::write(file("dataset.toml"), description).expect("a file");
     let last = |more: &[&str]| -> Vec<f64> {
         let (spec, out) = (file("foot.toml"), file("out.csv"));
-        accepted(
+        run_accepted(
             &[
                 &["simulate", &spec, "--out", &out, "--tolerance", "1e-11"],
                 more,
@@ -387,7 +387,7 @@ fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
     // The bounds are the errors of a cubic spline through samples of 5 ms.
     let found = last(&["--record", &file("dataset.toml")]);
     assert!(off(&found[..2]) < 1e-6 && off(&found) < 1e-5, "{found:?}");
-    let held = refused(&[
+    let held = run_rejected(&[
         "simulate",
         &file("foot.toml"),
         "--record",

@@ -131,7 +131,7 @@ fn run_on_records(
         std::fs::write(file(name), text).expect("a file");
     }
     let paths = ["oscillator.toml", "dataset.toml", "out"].map(file);
-    program::answered(command, paths.each_ref())
+    program::run_on_dataset(command, paths.each_ref())
 }
 
 #[test]

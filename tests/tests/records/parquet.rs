@@ -11,7 +11,7 @@ fn swing(measured: &Measured, angle: &str, file: &str) {
     measured.write("swing.toml", other.as_bytes());
     let specification = measured.file("swing.toml").display().to_string();
     let out = measured.file(file).display().to_string();
-    program::accepted(&[
+    program::run_accepted(&[
         "simulate",
         &specification,
         "--until",
@@ -43,7 +43,7 @@ fn parquet_records_give_the_results_of_csv_records() {
         );
         let dataset = measured.file("swing-data.toml").display().to_string();
         let out = measured.file(format).display().to_string();
-        program::accepted(&["compare", &specification, &dataset, "--out", &out]);
+        program::run_accepted(&["compare", &specification, &dataset, "--out", &out]);
         let text = measured.read(&format!("{format}/comparison.json"));
         let mut result: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         result["seconds"] = 0.into();
@@ -76,7 +76,7 @@ fn broken_parquet_records_are_rejected() {
         measured.write("train.parquet", &bytes);
         let [specification, dataset, out] = [path("pendulum"), data.clone(), measured.file("out")]
             .map(|path| path.display().to_string());
-        let message = program::refused(&["compare", &specification, &dataset, "--out", &out]);
+        let message = program::run_rejected(&["compare", &specification, &dataset, "--out", &out]);
         assert!(message.contains("train.parquet"), "{message}");
         assert!(!measured.file("out").exists());
     }

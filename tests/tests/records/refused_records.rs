@@ -5,7 +5,7 @@ use eomgen_tests::measured::{DESCRIPTION, Measured, SAMPLES, record};
 
 #[test]
 fn valid_records_are_compared() {
-    let (result, warned) = Measured::stage(0.0).answered("compare", "out");
+    let (result, warned) = Measured::stage(0.0).run_command("compare", "out");
     assert_eq!(result["verdict"], "no_significant_gap", "{result:#}");
     assert_eq!(warned, "fitting the original model\n");
 }
@@ -115,7 +115,7 @@ fn invalid_training_records_are_rejected() {
     let measured = Measured::stage(0.0);
     for (bytes, part) in cases {
         measured.write("train.csv", &bytes);
-        let message = measured.refused();
+        let message = measured.rejection();
         assert!(
             message.contains("train.csv") && message.contains(part),
             "{part}: {message}"
@@ -211,7 +211,7 @@ fn contradictory_datasets_are_rejected() {
         let description = DESCRIPTION.replacen(from, to, 1);
         assert_ne!(description, DESCRIPTION, "{from}");
         measured.write("dataset.toml", description.as_bytes());
-        let message = measured.refused();
+        let message = measured.rejection();
         assert!(message.contains(part), "{to}: {message}");
     }
 }
@@ -246,7 +246,7 @@ fn test_record_equal_to_training_record_is_rejected() {
         (holed, "test[0] repeats train[0];"),
     ] {
         measured.write("test.csv", text.as_bytes());
-        let message = measured.refused();
+        let message = measured.rejection();
         assert!(message.contains(part), "{part}: {message}");
     }
 }
@@ -259,7 +259,7 @@ fn two_channels_with_the_same_values_are_rejected() {
     measured.write("dataset.toml", description.as_bytes());
     assert!(
         measured
-            .refused()
+            .rejection()
             .contains("have the same values up to the sign")
     );
 }
@@ -279,7 +279,7 @@ fn columns_with_wrong_sign_or_unit_are_reported() {
         (1e-3, "a thousandth of"),
     ] {
         measured.write("train.csv", scaled(by).as_bytes());
-        let message = measured.refused();
+        let message = measured.rejection();
         assert!(message.contains(part), "{by}: {message}");
     }
     let description = DESCRIPTION
@@ -291,11 +291,11 @@ fn columns_with_wrong_sign_or_unit_are_reported() {
         );
     let exchanged = Measured::stage(0.0);
     exchanged.write("dataset.toml", description.as_bytes());
-    let (_, warned) = exchanged.answered("compare", "exchanged");
+    let (_, warned) = exchanged.run_command("compare", "exchanged");
     assert!(warned.contains("`q` does not follow the model"), "{warned}");
     // A gain within the sensor's prior is not rejected.
     measured.write("train.csv", scaled(1.02).as_bytes());
-    measured.answered("compare", "gain");
+    measured.run_command("compare", "gain");
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn huge_records_are_rejected_before_reading() {
     let file = std::fs::File::create(measured.file("train.csv")).expect("a file");
     // A sparse file: a gigabyte that takes no disk space.
     file.set_len(1 << 30).expect("a long file");
-    let message = measured.refused();
+    let message = measured.rejection();
     assert!(
         message.contains("1073741824 bytes, more than the limit"),
         "{message}"
@@ -314,7 +314,7 @@ fn huge_records_are_rejected_before_reading() {
         long += &format!("{sample},0,0\n");
     }
     measured.write("train.csv", long.as_bytes());
-    let message = measured.refused();
+    let message = measured.rejection();
     assert!(message.contains("more than 1000000 samples"), "{message}");
 }
 
@@ -329,7 +329,7 @@ fn weaknesses_of_a_record_are_noted() {
         }
     };
     measured.write("train.csv", change_column(2, 1, holes).as_bytes());
-    let (result, warned) = measured.answered("compare", "holes");
+    let (result, warned) = measured.run_command("compare", "holes");
     assert!(
         warned.contains("40 samples of `q` are missing and are ignored"),
         "{warned}"
@@ -344,14 +344,14 @@ fn weaknesses_of_a_record_are_noted() {
         format!("{:?}", value.min(0.1))
     });
     measured.write("train.csv", clipped.as_bytes());
-    let (_, warned) = measured.answered("compare", "clipped");
+    let (_, warned) = measured.run_command("compare", "clipped");
     assert!(warned.contains("it may be clipped"), "{warned}");
     let uneven = change_column(0, 1, |place, cell| {
         let t: f64 = cell.parse().expect("a number");
         format!("{:?}", if place % 20 == 0 { t + 0.002 } else { t })
     });
     measured.write("train.csv", uneven.as_bytes());
-    let (_, warned) = measured.answered("compare", "uneven");
+    let (_, warned) = measured.run_command("compare", "uneven");
     assert!(warned.contains("differ from 0.005"), "{warned}");
     assert_eq!(SAMPLES, 400);
 }
@@ -364,7 +364,7 @@ fn control_characters_of_files_are_escaped_in_terminal_and_report() {
     let sound = record(0.0, 0.0);
     let renamed = sound.replacen("force", hostile, 1);
     measured.write("train.csv", renamed.as_bytes());
-    let said = measured.refused();
+    let said = measured.rejection();
     assert!(said.contains("x\\u{1b}[31m\\u{202e}\\u{9b}"), "{said:?}");
     assert!(!said.contains(is_hidden), "{said:?}");
     measured.write("train.csv", sound.as_bytes());
@@ -375,7 +375,7 @@ fn control_characters_of_files_are_escaped_in_terminal_and_report() {
     let description = DESCRIPTION.replace("[channels.q]", &channel);
     let titled = format!("title = \"a\\u202eb\"\n{description}");
     measured.write("dataset.toml", titled.as_bytes());
-    let (result, warned) = measured.answered("compare", "out");
+    let (result, warned) = measured.run_command("compare", "out");
     assert!(!warned.contains(is_hidden), "{warned:?}");
     assert!(
         result["gap"].get("x\u{1b}[31m\u{202e}").is_some(),

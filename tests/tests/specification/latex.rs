@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use eomgen_tests::models::{project, shipped};
-use eomgen_tests::program::accepted;
+use eomgen_tests::models::{project, shipped_specifications};
+use eomgen_tests::program::run_accepted;
 
 fn specifications() -> Vec<PathBuf> {
     let features = project().join("tests/features");
@@ -14,7 +14,7 @@ fn specifications() -> Vec<PathBuf> {
         .map(|entry| entry.expect("an entry").path())
         .collect();
     paths.sort();
-    shipped().into_iter().chain(paths).collect()
+    shipped_specifications().into_iter().chain(paths).collect()
 }
 
 /// Compiles without writing pages; returns the log's errors on failure.
@@ -49,7 +49,7 @@ fn latex_compiles_for_every_specification() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     for path in specifications() {
-        let document = accepted(&["derive", &path.display().to_string(), "--format", "latex"]);
+        let document = run_accepted(&["derive", &path.display().to_string(), "--format", "latex"]);
         std::fs::write(folder.path().join("equations.tex"), document).expect("a file");
         compile_latex(folder.path(), "equations.tex")
             .unwrap_or_else(|wrong| panic!("{}: {wrong}", path.display()));

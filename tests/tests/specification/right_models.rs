@@ -2,22 +2,22 @@
 //! energy grows by work of a force, the motion comes to rest, switches drop out. Their certificates
 //! pass and report the coverage.
 
-use eomgen_tests::certified::{certificate, checked};
+use eomgen_tests::certified::{certify, check_model};
 use eomgen_validate::certificate::{Certificate, Check, Coverage, SkipKind, Verdict};
 
 fn assert_passes(text: &str) -> Certificate {
-    let model = checked(text);
-    let certificate = certificate(&model, &model);
+    let model = check_model(text);
+    let certificate = certify(&model, &model);
     let failures: Vec<_> = certificate.failures().collect();
     assert!(certificate.passed, "{failures:#?}\n{text}");
-    certificate
+    certify
 }
 
 /// Asserts that the equations of `text` fail once `part` is replaced by `changed`.
 fn assert_change_fails(text: &str, part: &str, changed: &str) {
     assert!(text.contains(part), "{part} in\n{text}");
-    let (model, subject) = (checked(text), checked(&text.replace(part, changed)));
-    let certificate = certificate(&model, &subject);
+    let (model, subject) = (check_model(text), check_model(&text.replace(part, changed)));
+    let certificate = certify(&model, &subject);
     assert!(!certificate.passed, "{changed} in\n{text}");
 }
 
@@ -109,8 +109,8 @@ fn functions_are_checked_inside_their_domain() {
 #[test]
 fn model_with_empty_domain_fails() {
     let text = masses("k*L^2*ln(-1 - (x/L)^2)");
-    let model = checked(&text);
-    let certificate = certificate(&model, &model);
+    let model = check_model(&text);
+    let certificate = certify(&model, &model);
     assert!(!certificate.passed);
     let domain = find(&certificate, "domain");
     assert!(!domain.passed && domain.skipped.is_none());
@@ -366,8 +366,8 @@ fn regime_neither_reached_nor_excluded_makes_certificate_partial() {
     // theta exp(-theta^2) < 0.43, but the bounds of the factors do not show it.
     let text = ROTOR.to_owned()
         + "[forces]\nf = { on = \"theta\", value = \"k*above(theta*exp(-theta^2) - 0.5)\" }\n";
-    let model = checked(&text);
-    let certificate = certificate(&model, &model);
+    let model = check_model(&text);
+    let certificate = certify(&model, &model);
     assert_eq!(certificate.verdict, Verdict::Partial);
     assert!(!certificate.passed);
     assert_eq!(certificate.coverage, coverage(2, 1, 0));

@@ -4,13 +4,13 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::source::Source;
-use eomgen_tests::models::{project, shipped};
-use eomgen_tests::program::accepted;
+use eomgen_tests::models::{project, shipped_specifications};
+use eomgen_tests::program::run_accepted;
 use jsonschema::Validator;
 use serde_json::Value;
 
 fn validator() -> Validator {
-    let schema: Value = serde_json::from_str(&accepted(&["schema"])).expect("a JSON document");
+    let schema: Value = serde_json::from_str(&run_accepted(&["schema"])).expect("a JSON document");
     jsonschema::meta::validate(&schema).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(
         schema["$schema"],
@@ -31,7 +31,7 @@ fn specifications(folder: &str) -> Vec<PathBuf> {
 }
 
 fn valid_specifications() -> Vec<PathBuf> {
-    let mut paths = shipped();
+    let mut paths = shipped_specifications();
     paths.extend(specifications("tests/features"));
     paths
 }

@@ -14,7 +14,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::friction::{AxisForces, Dry};
+use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
 
 /// Maximum number of modes.
@@ -124,8 +124,8 @@ impl Arm {
             modulus: 2e11,
             modes: MODES,
             meshes: [mesh.clone(), mesh],
-            on_sun: AxisForces::none(Dry::Steep { speed: 0.05 }),
-            on_carrier: AxisForces::none(Dry::Steep { speed: 0.01 }),
+            on_sun: AxisForces::none(FrictionLaw::Steep { speed: 0.05 }),
+            on_carrier: AxisForces::none(FrictionLaw::Steep { speed: 0.01 }),
             loss: 0.0,
             tip_mass: 0.0,
             cubic: 0.0,

@@ -1,7 +1,7 @@
 //! Machines of one coordinate: a stage driven by a force, and a free pendulum. States:
 //! displacement, rate, bristle deflection.
 
-use crate::friction::{AxisForces, Dry};
+use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
 
 /// Stage: M q'' = F - F_v q' + hidden forces. SI units.
@@ -21,7 +21,7 @@ impl Stage {
         Self {
             mass: 95.0,
             viscous: 210.0,
-            hidden: AxisForces::none(Dry::Steep { speed: 2e-4 }),
+            hidden: AxisForces::none(FrictionLaw::Steep { speed: 2e-4 }),
         }
     }
 }
@@ -62,7 +62,7 @@ impl Pendulum {
             inertia: 1.091e-4,
             viscous: 2.239e-4,
             gravity: 9.81,
-            hidden: AxisForces::none(Dry::Steep { speed: 1e-2 }),
+            hidden: AxisForces::none(FrictionLaw::Steep { speed: 1e-2 }),
         }
     }
 

@@ -6,7 +6,7 @@ mod setup;
 pub mod spring;
 pub mod two_bodies;
 
-use crate::friction::{AxisForces, Dry};
+use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
 use crate::random::Draw;
 use arm::{Arm, Mesh};
@@ -55,7 +55,7 @@ impl Kind {
             Kind::Stage => Machine::Stage(Stage::nominal()),
             Kind::Pendulum => Machine::Pendulum(Pendulum::nominal()),
             Kind::TwoBodies { form, seed } => {
-                Machine::TwoBodies(Box::new(TwoBodies::drawn(form, seed)))
+                Machine::TwoBodies(Box::new(TwoBodies::random(form, seed)))
             }
         }
     }
@@ -110,7 +110,7 @@ impl Kind {
                 uncertain: vec![("k", 0.3), ("I", 0.05)],
                 records: (3, 2),
             },
-            Kind::TwoBodies { form, seed } => TwoBodies::drawn(form, seed).setup(),
+            Kind::TwoBodies { form, seed } => TwoBodies::random(form, seed).setup(),
         }
     }
 }
@@ -230,7 +230,7 @@ impl Machine {
         let bristles = draw.between(0.0, 1.0) < 0.5;
         let choose = |forces: &mut AxisForces, reach: f64, inertia: f64| {
             if bristles {
-                forces.dry = Dry::Bristles { reach, inertia };
+                forces.dry = FrictionLaw::Bristles { reach, inertia };
             }
         };
         match self {

@@ -4,7 +4,7 @@
 
 use super::setup::{Channel, Setup, Specification};
 use super::spring::Spring;
-use crate::friction::{AxisForces, Dry};
+use crate::friction::{AxisForces, FrictionLaw};
 use crate::integrate::Motion;
 use crate::random::Draw;
 
@@ -54,11 +54,11 @@ fn round_to_four_digits(value: f64) -> f64 {
 
 impl TwoBodies {
     /// Returns a machine with random parameters and nothing hidden.
-    pub fn drawn(form: Form, seed: u64) -> Self {
+    pub fn random(form: Form, seed: u64) -> Self {
         // Cases use the streams 1, 2, ...; machines count from the other end.
         let mut draw = Draw::new(seed, u64::MAX - form as u64);
         let mut between = |low: f64, high: f64| round_to_four_digits(draw.between(low, high));
-        let friction = |speed: f64| AxisForces::none(Dry::Steep { speed });
+        let friction = |speed: f64| AxisForces::none(FrictionLaw::Steep { speed });
         let plain = |inertia, viscous, spring, speeds: [f64; 2]| Self {
             form,
             inertia,

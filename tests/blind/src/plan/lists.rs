@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Case, Group, Nuisances, Planned};
 use crate::hidden::{Effect, Hidden};
-use crate::inputs::Manner;
+use crate::inputs::Excitation;
 use crate::machines::Kind;
 use crate::machines::two_bodies::Form;
 use crate::random::Draw;
@@ -21,7 +21,7 @@ const USUAL: Nuisances = Nuisances {
 /// found, and three clear ones.
 const LEVELS: [f64; 5] = [1.5, 3.0, 6.0, 15.0, 60.0];
 
-fn case(group: Group, machine: Kind, manner: Manner, hidden: Vec<Planned>) -> Case {
+fn case(group: Group, machine: Kind, manner: Excitation, hidden: Vec<Planned>) -> Case {
     Case {
         number: 0,
         group,
@@ -76,7 +76,7 @@ fn plan_effect(effect: Effect, on: &str, level: f64, draw: &mut Draw) -> Planned
     Planned {
         hidden,
         level,
-        alike: indistinguishable(effect, on, order),
+        indistinguishable: indistinguishable(effect, on, order),
     }
 }
 
@@ -112,7 +112,7 @@ fn two_bodies(seed: u64) -> [Kind; 3] {
 
 /// Returns cases of every effect of the catalogue by itself; every second one with nuisances at
 /// full priors.
-pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn single_effects(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint,
         EndStop, EndStops, ForceOffset, Gravity, InputGain, JointCompliance, ParameterShift,
@@ -194,7 +194,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
         if on == "F_v" {
             hidden.hidden.sign = -1.0;
         }
-        let mut made = case(Group::Single, machine, Manner::Usual, vec![hidden]);
+        let mut made = case(Group::Single, machine, Excitation::Usual, vec![hidden]);
         if number % 2 == 1 {
             made.nuisances = Nuisances::FULL;
         }
@@ -204,7 +204,7 @@ pub fn singles(seed: u64, draw: &mut Draw) -> Vec<Case> {
 }
 
 /// Returns cases with nothing hidden, with all nuisances.
-pub fn nothings(seed: u64) -> Vec<Case> {
+pub fn without_effects(seed: u64) -> Vec<Case> {
     let none = Nuisances {
         declared: 0.0,
         bias: 0.0,
@@ -225,7 +225,7 @@ pub fn nothings(seed: u64) -> Vec<Case> {
     let [drive, crane, car] = two_bodies(seed);
     for machine in [Kind::Arm, Kind::Stage, Kind::Pendulum, drive, crane, car] {
         for index in 0..5 {
-            let mut made = case(Group::Nothing, machine, Manner::Usual, Vec::new());
+            let mut made = case(Group::Nothing, machine, Excitation::Usual, Vec::new());
             made.nuisances = kinds[index % kinds.len()];
             cases.push(made);
         }
@@ -236,7 +236,7 @@ pub fn nothings(seed: u64) -> Vec<Case> {
 type Placed<'a> = (Effect, &'a str);
 
 /// Returns cases with two clear effects.
-pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn effect_pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricFriction, Backlash, CoulombFriction, ElasticRestraint, EndStop, ForceOffset,
         QuadraticDrag, SensorBias, StiffnessNonlinearity, StructuralDamping, TipMass, TorqueRipple,
@@ -288,7 +288,7 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
             plan_effect(first.0, first.1, one, draw),
             plan_effect(second.0, second.1, other, draw),
         ];
-        let mut made = case(Group::Pair, machine, Manner::Usual, hidden);
+        let mut made = case(Group::Pair, machine, Excitation::Usual, hidden);
         if number % 2 == 1 {
             made.nuisances = Nuisances::FULL;
         }
@@ -298,7 +298,7 @@ pub fn pairs(seed: u64, draw: &mut Draw) -> Vec<Case> {
 }
 
 /// Returns cases with effects outside the catalogue.
-pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
+pub fn outside_catalogue(seed: u64, draw: &mut Draw) -> Vec<Case> {
     use Effect::{ForeignHum, WeakeningDrive, WornFriction};
     use Kind::{Arm, Pendulum, Stage};
     let [drive, crane, car] = two_bodies(seed);
@@ -314,76 +314,76 @@ pub fn outside(seed: u64, draw: &mut Draw) -> Vec<Case> {
     ];
     let strange = |(machine, effect, on): (Kind, Effect, &str)| {
         let hidden = vec![plan_effect(effect, on, 10.0, draw)];
-        case(Group::Outside, machine, Manner::Usual, hidden)
+        case(Group::Outside, machine, Excitation::Usual, hidden)
     };
     list.map(strange).into()
 }
 
 /// Returns cases with effects that their records cannot distinguish from others.
-pub fn untellable(draw: &mut Draw) -> Vec<Case> {
+pub fn indistinguishable_effects(draw: &mut Draw) -> Vec<Case> {
     use Effect::{CoulombFriction, ElasticRestraint, ForceOffset, ParameterShift};
     use Kind::{Arm, Pendulum, Stage};
     let list = [
         (
             Stage,
-            Manner::OneWay,
+            Excitation::OneWay,
             CoulombFriction,
             "q",
             ("force_offset", "q"),
         ),
         (
             Stage,
-            Manner::OneWay,
+            Excitation::OneWay,
             ForceOffset,
             "q",
             ("coulomb_friction", "q"),
         ),
         (
             Arm,
-            Manner::Gentle,
+            Excitation::Gentle,
             ElasticRestraint,
             "theta_c",
             ("gravity", "theta_c"),
         ),
         (
             Arm,
-            Manner::Usual,
+            Excitation::Usual,
             ParameterShift,
             "E",
             ("parameter_shift", "I"),
         ),
         (
             Arm,
-            Manner::Usual,
+            Excitation::Usual,
             ParameterShift,
             "b_m",
             ("viscous_friction", "theta_s"),
         ),
         (
             Pendulum,
-            Manner::Usual,
+            Excitation::Usual,
             ParameterShift,
             "a",
             ("parameter_shift", "g"),
         ),
         (
             Stage,
-            Manner::Usual,
+            Excitation::Usual,
             ParameterShift,
             "F_v",
             ("viscous_friction", "q"),
         ),
     ];
     let unclear =
-        |(machine, manner, effect, on, other): (Kind, Manner, Effect, &str, (&str, &str))| {
+        |(machine, manner, effect, on, other): (Kind, Excitation, Effect, &str, (&str, &str))| {
             let mut hidden = plan_effect(effect, on, 10.0, draw);
             // Dry friction can only represent the part of an offset that opposes the motion.
             if effect == ForceOffset {
                 hidden.hidden.sign = -1.0;
             }
             let other = (other.0.to_owned(), other.1.to_owned());
-            if !hidden.alike.contains(&other) {
-                hidden.alike.push(other);
+            if !hidden.indistinguishable.contains(&other) {
+                hidden.indistinguishable.push(other);
             }
             case(Group::Untellable, machine, manner, vec![hidden])
         };

@@ -7,7 +7,7 @@ mod lists;
 use serde::{Deserialize, Serialize};
 
 use crate::hidden::{Hidden, Sensors};
-use crate::inputs::Manner;
+use crate::inputs::Excitation;
 use crate::machines::{Kind, Machine, Setup};
 use crate::random::Draw;
 
@@ -35,7 +35,7 @@ pub struct Planned {
     /// Size in noise floors.
     pub level: f64,
     /// Effects that the record cannot distinguish from it, with their places.
-    pub alike: Vec<(String, String)>,
+    pub indistinguishable: Vec<(String, String)>,
 }
 
 /// Machine with its excitation and hidden effects.
@@ -48,7 +48,7 @@ pub struct Case {
     /// Machine.
     pub machine: Kind,
     /// Excitation.
-    pub manner: Manner,
+    pub manner: Excitation,
     /// Hidden effects.
     pub hidden: Vec<Planned>,
     /// Deviations that are not effects.
@@ -107,18 +107,18 @@ impl Nuisances {
 impl Case {
     /// Returns true if the motions start at rest.
     pub fn starts_at_rest(&self) -> bool {
-        self.machine != Kind::Pendulum && self.manner != Manner::OneWay
+        self.machine != Kind::Pendulum && self.manner != Excitation::OneWay
     }
 }
 
 /// Returns the cases of a seed.
 pub fn plan(seed: u64) -> Vec<Case> {
     let mut draw = Draw::new(seed, 0);
-    let mut cases = lists::singles(seed, &mut draw);
-    cases.extend(lists::nothings(seed));
-    cases.extend(lists::pairs(seed, &mut draw));
-    cases.extend(lists::outside(seed, &mut draw));
-    cases.extend(lists::untellable(&mut draw));
+    let mut cases = lists::single_effects(seed, &mut draw);
+    cases.extend(lists::without_effects(seed));
+    cases.extend(lists::effect_pairs(seed, &mut draw));
+    cases.extend(lists::outside_catalogue(seed, &mut draw));
+    cases.extend(lists::indistinguishable_effects(&mut draw));
     draw.shuffle(&mut cases);
     for (number, case) in cases.iter_mut().enumerate() {
         case.number = number;

@@ -15,7 +15,7 @@ pub use table::table;
 
 /// Minimum size, in noise floors, of effects that must be found: three, minus the accuracy of the
 /// sizes.
-pub const FLOORS: f64 = 2.85;
+pub const MIN_FLOORS: f64 = 2.85;
 
 /// Judgement of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,7 +52,7 @@ pub struct Judged {
 impl Judged {
     /// Returns true if there is an answer without a false effect: every effect, if any, is hidden
     /// or is a class with a hidden one, with the correct sign.
-    pub fn says_nothing_false(&self) -> bool {
+    pub fn has_no_false_effect(&self) -> bool {
         let is_answer = !matches!(self.judgement, Judgement::Timeout | Judgement::Failed);
         is_answer && self.extra == 0 && self.wrong_signs == 0
     }
@@ -161,13 +161,13 @@ pub fn score(out: &Path, cases: &[usize]) -> std::io::Result<Score> {
             &serde_json::from_str(&result)?,
         ));
     }
-    Ok(summed(judged))
+    Ok(sum_judgements(judged))
 }
 
 /// Sums the judgements of cases.
-pub fn summed(cases: Vec<Judged>) -> Score {
+pub fn sum_judgements(cases: Vec<Judged>) -> Score {
     let large = |judged: &&Judged| {
-        judged.group == Group::Single && judged.hidden.iter().all(|(_, _, f)| *f >= FLOORS)
+        judged.group == Group::Single && judged.hidden.iter().all(|(_, _, f)| *f >= MIN_FLOORS)
     };
     let of = |group: Group| cases.iter().filter(move |judged| judged.group == group);
     let count = |group: Group, is: Judgement| {
@@ -209,7 +209,7 @@ pub fn summed(cases: Vec<Judged>) -> Score {
         nothing_false: (
             cases
                 .iter()
-                .filter(|judged| judged.says_nothing_false())
+                .filter(|judged| judged.has_no_false_effect())
                 .count(),
             cases.len(),
         ),

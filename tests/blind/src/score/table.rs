@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Closure, FLOORS, Judged, Judgement, Score};
+use super::{Closure, Judged, Judgement, MIN_FLOORS, Score};
 use crate::plan::Group;
 
 /// Formats the success rates and the confusion table.
@@ -79,7 +79,7 @@ fn row_and_column(judged: &Judged) -> (String, String) {
     let group = format!("{:?}", judged.group).to_lowercase();
     let row = match (&judged.hidden[..], judged.group) {
         ([(effect, _, floors)], Group::Single) => {
-            let size = if *floors >= FLOORS { "" } else { ", small" };
+            let size = if *floors >= MIN_FLOORS { "" } else { ", small" };
             format!("{effect}{size}")
         }
         ([(effect, ..)], _) => format!("{group}: {effect}"),

@@ -5,8 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linear::{Nudges, SECANTS, SLOPES, Step, along, step};
-use super::windows::{Span, deviated, outputs, run, spans, states};
+use super::linear::{Nudges, SECANTS, SLOPES, Step, moved_along, step};
+use super::windows::{Span, outputs, simulate_window, spans, states, with_sensor_errors};
 use crate::hidden::{Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
@@ -54,12 +54,12 @@ pub struct Window {
 pub struct Estimate {
     /// Declared parameters, then gain, bias and delay of each sensor, in standard deviations.
     pub(super) shared: DVector<f64>,
-    pub(super) windows: Vec<Fitted>,
+    pub(super) windows: Vec<WindowEstimate>,
 }
 
 /// Initial state and residual, relative to the noise.
 #[derive(Clone)]
-pub struct Fitted {
+pub struct WindowEstimate {
     pub(super) start: Vec<f64>,
     pub(super) residual: DVector<f64>,
 }
@@ -86,7 +86,7 @@ impl Records {
     }
 }
 
-impl Fitted {
+impl WindowEstimate {
     fn squares(&self) -> f64 {
         self.residual.norm_squared()
     }
@@ -100,7 +100,7 @@ impl Estimate {
     }
 
     fn squares(&self) -> f64 {
-        self.windows.iter().map(Fitted::squares).sum()
+        self.windows.iter().map(WindowEstimate::squares).sum()
     }
 
     fn cost(&self) -> f64 {
@@ -163,7 +163,7 @@ impl<'a> Fit<'a> {
 
     fn records(&self, hidden: &Hidden) -> Records {
         let mut machine = self.plain.clone();
-        let mut sensors = Sensors::right(self.setup.channels.len());
+        let mut sensors = Sensors::ideal(self.setup.channels.len());
         hidden.hide(&mut machine, self.setup, &mut sensors);
         let all: Vec<_> = (self.drives.iter())
             .map(|drive| states(&machine, self.setup, drive))
@@ -174,7 +174,7 @@ impl<'a> Fit<'a> {
             Window {
                 span,
                 start: self.plain.plain_state(&samples[0]),
-                seen: deviated(&seen, self.setup, &sensors),
+                seen: with_sensor_errors(&seen, self.setup, &sensors),
             }
         };
         Records {
@@ -205,7 +205,7 @@ impl<'a> Fit<'a> {
     /// Returns the estimate with the true parameters and initial states.
     fn initial_estimate(&self, records: &Records) -> Estimate {
         let unknowns = self.truth.len() + 3 * self.setup.channels.len();
-        let begin = |window: &Window| Fitted {
+        let begin = |window: &Window| WindowEstimate {
             start: window.start.clone(),
             residual: window.seen.clone(),
         };
@@ -270,8 +270,8 @@ impl<'a> Fit<'a> {
         window: &Window,
         start: &[f64],
     ) -> DVector<f64> {
-        let run = run(machine, self.setup, self.drives, start, window.span);
-        &window.seen - deviated(&run, self.setup, sensors)
+        let run = simulate_window(machine, self.setup, self.drives, start, window.span);
+        &window.seen - with_sensor_errors(&run, self.setup, sensors)
     }
 
     /// Returns the estimate after a fraction of a step. Windows that improve with a smaller
@@ -285,9 +285,9 @@ impl<'a> Fit<'a> {
             let trial = |part: f64| {
                 let moves = directions.iter().zip(start.iter());
                 let start = moves.fold(old.start.clone(), |state, (direction, by)| {
-                    along(&state, direction, part * by)
+                    moved_along(&state, direction, part * by)
                 });
-                Fitted {
+                WindowEstimate {
                     residual: self.residual(&machine, &sensors, window, &start),
                     start,
                 }

@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{Estimate, Fit, Fitted, Records, Window};
-use super::windows::{deviated, run};
+use super::fit::{Estimate, Fit, Records, Window, WindowEstimate};
+use super::windows::{simulate_window, with_sensor_errors};
 use crate::hidden::Sensors;
 use crate::machines::Machine;
 
@@ -100,7 +100,7 @@ impl<'a> PerturbedMachines<'a> {
         }
     }
 
-    fn linear(&self, window: &Window, at: &Fitted) -> Linear {
+    fn linear(&self, window: &Window, at: &WindowEstimate) -> Linear {
         let (samples, size) = (at.residual.len(), self.ranges.len());
         let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
         let residual = longer(at.residual.clone());
@@ -127,14 +127,14 @@ impl<'a> PerturbedMachines<'a> {
 
     /// Returns the effect of the initial state on a residual, followed by one row per direction
     /// that bounds it if the window does not determine it.
-    fn start_directions(&self, window: &Window, at: &Fitted) -> DMatrix<f64> {
+    fn start_directions(&self, window: &Window, at: &WindowEstimate) -> DMatrix<f64> {
         let (machine, sensors) = &self.here;
         let directions = machine.directions();
         let samples = at.residual.len();
         let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
         for (column, direction) in directions.iter().enumerate() {
             let nudge = self.nudges.start * self.ranges[column];
-            let moved = along(&at.start, direction, nudge);
+            let moved = moved_along(&at.start, direction, nudge);
             let residual = self.fit.residual(machine, sensors, window, &moved);
             let change = (&at.residual - residual) * (UNDETERMINED_STEP / self.nudges.start);
             starts
@@ -146,14 +146,14 @@ impl<'a> PerturbedMachines<'a> {
     }
 
     /// Returns the effect of one standard deviation of each shared unknown on a residual.
-    fn shared_directions(&self, window: &Window, at: &Fitted) -> Vec<DVector<f64>> {
+    fn shared_directions(&self, window: &Window, at: &WindowEstimate) -> Vec<DVector<f64>> {
         let fit = self.fit;
-        let base = run(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
+        let base = simulate_window(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
         let column = |(unknown, (machine, sensors)): (usize, &(Machine, Sensors))| {
             let residual = if unknown < fit.parameters() {
                 fit.residual(machine, sensors, window, &at.start)
             } else {
-                &window.seen - deviated(&base, fit.setup, sensors)
+                &window.seen - with_sensor_errors(&base, fit.setup, sensors)
             };
             (&at.residual - residual) / self.nudges.shared
         };
@@ -190,7 +190,7 @@ fn solve_bounded(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>)
 }
 
 /// Moves a state along a direction.
-pub fn along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
+pub fn moved_along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     let moved = state.iter().zip(direction);
     moved.map(|(value, part)| value + by * part).collect()
 }

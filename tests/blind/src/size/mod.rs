@@ -33,7 +33,7 @@ const MAX_FITS: usize = 3;
 const STEP_DIVISORS: [usize; 3] = [8, 4, 2];
 
 /// Effect with its size.
-pub struct Sized {
+pub struct SizedEffect {
     /// Effect.
     pub hidden: Hidden,
     /// Residual of the effect, in noise floors.
@@ -44,14 +44,14 @@ pub struct Sized {
 /// fault or a declared parameter, the size is `level + 2` standard deviations of its prior (beyond
 /// three it is an effect), and the noise floors follow. `declared` contains the true declared
 /// parameters as factors.
-pub fn sized(
+pub fn determine_size(
     machine: &Machine,
     setup: &Setup,
     drives: &[Drive],
     declared: &[(String, f64)],
     mut hidden: Hidden,
     level: f64,
-) -> Sized {
+) -> SizedEffect {
     if matches!(hidden.effect, Effect::EndStop | Effect::EndStops) {
         hidden.order = 0.5 * largest_deflection(machine, setup, drives, hidden.sign);
     }
@@ -69,7 +69,7 @@ pub fn sized(
     if let Some(deviation) = hidden.prior(setup) {
         hidden.amount = deviation * (level.min(10.0) + 2.0);
         let floors = left(&hidden);
-        return Sized { hidden, floors };
+        return SizedEffect { hidden, floors };
     }
     let (begin, largest) = size_range(&hidden, machine, drives);
     hidden.amount = begin;
@@ -81,7 +81,7 @@ pub fn sized(
     let search = Search::new(level, FIT_ACCURACY);
     let (amount, floors) = search.run(hidden.clone(), largest, MAX_FITS, left);
     hidden.amount = amount;
-    Sized { hidden, floors }
+    SizedEffect { hidden, floors }
 }
 
 fn largest_deflection(machine: &Machine, setup: &Setup, drives: &[Drive], side: f64) -> f64 {
@@ -144,9 +144,9 @@ fn size_range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64
 
 #[cfg(test)]
 mod tests {
-    use super::{Basis, Fit, sized};
+    use super::{Basis, Fit, determine_size};
     use crate::hidden::{Effect, Hidden};
-    use crate::inputs::{Drive, Manner, drive};
+    use crate::inputs::{Drive, Excitation, drive};
     use crate::machines::{Kind, Setup};
     use crate::random::Draw;
 
@@ -156,7 +156,7 @@ mod tests {
             ..Kind::Pendulum.setup()
         };
         let mut draw = Draw::new(11, 0);
-        let drives = (0..5).map(|p| drive(Kind::Pendulum, &setup, Manner::Usual, p, &mut draw));
+        let drives = (0..5).map(|p| drive(Kind::Pendulum, &setup, Excitation::Usual, p, &mut draw));
         let drives = drives.collect();
         (setup, drives)
     }
@@ -196,7 +196,7 @@ mod tests {
     fn effect_has_the_requested_size() {
         let (setup, drives) = pendulum();
         let machine = Kind::Pendulum.nominal();
-        let found = sized(
+        let found = determine_size(
             &machine,
             &setup,
             &drives,

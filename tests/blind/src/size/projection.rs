@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::windows::{Span, deviated, outputs, run, spans, states};
+use super::windows::{Span, outputs, simulate_window, spans, states, with_sensor_errors};
 use crate::hidden::{Effect, Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
@@ -41,7 +41,7 @@ impl Basis {
     /// Returns the RMS residual of the effect, relative to the noise.
     pub fn floors(&self, plain: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> f64 {
         let mut machine = plain.clone();
-        let mut sensors = Sensors::right(setup.channels.len());
+        let mut sensors = Sensors::ideal(setup.channels.len());
         hidden.hide(&mut machine, setup, &mut sensors);
         let runs: Vec<Vec<Vec<f64>>> = drives
             .iter()
@@ -52,8 +52,8 @@ impl Basis {
             let span = part.span;
             let with = &runs[span.record][span.first..span.first + span.count];
             let start = plain.plain_state(&with[0]);
-            let without = run(plain, setup, drives, &start, span);
-            let deviating = deviated(&outputs(&machine, setup, with), setup, &sensors);
+            let without = simulate_window(plain, setup, drives, &start, span);
+            let deviating = with_sensor_errors(&outputs(&machine, setup, with), setup, &sensors);
             differences.push(deviating - without);
         }
         self.projected_rms(differences)
@@ -90,13 +90,13 @@ fn window_part(
     span: Span,
     hidden: &Hidden,
 ) -> Part {
-    let seen = run(machine, setup, drives, start, span);
+    let seen = simulate_window(machine, setup, drives, start, span);
     let mut starts = Vec::new();
     for place in machine.states_of_model() {
         let mut moved = start.to_vec();
         let nudge = 1e-7;
         moved[place] += nudge;
-        starts.push((run(machine, setup, drives, &moved, span) - &seen) / nudge);
+        starts.push((simulate_window(machine, setup, drives, &moved, span) - &seen) / nudge);
     }
     let scaled: Vec<DVector<f64>> = starts
         .into_iter()
@@ -116,7 +116,7 @@ fn window_part(
         }
         let mut other = machine.clone();
         other.scale(name, 1.0 + 1e-2 * relative);
-        declared.push((run(&other, setup, drives, start, span) - &seen) / 1e-2);
+        declared.push((simulate_window(&other, setup, drives, start, span) - &seen) / 1e-2);
     }
     declared.extend(sensor_directions(&seen, setup, hidden));
     let declared = DMatrix::from_columns(&declared);
@@ -141,7 +141,7 @@ fn sensor_directions(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec
             continue;
         }
         let sensors = Sensors::within_priors(setup, one.as_slice());
-        columns.push(deviated(seen, setup, &sensors) - seen);
+        columns.push(with_sensor_errors(seen, setup, &sensors) - seen);
     }
     columns
 }
@@ -172,7 +172,7 @@ pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive
     let differences = basis.windows.iter().map(|part| {
         let span = part.span;
         let truth = &all[span.record][span.first..span.first + span.count];
-        outputs(machine, setup, truth) - run(&model, setup, drives, &truth[0], span)
+        outputs(machine, setup, truth) - simulate_window(&model, setup, drives, &truth[0], span)
     });
     basis.projected_rms(differences.collect())
 }

@@ -74,7 +74,7 @@ pub fn window(
 }
 
 /// Returns the readings of ideal sensors in a window from an initial state.
-pub fn run(
+pub fn simulate_window(
     machine: &Machine,
     setup: &Setup,
     drives: &[Drive],
@@ -99,7 +99,7 @@ pub fn outputs(machine: &Machine, setup: &Setup, states: &[Vec<f64>]) -> DVector
 }
 
 /// Returns outputs with these sensor errors; a delay is linearised.
-pub fn deviated(seen: &DVector<f64>, setup: &Setup, sensors: &Sensors) -> DVector<f64> {
+pub fn with_sensor_errors(seen: &DVector<f64>, setup: &Setup, sensors: &Sensors) -> DVector<f64> {
     let channels = setup.channels.len();
     let samples = seen.len() / channels;
     let mut result = seen.clone();

@@ -98,7 +98,7 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
         max_step: f64::INFINITY,
         audit: false,
     };
-    let reference = complete(&instance, &request(Solver::Rk, GROWTH_TOLERANCE))?;
+    let reference = simulate_to_end(&instance, &request(Solver::Rk, GROWTH_TOLERANCE))?;
     let states = &reference.trajectory.states;
     let sizes = magnitudes(states, &model.state_units());
     let initial_request = request(Solver::Rk, GROWTH_TOLERANCE);
@@ -114,8 +114,8 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
     let mut worst = 0.0_f64;
     for tolerance in TOLERANCES {
         let allowed = ALLOWED_TOLERANCES * tolerance * growth;
-        let rk = complete(&instance, &request(Solver::Rk, tolerance))?;
-        let radau = complete(&instance, &request(Solver::Radau, tolerance))?;
+        let rk = simulate_to_end(&instance, &request(Solver::Rk, tolerance))?;
+        let radau = simulate_to_end(&instance, &request(Solver::Radau, tolerance))?;
         let motions = [Some(&rk), Some(&radau), exact.as_ref()];
         let motions: Vec<&Motion> = motions.into_iter().flatten().collect();
         for motion in &motions {
@@ -144,7 +144,7 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
 }
 
 /// Simulates to the last requested time; returns an error if the motion stops early.
-fn complete(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, String> {
+fn simulate_to_end(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion, String> {
     let solver = request.solver.name();
     let motion = instance.simulate_until_stop(request, &mut |_| {});
     motion
@@ -158,7 +158,7 @@ fn exact_motion(instance: &Instance<'_>, request: &Request<'_>) -> Result<Option
     {
         return Ok(None);
     }
-    complete(instance, request).map(Some)
+    simulate_to_end(instance, request).map(Some)
 }
 
 /// Checks that the energy of a passive machine never rises from one sample to a later one by more

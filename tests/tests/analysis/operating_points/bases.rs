@@ -3,12 +3,12 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
-use eomgen_tests::certified::{certificate, checked};
+use eomgen_tests::certified::{certify, check_model};
 use eomgen_tests::models::load;
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 use serde_json::Value;
 
-use super::{json, shipped, written};
+use super::{run_json, shipped, write_model};
 
 /// Stiffness, mass per length and length. The frequency of a beam is (beta l/l)^2 sqrt(B/mu)/tau,
 /// that of a rod or string (beta l/l) sqrt(B/mu)/tau.
@@ -91,8 +91,8 @@ fn published_wavenumbers() -> Vec<(String, [f64; 3])> {
 fn frequencies_of_all_bases_match_textbooks() {
     let folder = tempfile::tempdir().expect("a folder");
     for (basis, roots) in published_wavenumbers() {
-        let model = written(folder.path(), &uniform(&basis, 3));
-        let found = json(&["modes", &model, "--json"]);
+        let model = write_model(folder.path(), &uniform(&basis, 3));
+        let found = run_json(&["modes", &model, "--json"]);
         let modes = found["modes"].as_array().expect("modes");
         assert_eq!(modes.len(), 3);
         let power = if is_rod(&basis) { 1 } else { 2 };
@@ -135,8 +135,8 @@ inner_shear = { value = "B*at(diff(w, x, 3), x_0 + l/5)", unit = "N" }
 fn certificates_of_all_bases_pass() {
     for (basis, _) in published_wavenumbers() {
         for order in [1, 4] {
-            let model = checked(&all_expressions(&basis, order));
-            let certificate = certificate(&model, &model);
+            let model = check_model(&all_expressions(&basis, order));
+            let certificate = certify(&model, &model);
             let failures: Vec<_> = certificate.failures().collect();
             assert!(certificate.passed, "{basis}, order {order}: {failures:#?}");
         }
@@ -180,8 +180,8 @@ tension = "1/2*integral(F*(diff(v, y, 1) - at(w, l)/(2*l))^2, v)"
 fn coupled_fields_of_different_bases_pass() {
     for order in [0, 1, 5] {
         let text = BEAM_AND_STRING.replace("order = 3", &format!("order = {order}"));
-        let model = checked(&text);
-        let certificate = certificate(&model, &model);
+        let model = check_model(&text);
+        let certificate = certify(&model, &model);
         let failures: Vec<_> = certificate.failures().collect();
         assert!(certificate.passed, "order {order}: {failures:#?}");
     }
@@ -196,10 +196,10 @@ fn certificate_fails_for_another_basis() {
         ("free_guided", "guided_free"),
     ] {
         let (model, subject) = (
-            checked(&all_expressions(one, 2)),
-            checked(&all_expressions(other, 2)),
+            check_model(&all_expressions(one, 2)),
+            check_model(&all_expressions(other, 2)),
         );
-        assert!(!certificate(&model, &subject).passed, "{one}, {other}");
+        assert!(!certify(&model, &subject).passed, "{one}, {other}");
     }
 }
 
@@ -208,8 +208,8 @@ fn certificate_fails_for_another_basis() {
 fn highest_order_keeps_its_digits() {
     let folder = tempfile::tempdir().expect("a folder");
     for (basis, quarters) in [("free_free", 2.0), ("pinned_clamped", 1.0), ("string", 0.0)] {
-        let model = written(folder.path(), &uniform(basis, 128));
-        let found = json(&["modes", &model, "--json"]);
+        let model = write_model(folder.path(), &uniform(basis, 128));
+        let found = run_json(&["modes", &model, "--json"]);
         let last = found["modes"].as_array().expect("modes")[127].clone();
         let root = PI * (128.0 + 0.25 * quarters);
         let power = if is_rod(basis) { 1 } else { 2 };
@@ -236,8 +236,8 @@ fn free_beam_with_rigid_coordinates_has_two_zero_frequencies() {
             "mu*(dot(y) + (x - x_0 - l/2)*dot(psi) + dot(w))^2",
         );
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), &text);
-    let found = json(&["modes", &model, "--json"]);
+    let model = write_model(folder.path(), &text);
+    let found = run_json(&["modes", &model, "--json"]);
     let frequencies: Vec<f64> = found["modes"]
         .as_array()
         .expect("modes")
@@ -269,7 +269,7 @@ fn shaft_and_disc_match_closed_form_frequencies() {
     let first = |order: &str| {
         let spec = shipped("shaft_and_disc");
         let set = ["--set", "c_b=0", "--set", "c_i=0"];
-        let found = json(&[&["modes", &spec, "--order", order, "--json"], &set[..]].concat());
+        let found = run_json(&[&["modes", &spec, "--order", order, "--json"], &set[..]].concat());
         found["modes"][1]["frequency"].as_f64().expect("Hz") * TAU / speed
     };
     let (mut low, mut high) = (1e-3, 0.5 * PI);
@@ -295,12 +295,12 @@ fn unknown_basis_is_rejected_with_suggestion() {
         ("strings", "did you mean `string`?"),
         ("hinged", "clamped, pinned, free or guided"),
     ] {
-        let model = written(folder.path(), &uniform(wrong, 2));
-        let message = refused(&["check", &model]);
+        let model = write_model(folder.path(), &uniform(wrong, 2));
+        let message = run_rejected(&["check", &model]);
         assert!(message.contains("model.toml:13:9"), "{message}");
         assert!(message.contains(said), "{message}");
     }
-    let schema: Value = serde_json::from_str(&accepted(&["schema"])).expect("JSON");
+    let schema: Value = serde_json::from_str(&run_accepted(&["schema"])).expect("JSON");
     let mut known = String::new();
     for name in schema["$defs"]["field"]["properties"]["basis"]["enum"]
         .as_array()

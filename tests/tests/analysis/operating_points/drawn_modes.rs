@@ -1,10 +1,10 @@
 //! `modes --plot`: curves against the closed form of a clamped beam, bars against the table, and
 //! the regime of a piecewise model.
 
-use eomgen_tests::program::{accepted, refused, run, text};
+use eomgen_tests::program::{run, run_accepted, run_rejected, text};
 use serde_json::Value;
 
-use super::{BEAM, OSCILLATOR, json, numbers, shipped, written};
+use super::{BEAM, OSCILLATOR, numbers, run_json, shipped, write_model};
 
 /// Spring that touches a wall beyond some position.
 const WALL: &str = r#"
@@ -44,9 +44,12 @@ fn curves(svg: &str) -> Vec<Vec<(f64, f64)>> {
 #[test]
 fn curves_match_shapes_of_clamped_beam() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (spec, svg) = (written(folder.path(), BEAM), folder.path().join("a.svg"));
+    let (spec, svg) = (
+        write_model(folder.path(), BEAM),
+        folder.path().join("a.svg"),
+    );
     let shown = svg.display().to_string();
-    accepted(&["modes", &spec, "--plot", &shown]);
+    run_accepted(&["modes", &spec, "--plot", &shown]);
     let svg = std::fs::read_to_string(svg).expect("the figure");
     let drawn = curves(&svg);
     assert_eq!(drawn.len(), 5);
@@ -81,19 +84,19 @@ fn curves_match_shapes_of_clamped_beam() {
 #[test]
 fn piecewise_model_prints_its_regime() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path(), WALL);
+    let spec = write_model(folder.path(), WALL);
     let svg = folder.path().join("a.svg");
     let shown = svg.display().to_string();
     // sqrt(k/m) = 5 rad/s off the wall, sqrt((k + k_w)/m) = 10 rad/s on it.
     for (x, side, omega) in [("0", "<", 5.0), ("0.2", ">", 10.0)] {
         let at = format!("x={x}");
-        let found = json(&["modes", &spec, "--state", &at, "--json", "--plot", &shown]);
+        let found = run_json(&["modes", &spec, "--state", &at, "--json", "--plot", &shown]);
         let regime = &found["regime"][0];
         assert_eq!(regime["surface"], "x - d");
         assert_eq!(regime["side"], side);
         let frequency = found["modes"][0]["frequency"].as_f64().expect("a number");
         assert!((frequency * std::f64::consts::TAU - omega).abs() < 1e-12);
-        let table = accepted(&["modes", &spec, "--state", &at]);
+        let table = run_accepted(&["modes", &spec, "--state", &at]);
         assert!(
             table.ends_with(&format!("regime: x - d {side} 0\n")),
             "{table}"
@@ -119,14 +122,14 @@ fn figures_of_all_machines_are_complete_documents() {
         vec!["modes", &shipped("puma_560")],
         vec!["modes", &shipped("two_link_arm"), "--state", "theta_2=0.5"],
     ] {
-        accepted(&[&arguments[..], &["--plot", &shown]].concat());
+        run_accepted(&[&arguments[..], &["--plot", &shown]].concat());
         let svg = std::fs::read_to_string(&svg).expect("the figure");
         assert!(svg.ends_with("</svg>\n") && svg.contains("mode 1: "));
         assert!(
             !svg.contains("NaN") && !svg.contains("inf"),
             "{arguments:?}"
         );
-        let modes: Value = json(&[&arguments[..], &["--json"]].concat());
+        let modes: Value = run_json(&[&arguments[..], &["--json"]].concat());
         let drawn = svg.matches(">mode ").count();
         assert_eq!(
             drawn,
@@ -134,8 +137,8 @@ fn figures_of_all_machines_are_complete_documents() {
         );
     }
     // A single coordinate has a single full bar.
-    let spec = written(folder.path(), OSCILLATOR);
-    let found = json(&["modes", &spec, "--json", "--plot", &shown]);
+    let spec = write_model(folder.path(), OSCILLATOR);
+    let found = run_json(&["modes", &spec, "--json", "--plot", &shown]);
     assert_eq!(numbers(&found["modes"][0]["shape"]), [1.0]);
     let svg = std::fs::read_to_string(&svg).expect("the figure");
     assert!(svg.contains("1.00 m"), "{svg}");
@@ -144,13 +147,13 @@ fn figures_of_all_machines_are_complete_documents() {
 #[test]
 fn figure_on_stdout_excludes_other_output() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = written(folder.path(), OSCILLATOR);
+    let spec = write_model(folder.path(), OSCILLATOR);
     let output = run(&["modes", &spec, "--plot", "-"]);
     let (figure, table) = (text(&output.stdout), text(&output.stderr));
     assert!(figure.starts_with("<svg") && figure.ends_with("</svg>\n"));
     assert!(table.contains("damping ratio"), "{table}");
-    let message = refused(&["modes", &spec, "--plot", "modes.png"]);
+    let message = run_rejected(&["modes", &spec, "--plot", "modes.png"]);
     assert!(message.contains("ends in .svg"), "{message}");
-    let message = refused(&["modes", &spec, "--json", "--plot", "-"]);
+    let message = run_rejected(&["modes", &spec, "--json", "--plot", "-"]);
     assert!(message.contains("--json and --plot -"), "{message}");
 }

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use eomgen_tests::program::{accepted, run};
+use eomgen_tests::program::{run, run_accepted};
 use serde_json::Value;
 
-use super::{OSCILLATOR, columns, json, shipped, written};
+use super::{OSCILLATOR, columns, run_json, shipped, write_model};
 
 /// Pendulum with a motor at its pivot.
 const DRIVEN: &str = r#"
@@ -40,8 +40,8 @@ fn number(document: &Value, name: &str) -> f64 {
 #[test]
 fn trim_finds_nearest_equilibrium_of_driven_pendulum() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), DRIVEN);
-    let level = number(&json(&["trim", &model]), "theta");
+    let model = write_model(folder.path(), DRIVEN);
+    let level = number(&run_json(&["trim", &model]), "theta");
     assert!(level.abs() < 1e-9 || (level - PI).abs() < 1e-9, "{level}");
     for (state, right) in [
         ("theta=80 deg", 0.0),
@@ -49,10 +49,10 @@ fn trim_finds_nearest_equilibrium_of_driven_pendulum() {
         ("theta=-pi/3", 0.0),
         ("theta=2*pi + 1", TAU),
     ] {
-        let found = number(&json(&["trim", &model, "--state", state]), "theta");
+        let found = number(&run_json(&["trim", &model, "--state", state]), "theta");
         assert!((found - right).abs() < 1e-9, "{state}: {found}");
     }
-    let held = json(&["trim", &model, "--fix", "theta=30 deg"]);
+    let held = run_json(&["trim", &model, "--fix", "theta=30 deg"]);
     assert!(
         (number(&held, "u") - 0.15 * 9.81 * 0.3 * 0.5).abs() < 1e-12,
         "{held}"
@@ -62,7 +62,7 @@ fn trim_finds_nearest_equilibrium_of_driven_pendulum() {
 #[test]
 fn modes_and_linearise_report_whether_state_is_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), DRIVEN);
+    let model = write_model(folder.path(), DRIVEN);
     for command in ["modes", "linearise"] {
         for (at, is_equilibrium) in [
             (&["--state", "theta=pi"][..], true),
@@ -86,7 +86,7 @@ fn modes_and_linearise_report_whether_state_is_equilibrium() {
             );
         }
     }
-    let trimmed = json(&[
+    let trimmed = run_json(&[
         "modes",
         &model,
         "--state",
@@ -119,7 +119,7 @@ V = "1/2*k*x^2"
 #[test]
 fn warning_names_nonzero_rates_away_from_equilibrium() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), MOVING);
+    let model = write_model(folder.path(), MOVING);
     let parts = ["the machine moves", "the machine accelerates", "p changes"];
     for command in ["modes", "linearise"] {
         for (at, changes) in [
@@ -139,14 +139,14 @@ fn warning_names_nonzero_rates_away_from_equilibrium() {
 #[test]
 fn all_commands_accept_expressions_and_units() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
+    let model = write_model(folder.path(), OSCILLATOR);
     // omega^2 = k/m.
     for (set, omega) in [
         (&["--set", "k=0.072 N/mm"][..], 6.0),
         (&["--set", "m=4*m"], 2.5),
         (&["--set", "k=200", "--set", "m=8000 g"], 5.0),
     ] {
-        let found = json(&[&["modes", &model, "--json"], set].concat());
+        let found = run_json(&[&["modes", &model, "--json"], set].concat());
         let frequency = found["modes"][0]["frequency"].as_f64().expect("Hz");
         assert!(
             (TAU * frequency / omega - 1.0).abs() < 1e-12,
@@ -166,12 +166,12 @@ fn all_commands_accept_expressions_and_units() {
         &file,
     ];
     let initial = ["--state", "x=25 mm", "--state", "x_dot=F_0/(m*w_0)"];
-    accepted(&[&given[..], &initial].concat());
+    run_accepted(&[&given[..], &initial].concat());
     let rows = columns(&out, &["x", "x_dot"]);
     assert_eq!(rows[0], [0.025, 0.75]);
-    let held = json(&["trim", &model, "--fix", "u=F_0*2"]);
+    let held = run_json(&["trim", &model, "--fix", "u=F_0*2"]);
     assert!((number(&held, "x") - 0.12).abs() < 1e-13);
-    let at = json(&[
+    let at = run_json(&[
         "linearise",
         &shipped("pendulum"),
         "--state",
@@ -185,17 +185,20 @@ fn all_commands_accept_expressions_and_units() {
 #[test]
 fn frequencies_for_all_magnitudes_of_stiffness_are_found() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
+    let model = write_model(folder.path(), OSCILLATOR);
     for stiffness in ["1e-200", "1e-9", "1e150", "1e300"] {
         let set = format!("k={stiffness}");
-        let found = json(&["modes", &model, "--set", &set, "--json"]);
+        let found = run_json(&["modes", &model, "--set", &set, "--json"]);
         let frequency = found["modes"][0]["frequency"].as_f64().expect("Hz");
         let right = (stiffness.parse::<f64>().expect("a number") / 2.0).sqrt() / TAU;
         assert!(
             (frequency / right - 1.0).abs() < 1e-12,
             "{stiffness}: {frequency:e}"
         );
-        assert_eq!(number(&json(&["trim", &model, "--set", &set]), "x"), 0.0);
+        assert_eq!(
+            number(&run_json(&["trim", &model, "--set", &set]), "x"),
+            0.0
+        );
     }
     let endless = run(&["modes", &model, "--set", "k=1e308", "--set", "m=1e-10"]);
     let said = String::from_utf8_lossy(&endless.stderr).into_owned();
@@ -209,9 +212,9 @@ fn rolling_bicycle_is_in_equilibrium_at_its_speed() {
         env!("CARGO_MANIFEST_DIR"),
         "/../examples/constrained/bicycle.toml"
     );
-    let modes = json(&["modes", spec, "--json"]);
+    let modes = run_json(&["modes", spec, "--json"]);
     assert_eq!(modes["equilibrium"], true);
-    let found = json(&["trim", spec]);
+    let found = run_json(&["trim", spec]);
     assert!(
         (number(&found, "x_dot") - 5.0).abs() < 1e-9,
         "{}",
@@ -239,7 +242,7 @@ V = "1/2*k*x^2"
 [forces]
 contact = { on = "x", value = "-h*sqrt(max(x - d, 0))*d" }
 "#;
-    let model = written(folder.path(), text);
-    let printed = accepted(&["modes", &model]);
+    let model = write_model(folder.path(), text);
+    let printed = run_accepted(&["modes", &model]);
     assert!(printed.contains("1.591549"), "{printed}");
 }

@@ -10,21 +10,21 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, refused, run};
+use eomgen_tests::program::{run, run_accepted, run_rejected};
 use serde_json::Value;
 
 fn shipped(name: &str) -> String {
     path(name).display().to_string()
 }
 
-fn written(folder: &Path, text: &str) -> String {
+fn write_model(folder: &Path, text: &str) -> String {
     let file = folder.join("model.toml");
     std::fs::write(&file, text).expect("written");
     file.display().to_string()
 }
 
-fn json(arguments: &[&str]) -> Value {
-    serde_json::from_str(&accepted(arguments)).expect("JSON")
+fn run_json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&run_accepted(arguments)).expect("JSON")
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -78,7 +78,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 
 #[test]
 fn linearisation_matches_closed_form() {
-    let found = json(&[
+    let found = run_json(&[
         "linearise",
         &shipped("pendulum"),
         "--state",
@@ -108,7 +108,7 @@ fn linearisation_matches_closed_form() {
     assert_eq!(a[0], [0.0, 1.0]);
     // In the upright position the square of the hanging frequency has the opposite sign.
     let at = format!("theta={PI}");
-    let hanging = json(&["modes", &shipped("pendulum"), "--state", &at, "--json"]);
+    let hanging = run_json(&["modes", &shipped("pendulum"), "--state", &at, "--json"]);
     let mode = &hanging["modes"][0];
     let omega = TAU * mode["frequency"].as_f64().expect("Hz");
     assert!(
@@ -116,8 +116,8 @@ fn linearisation_matches_closed_form() {
         "{a:?} {omega}"
     );
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
-    let found = json(&["linearise", &model, "--set", "k=18"]);
+    let model = write_model(folder.path(), OSCILLATOR);
+    let found = run_json(&["linearise", &model, "--set", "k=18"]);
     for (matrix, right) in [
         ("A", serde_json::json!([[0.0, 1.0], [-9.0, 0.0]])),
         ("B", serde_json::json!([[0.0], [0.5]])),
@@ -134,7 +134,7 @@ fn linearisation_matches_closed_form() {
     assert_eq!(numbers(&found["C"][0]), [18.0, 0.0]);
     assert_eq!(numbers(&found["D"][0]), [0.0]);
     let out = folder.path().join("linear.json").display().to_string();
-    let said = accepted(&["linearise", &model, "--set", "k=18", "--out", &out]);
+    let said = run_accepted(&["linearise", &model, "--set", "k=18", "--out", &out]);
     assert!(said.contains("2 states, 1 inputs"), "{said}");
     let file: Value = serde_json::from_slice(&std::fs::read(&out).expect("a file")).expect("JSON");
     assert_eq!(file, found);
@@ -143,8 +143,8 @@ fn linearisation_matches_closed_form() {
 #[test]
 fn modes_match_textbooks() {
     let folder = tempfile::tempdir().expect("a folder");
-    let beam = written(folder.path(), BEAM);
-    let found = json(&["modes", &beam, "--json"]);
+    let beam = write_model(folder.path(), BEAM);
+    let found = run_json(&["modes", &beam, "--json"]);
     let modes = found["modes"].as_array().expect("modes");
     assert_eq!(modes.len(), 5);
     // Roots of cosh(b) cos(b) = -1 (Rao, Mechanical Vibrations, 8.5).
@@ -162,7 +162,7 @@ fn modes_match_textbooks() {
         assert_eq!(mode["damping"], 0.0);
     }
     // Without friction the hub turns freely: one rigid motion, then the beam's modes.
-    let hub = json(&[
+    let hub = run_json(&[
         "modes",
         &shipped("hub_beam_tip_mass"),
         "--set",
@@ -186,29 +186,29 @@ fn modes_match_textbooks() {
         rigid[0] == 1.0 && rigid[1..].iter().all(|q| q.abs() < 1e-9),
         "{rigid:?}"
     );
-    let table = accepted(&["modes", &beam, "--order", "2"]);
+    let table = run_accepted(&["modes", &beam, "--order", "2"]);
     assert_eq!(table.lines().count(), 3, "{table}");
 }
 
 #[test]
 fn equilibria_match_closed_form() {
     // The angle is measured from upright; the initial 3/4 pi is nearer to hanging.
-    let hanging = json(&["trim", &shipped("pendulum"), "--json"]);
+    let hanging = run_json(&["trim", &shipped("pendulum"), "--json"]);
     let theta = hanging["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9, "{hanging}");
     assert_eq!(hanging["stability"], "asymptotically stable");
     let spec = shipped("furuta_pendulum");
     // The initial angle of 3 rad is next to upright.
-    let upright = json(&["trim", &spec]);
+    let upright = run_json(&["trim", &spec]);
     let theta = upright["at"]["theta"].as_f64().expect("an angle");
     assert!((theta - PI).abs() < 1e-9);
     assert_eq!(upright["stability"], "unstable");
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
-    let held = json(&["trim", &model, "--fix", "x=0.1"]);
+    let model = write_model(folder.path(), OSCILLATOR);
+    let held = run_json(&["trim", &model, "--fix", "x=0.1"]);
     assert!((held["at"]["u"].as_f64().expect("a force") - 5.0).abs() < 1e-12);
     assert_eq!(held["stability"], "marginal");
-    let loaded = json(&["trim", &model, "--fix", "u=5"]);
+    let loaded = run_json(&["trim", &model, "--fix", "u=5"]);
     assert!((loaded["at"]["x"].as_f64().expect("a place") - 0.1).abs() < 1e-13);
     let none = run(&["trim", &spec, "--fix", "theta=1.5", "--fix", "u=0"]);
     assert_eq!(none.status.code(), Some(1));
@@ -240,7 +240,7 @@ fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {
 #[test]
 fn inputs_follow_expressions_and_initial_states_are_set() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
+    let model = write_model(folder.path(), OSCILLATOR);
     let out = folder.path().join("motion.csv");
     let figure = folder.path().join("motion.svg");
     let simulate = |options: &[&str]| {
@@ -257,7 +257,7 @@ fn inputs_follow_expressions_and_initial_states_are_set() {
             "--plot",
             &figure,
         ];
-        accepted(&[&given, options].concat());
+        run_accepted(&[&given, options].concat());
         columns(Path::new(&out), &["t", "x", "pull"])
     };
     let omega = 5.0_f64;
@@ -303,7 +303,7 @@ fn inputs_follow_expressions_and_initial_states_are_set() {
 #[test]
 fn invalid_options_are_rejected_with_suggestion() {
     let folder = tempfile::tempdir().expect("a folder");
-    let model = written(folder.path(), OSCILLATOR);
+    let model = write_model(folder.path(), OSCILLATOR);
     let out = folder.path().join("none.csv").display().to_string();
     let simulate = ["simulate", &model, "--until", "1", "--out", &out];
     for (arguments, part) in [
@@ -335,7 +335,7 @@ fn invalid_options_are_rejected_with_suggestion() {
             "no state and no input",
         ),
     ] {
-        let said = refused(arguments);
+        let said = run_rejected(arguments);
         assert!(said.contains(part), "{arguments:?}: {said}");
     }
     for (option, value, part) in [
@@ -351,7 +351,7 @@ fn invalid_options_are_rejected_with_suggestion() {
         ("--state", "u=1", "expected a coordinate"),
         ("--state", "x=inf", "finite"),
     ] {
-        let said = refused(&[&simulate[..], &[option, value]].concat());
+        let said = run_rejected(&[&simulate[..], &[option, value]].concat());
         assert!(said.contains(part), "{option} {value}: {said}");
         assert!(!Path::new(&out).exists(), "{option} {value}");
     }

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use eomgen_model_spec::source::Source;
-use eomgen_tests::certified::certificate;
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::certified::certify;
+use eomgen_tests::program::{run_accepted, run_rejected};
 
-use super::{json, written};
+use super::{run_json, write_model};
 
 /// Beam between x = 0.25 and 0.95 m with its shapes in `modes.csv`.
 const BEAM: &str = r#"
@@ -61,7 +61,7 @@ fn sines(rows: usize, modes: usize) -> String {
 
 fn with_table(folder: &Path, specification: &str, table: impl AsRef<[u8]>) -> String {
     std::fs::write(folder.join("modes.csv"), table).expect("written");
-    written(folder, specification)
+    write_model(folder, specification)
 }
 
 /// Simply supported beam with its modes in a table. By Rayleigh's principle the frequencies are
@@ -71,7 +71,7 @@ fn frequencies_match_shapes_of_table() {
     let folder = tempfile::tempdir().expect("a folder");
     for (rows, tolerance) in [(41, 1e-4), (161, 1e-6)] {
         let model = with_table(folder.path(), BEAM, sines(rows, 3));
-        let found = json(&["modes", &model, "--json"]);
+        let found = run_json(&["modes", &model, "--json"]);
         let modes = found["modes"].as_array().expect("modes");
         assert_eq!(modes.len(), 3);
         for (r, mode) in (1..).zip(modes) {
@@ -93,7 +93,7 @@ fn certificate_with_table_passes() {
         let model = loaded
             .unwrap_or_else(|found| panic!("{}", found.render(false)))
             .model;
-        let certificate = certificate(&model, &model);
+        let certificate = certify(&model, &model);
         let failures: Vec<_> = certificate.failures().collect();
         assert!(
             certificate.passed,
@@ -149,7 +149,7 @@ fn edits_keep_the_folder() {
         "--out",
         &out,
     ];
-    accepted(&simulate);
+    run_accepted(&simulate);
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn invalid_tables_are_rejected_with_location() {
     ];
     for (table, said) in cases {
         let model = with_table(folder.path(), BEAM, table);
-        let message = refused(&["check", &model]);
+        let message = run_rejected(&["check", &model]);
         assert!(message.contains(said), "{said}:\n{message}");
         assert!(message.contains("model.toml:14:9"), "{message}");
     }
@@ -239,7 +239,7 @@ fn too_few_or_dependent_shapes_are_rejected() {
     };
     for third in [|one, two| 2.0 * one - 3.0 * two, |_, _| 0.0] as [fn(f64, f64) -> f64; 2] {
         let model = with_table(folder.path(), BEAM, table(third));
-        let message = refused(&["check", &model]);
+        let message = run_rejected(&["check", &model]);
         assert!(
             message.contains("modes.csv:1:1: phi_3 is zero or a linear combination"),
             "{message}"
@@ -250,14 +250,14 @@ fn too_few_or_dependent_shapes_are_rejected() {
         &BEAM.replace("order = 3", "order = 4"),
         sines(21, 3),
     );
-    let message = refused(&["check", &model]);
+    let message = run_rejected(&["check", &model]);
     assert!(
         message.contains("the order 4 needs more shapes than modes.csv"),
         "{message}"
     );
     assert!(message.contains("model.toml:16:9"), "{message}");
     let model = with_table(folder.path(), BEAM, sines(21, 3));
-    let message = refused(&["modes", &model, "--order", "4"]);
+    let message = run_rejected(&["modes", &model, "--order", "4"]);
     assert!(message.contains("the table has 3"), "{message}");
 }
 
@@ -279,8 +279,8 @@ fn paths_outside_the_folder_are_rejected() {
         ("none.csv", "cannot be read"),
         (".", "is not a file"),
     ] {
-        let model = written(&inner, &BEAM.replace("modes.csv", name));
-        let message = refused(&["check", &model]);
+        let model = write_model(&inner, &BEAM.replace("modes.csv", name));
+        let message = run_rejected(&["check", &model]);
         assert!(message.contains(said), "{name}: {message}");
     }
     for (part, changed, said) in [
@@ -303,7 +303,7 @@ fn paths_outside_the_folder_are_rejected() {
     ] {
         assert!(BEAM.contains(part));
         let model = with_table(folder.path(), &BEAM.replace(part, changed), sines(21, 3));
-        let message = refused(&["derive", &model]);
+        let message = run_rejected(&["derive", &model]);
         assert!(message.contains(said), "{said}: {message}");
     }
 }

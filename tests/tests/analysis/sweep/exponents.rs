@@ -2,13 +2,13 @@
 //! nonlinear one, together with `poincare`, and rejected uses.
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::accepted;
+use eomgen_tests::program::run_accepted;
 
-use super::place::{Place, accept, column, refuse, table};
+use super::place::{SweepFolder, accept, column, refuse, table};
 
 #[test]
 fn exponent_of_linear_oscillator_is_minus_damping() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let axes = ["--vary", "c=400:1000:3", "--vary", "omega=1:3:2"];
     let more = [
         "--measure",
@@ -19,7 +19,7 @@ fn exponent_of_linear_oscillator_is_minus_damping() {
         "400",
     ];
     accept(&place.sweep("map", &[&axes[..], &more[..]].concat()));
-    let found = table(&place.at("map"));
+    let found = table(&place.path_to("map"));
     let (c, omega) = (column(&found, "c"), column(&found, "omega"));
     for point in 0..6 {
         // Every tangent vector decays as exp(-c t/(2 m)) and rotates.
@@ -38,13 +38,16 @@ fn exponent_of_linear_oscillator_is_minus_damping() {
 
 #[test]
 fn arm_with_backlash_is_chaotic() {
-    let place = Place::new();
-    let (arm, out) = (path("planetary_arm").display().to_string(), place.at("arm"));
+    let place = SweepFolder::new();
+    let (arm, out) = (
+        path("planetary_arm").display().to_string(),
+        place.path_to("arm"),
+    );
     let axis = ["--vary", "b_sp,b_pr=0:100e-6:2", "--set", "omega=60"];
     let span = ["--transient", "20", "--periods", "40", "--order", "4"];
     let what = ["sweep", &arm, "--measure", "lyapunov,poincare", "--out"];
     let out_text = out.display().to_string();
-    accepted(&[&what[..], &[&*out_text], &axis, &span].concat());
+    run_accepted(&[&what[..], &[&*out_text], &axis, &span].concat());
     let found = table(&out);
     let (lambda, error) = (column(&found, "lambda_1"), column(&found, "lambda_1_se"));
     assert!(lambda[1] > 2.0 + 2.0 * error[1], "{lambda:?} {error:?}");
@@ -55,13 +58,13 @@ fn arm_with_backlash_is_chaotic() {
 
 #[test]
 fn invalid_uses_of_exponents_are_rejected() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let vary = ["--vary", "c=400:1000:3"];
     let few = ["--measure", "lyapunov", "--periods", "19"];
     let message = refuse(&place.sweep("never", &[&vary[..], &few[..]].concat()));
     assert!(message.contains("at least 20 --periods"), "{message}");
     let pendulum = path("pendulum").display().to_string();
-    let out = place.at("never").display().to_string();
+    let out = place.path_to("never").display().to_string();
     let given = ["sweep", &pendulum, "--vary", "m=1:2:3", "--out", &out];
     let given = given.iter().chain(&["--measure", "lyapunov"]);
     let message = refuse(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
@@ -73,7 +76,7 @@ fn invalid_uses_of_exponents_are_rejected() {
         .chain(&["--measure", "lyapunov", "--until", "5"]);
     let message = refuse(&given.map(|part| (*part).to_owned()).collect::<Vec<_>>());
     assert!(message.contains("has constraints (`edge`)"), "{message}");
-    assert!(!place.at("never").exists());
+    assert!(!place.path_to("never").exists());
 }
 
 /// x'' + delta x' - x + x^3 = F cos(omega t) with unit parameters.
@@ -132,9 +135,9 @@ fn growth_of_a_distance(force: f64, transient: usize, periods: usize) -> f64 {
 
 #[test]
 fn exponent_of_duffing_oscillator_matches_two_motions() {
-    let place = Place::new();
-    std::fs::write(place.at("duffing.toml"), DUFFING).expect("a specification");
-    let (spec, out) = (place.at("duffing.toml"), place.at("duffing"));
+    let place = SweepFolder::new();
+    std::fs::write(place.path_to("duffing.toml"), DUFFING).expect("a specification");
+    let (spec, out) = (place.path_to("duffing.toml"), place.path_to("duffing"));
     let (spec, out_text) = (spec.display().to_string(), out.display().to_string());
     let what = ["sweep", &spec, "--measure", "lyapunov", "--out", &out_text];
     let span = [
@@ -145,7 +148,7 @@ fn exponent_of_duffing_oscillator_matches_two_motions() {
         "--periods",
         "300",
     ];
-    accepted(&[&what[..], &span].concat());
+    run_accepted(&[&what[..], &span].concat());
     let found = table(&out);
     let (lambda, error) = (column(&found, "lambda_1"), column(&found, "lambda_1_se"));
     // Periodic motion in one well: the tangent vector decays as exp(-delta t/2) while it rotates.
@@ -162,15 +165,15 @@ fn exponent_of_duffing_oscillator_matches_two_motions() {
 /// Without forcing, the second half of the time span is measured.
 #[test]
 fn exponent_of_pendulum_at_rest_is_minus_damping() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let text = DUFFING
         .replace("1/4*k_3*x^4 - 1/2*k*x^2", "1/4*k_3*x^4 + 1/2*k*x^2")
         .replace("value = 0.4,", "value = 0,");
-    std::fs::write(place.at("quiet.toml"), text).expect("a specification");
-    let (spec, out) = (place.at("quiet.toml"), place.at("quiet"));
+    std::fs::write(place.path_to("quiet.toml"), text).expect("a specification");
+    let (spec, out) = (place.path_to("quiet.toml"), place.path_to("quiet"));
     let (spec, out_text) = (spec.display().to_string(), out.display().to_string());
     let what = ["sweep", &spec, "--measure", "lyapunov", "--out", &out_text];
-    accepted(&[&what[..], &["--vary", "delta=0.1:0.3:2", "--until", "400"]].concat());
+    run_accepted(&[&what[..], &["--vary", "delta=0.1:0.3:2", "--until", "400"]].concat());
     let found = table(&out);
     let lambda = column(&found, "lambda_1");
     for (lambda, delta) in lambda.iter().zip([0.1, 0.3]) {

@@ -15,17 +15,17 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{self, accepted};
+use eomgen_tests::program::{self, run_accepted};
 
-use place::{MAP, Place, accept, column, merge_command, parts, refuse, results, table};
+use place::{MAP, SweepFolder, accept, column, merge_command, parts, refuse, results, table};
 
 #[test]
 fn sweep_matches_closed_form() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let span = ["--transient", "60", "--periods", "4"];
     let axes = ["--vary", "c=400:1000:3", "--vary", "omega=1:3:4"];
     accept(&place.sweep("map", &[&axes[..], &span[..]].concat()));
-    let table = table(&place.at("map"));
+    let table = table(&place.path_to("map"));
     let (c, omega) = (column(&table, "c"), column(&table, "omega"));
     assert_eq!(c[..5], [400.0, 400.0, 400.0, 400.0, 700.0]);
     assert_eq!((omega[0], omega[3], omega[4]), (1.0, 3.0, 1.0));
@@ -52,18 +52,18 @@ fn sweep_matches_closed_form() {
 
 #[test]
 fn varied_expression_and_set_parameter_match_simulate() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let vary = ["--vary", "zeta=0.1:0.3:2", "--set", "F=-2"];
     let span = ["--transient", "2", "--periods", "2"];
     accept(&place.sweep("line", &[&vary[..], &span[..]].concat()));
-    let swept = table(&place.at("line"));
-    let csv = place.at("x.csv").display().to_string();
-    let spec = place.at("oscillator.toml").display().to_string();
+    let swept = table(&place.path_to("line"));
+    let csv = place.path_to("x.csv").display().to_string();
+    let spec = place.path_to("oscillator.toml").display().to_string();
     // With omega = 2 the fourth period begins at 3 pi.
     let (until, sample) = (format!("{:?}", TAU * 1.5), format!("{:?}", TAU / 2.0));
     let settings = ["--set", "zeta=0.3", "--set", "F=-2", "--out", &csv];
     let times = ["--until", &until, "--interval", &sample];
-    accepted(&[&["simulate", &spec], &settings[..], &times[..]].concat());
+    run_accepted(&[&["simulate", &spec], &settings[..], &times[..]].concat());
     let text = fs::read_to_string(&csv).expect("the trajectory");
     let last = text.lines().last().expect("a row").split(',').nth(1);
     let expected: f64 = last.expect("x").parse().expect("a number");
@@ -77,8 +77,12 @@ fn varied_expression_and_set_parameter_match_simulate() {
 
 #[test]
 fn threads_and_shards_give_same_bytes() {
-    let place = Place::new();
-    let (one, two, shards) = (place.at("one"), place.at("two"), place.at("shards"));
+    let place = SweepFolder::new();
+    let (one, two, shards) = (
+        place.path_to("one"),
+        place.path_to("two"),
+        place.path_to("shards"),
+    );
     accept(&place.sweep("one", &[&MAP[..], &["--threads", "1"]].concat()));
     accept(&place.sweep("two", &[&MAP[..], &["--threads", "2"]].concat()));
     assert!(results(&one) == results(&two), "two threads");
@@ -102,13 +106,13 @@ fn threads_and_shards_give_same_bytes() {
 
 #[test]
 fn shards_in_separate_folders_can_be_merged() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     accept(&place.sweep("whole", &MAP));
     for shard in ["1/2", "2/2"] {
         let folder = format!("shard{}", &shard[..1]);
         accept(&place.sweep(&folder, &[&MAP[..], &["--shard", shard]].concat()));
     }
-    let (first, second) = (place.at("shard1"), place.at("shard2"));
+    let (first, second) = (place.path_to("shard1"), place.path_to("shard2"));
     let gap = refuse(&merge_command(&first));
     assert!(gap.contains("10 of 20 points are missing"), "{gap}");
     for part in parts(&second) {
@@ -116,7 +120,7 @@ fn shards_in_separate_folders_can_be_merged() {
         fs::copy(second.join("parts").join(&part), to).expect("a copy");
     }
     accept(&merge_command(&first));
-    assert!(results(&place.at("whole")) == results(&first));
+    assert!(results(&place.path_to("whole")) == results(&first));
 }
 
 /// Returns the number of finished parts; unfinished files after a kill are computed again.
@@ -139,7 +143,7 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
 
 #[test]
 fn killed_run_resumes_to_same_bytes() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     // Points of some 0.01 s, so that a kill falls between the first and the last.
     let slow = [
         "--vary",
@@ -152,7 +156,7 @@ fn killed_run_resumes_to_same_bytes() {
         "8",
     ];
     accept(&place.sweep("whole", &slow));
-    let killed = place.at("killed");
+    let killed = place.path_to("killed");
     for some in [5, 20] {
         let child = Command::new(program::path())
             .args(place.sweep("killed", &slow))
@@ -170,19 +174,22 @@ fn killed_run_resumes_to_same_bytes() {
         .and_then(|n| n.parse().ok())
         .expect("a number");
     assert!((1..=40).contains(&computed), "{text}");
-    assert!(results(&place.at("whole")) == results(&killed));
+    assert!(results(&place.path_to("whole")) == results(&killed));
     assert_eq!(
         parts(&killed),
-        parts(&place.at("whole")),
+        parts(&place.path_to("whole")),
         "no unfinished file remains"
     );
 }
 
 #[test]
 fn sweep_varies_both_meshes_together() {
-    let place = Place::new();
-    let (arm, out) = (path("planetary_arm").display().to_string(), place.at("arm"));
-    accepted(&[
+    let place = SweepFolder::new();
+    let (arm, out) = (
+        path("planetary_arm").display().to_string(),
+        place.path_to("arm"),
+    );
+    run_accepted(&[
         "sweep",
         &arm,
         "--order",

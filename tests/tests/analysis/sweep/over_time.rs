@@ -4,9 +4,9 @@
 use std::f64::consts::SQRT_2;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::accepted;
+use eomgen_tests::program::run_accepted;
 
-use super::place::{Place, accept, column, refuse, table};
+use super::place::{SweepFolder, accept, column, refuse, table};
 
 /// Returns the amplitude of the forced response, m.
 fn amplitude(damping: f64, omega: f64) -> f64 {
@@ -16,12 +16,12 @@ fn amplitude(damping: f64, omega: f64) -> f64 {
 
 #[test]
 fn forced_response_has_closed_form_amplitude() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let wide = ["--vary", "c=400:4000:4:log", "--vary", "omega=1:3:3"];
     let long = ["--transient", "60", "--periods", "3"];
     let measures = ["--measure", "max:x,rms:x,max:x_dot"];
     accept(&place.sweep("map", &[&wide[..], &long, &measures].concat()));
-    let table = table(&place.at("map"));
+    let table = table(&place.path_to("map"));
     let (c, omega) = (column(&table, "c"), column(&table, "omega"));
     assert!(
         (c[3] / c[0] - 10.0_f64.powf(1.0 / 3.0)).abs() < 1e-14,
@@ -45,7 +45,10 @@ fn forced_response_has_closed_form_amplitude() {
     }
     for name in ["max_x", "rms_x", "max_x_dot"] {
         assert!(
-            place.at("map").join(format!("map_{name}.png")).exists(),
+            place
+                .path_to("map")
+                .join(format!("map_{name}.png"))
+                .exists(),
             "{name}"
         );
     }
@@ -53,11 +56,11 @@ fn forced_response_has_closed_form_amplitude() {
 
 #[test]
 fn measures_over_time_match_rows_of_simulate() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let arm = path("planetary_arm").display().to_string();
-    let (out, rows) = (place.at("arm"), place.at("arm.csv"));
+    let (out, rows) = (place.path_to("arm"), place.path_to("arm.csv"));
     let [out, rows] = [out, rows].map(|path| path.display().to_string());
-    accepted(&[
+    run_accepted(&[
         "sweep",
         &arm,
         "--order",
@@ -71,7 +74,7 @@ fn measures_over_time_match_rows_of_simulate() {
         "--out",
         &out,
     ]);
-    accepted(&[
+    run_accepted(&[
         "simulate",
         &arm,
         "--order",
@@ -99,7 +102,7 @@ fn measures_over_time_match_rows_of_simulate() {
             .expect("a column");
         numbers.iter().map(move |row| row[place])
     };
-    let table = table(&place.at("arm"));
+    let table = table(&place.path_to("arm"));
     let found = |name: &str| column(&table, name)[1];
     let near = |name: &str, right: f64| {
         let found = found(name);
@@ -123,7 +126,7 @@ fn measures_over_time_match_rows_of_simulate() {
 
 #[test]
 fn invalid_measures_are_rejected() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     for (more, what) in [
         (
             &["--measure", "max:y"][..],

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use eomgen_sweep::{Folder, Table, merge};
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 
 /// m x'' + c x' + k x = F sin(omega t), with c in another unit, to test unit conversion.
 pub const OSCILLATOR: &str = r#"
@@ -30,24 +30,24 @@ damper = "zeta*sqrt(k*m)*dot(x)^2"
 drive = { on = "x", value = "F*sin(omega*t)" }
 "#;
 
-pub struct Place {
+pub struct SweepFolder {
     folder: tempfile::TempDir,
 }
 
-impl Place {
+impl SweepFolder {
     pub fn new() -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("oscillator.toml"), OSCILLATOR).expect("a specification");
         Self { folder }
     }
 
-    pub fn at(&self, name: &str) -> PathBuf {
+    pub fn path_to(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
     pub fn sweep(&self, out: &str, more: &[&str]) -> Vec<String> {
-        let spec = self.at("oscillator.toml").display().to_string();
-        let out = self.at(out).display().to_string();
+        let spec = self.path_to("oscillator.toml").display().to_string();
+        let out = self.path_to(out).display().to_string();
         let given = ["sweep", &spec, "--out", &out, "--measure", "poincare"];
         let given = given.iter().chain(more);
         given.map(|argument| (*argument).to_owned()).collect()
@@ -67,11 +67,11 @@ pub const MAP: [&str; 8] = [
 ];
 
 pub fn accept(arguments: &[String]) -> String {
-    accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    run_accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 pub fn refuse(arguments: &[String]) -> String {
-    refused(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    run_rejected(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 pub fn merge_command(folder: &Path) -> Vec<String> {

@@ -3,15 +3,15 @@
 use std::fs;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 
-use super::place::{MAP, OSCILLATOR, Place, accept, column, refuse, results, table};
+use super::place::{MAP, OSCILLATOR, SweepFolder, accept, column, refuse, results, table};
 
 #[test]
 fn different_sweep_in_folder_is_rejected_and_unchanged() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     accept(&place.sweep("map", &MAP));
-    let before = results(&place.at("map"));
+    let before = results(&place.path_to("map"));
     for (more, what) in [
         (["--set", "F=2"], "--set"),
         (["--vary", "k=4:5:1"], "--vary"),
@@ -21,18 +21,18 @@ fn different_sweep_in_folder_is_rejected_and_unchanged() {
         assert!(message.contains(what), "{message}");
     }
     let changed = OSCILLATOR.replace("value = 3,", "value = 3.5,");
-    fs::write(place.at("oscillator.toml"), changed).expect("a specification");
+    fs::write(place.path_to("oscillator.toml"), changed).expect("a specification");
     let message = refuse(&place.sweep("map", &MAP));
     assert!(
         message.contains("differences: the specification"),
         "{message}"
     );
-    assert!(results(&place.at("map")) == before);
+    assert!(results(&place.path_to("map")) == before);
 }
 
 #[test]
 fn invalid_engine_options_are_rejected() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     for (more, what) in [
         (&["--engine", "pbs"][..], "slurm, dask"),
         (
@@ -50,13 +50,13 @@ fn invalid_engine_options_are_rejected() {
     ] {
         let message = refuse(&place.sweep("map", &[&MAP[..], more].concat()));
         assert!(message.contains(what), "{more:?}: {message}");
-        assert!(!place.at("map/sweep.parquet").exists());
+        assert!(!place.path_to("map/sweep.parquet").exists());
     }
 }
 
 #[test]
 fn points_without_result_have_a_reason() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     // Without mass there is no motion, and at frequency 0 no forcing period.
     let axes = ["--vary", "m=0:1:2", "--vary", "omega=0:2:2"];
     let more = ["--set", "zeta=0.1", "--periods", "2", "--json"];
@@ -67,7 +67,7 @@ fn points_without_result_have_a_reason() {
         (&4.into(), &4.into())
     );
     assert_eq!(document["failed"]["poincare"], 3);
-    let found = table(&place.at("few"));
+    let found = table(&place.path_to("few"));
     let status = column(&found, "poincare_status");
     assert_eq!(status[1..], [1.0, 5.0, 0.0]);
     let mean = column(&found, "poincare_mean");
@@ -75,13 +75,13 @@ fn points_without_result_have_a_reason() {
     // Negative damping: growth by exp(9 t) for more than 950 s overflows.
     let growing = ["--vary", "c=-10000:-9000:2", "--transient", "300"];
     accept(&place.sweep("growing", &growing));
-    let found = table(&place.at("growing"));
+    let found = table(&place.path_to("growing"));
     assert!(
         column(&found, "poincare_status")
             .iter()
             .all(|status| *status == 2.0)
     );
-    let text = fs::read_to_string(place.at("few/sweep.json")).expect("the description");
+    let text = fs::read_to_string(place.path_to("few/sweep.json")).expect("the description");
     assert!(
         text.contains("the parameters are no admissible model"),
         "{text}"
@@ -90,7 +90,7 @@ fn points_without_result_have_a_reason() {
 
 #[test]
 fn invalid_sweeps_are_rejected_before_writing() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let c = "c=1:2:3";
     for (more, part) in [
         (vec!["--vary", "d=1:2:3"], "no parameter `d`"),
@@ -125,11 +125,11 @@ fn invalid_sweeps_are_rejected_before_writing() {
     ] {
         let message = refuse(&place.sweep("never", &more));
         assert!(message.contains(part), "{more:?}: {message}");
-        assert!(!place.at("never").exists(), "{more:?}");
+        assert!(!place.path_to("never").exists(), "{more:?}");
     }
     let pendulum = path("pendulum").display().to_string();
-    let out = place.at("never").display().to_string();
-    let message = refused(&[
+    let out = place.path_to("never").display().to_string();
+    let message = run_rejected(&[
         "sweep",
         &pendulum,
         "--vary",
@@ -140,14 +140,14 @@ fn invalid_sweeps_are_rejected_before_writing() {
         &out,
     ]);
     assert!(message.contains("--frequency NAME"), "{message}");
-    let file = place.at("oscillator.toml").display().to_string();
-    assert!(refused(&["merge", &file]).contains("sweep.json"));
+    let file = place.path_to("oscillator.toml").display().to_string();
+    assert!(run_rejected(&["merge", &file]).contains("sweep.json"));
 }
 
 #[test]
 fn help_has_an_example() {
     for command in ["sweep", "merge"] {
-        let help = accepted(&[command, "--help"]);
+        let help = run_accepted(&[command, "--help"]);
         let example = help.split_once("Example").map(|(_, example)| example);
         assert!(example.is_some_and(|text| text.contains(&format!("eomgen {command} "))));
     }

@@ -4,10 +4,10 @@
 use std::fs;
 use std::path::Path;
 
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 use serde_json::Value;
 
-use super::place::{Place, column, table};
+use super::place::{SweepFolder, column, table};
 
 /// Mass on a spring under a force, all uncertain; displacements are linear in the force.
 const UNCERTAIN: &str = r#"
@@ -30,14 +30,14 @@ load = { on = "x", value = "F" }
 
 const COUNT: usize = 900;
 
-fn place() -> Place {
-    let place = Place::new();
-    fs::write(place.at("uncertain.toml"), UNCERTAIN).expect("a specification");
+fn place() -> SweepFolder {
+    let place = SweepFolder::new();
+    fs::write(place.path_to("uncertain.toml"), UNCERTAIN).expect("a specification");
     place
 }
 
-fn arguments(place: &Place, out: &str, more: &[&str]) -> Vec<String> {
-    let [spec, out] = ["uncertain.toml", out].map(|name| place.at(name).display().to_string());
+fn arguments(place: &SweepFolder, out: &str, more: &[&str]) -> Vec<String> {
+    let [spec, out] = ["uncertain.toml", out].map(|name| place.path_to(name).display().to_string());
     let given = [
         "sweep",
         &spec,
@@ -56,11 +56,11 @@ fn arguments(place: &Place, out: &str, more: &[&str]) -> Vec<String> {
 }
 
 fn accept(arguments: &[String]) -> String {
-    accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    run_accepted(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 fn refuse(arguments: &[String]) -> String {
-    refused(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+    run_rejected(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 fn statistics(folder: &Path) -> Value {
@@ -90,7 +90,7 @@ fn mean_and_deviation_of_linear_measure_match_closed_form() {
         "out",
         &["--samples", &count, "--seed", "3"],
     ));
-    let out = place.at("out");
+    let out = place.path_to("out");
     let found = statistics(&out);
     let of = |name: &str, what: &str| found["measured"][name][what].as_f64().expect("a number");
     // x = F/k (1 - cos(w t)) + x_0 cos(w t) with w = sqrt(k/m) = 5 rad/s.
@@ -143,7 +143,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
         text.contains("final:x: mean ") && text.contains("rank correlations: x_0 "),
         "{text}"
     );
-    let whole = result_files(&place.at("one"));
+    let whole = result_files(&place.path_to("one"));
     assert_eq!(whole.len(), 5);
     accept(&arguments(
         &place,
@@ -151,7 +151,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
         &[&few[..], &["--seed", "1", "--threads", "2"]].concat(),
     ));
     assert!(
-        result_files(&place.at("two")) == whole,
+        result_files(&place.path_to("two")) == whole,
         "two threads with an explicit seed"
     );
     for shard in ["2/2", "1/2"] {
@@ -161,15 +161,15 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
             &[&few[..], &["--shard", shard]].concat(),
         ));
     }
-    accepted(&["merge", &place.at("shards").display().to_string()]);
-    assert!(result_files(&place.at("shards")) == whole, "shards");
+    run_accepted(&["merge", &place.path_to("shards").display().to_string()]);
+    assert!(result_files(&place.path_to("shards")) == whole, "shards");
     // After a kill some parts are missing and one is truncated.
-    let parts = place.at("two/parts");
+    let parts = place.path_to("two/parts");
     fs::remove_file(parts.join("0007.part")).expect("removed");
     fs::write(parts.join("0009.part"), "eomgen sweep part 1").expect("cut");
     let text = accept(&arguments(&place, "two", &few));
     assert!(text.contains("2 points computed, 38 resumed"), "{text}");
-    assert!(result_files(&place.at("two")) == whole, "after a kill");
+    assert!(result_files(&place.path_to("two")) == whole, "after a kill");
     let message = refuse(&arguments(
         &place,
         "one",
@@ -184,7 +184,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
         "seed",
         &[&few[..], &["--seed", "2"]].concat(),
     ));
-    let [one, other] = ["one", "seed"].map(|name| table(&place.at(name)));
+    let [one, other] = ["one", "seed"].map(|name| table(&place.path_to(name)));
     let same = column(&one, "F").iter().zip(column(&other, "F"));
     assert_eq!(same.filter(|(a, b)| a == b).count(), 0);
 }
@@ -194,7 +194,7 @@ fn set_changes_the_nominal_value_of_uncertain_parameter() {
     let place = place();
     let few = ["--samples", "60", "--set", "F=-30"];
     accept(&arguments(&place, "out", &few));
-    let forces = table(&place.at("out"));
+    let forces = table(&place.path_to("out"));
     let forces = column(&forces, "F");
     let mean = forces.iter().sum::<f64>() / 60.0;
     // 5 % of 30 N divided by sqrt(60).
@@ -233,10 +233,10 @@ fn invalid_sample_options_are_rejected() {
     ] {
         let message = refuse(&arguments(&place, "never", more));
         assert!(message.contains(part), "{more:?}: {message}");
-        assert!(!place.at("never").exists());
+        assert!(!place.path_to("never").exists());
     }
-    let spec = place.at("oscillator.toml").display().to_string();
-    let message = refused(&[
+    let spec = place.path_to("oscillator.toml").display().to_string();
+    let message = run_rejected(&[
         "sweep",
         &spec,
         "--samples",
@@ -267,7 +267,7 @@ fn invalid_sample_options_are_rejected() {
         ("0.1", "relative"),
     ] {
         let text = UNCERTAIN.replace("{ relative = 0.05 }", wrong);
-        fs::write(place.at("uncertain.toml"), text).expect("a specification");
+        fs::write(place.path_to("uncertain.toml"), text).expect("a specification");
         let message = refuse(&arguments(&place, "never", &["--samples", "5"]));
         assert!(message.contains(part), "{wrong}: {message}");
         assert!(message.contains("uncertain.toml:7:"), "{wrong}: {message}");

@@ -1,8 +1,8 @@
 //! `--measure poincare:NAME` and `--section`: any coordinate, and models without forcing.
 
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 
-use super::place::{Place, accept, column, table};
+use super::place::{SweepFolder, accept, column, table};
 
 /// x = sin(t) and y = cos(1.5 t): two independent free oscillators.
 const TWO: &str = r#"
@@ -21,9 +21,9 @@ both = "1/2*m*(dot(x)^2 + dot(y)^2)"
 both = "1/2*k*x^2 + 1/2*c*y^2"
 "#;
 
-fn sweep_two(place: &Place, more: &[&str]) -> Vec<String> {
-    std::fs::write(place.at("two.toml"), TWO).expect("a specification");
-    let (spec, out) = (place.at("two.toml"), place.at("two"));
+fn sweep_two(place: &SweepFolder, more: &[&str]) -> Vec<String> {
+    std::fs::write(place.path_to("two.toml"), TWO).expect("a specification");
+    let (spec, out) = (place.path_to("two.toml"), place.path_to("two"));
     let (spec, out) = (spec.display().to_string(), out.display().to_string());
     let given = ["sweep", &spec, "--out", &out, "--vary", "m=1:1.5:2"];
     given
@@ -39,7 +39,7 @@ fn as_strs(arguments: &[String]) -> Vec<&str> {
 
 #[test]
 fn section_at_a_coordinate_value_samples_autonomous_model() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let section = [
         "--measure",
         "poincare:y",
@@ -50,7 +50,7 @@ fn section_at_a_coordinate_value_samples_autonomous_model() {
     ];
     let span = ["--transient", "3", "--periods", "12"];
     accept(&sweep_two(&place, &[&section[..], &span].concat()));
-    let found = table(&place.at("two"));
+    let found = table(&place.path_to("two"));
     let one = |name: &str| column(&found, name)[0];
     // x falls through 0 at t = pi (2 k + 1), when y = cos(1.5 pi (2 k + 1)) = 0.
     assert!((one("poincare:y_time") - std::f64::consts::TAU).abs() < 1e-7);
@@ -65,7 +65,7 @@ fn section_at_a_coordinate_value_samples_autonomous_model() {
 
 #[test]
 fn upward_section_samples_rising_crossings() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let section = [
         "--measure",
         "poincare:y",
@@ -76,7 +76,7 @@ fn upward_section_samples_rising_crossings() {
     ];
     let span = ["--transient", "2", "--periods", "8"];
     accept(&sweep_two(&place, &[&section[..], &span].concat()));
-    let found = table(&place.at("two"));
+    let found = table(&place.path_to("two"));
     for point in 1..=8_u32 {
         // Rising sin(t) = 1/2: t = pi/6 + 2 pi k.
         let t = std::f64::consts::PI / 6.0 + std::f64::consts::TAU * f64::from(point + 1);
@@ -87,7 +87,7 @@ fn upward_section_samples_rising_crossings() {
 
 #[test]
 fn poincare_of_another_coordinate_samples_once_per_period() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let more = [
         "--measure",
         "poincare:x_dot",
@@ -96,19 +96,19 @@ fn poincare_of_another_coordinate_samples_once_per_period() {
         "--transient",
         "40",
     ];
-    let spec = place.at("oscillator.toml").display().to_string();
-    let out = place.at("map").display().to_string();
+    let spec = place.path_to("oscillator.toml").display().to_string();
+    let out = place.path_to("map").display().to_string();
     let given = ["sweep", &spec, "--out", &out];
-    accepted(&[&given[..], &more, &["--periods", "4"]].concat());
+    run_accepted(&[&given[..], &more, &["--periods", "4"]].concat());
     // m = 1, k = 4, omega = 2: at resonance x = -F/(c omega) cos(omega t).
-    let found = table(&place.at("map"));
+    let found = table(&place.path_to("map"));
     let rate = column(&found, "poincare:x_dot_mean")[0];
     assert!(rate.abs() < 1e-9, "{rate}");
 }
 
 #[test]
 fn invalid_sections_are_rejected() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     for (more, what) in [
         (
             &[
@@ -158,9 +158,9 @@ fn invalid_sections_are_rejected() {
         (&["--measure", "poincare"], "--section NAME=VALUE"),
     ] {
         let arguments = sweep_two(&place, more);
-        let message = refused(&as_strs(&arguments));
+        let message = run_rejected(&as_strs(&arguments));
         assert!(message.contains(what), "{more:?}: {message}");
-        assert!(!place.at("two").exists());
+        assert!(!place.path_to("two").exists());
     }
 }
 
@@ -185,10 +185,10 @@ motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
 "#;
 
 /// Returns the period and the largest value sampled once per forcing period.
-fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
-    std::fs::write(place.at("model.toml"), text).expect("a specification");
-    let _ = std::fs::remove_dir_all(place.at("out"));
-    let (spec, out) = (place.at("model.toml"), place.at("out"));
+fn repetition(place: &SweepFolder, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
+    std::fs::write(place.path_to("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.path_to("out"));
+    let (spec, out) = (place.path_to("model.toml"), place.path_to("out"));
     let (spec, out) = (spec.display().to_string(), out.display().to_string());
     let measure = format!("poincare:{quantity}");
     let given = [
@@ -205,7 +205,7 @@ fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f6
     ];
     let given: Vec<String> = given.iter().map(|part| (*part).to_owned()).collect();
     accept(&given);
-    let found = table(&place.at("out"));
+    let found = table(&place.path_to("out"));
     let one = |part: &str| column(&found, &format!("{measure}_{part}"))[0];
     (one("period"), one("max"))
 }
@@ -213,7 +213,7 @@ fn repetition(place: &Place, text: &str, vary: &str, quantity: &str) -> (f64, f6
 #[test]
 fn rotating_and_travelling_machines_have_period_one() {
     use std::f64::consts::PI;
-    let place = Place::new();
+    let place = SweepFolder::new();
     // By its rate, and by the angle within a range of angles.
     assert_eq!(repetition(&place, SHAFT, "c=0.5:0.6:2", "phi_dot").0, 1.0);
     let (period, greatest) = repetition(&place, SHAFT, "c=0.5:0.6:2", "phi");
@@ -277,28 +277,28 @@ v = "V"
 
 /// Sweeps `a` with a section; returns a column of the measure at the first value of `a`.
 fn sweep_with_section(
-    place: &Place,
+    place: &SweepFolder,
     text: &str,
     measure: &str,
     section: &str,
 ) -> impl Fn(&str) -> f64 + use<> {
-    std::fs::write(place.at("model.toml"), text).expect("a specification");
-    let _ = std::fs::remove_dir_all(place.at("out"));
-    let (spec, out) = (place.at("model.toml"), place.at("out"));
+    std::fs::write(place.path_to("model.toml"), text).expect("a specification");
+    let _ = std::fs::remove_dir_all(place.path_to("out"));
+    let (spec, out) = (place.path_to("model.toml"), place.path_to("out"));
     let (spec, out) = (spec.display().to_string(), out.display().to_string());
     let line = format!(
         "sweep|{spec}|--out|{out}|--vary|a=0.1:0.2:2|--measure|{measure}|--section|{section}|--until|60\
          |--transient|3|--periods|10"
     );
     accept(&line.split('|').map(str::to_owned).collect::<Vec<_>>());
-    let found = table(&place.at("out"));
+    let found = table(&place.path_to("out"));
     let measure = measure.to_owned();
     move |part: &str| column(&found, &format!("{measure}_{part}"))[0]
 }
 
 #[test]
 fn section_at_an_angle_is_crossed_once_per_turn() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     let rotor = ROTOR.replace("\"V\"", "\"a*cos(p)\"");
     // The energy is 18 + 0.1 cos(0.1) in every turn.
     let rate = |p: f64| (36.0 + 0.2 * (0.1f64.cos() - p.cos())).sqrt();
@@ -336,7 +336,7 @@ fn section_at_an_angle_is_crossed_once_per_turn() {
 
 #[test]
 fn section_at_an_angle_with_spring_is_crossed_at_its_value_only() {
-    let place = Place::new();
+    let place = SweepFolder::new();
     // w = 2 rad/s, with an amplitude of about 12 rad: the section is crossed once per 2 pi/w.
     let spring = ROTOR
         .replace("\"V\"", "\"1/2*40*a*p^2\"")

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use eomgen_codegen::c;
-use eomgen_tests::models::{load, shipped, variant};
+use eomgen_tests::models::{load, shipped_specifications, variant};
 
 use super::hostile::pendulum;
 use super::{WARNINGS, has_compilers, program, run, supported_outputs};
@@ -54,7 +54,7 @@ fn emitted_c_has_no_writable_static_data() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    for path in shipped() {
+    for path in shipped_specifications() {
         let name = path.file_stem().and_then(|name| name.to_str());
         let model = load(name.expect("a name"));
         let files = c::emit(variant(&model, 4).evaluator.program()).expect("emitted");

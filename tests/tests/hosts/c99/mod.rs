@@ -12,7 +12,7 @@ use eomgen_codegen::rust::{self, Packaging};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
-use eomgen_tests::models::{project, shipped};
+use eomgen_tests::models::{project, shipped_specifications};
 
 mod command;
 mod hostile;
@@ -283,7 +283,7 @@ fn compare_file(
 #[test]
 fn shipped_models_match_rust_bitwise() {
     if has_compilers() {
-        for path in shipped() {
+        for path in shipped_specifications() {
             compare_file(
                 path,
                 4,

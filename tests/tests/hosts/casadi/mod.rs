@@ -12,7 +12,7 @@ use eomgen_codegen::program::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::load;
-use eomgen_tests::program::refused;
+use eomgen_tests::program::run_rejected;
 
 /// Returns the command of a Python with CasADi; otherwise reports the skip.
 fn python() -> Option<&'static str> {
@@ -118,7 +118,7 @@ fn with_is_rejected_for_casadi() {
         let arguments = [
             "generate", &spec, "--target", "casadi", "--with", with, "--out", "x",
         ];
-        let said = refused(&arguments);
+        let said = run_rejected(&arguments);
         assert!(said.contains(reason), "{said}");
     }
 }

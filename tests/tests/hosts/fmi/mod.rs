@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, eomgen, refused};
+use eomgen_tests::program::{eomgen, run_accepted, run_rejected};
 
 const VERSIONS: [&str; 2] = ["fmu2", "fmu3"];
 
@@ -129,7 +129,7 @@ fn both_kinds_of_units_match_simulate() {
         if let Some(order) = order {
             arguments.extend(["--order", order]);
         }
-        accepted(&arguments);
+        run_accepted(&arguments);
         for target in VERSIONS {
             let unit = write_unit(name, order, target, folder.path());
             let unit = unit.to_string_lossy();
@@ -202,7 +202,7 @@ fn with_is_rejected_for_units() {
     ] {
         let mut arguments = vec!["generate", &spec, "--target", "fmu2", "--out", "x"];
         arguments.extend(options);
-        let said = refused(&arguments);
+        let said = run_rejected(&arguments);
         assert!(said.contains(reason), "{said}");
     }
 }

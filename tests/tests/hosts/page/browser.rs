@@ -4,10 +4,10 @@
 use std::path::Path;
 use std::process::Command;
 
-use eomgen_tests::models::{path, project, shipped};
+use eomgen_tests::models::{path, project, shipped_specifications};
 use serde_json::Value;
 
-use super::{drawn, page};
+use super::{drawn_example, write_page};
 
 /// Returns the browser, if it and node exist; otherwise reports the skip.
 pub fn browser() -> Option<&'static str> {
@@ -25,26 +25,26 @@ pub fn browser() -> Option<&'static str> {
 
 /// Window size and preferences of the browser.
 #[derive(Clone, Copy)]
-pub struct Look {
+pub struct BrowserSettings {
     pub width: u32,
     pub dark: bool,
     pub still: bool,
 }
 
-pub const WIDE: Look = Look {
+pub const WIDE_WINDOW: BrowserSettings = BrowserSettings {
     width: 1280,
     dark: false,
     still: false,
 };
 
 /// Returns the observations of the probe on a page.
-pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
-    probed_by("probe.js", browser, page, look)
+pub fn run_probe(browser: &str, page: &Path, look: BrowserSettings) -> Value {
+    run_probe_script("probe.js", browser, page, look)
 }
 
-pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
+pub fn run_probe_script(probe: &str, browser: &str, page: &Path, look: BrowserSettings) -> Value {
     let script = |name: &str| project().join("tests/tests/hosts/page").join(name);
-    let Look { width, dark, still } = look;
+    let BrowserSettings { width, dark, still } = look;
     let look = serde_json::json!({ "width": width, "dark": dark, "still": still });
     let profile = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
@@ -89,15 +89,15 @@ fn drawn_model_moves_and_reacts_in_every_size_and_colour() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["double_pendulum", "crane", "flexible_arm"] {
-        let page = page(&drawn(name), &[], folder.path());
+        let page = write_page(&drawn_example(name), &[], folder.path());
         for (width, dark) in [(1280, false), (400, true)] {
-            let seen = probed(
+            let seen = run_probe(
                 browser,
                 &page,
-                Look {
+                BrowserSettings {
                     width,
                     dark,
-                    ..WIDE
+                    ..WIDE_WINDOW
                 },
             );
             assert_moves(&seen);
@@ -110,13 +110,13 @@ fn drawn_model_moves_and_reacts_in_every_size_and_colour() {
 fn page_does_not_move_with_reduced_motion() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
-    let page = page(&path("double_pendulum"), &[], folder.path());
-    let seen = probed(
+    let page = write_page(&path("double_pendulum"), &[], folder.path());
+    let seen = run_probe(
         browser,
         &page,
-        Look {
+        BrowserSettings {
             still: true,
-            ..WIDE
+            ..WIDE_WINDOW
         },
     );
     assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
@@ -133,8 +133,8 @@ fn page_does_not_move_with_reduced_motion() {
 fn pages_of_shipped_models_open_without_error() {
     let Some(browser) = browser() else { return };
     let folder = tempfile::tempdir().expect("a folder");
-    for spec in shipped() {
-        let seen = probed(browser, &page(&spec, &[], folder.path()), WIDE);
+    for spec in shipped_specifications() {
+        let seen = run_probe(browser, &write_page(&spec, &[], folder.path()), WIDE_WINDOW);
         assert_eq!(
             seen["errors"],
             serde_json::json!([]),

@@ -1,15 +1,15 @@
 //! Output and rejected options of `eomgen page`.
 
 use eomgen_tests::models::path;
-use eomgen_tests::program::{accepted, refused};
+use eomgen_tests::program::{run_accepted, run_rejected};
 
-use super::{drawn, page};
+use super::{drawn_example, write_page};
 
 #[test]
 fn page_is_self_contained() {
     let folder = tempfile::tempdir().expect("a folder");
-    for spec in [path("pendulum"), drawn("double_pendulum")] {
-        let text = std::fs::read_to_string(page(&spec, &[], folder.path())).expect("a page");
+    for spec in [path("pendulum"), drawn_example("double_pendulum")] {
+        let text = std::fs::read_to_string(write_page(&spec, &[], folder.path())).expect("a page");
         for forbidden in [
             " src=", "http:", "https:", "url(", "@import", "fetch(", "import(",
         ] {
@@ -23,9 +23,9 @@ fn page_is_self_contained() {
 
 #[test]
 fn page_has_units_and_ranges_of_specification() {
-    let text = accepted(&[
+    let text = run_accepted(&[
         "page",
-        &drawn("double_pendulum").display().to_string(),
+        &drawn_example("double_pendulum").display().to_string(),
         "--out",
         "-",
     ]);
@@ -47,14 +47,14 @@ fn page_has_units_and_ranges_of_specification() {
 #[test]
 fn pages_are_reproducible() {
     let spec = path("planetary_arm").display().to_string();
-    let page = || accepted(&["page", &spec, "--order", "1", "--out", "-"]);
+    let page = || run_accepted(&["page", &spec, "--order", "1", "--out", "-"]);
     assert_eq!(page(), page());
 }
 
 #[test]
 fn invalid_options_are_rejected() {
     let spec = path("planetary_arm").display().to_string();
-    let page = |options: &[&str]| refused(&[&["page", &spec], options].concat());
+    let page = |options: &[&str]| run_rejected(&[&["page", &spec], options].concat());
     assert!(page(&[]).contains("--out"));
     assert!(page(&["--out", "-", "--order", "129"]).contains("128"));
     assert!(page(&["--out", "-", "--order", "x"]).contains("whole number"));

@@ -8,11 +8,11 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use serde_json::Value;
 
-use super::drawn;
+use super::drawn_example;
 
 fn examples() -> Vec<String> {
     let names = ["double_pendulum", "crane", "flexible_arm"];
-    let text = |name: &str| std::fs::read_to_string(drawn(name)).expect("a specification");
+    let text = |name: &str| std::fs::read_to_string(drawn_example(name)).expect("a specification");
     names.map(text).to_vec()
 }
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use eomgen_tests::models::path;
 use serde_json::Value;
 
-use super::browser::{WIDE, browser, probed};
-use super::page;
+use super::browser::{WIDE_WINDOW, browser, run_probe};
+use super::write_page;
 
 fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
     let text = format!(
@@ -26,7 +26,7 @@ fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
 
 /// Asserts that a page opens without an error; returns the observations.
 fn assert_opens(page: &Path) -> Option<Value> {
-    let seen = probed(browser()?, page, WIDE);
+    let seen = run_probe(browser()?, page, WIDE_WINDOW);
     assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
     assert_eq!(seen["excess"], 0, "{seen}");
     Some(seen)
@@ -38,7 +38,7 @@ fn texts_cannot_inject_scripts() {
     let hostile =
         "</script></title><!--<script>\"'><img src=x onerror=\"alert(1)\">&quot; \u{2028}";
     let spec = pendulum(hostile, hostile, "0.15", folder.path());
-    let page = page(&spec, &[], folder.path());
+    let page = write_page(&spec, &[], folder.path());
     let text = std::fs::read_to_string(&page).expect("a page");
     assert_eq!(text.matches("<script").count(), 2);
     assert_eq!(text.matches("</script").count(), 2);
@@ -57,7 +57,7 @@ fn texts_cannot_inject_scripts() {
 fn page_with_extreme_numbers_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     for mass in ["1e300", "1e-300", "1e305"] {
-        assert_opens(&page(
+        assert_opens(&write_page(
             &pendulum("a", "b", mass, folder.path()),
             &[],
             folder.path(),
@@ -69,7 +69,7 @@ fn page_with_extreme_numbers_opens() {
 fn page_with_extreme_orders_opens() {
     let folder = tempfile::tempdir().expect("a folder");
     for order in ["0", "1", "64"] {
-        assert_opens(&page(
+        assert_opens(&write_page(
             &path("hub_beam_tip_mass"),
             &["--order", order],
             folder.path(),
@@ -89,6 +89,6 @@ fn page_of_field_without_coordinates_opens() {
         [potential]\nbending = \"1/2*integral(EI*diff(w, s, 2)^2, w)\"\n";
     std::fs::write(&spec, text).expect("written");
     for order in ["0", "2"] {
-        assert_opens(&page(&spec, &["--order", order], folder.path()));
+        assert_opens(&write_page(&spec, &["--order", order], folder.path()));
     }
 }

@@ -12,17 +12,17 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use eomgen_tests::models::project;
-use eomgen_tests::program::accepted;
+use eomgen_tests::program::run_accepted;
 
-fn page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
+fn write_page(spec: &Path, options: &[&str], folder: &Path) -> PathBuf {
     let out = folder.join("page.html");
     let (spec, place) = (spec.display().to_string(), out.display().to_string());
-    let said = accepted(&[&["page", &spec, "--out", &place], options].concat());
+    let said = run_accepted(&[&["page", &spec, "--out", &place], options].concat());
     assert_eq!(said, format!("open {place}\n"));
     out
 }
 
-fn drawn(name: &str) -> PathBuf {
+fn drawn_example(name: &str) -> PathBuf {
     project()
         .join("examples/drawn")
         .join(format!("{name}.toml"))

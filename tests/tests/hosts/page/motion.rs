@@ -9,13 +9,13 @@ use eomgen_tests::models::{path, project};
 use serde_json::Value;
 
 use super::bits::node;
-use super::{drawn, page};
+use super::{drawn_example, write_page};
 
 fn simulate_page(spec: &Path, end: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
         .arg(project().join("tests/tests/hosts/page/motion.mjs"))
-        .arg(page(spec, &[], folder.path()))
+        .arg(write_page(spec, &[], folder.path()))
         .arg(project().join("sim/page/src/play/motion.js"))
         .arg(end.to_string())
         .output()
@@ -39,7 +39,7 @@ fn page_motion_matches_simulate() {
     }
     for (spec, end, tolerance) in [
         (path("pendulum"), 5.0, 1e-5),
-        (drawn("flexible_arm"), 2.0, 1e-4),
+        (drawn_example("flexible_arm"), 2.0, 1e-4),
         (path("planetary_arm"), 0.25, 1e-4),
     ] {
         let shown = simulate_page(&spec, end);

@@ -9,7 +9,7 @@ use eomgen_tests::models::project;
 use serde_json::Value;
 
 use super::bits::node;
-use super::browser::{Look, WIDE, browser, probed_by};
+use super::browser::{BrowserSettings, WIDE_WINDOW, browser, run_probe_script};
 
 /// Text that would end or begin a script.
 const HOSTILE: &str = "</script></title><img src=x onerror=alert(1)><!--";
@@ -22,7 +22,7 @@ fn run_report(friction: f64, command: &str) -> (Measured, Value) {
     let measured = Measured::stage(friction);
     let description = format!("title = '{HOSTILE}'\n{DESCRIPTION}");
     measured.write("dataset.toml", description.as_bytes());
-    let (document, _) = measured.answered(command, "out");
+    let (document, _) = measured.run_command(command, "out");
     (measured, document)
 }
 
@@ -84,12 +84,12 @@ fn report_slider_moves_found_friction() {
     }
     let Some(browser) = browser() else { return };
     for (width, dark) in [(1280, false), (400, true)] {
-        let look = Look {
+        let look = BrowserSettings {
             width,
             dark,
-            ..WIDE
+            ..WIDE_WINDOW
         };
-        let seen = probed_by(
+        let seen = run_probe_script(
             "report.js",
             browser,
             &measured.file("out/report.html"),
@@ -128,12 +128,12 @@ fn report_without_effects_states_it() {
     }
     let Some(browser) = browser() else { return };
     for (width, dark) in [(1280, true), (400, false)] {
-        let look = Look {
+        let look = BrowserSettings {
             width,
             dark,
-            ..WIDE
+            ..WIDE_WINDOW
         };
-        let seen = probed_by(
+        let seen = run_probe_script(
             "report.js",
             browser,
             &measured.file("out/report.html"),

@@ -2,7 +2,7 @@
 
 use eomgen_sim::ode::Trajectory;
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Subject, difference, grid};
+use eomgen_tests::motions::{TestMotion, difference, grid};
 use eomgen_validate::variant::Variant;
 
 use eomgen_tests::models::variant;
@@ -11,9 +11,9 @@ use eomgen_validate::derived::Derived;
 /// Scale below which components are compared absolutely, in m or m/s. Deflections are 1e-4 m.
 const SMALLEST: f64 = 1e-6;
 
-fn arm(order: usize, values: &[(&str, f64)]) -> Subject {
+fn arm(order: usize, values: &[(&str, f64)]) -> TestMotion {
     let model = load("planetary_arm").with_parameters(values);
-    Subject::new(model.expect("the values are within their bounds"), order)
+    TestMotion::new(model.expect("the values are within their bounds"), order)
 }
 
 /// Returns the arm in motion: mesh deflections `x` in m, approach speeds `v` in m/s.
@@ -22,20 +22,22 @@ fn moving_arm(
     values: &[(&str, f64)],
     [x_sp, x_pr]: [f64; 2],
     v: [f64; 2],
-) -> Subject {
+) -> TestMotion {
     let subject = arm(order, values);
     let mut initial = subject.initial.clone();
     let half = initial.len() / 2;
     (initial[0], initial[1]) = (x_sp, x_pr);
     (initial[half], initial[half + 1]) = (v[0], v[1]);
-    subject.from(&initial)
+    subject.with_initial_state(&initial)
 }
 
 /// Simulates with the general solver at two tolerances. If it cannot leave the surface on which it
 /// starts, exact motions from 1e-12 (relative) on either side replace its results: their initial
 /// regime is certain.
-fn simulate_generally(subject: &Subject, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
-    let run = |subject: &Subject, tolerance: f64| subject.general((0.0, until), times, tolerance);
+fn simulate_generally(subject: &TestMotion, until: f64, times: &[f64]) -> (Trajectory, Trajectory) {
+    let run = |subject: &TestMotion, tolerance: f64| {
+        subject.simulate_generally((0.0, until), times, tolerance)
+    };
     if let (Ok(fine), Ok(coarse)) = (run(subject, 1e-12), run(subject, 1e-11)) {
         return (fine, coarse);
     }
@@ -43,15 +45,15 @@ fn simulate_generally(subject: &Subject, until: f64, times: &[f64]) -> (Trajecto
     beside.model = subject.model.clone();
     let mut from = |factor: f64| {
         beside.initial = subject.initial.iter().map(|y| y * factor).collect();
-        beside.exact((0.0, until), times)
+        beside.simulate_exactly((0.0, until), times)
     };
     (from(1.0 - 1e-12), from(1.0 + 1e-12))
 }
 
 /// Compares with the general solver over `until` s; returns the number of switches.
-fn assert_matches_general_solver(name: &str, subject: &Subject, until: f64) -> usize {
+fn assert_matches_general_solver(name: &str, subject: &TestMotion, until: f64) -> usize {
     let times = grid(until, 64);
-    let exact = subject.exact((0.0, until), &times);
+    let exact = subject.simulate_exactly((0.0, until), &times);
     let (general, coarse) = simulate_generally(subject, until, &times);
     let doubt = difference(&coarse.states, &general.states, SMALLEST);
     let found = difference(&exact.states, &general.states, SMALLEST);
@@ -191,7 +193,7 @@ fn grazing_initial_rates_match_general_solver() {
     let (until, times) = (0.004, grid(0.004, 64));
     let from = |rate: f64| moving_arm(2, &values, [0.0, 26e-6], [rate, 0.0]);
     let first = |rate: f64| {
-        let switches = from(rate).exact((0.0, until), &times).switches;
+        let switches = from(rate).simulate_exactly((0.0, until), &times).switches;
         switches.iter().filter(|s| s.guard == 0).count()
     };
     let (mut low, mut high) = (0.0, 0.05);
@@ -218,8 +220,8 @@ fn grazing_initial_rates_match_general_solver() {
         assert_matches_general_solver(&format!("grazing at {rate:e}"), &from(rate), until);
     }
     let (below, above) = (
-        from(low).exact((0.0, until), &times),
-        from(high).exact((0.0, until), &times),
+        from(low).simulate_exactly((0.0, until), &times),
+        from(high).simulate_exactly((0.0, until), &times),
     );
     let jump = difference(&below.states, &above.states, SMALLEST);
     println!("across the grazing rate: {jump:e}");
@@ -228,7 +230,7 @@ fn grazing_initial_rates_match_general_solver() {
 
 /// Returns the lowest eigenfrequency above `from`, in rad/s, of the undamped arm with both meshes
 /// closed, from det(K - w^2 M) = 0.
-fn eigenfrequency(subject: &Subject, from: f64) -> f64 {
+fn eigenfrequency(subject: &TestMotion, from: f64) -> f64 {
     let half = subject.initial.len() / 2;
     let mut derived = Derived::new(variant(&subject.model, subject.order).evaluator);
     let rest = vec![0.0; 2 * half];
@@ -339,7 +341,7 @@ fn lossless_arm_conserves_energy() {
     for (order, b) in [(0, 25e-6), (4, 25e-6), (4, 1e-6), (4, 0.0), (16, 25e-6)] {
         let values = [&lossless[..], &[("b_sp", b), ("b_pr", b)]].concat();
         let subject = moving_arm(order, &values, [1e-4, -3e-5], [0.0, 0.0]);
-        let motion = subject.exact((0.0, 1.0), &grid(1.0, 100));
+        let motion = subject.simulate_exactly((0.0, 1.0), &grid(1.0, 100));
         let before = subject.energies(&[0.0], std::slice::from_ref(&subject.initial))[0];
         let energies = subject.energies(&motion.times, &motion.states);
         let worst = energies.iter().fold(0.0_f64, |worst, energy| {

@@ -3,14 +3,14 @@
 
 use eomgen_sim::piecewise_linear::LyapunovRequest;
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
-fn arm(order: usize, b: f64) -> Subject {
+fn arm(order: usize, b: f64) -> TestMotion {
     let model = load("planetary_arm").with_parameters(&[("b_sp", b), ("b_pr", b)]);
-    Subject::new(model.expect("values"), order)
+    TestMotion::new(model.expect("values"), order)
 }
 
-fn rough_system() -> Subject {
+fn rough_system() -> TestMotion {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("T_c", 0.7, "N")
@@ -23,7 +23,7 @@ fn rough_system() -> Subject {
         .kinetic("1/2*m*dot(x)^2 + 1/2*m*dot(y)^2")
         .potential("1/2*k*(x - y)^2 + 5*k*deadzone(y, b)^2")
         .force("x", "F*sin(omega*t) - T_c*sign(dot(x))");
-    Subject::new(spec.model(), 0)
+    TestMotion::new(spec.model(), 0)
 }
 
 #[test]
@@ -70,8 +70,8 @@ fn continued_motion_equals_whole_motion() {
 #[test]
 fn sampling_does_not_change_the_motion() {
     for subject in [arm(4, 25e-6), rough_system()] {
-        let none = subject.exact((0.0, 0.1), &[]);
-        let many = subject.exact((0.0, 0.1), &grid(0.1, 1000));
+        let none = subject.simulate_exactly((0.0, 0.1), &[]);
+        let many = subject.simulate_exactly((0.0, 0.1), &grid(0.1, 1000));
         assert_eq!(none.switches, many.switches);
         assert_eq!(none.final_state, many.final_state);
     }
@@ -81,8 +81,8 @@ fn sampling_does_not_change_the_motion() {
 fn repeated_requests_give_the_same_bits() {
     for subject in [arm(4, 25e-6), arm(0, 1e-9), rough_system()] {
         let times = grid(0.1, 50);
-        let first = subject.exact((0.0, 0.1), &times);
-        assert_eq!(first, subject.exact((0.0, 0.1), &times));
+        let first = subject.simulate_exactly((0.0, 0.1), &times);
+        assert_eq!(first, subject.simulate_exactly((0.0, 0.1), &times));
         // A propagator gives the same bits after other motions.
         let mut propagator = subject.propagator().expect("a propagator");
         let other: Vec<f64> = subject.initial.iter().map(|y| y + 1e-5).collect();
@@ -104,7 +104,7 @@ fn repeated_requests_give_the_same_bits() {
 /// Returns the growth up to `until` of the difference of two motions that start `step` apart along
 /// the first tangent vector, and the growth of that vector.
 fn growth_of_difference_and_tangent(
-    subject: &Subject,
+    subject: &TestMotion,
     until: f64,
     step: f64,
     felt: &[usize],
@@ -144,7 +144,7 @@ fn growth_of_difference_and_tangent(
     (growth, 0.5 * apart.ln())
 }
 
-fn propagator_of(subject: &Subject) -> eomgen_sim::piecewise_linear::Propagator {
+fn propagator_of(subject: &TestMotion) -> eomgen_sim::piecewise_linear::Propagator {
     subject.propagator().expect("a propagator")
 }
 
@@ -165,8 +165,8 @@ fn tangent_vectors_match_difference_quotients() {
         let mut initial = subject.initial.clone();
         let half = initial.len() / 2;
         (initial[0], initial[1], initial[half], initial[half + 1]) = (2e-5, -1.7e-5, 0.01, -0.02);
-        let subject = subject.from(&initial);
-        let count = subject.exact((0.0, until), &[]).switches.len();
+        let subject = subject.with_initial_state(&initial);
+        let count = subject.simulate_exactly((0.0, until), &[]).switches.len();
         let (vector, apart) =
             growth_of_difference_and_tangent(&subject, until, step, &arm_felt(order));
         println!("S = {order}, b = {b:e}, {until} s: {vector} and {apart}, {count} switches");
@@ -180,7 +180,7 @@ fn tangent_vectors_match_difference_quotients() {
     // Sticking removes a direction, permanently.
     let subject = rough_system();
     for until in [0.05, 0.2, 0.5, 1.0, 2.0] {
-        let count = subject.exact((0.0, until), &[]).switches.len();
+        let count = subject.simulate_exactly((0.0, until), &[]).switches.len();
         let (vector, apart) =
             growth_of_difference_and_tangent(&subject, until, 1e-7, &[0, 1, 2, 3]);
         println!("rough, {until} s: {vector} and {apart}, {count} switches");

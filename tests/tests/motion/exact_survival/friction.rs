@@ -3,10 +3,10 @@
 use eomgen_model_spec::check;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::project;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 /// Returns a block with dry friction T, pushed by F sin(omega t).
-fn pushed_block(force: f64, start: [f64; 2]) -> Subject {
+fn pushed_block(force: f64, start: [f64; 2]) -> TestMotion {
     let spec = Spec::default()
         .parameter("m", 2.0, "kg")
         .parameter("T_c", 3.0, "N")
@@ -15,19 +15,19 @@ fn pushed_block(force: f64, start: [f64; 2]) -> Subject {
         .coordinate("x", start)
         .kinetic("1/2*m*dot(x)^2")
         .force("x", "F*sin(omega*t) - T_c*sign(dot(x))");
-    Subject::new(spec.model(), 0)
+    TestMotion::new(spec.model(), 0)
 }
 
 #[test]
 fn sticking_block_stays_at_rest() {
     for force in [0.0, 1.0, 2.999, 3.0 * (1.0 - 1e-15), 3.0, -3.0, -1.0] {
-        let motion = pushed_block(force, [0.25, 0.0]).exact((0.0, 1e3), &grid(1e3, 10));
+        let motion = pushed_block(force, [0.25, 0.0]).simulate_exactly((0.0, 1e3), &grid(1e3, 10));
         for state in &motion.states {
             assert_eq!(state, &[0.25, 0.0], "F = {force}");
         }
     }
     // The block comes to rest at the finite time v0 m/T_c.
-    let motion = pushed_block(0.0, [0.0, 1.5]).exact((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
+    let motion = pushed_block(0.0, [0.0, 1.5]).simulate_exactly((0.0, 1e3), &[0.5, 1.0, 2.0, 1e3]);
     assert!((motion.states[0][1] - 0.75).abs() < 1e-14);
     for state in &motion.states[1..] {
         assert!(
@@ -74,7 +74,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
             "it sticks at {force}"
         );
         let times = grid(8.0 * turn, 333);
-        let motion = pushed_block(force, [0.0, 0.0]).exact((0.0, 8.0 * turn), &times);
+        let motion = pushed_block(force, [0.0, 0.0]).simulate_exactly((0.0, 8.0 * turn), &times);
         // Leaving and sticking again within rounding is not a motion.
         let mut switches = motion.switches.clone();
         switches.dedup_by(|a, b| (a.t - b.t).abs() < 1e-9);
@@ -132,7 +132,7 @@ fn block_on_belt_matches_closed_form() {
             .kinetic("1/2*m*dot(x)^2")
             .potential("1/2*k*x^2")
             .force("x", "T_c*sign(V - dot(x))");
-        Subject::new(spec.model(), 0)
+        TestMotion::new(spec.model(), 0)
     };
     // From rest the block is dragged and catches up with the belt. It moves with the belt until the
     // spring force reaches T_c at x = T_c/k. Then it oscillates about that position and reaches the
@@ -152,20 +152,20 @@ fn block_on_belt_matches_closed_form() {
         }
     };
     let times = grid(6.0, 300);
-    let motion = subject([0.0, 0.0]).exact((0.0, 6.0), &times);
+    let motion = subject([0.0, 0.0]).simulate_exactly((0.0, 6.0), &times);
     let wanted: Vec<Vec<f64>> = times.iter().map(|t| closed(*t)).collect();
     let error = difference(&motion.states, &wanted, 0.0);
     println!("from rest: {error:.1e}, {} switches", motion.switches.len());
     assert!(error < 1e-12, "{error:e}");
     assert!((motion.switches[0].t - caught).abs() < 1e-14);
     assert!((motion.switches[1].t - free).abs() < 1e-13);
-    let riding = subject([0.0, belt]).exact((0.0, 0.15), &[0.15]);
+    let riding = subject([0.0, belt]).simulate_exactly((0.0, 0.15), &[0.15]);
     assert!(riding.switches.is_empty() && (riding.final_state[0] - 0.015).abs() < 1e-16);
     assert_eq!(riding.final_state[1], belt);
 }
 
 /// Returns two stacked blocks: T_1 against the ground, T_2 between them, the upper one pushed.
-fn stacked_blocks(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> Subject {
+fn stacked_blocks(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> TestMotion {
     let spec = Spec::default()
         .parameter("m_1", 2.0, "kg")
         .parameter("m_2", 1.0, "kg")
@@ -187,13 +187,14 @@ fn stacked_blocks(dry: [f64; 2], force: f64, sign: impl Fn(&str) -> String) -> S
             "y",
             &format!("F*sin(omega*t) - T_2*{}", sign("dot(y) - dot(x)")),
         );
-    Subject::new(spec.model(), 0)
+    TestMotion::new(spec.model(), 0)
 }
 
 #[test]
 fn two_joints_can_stick_at_once() {
     let dry = |v: &str| format!("sign({v})");
-    let at_rest = stacked_blocks([3.0, 3.0], 2.9, dry).exact((0.0, 100.0), &grid(100.0, 7));
+    let at_rest =
+        stacked_blocks([3.0, 3.0], 2.9, dry).simulate_exactly((0.0, 100.0), &grid(100.0, 7));
     assert!(
         at_rest
             .states
@@ -212,8 +213,8 @@ fn two_joints_can_stick_at_once() {
         ([0.5, 0.25], 9.0),
     ] {
         let times = grid(2.0, 50);
-        let exact = stacked_blocks(levels, force, dry).exact((0.0, 2.0), &times);
-        let general = stacked_blocks(levels, force, steep).exact((0.0, 2.0), &times);
+        let exact = stacked_blocks(levels, force, dry).simulate_exactly((0.0, 2.0), &times);
+        let general = stacked_blocks(levels, force, steep).simulate_exactly((0.0, 2.0), &times);
         let found = difference(&exact.states, &general.states, 0.1);
         println!(
             "{levels:?} {force}: {found:.1e}, {} switches",
@@ -247,12 +248,12 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
                 spec = spec.potential(&format!("1/2*k*({x} - x_{})^2", place - 1));
             }
         }
-        Subject::new(spec.model(), 0)
+        TestMotion::new(spec.model(), 0)
     };
     let times = grid(3.0, 60);
-    let exact = subject(&|v| format!("sign({v})")).exact((0.0, 3.0), &times);
+    let exact = subject(&|v| format!("sign({v})")).simulate_exactly((0.0, 3.0), &times);
     let steep = subject(&|v| format!("({v} - deadzone({v}, eps))/eps"));
-    let general = steep.exact((0.0, 3.0), &times);
+    let general = steep.simulate_exactly((0.0, 3.0), &times);
     let found = difference(&exact.states, &general.states, 1e-2);
     println!(
         "chain: {found:.1e}, {} switches, at last {:?}",
@@ -263,7 +264,7 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
 }
 
 /// Returns the shipped hub with a beam, with another force on its angle and other parameters.
-fn hub_with_force(force: &str, values: &[(&str, f64)], order: usize) -> Subject {
+fn hub_with_force(force: &str, values: &[(&str, f64)], order: usize) -> TestMotion {
     let path = project().join("model-spec/models/hub_beam_tip_mass.toml");
     let text = std::fs::read_to_string(path).expect("the shipped specification");
     let text = text.replace("value = \"u\"", &format!("value = \"u + {force}\""));
@@ -272,10 +273,10 @@ fn hub_with_force(force: &str, values: &[(&str, f64)], order: usize) -> Subject 
         .expect("a specification")
         .model;
     let model = model.with_parameters(values).expect("values");
-    let subject = Subject::new(model, order);
+    let subject = TestMotion::new(model, order);
     let mut initial = subject.initial.clone();
     initial[1] = 0.02;
-    subject.from(&initial)
+    subject.with_initial_state(&initial)
 }
 
 #[test]
@@ -284,8 +285,9 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
     for order in [1, 3, 6] {
         // A sticking hub moves like one with a very large inertia.
         let held = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", 1e3)], order)
-            .exact((0.0, 0.5), &times);
-        let heavy = hub_with_force("0*T_c", &[("J_h", 1e14)], order).exact((0.0, 0.5), &times);
+            .simulate_exactly((0.0, 0.5), &times);
+        let heavy =
+            hub_with_force("0*T_c", &[("J_h", 1e14)], order).simulate_exactly((0.0, 0.5), &times);
         let found = difference(&held.states, &heavy.states, 1e-3);
         println!("held, order {order}: {found:.1e}");
         assert!(
@@ -297,11 +299,11 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
         // A hub that slides and sticks, compared with steep friction.
         for level in [0.05, 0.5, 2.0] {
             let dry = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
-                .exact((0.0, 0.2), &times[..20]);
+                .simulate_exactly((0.0, 0.2), &times[..20]);
             let steep = "(-T_c*(dot(theta) - deadzone(dot(theta), 1e-5*dot_1))/(1e-5*dot_1))"
                 .replace("dot_1", "c/J_h");
-            let steep =
-                hub_with_force(&steep, &[("T_c", level)], order).exact((0.0, 0.2), &times[..20]);
+            let steep = hub_with_force(&steep, &[("T_c", level)], order)
+                .simulate_exactly((0.0, 0.2), &times[..20]);
             let found = difference(&dry.states, &steep.states, 1e-3);
             println!(
                 "order {order}, {level} N m: {found:.1e}, {} switches",
@@ -336,16 +338,16 @@ fn friction_at_tip_of_beam_matches_steep_friction() {
             let model = checked
                 .unwrap_or_else(|e| panic!("{}", e.render(false)))
                 .model;
-            let subject = Subject::new(model, order);
+            let subject = TestMotion::new(model, order);
             let mut initial = subject.initial.clone();
             initial[1] = 0.02;
-            subject.from(&initial)
+            subject.with_initial_state(&initial)
         };
-        let dry = subject(&format!("sign({tip})")).exact((0.0, 0.2), &times);
+        let dry = subject(&format!("sign({tip})")).simulate_exactly((0.0, 0.2), &times);
         let steep = subject(&format!(
             "({tip} - deadzone({tip}, 1e-5*l*c/J_h))/(1e-5*l*c/J_h)"
         ));
-        let steep = steep.exact((0.0, 0.2), &times);
+        let steep = steep.simulate_exactly((0.0, 0.2), &times);
         let found = difference(&dry.states, &steep.states, 1e-3);
         println!(
             "order {order}, {level} N: {found:.1e}, {} switches",

@@ -4,7 +4,7 @@ use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 fn held_input(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {
     let folder = tempfile::tempdir().expect("a folder");
@@ -40,14 +40,14 @@ fn rig_driven_by_record_matches_general_solver() {
             .with_parameters(&[("b_sp", b), ("b_pr", b)])
             .expect("values");
         let inputs = held_input(&model, "u", "N m", &steps);
-        let subject = Subject {
+        let subject = TestMotion {
             inputs,
-            ..Subject::new(model, order)
+            ..TestMotion::new(model, order)
         };
         let times = grid(0.01, 40);
-        let exact = subject.exact((0.0, 0.01), &times);
+        let exact = subject.simulate_exactly((0.0, 0.01), &times);
         let general = subject
-            .general((0.0, 0.01), &times, 1e-12)
+            .simulate_generally((0.0, 0.01), &times, 1e-12)
             .expect("a motion");
         let found = difference(&exact.states, &general.states, 1e-6);
         println!(
@@ -79,14 +79,14 @@ fn input_jump_releases_sticking_block() {
         (6.0, 3.0),
     ];
     let inputs = held_input(&model, "u", "N", &steps);
-    let subject = Subject {
+    let subject = TestMotion {
         inputs,
-        ..Subject::new(model, 0)
+        ..TestMotion::new(model, 0)
     };
     let times = [
         0.5, 1.0, 1.25, 1.5, 1.7, 1.9, 2.9, 3.0, 3.25, 3.5, 4.5, 5.5, 7.0, 9.0,
     ];
-    let motion = subject.exact((0.0, 9.0), &times);
+    let motion = subject.simulate_exactly((0.0, 9.0), &times);
     let wanted = [
         [0.0, 0.0],
         [0.0, 0.0],
@@ -135,14 +135,14 @@ fn input_jump_moves_a_stop() {
             .map(|k| (f64::from(k) * 0.05, 0.03 * f64::from(k * k).sin()))
             .collect();
         let inputs = held_input(&model, "u", "m", &steps);
-        let subject = Subject {
+        let subject = TestMotion {
             inputs,
-            ..Subject::new(model, 0)
+            ..TestMotion::new(model, 0)
         };
         let times = grid(2.0, 100);
-        let exact = subject.exact((0.0, 2.0), &times);
+        let exact = subject.simulate_exactly((0.0, 2.0), &times);
         let general = subject
-            .general((0.0, 2.0), &times, 1e-12)
+            .simulate_generally((0.0, 2.0), &times, 1e-12)
             .expect("a motion");
         let found = difference(&exact.states, &general.states, 1e-6);
         println!(
@@ -170,11 +170,11 @@ fn input_jump_at_a_switch_matches_closed_form() {
             .force("x", "u");
         let model = spec.model();
         let inputs = held_input(&model, "u", "N", &[(0.0, 0.0), (at, 50.0)]);
-        let subject = Subject {
+        let subject = TestMotion {
             inputs,
-            ..Subject::new(model, 0)
+            ..TestMotion::new(model, 0)
         };
-        let motion = subject.exact((0.0, 1.2), &[1.0, 1.1, 1.2]);
+        let motion = subject.simulate_exactly((0.0, 1.2), &[1.0, 1.1, 1.2]);
         for (t, state) in [0.0, 0.1_f64, 0.2].iter().zip(&motion.states) {
             let x = 1.5 - 0.5 * (10.0 * t).cos() + 0.1 * (10.0 * t).sin();
             assert!(

@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 fn mass(m: f64, k: f64, c: f64, force: &str, start: [f64; 2]) -> Spec {
     let spec = Spec::default()
@@ -30,7 +30,7 @@ fn assert_matches_closed_form(
     closed: impl Fn(f64) -> Vec<f64>,
 ) {
     let times = grid(until, 97);
-    let motion = Subject::new(spec.model(), 0).exact((0.0, until), &times);
+    let motion = TestMotion::new(spec.model(), 0).simulate_exactly((0.0, until), &times);
     let wanted: Vec<Vec<f64>> = times.iter().map(|t| closed(*t)).collect();
     let error = difference(&motion.states, &wanted, 0.0);
     println!("{name}: {error:.1e}");
@@ -215,11 +215,11 @@ fn defective_eigenvalues_in_resonance_match_closed_form() {
             .force("y", "-c*dot(y) + g*x")
     };
     for coupling in [0.0, 1.0, 100.0] {
-        let subject = Subject::new(spec(coupling).model(), 0);
+        let subject = TestMotion::new(spec(coupling).model(), 0);
         let times = grid(2.0, 40);
-        let exact = subject.exact((0.0, 2.0), &times);
+        let exact = subject.simulate_exactly((0.0, 2.0), &times);
         let general = subject
-            .general((0.0, 2.0), &times, 1e-13)
+            .simulate_generally((0.0, 2.0), &times, 1e-13)
             .expect("a motion");
         let found = difference(&exact.states, &general.states, 1e-6);
         println!("one way by {coupling}: {found:.1e}");
@@ -279,9 +279,9 @@ fn long_motion_without_switch_matches_closed_form() {
     let spec = mass(1.0, w * w, 2.0 * zeta * w, "F*sin(omega*t)", [1.0, 0.0])
         .parameter("F", 3.0, "N")
         .parameter("omega", omega, "rad/s");
-    let subject = Subject::new(spec.model(), 0);
+    let subject = TestMotion::new(spec.model(), 0);
     let times = [9.9e5, 1e6 - 0.01, 1e6];
-    let motion = subject.exact((0.0, 1e6), &times);
+    let motion = subject.simulate_exactly((0.0, 1e6), &times);
     for (t, state) in times.iter().zip(&motion.states) {
         let (a, b) = (w * w - omega * omega, 2.0 * zeta * w * omega);
         let (sine, cosine) = (omega * t).sin_cos();
@@ -293,8 +293,8 @@ fn long_motion_without_switch_matches_closed_form() {
             state[0]
         );
     }
-    let free = Subject::new(mass(1.0, 0.0, 0.0, "", [1.0, 2.0]).model(), 0);
-    let motion = free.exact((0.0, 1e4), &[1e4]);
+    let free = TestMotion::new(mass(1.0, 0.0, 0.0, "", [1.0, 2.0]).model(), 0);
+    let motion = free.simulate_exactly((0.0, 1e4), &[1e4]);
     assert!((motion.states[0][0] / 20001.0 - 1.0).abs() < 1e-11);
     println!("{:?}", begun.elapsed());
     assert!(begun.elapsed().as_secs() < 20);

@@ -2,10 +2,10 @@
 //! solver.
 
 use eomgen_sim::piecewise_linear::ExactError;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 /// Returns two masses with a force on the first and harmonic excitation.
-fn with_force(force: &str) -> Subject {
+fn with_force(force: &str) -> TestMotion {
     let spec = Spec::default()
         .parameter("m", 1.0, "kg")
         .parameter("k", 100.0, "N/m")
@@ -22,7 +22,7 @@ fn with_force(force: &str) -> Subject {
         .potential("1/2*k*(x^2 + y^2) + 1/4*k*(x - y)^2")
         .force("y", "F*sin(omega*t)")
         .force("x", force);
-    Subject::new(spec.model(), 0)
+    TestMotion::new(spec.model(), 0)
 }
 
 /// Compares the motion under a force with the general solver, from several starts.
@@ -36,11 +36,11 @@ fn assert_matches_general_solver(force: &str) {
         [0.025, 0.0, 0.0, 0.0],
         [0.01, 0.01, 0.4, 0.2],
     ] {
-        let subject = with_force(force).from(&start);
+        let subject = with_force(force).with_initial_state(&start);
         let times = grid(1.0, 40);
-        let exact = subject.exact((0.0, 1.0), &times);
+        let exact = subject.simulate_exactly((0.0, 1.0), &times);
         let general = subject
-            .general((0.0, 1.0), &times, 1e-12)
+            .simulate_generally((0.0, 1.0), &times, 1e-12)
             .expect("a motion");
         worst = worst.max(difference(&exact.states, &general.states, 1e-4));
         switches += exact.switches.len();

@@ -3,9 +3,9 @@
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::load;
-use eomgen_tests::motions::{Spec, Subject};
+use eomgen_tests::motions::{Spec, TestMotion};
 
-fn mass(m: f64) -> Subject {
+fn mass(m: f64) -> TestMotion {
     let spec = Spec::default()
         .parameter("m", m, "kg")
         .parameter("k", 100.0, "N/m")
@@ -13,11 +13,11 @@ fn mass(m: f64) -> Subject {
         .coordinate("x", [0.01, 0.0])
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*deadzone(x, b)^2");
-    Subject::new(spec.model(), 0)
+    TestMotion::new(spec.model(), 0)
 }
 
-fn rejection(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
-    match subject.try_exact(span, times) {
+fn rejection(subject: &TestMotion, span: (f64, f64), times: &[f64]) -> String {
+    match subject.try_simulate_exactly(span, times) {
         Ok(motion) => panic!("went to {:?}", motion.final_state),
         Err(error) => {
             println!("{error}");
@@ -30,12 +30,12 @@ fn rejection(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
 fn non_finite_states_are_rejected() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for state in [[bad, 0.0], [0.0, bad]] {
-            let message = rejection(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+            let message = rejection(&mass(1.0).with_initial_state(&state), (0.0, 1.0), &[]);
             assert!(message.contains("finite"), "{message}");
         }
     }
     for state in [vec![], vec![0.0], vec![0.0; 3]] {
-        let message = rejection(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+        let message = rejection(&mass(1.0).with_initial_state(&state), (0.0, 1.0), &[]);
         assert!(message.contains('2'), "{message}");
     }
 }
@@ -54,21 +54,24 @@ fn invalid_times_are_rejected() {
     for times in [&[2.0][..], &[-0.1], &[0.5, 0.4], &[f64::NAN]] {
         rejection(&subject, (0.0, 1.0), times);
     }
-    let still = subject.exact((0.5, 0.5), &[0.5, 0.5]);
+    let still = subject.simulate_exactly((0.5, 0.5), &[0.5, 0.5]);
     assert_eq!(still.states, vec![subject.initial.clone(); 2]);
     assert_eq!(still.final_state, subject.initial);
     // The change over the shortest span is below one rounding.
-    let short = subject.exact((0.0, 5e-324), &[0.0, 5e-324]);
+    let short = subject.simulate_exactly((0.0, 5e-324), &[0.0, 5e-324]);
     assert!((short.final_state[0] - 0.01).abs() < 1e-17);
-    let late = subject.exact((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
-    let early = subject.exact((0.0, 1.0), &[1.0]);
+    let late = subject.simulate_exactly((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
+    let early = subject.simulate_exactly((0.0, 1.0), &[1.0]);
     assert!((late.final_state[0] - early.final_state[0]).abs() < 1e-15);
 }
 
 #[test]
 fn diverging_motions_are_rejected() {
     for state in [[1e308, 1e308], [1e200, 0.0], [0.0, -1e308]] {
-        match mass(1.0).from(&state).try_exact((0.0, 10.0), &[10.0]) {
+        match mass(1.0)
+            .with_initial_state(&state)
+            .try_simulate_exactly((0.0, 10.0), &[10.0])
+        {
             Ok(motion) => assert!(motion.final_state.iter().all(|y| y.is_finite())),
             Err(error) => println!("{error}"),
         }
@@ -80,8 +83,8 @@ fn diverging_motions_are_rejected() {
         .coordinate("x", [1.0, 0.0])
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*x^2");
-    let subject = Subject::new(spec.model(), 0);
-    let near = subject.exact((0.0, 0.1), &[0.1]);
+    let subject = TestMotion::new(spec.model(), 0);
+    let near = subject.simulate_exactly((0.0, 0.1), &[0.1]);
     assert!((near.final_state[0] / 100.0_f64.cosh() - 1.0).abs() < 1e-12);
     let message = rejection(&subject, (0.0, 100.0), &[100.0]);
     assert!(message.contains("diverged"), "{message}");
@@ -98,7 +101,7 @@ fn nonpositive_masses_are_rejected() {
     let model = load("planetary_arm");
     for (name, value) in [("M_s", 0.0), ("M_s", -0.39), ("rho", 0.0), ("M_p", -0.3)] {
         let model = model.with_parameter(name, value).expect("a value");
-        let message = rejection(&Subject::new(model, 4), (0.0, 0.01), &[0.01]);
+        let message = rejection(&TestMotion::new(model, 4), (0.0, 0.01), &[0.01]);
         assert!(message.contains("mass"), "{name}: {message}");
     }
     // Two identical coordinates: the mass matrix is singular.
@@ -109,7 +112,7 @@ fn nonpositive_masses_are_rejected() {
         .coordinate("y", [0.0, 0.0])
         .kinetic("1/2*m*(dot(x) + dot(y))^2")
         .potential("1/2*k*(x - y)^2");
-    rejection(&Subject::new(spec.model(), 0), (0.0, 1.0), &[1.0]);
+    rejection(&TestMotion::new(spec.model(), 0), (0.0, 1.0), &[1.0]);
 }
 
 #[test]
@@ -129,7 +132,7 @@ fn extreme_parameters_of_arm_are_rejected_or_solved() {
             continue;
         };
         let begun = std::time::Instant::now();
-        match Subject::new(model, 4).try_exact((0.0, 1e-4), &[1e-4]) {
+        match TestMotion::new(model, 4).try_simulate_exactly((0.0, 1e-4), &[1e-4]) {
             Ok(motion) => assert!(motion.final_state.iter().all(|y| y.is_finite())),
             Err(error) => println!("{name} = {value:e}: {error}"),
         }
@@ -151,7 +154,7 @@ fn sticking_with_variable_friction_is_rejected() {
         .kinetic("1/2*m*dot(x)^2 + 1/2*w*dot(y)^2")
         .potential("1/2*k*y^2")
         .force("x", "-mu*k*y*sign(dot(x))");
-    match Subject::new(spec.model(), 0).try_exact((0.0, 1.0), &[1.0]) {
+    match TestMotion::new(spec.model(), 0).try_simulate_exactly((0.0, 1.0), &[1.0]) {
         Ok(_) => {}
         Err(error @ ExactError::Sticking { .. }) => println!("{error}"),
         Err(error @ ExactError::Stopped(SolveError::TooManySwitches { .. })) => println!("{error}"),

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
-use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 /// Returns a ball that falls onto a spring at x = 0.
 fn ball(height: f64, speed: f64) -> Spec {
@@ -29,8 +29,8 @@ fn bouncing_ball_matches_closed_form() {
         let period = 2.0 * fall + contact;
         let bounces = 10.0;
         let times: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k) * period).collect();
-        let subject = Subject::new(ball(height, 0.0).model(), 0);
-        let motion = subject.exact((0.0, bounces * period), &times);
+        let subject = TestMotion::new(ball(height, 0.0).model(), 0);
+        let motion = subject.simulate_exactly((0.0, bounces * period), &times);
         let deepest = -g / (w * w) - ((speed / w).powi(2) + (g / (w * w)).powi(2)).sqrt();
         for (k, state) in motion.states.iter().enumerate() {
             let wanted = if k % 2 == 0 { height } else { deepest };
@@ -74,7 +74,7 @@ fn ball_touching_ceiling_matches_closed_form() {
         let w = 10.0;
         let contact = 2.0 * ((hit / w).atan2(g / (w * w))) / w;
         let end = 2.0 * arrival + contact;
-        let motion = Subject::new(spec.model(), 0).exact((0.0, end), &[end]);
+        let motion = TestMotion::new(spec.model(), 0).simulate_exactly((0.0, end), &[end]);
         let [x, v] = motion.final_state[..] else {
             panic!("two states")
         };
@@ -106,7 +106,7 @@ fn start_on_a_stop_matches_closed_form() {
                 .force("x", "F - c*contact(x, b)*dot(x)");
             let until = 20.0 / w;
             let times = grid(until, 50);
-            let motion = Subject::new(spec.model(), 0).exact((0.0, until), &times);
+            let motion = TestMotion::new(spec.model(), 0).simulate_exactly((0.0, until), &times);
             let fast = w * (1.0 - zeta * zeta).sqrt();
             let closed = |t: &f64| {
                 let (sine, cosine) = (fast * t).sin_cos();
@@ -149,8 +149,8 @@ fn oscillator_between_stops(more: f64, c: f64) -> Spec {
 fn grazing_a_stop_conserves_energy() {
     let times = grid(1.0, 200);
     for more in [-1e-3, -1e-9, -1e-14, -1e-15] {
-        let motion = Subject::new(oscillator_between_stops(more, 100.0).model(), 0)
-            .exact((0.0, 1.0), &times);
+        let motion = TestMotion::new(oscillator_between_stops(more, 100.0).model(), 0)
+            .simulate_exactly((0.0, 1.0), &times);
         let a = 1e-3 * (1.0 + more);
         let wanted: Vec<Vec<f64>> = times
             .iter()
@@ -166,8 +166,8 @@ fn grazing_a_stop_conserves_energy() {
     }
     for more in [0.0, 3e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3] {
         // Without damping the energy is conserved.
-        let motion =
-            Subject::new(oscillator_between_stops(more, 0.0).model(), 0).exact((0.0, 1.0), &times);
+        let motion = TestMotion::new(oscillator_between_stops(more, 0.0).model(), 0)
+            .simulate_exactly((0.0, 1.0), &times);
         let energy = |y: &Vec<f64>| {
             let over = (y[0].abs() - 1e-3).max(0.0);
             0.5 * (y[1] * y[1] + 2500.0 * y[0] * y[0] + 1e6 * over * over)
@@ -189,8 +189,8 @@ fn grazing_a_stop_conserves_energy() {
             "{more:e}"
         );
         // The contacts are so short that damping has this small an effect.
-        let damped = Subject::new(oscillator_between_stops(more, 100.0).model(), 0)
-            .exact((0.0, 1.0), &times);
+        let damped = TestMotion::new(oscillator_between_stops(more, 100.0).model(), 0)
+            .simulate_exactly((0.0, 1.0), &times);
         let lost = difference(&damped.states, &motion.states, 0.0);
         println!("{more:e} beyond: effect of damping {lost:.1e}");
         assert!(
@@ -214,9 +214,9 @@ fn million_switches_match_closed_form() {
     let half = 2.0 * b / v + std::f64::consts::PI / w;
     // Two switches per half period; the end is a quarter of a free flight after the middle.
     let until = 500_000.0 * half + 0.5 * b / v;
-    let subject = Subject::new(spec.model(), 0);
+    let subject = TestMotion::new(spec.model(), 0);
     let begun = Instant::now();
-    let motion = subject.exact((0.0, until), &[until]);
+    let motion = subject.simulate_exactly((0.0, until), &[until]);
     let taken = begun.elapsed();
     let [x, speed] = motion.final_state[..] else {
         panic!("two states")
@@ -242,7 +242,7 @@ fn too_many_switches_are_rejected() {
         .coordinate("x", [0.0, 1.0])
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*deadzone(x, b)^2");
-    let subject = Subject::new(spec.model(), 0);
+    let subject = TestMotion::new(spec.model(), 0);
     let mut propagator = subject.propagator().expect("a propagator");
     propagator.max_switch_rate = 100.0;
     let refused = propagator.simulate(
@@ -273,7 +273,7 @@ fn accumulating_switches_end() {
             .kinetic("1/2*m*dot(x)^2")
             .force("x", "-F*sign(x) - T*sign(dot(x))");
         let begun = Instant::now();
-        let ended = Subject::new(spec.model(), 0).try_exact((0.0, 100.0), &[100.0]);
+        let ended = TestMotion::new(spec.model(), 0).try_simulate_exactly((0.0, 100.0), &[100.0]);
         println!(
             "dry {dry}: {:?} in {:?}",
             ended
@@ -302,7 +302,7 @@ fn accumulating_switches_end() {
         .kinetic("1/2*m*dot(x)^2")
         .force("x", "-F*sign(x) - c*dot(x)");
     let begun = Instant::now();
-    let ended = Subject::new(spec.model(), 0).try_exact((0.0, 50.0), &[50.0]);
+    let ended = TestMotion::new(spec.model(), 0).try_simulate_exactly((0.0, 50.0), &[50.0]);
     println!(
         "damper: {:?} in {:?}",
         ended
@@ -333,7 +333,7 @@ fn samples_at_a_switch_match_closed_form() {
         .coordinate("x", [0.0, 1.0])
         .kinetic("1/2*m*dot(x)^2")
         .potential("1/2*k*deadzone(x, b)^2");
-    let subject = Subject::new(spec.model(), 0);
+    let subject = TestMotion::new(spec.model(), 0);
     let up = 1.0_f64.next_up();
     let down = 1.0_f64.next_down();
     for times in [
@@ -343,22 +343,22 @@ fn samples_at_a_switch_match_closed_form() {
         vec![0.0, 0.0, 1.0],
     ] {
         for end in [*times.last().expect("a time"), 1.5] {
-            let motion = subject.exact((0.0, end), &times);
+            let motion = subject.simulate_exactly((0.0, end), &times);
             for (t, state) in times.iter().zip(&motion.states) {
                 assert!((state[0] - t).abs() < 1e-15, "{t}: {state:?}");
             }
         }
     }
-    let all = subject.exact((0.0, 30.0), &[]);
+    let all = subject.simulate_exactly((0.0, 30.0), &[]);
     let times: Vec<f64> = all.switches.iter().map(|s| s.t).collect();
     assert!(times.len() > 20);
-    let motion = subject.exact((0.0, 30.0), &times);
+    let motion = subject.simulate_exactly((0.0, 30.0), &times);
     for state in &motion.states {
         assert!((state[0].abs() - 1.0).abs() < 1e-13, "{state:?}");
     }
     for (count, end) in times.iter().enumerate() {
         for end in [end.next_down(), *end, end.next_up()] {
-            let motion = subject.exact((0.0, end), &[0.5 * end, end, end]);
+            let motion = subject.simulate_exactly((0.0, end), &[0.5 * end, end, end]);
             assert!((motion.final_state[0].abs() - 1.0).abs() < 1e-13, "{count}");
             assert_eq!(motion.states[2], motion.final_state);
         }
