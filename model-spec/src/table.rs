@@ -90,7 +90,7 @@ impl Quantity {
     /// Parses the expression; a number is a literal.
     ///
     /// # Errors
-    /// Those of [`Written::syntax`].
+    /// Those of [`StringValue::syntax`].
     pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
         match self {
             Self::Number(number) => Ok(Syntax {

@@ -17,7 +17,7 @@ const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 const MIN_UNIT_EFFECT_FACTOR: f64 = 1e3;
 
 /// Returns the diagonal of D, powers of two, for which the entries of D^-1 A D have similar size.
-/// `guess` is the initial diagonal. The entries of A must be below [`LARGEST`].
+/// `guess` is the initial diagonal. The entries of A must be below [`MAX_ENTRY_PER_S`].
 pub(crate) fn balance(matrix: &DMatrix<f64>, guess: Vec<f64>) -> Vec<f64> {
     let all = balance_above(matrix, guess.clone(), 0.0);
     // The second pass balances the large entries among themselves.

@@ -199,7 +199,7 @@ impl Writer<'_, '_, '_> {
         });
     }
 
-    /// Computes a vector of at most [`SHORT`] elements into registers.
+    /// Computes a vector of at most [`MAX_REGISTER_VECTOR`] elements into registers.
     pub fn keep(&mut self, id: ValueId, length: usize) {
         debug_assert!(length <= MAX_REGISTER_VECTOR);
         let mut registers = Vec::new();

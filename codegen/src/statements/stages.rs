@@ -79,7 +79,7 @@ pub(super) fn rates_stage(
     })
 }
 
-/// Copies the first half of the rates from the state. More than [`COPIED_AT_ONCE`] numbers are copied in
+/// Copies the first half of the rates from the state. More than [`MAX_UNROLLED_COPY`] numbers are copied in
 /// pairs: from a plain loop the compiler makes a call of `memcpy`, which costs more than the copy.
 fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
     let copy = |to: Index, from: Index| {

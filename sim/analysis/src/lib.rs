@@ -14,7 +14,7 @@
 //! - [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //!   [`poincare`] describes a stroboscopic section, and [`exponent`] averages logarithmic growth.
 //!   [`classify`] combines them by one rule.
-//! - [`modes`] finds the dominant mode of a flexible body. [`course`] reduces a time history to a
+//! - [`modes`] finds the dominant mode of a flexible body. [`time_history`] reduces a time history to a
 //!   number, and [`statistics`] describes samples of values.
 //! - [`natural_modes`] computes the modes of a linearised machine, and [`constrained_modes`] those
 //!   of a machine with constraints, from its [`allowed_motions`]. [`qr_iteration`] finds

@@ -64,7 +64,7 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// An invalid request, a solver that does not support the model, and [`Error::Stopped`] if the
-    /// solver stops early. [`Instance::follow`] keeps the samples before such a stop.
+    /// solver stops early. [`Instance::simulate_until_stop`] keeps the samples before such a stop.
     pub fn simulate(
         &self,
         initial: &[f64],

@@ -1,7 +1,7 @@
 //! Planetary arm of the paper: a flexible arm behind a planetary gear reducer with backlash.
 //!
 //! [`mod@reference`] has hand-written equations and the errata. [`reference_equations`] assigns
-//! them to models with [`same_motion`], and [`certification`] adds them to certificates.
+//! them to models with [`equation_comparison`], and [`certification`] adds them to certificates.
 //! [`studies`] reproduce the figures of the paper and judge its claims.
 //!
 //! Reference equations of two models:

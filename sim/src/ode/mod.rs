@@ -21,7 +21,7 @@
 //! component i stays below `tolerance` times (|y_i| + the largest |y_i| up to now), as a root mean
 //! square over the components. It does not depend on units: deflections of micrometres and
 //! rotations of several radians get the same number of digits. Until a component moves,
-//! [`UNMOVED_PART`] of its typical size ([`System::typical_sizes`]) counts as its largest
+//! [`UNMOVED_SIZE_FRACTION`] of its typical size ([`System::typical_sizes`]) counts as its largest
 //! magnitude.
 
 mod adams;

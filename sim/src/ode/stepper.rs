@@ -7,7 +7,7 @@ pub use super::point::Point;
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// Parts of a step that may be refused; see [`in_parts`].
+/// Parts of a step that may be refused; see [`split_step`].
 const MOST_REFUSED: u32 = 50;
 
 /// How a controlled step ended.

@@ -60,7 +60,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         if t < horizon { t } else { horizon.next_down() }
     }
 
-    /// The switching function whose side a trial since [`Watched::reset`] left.
+    /// The switching function whose side a trial since [`WatchedSystem::forget_trials`] left.
     pub fn crossed_guard(&self) -> Option<usize> {
         self.crossed.get()
     }
@@ -71,7 +71,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// The coordinate without positive inertia at a state that a trial has come to since the
-    /// last [`Watched::arrive`].
+    /// last [`WatchedSystem::arrive`].
     pub fn indefinite_coordinate(&self) -> Option<usize> {
         self.indefinite.get()
     }
@@ -159,7 +159,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         roundings
     }
 
-    /// The same as [`Watched::guards_at`] where nothing jumps yet at the end of a step; see [`Watched::see_until`].
+    /// The same as [`WatchedSystem::evaluate_guards`] where nothing jumps yet at the end of a step; see [`WatchedSystem::limit_time`].
     pub fn evaluate_guards_before(&self, t: f64, y: &[f64]) -> Vec<f64> {
         self.evaluate_guards(self.seen(t), y)
     }
@@ -194,14 +194,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
-    /// [`System::keep_sides`].
+    /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {
         let regime = self.regime.borrow();
         self.system.fix_sides(keep.then_some(regime.as_slice()));
     }
 
     /// The switching functions whose surfaces have caught the motion or let it go; see
-    /// [`System::caught_or_let_go`].
+    /// [`System::update_sticking`].
     pub fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
         self.system.update_sticking(t, y)
     }

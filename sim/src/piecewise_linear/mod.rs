@@ -14,7 +14,7 @@
 //! | motion in a regime | `forced`, `flow`, `event_evaluation`, `cluster_flow` |
 //! | search for the next event, which cannot be missed | `bounds`, `search` |
 //! | time with two parts | `clock`, `error_free` |
-//! | regimes and their neighbours | `visited`, `adjacent` |
+//! | regimes and their neighbours | `visited_regimes`, `adjacent` |
 //! | surfaces that depend on other surfaces | `outline`, `coincidence`, `dependents`,
 //! `transition`, `standing_on`, `switching`, `departure` |
 //! | simulation | [`propagator`], `follow`, `simulate` |

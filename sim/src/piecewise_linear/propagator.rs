@@ -1,4 +1,4 @@
-//! From switch to switch. Which regimes there are is in `visited`, which of them border on each
+//! From switch to switch. Which regimes there are is in `visited_regimes`, which of them border on each
 //! other in `adjacent`.
 
 use std::collections::HashMap;

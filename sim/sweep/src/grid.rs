@@ -155,7 +155,7 @@ impl Grid {
     /// Creates the grid of the axes.
     ///
     /// # Errors
-    /// No axis, an invalid or repeated axis, or more than [`MOST_POINTS`] points.
+    /// No axis, an invalid or repeated axis, or more than [`MAX_POINTS`] points.
     pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
         let refused = |reason: String| Err(SweepError::Request(reason));
         if axes.is_empty() {

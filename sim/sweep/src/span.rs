@@ -15,7 +15,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Checks that at least `least` and at most [`MOST_PERIODS`] periods are measured.
+    /// Checks that at least `least` and at most [`MAX_PERIODS`] periods are measured.
     pub fn check(&self, measure: &str, least: usize) -> Result<(), SweepError> {
         if self.periods >= least && self.transient.saturating_add(self.periods) <= MAX_PERIODS {
             return Ok(());

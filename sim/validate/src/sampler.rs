@@ -218,7 +218,7 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    /// Returns true if all entries are within their ranges and `LARGEST` times their sizes.
+    /// Returns true if all entries are within their ranges and `MAX_RELATIVE_ENTRY` times their sizes.
     fn is_within(&self, sample: &Sample) -> bool {
         let ranges = self.oracle.ranges();
         let states = ranges.state.iter().zip(&sample.state);

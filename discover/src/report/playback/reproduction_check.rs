@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-7;
 const MOST_STEPS: u64 = 400_000;
 
 /// How much more, or less, than the fit the page may leave, as a part of that. Both are right to a
-/// small part of the noise, by methods of their own, of which the fit's stops at `STEP_ERROR`; where
+/// small part of the noise, by methods of their own, of which the fit's stops at `MAX_STEP_ERROR`; where
 /// impacts unfold that, no motion is the motion, and the page would contradict the report.
 const DIFFERENT: f64 = 0.05;
 

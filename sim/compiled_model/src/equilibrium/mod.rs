@@ -125,7 +125,7 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns true if a state is an equilibrium; see [`Instance::departure`].
+    /// Returns true if a state is an equilibrium; see [`Instance::find_departure`].
     ///
     /// # Errors
     /// Same as [`Instance::jacobian_evaluator`].

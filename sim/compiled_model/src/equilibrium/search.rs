@@ -156,7 +156,7 @@ impl<'i, 'm> Search<'i, 'm> {
         bent
     }
 
-    /// Returns the fraction of a step that keeps every unknown within [`LONGEST_STEP`].
+    /// Returns the fraction of a step that keeps every unknown within [`MAX_STEP_FRACTION`].
     fn step_fraction(&self, step: &DVector<f64>) -> f64 {
         let parts = step.iter().zip(&self.scales);
         let part = |(change, scale): (&f64, &Option<f64>)| match scale {

@@ -3,7 +3,7 @@
 //! friction, J. J. Moreau).
 //!
 //! [`eomgen_sim::sliding_modes`] decides which of several surfaces hold. `sided` is the model with
-//! given sides of its surfaces, and `observed` computes observables and rates during sticking.
+//! given sides of its surfaces, and `observed_motion` computes observables and rates during sticking.
 //! This module follows the surfaces along a motion. A surface holds the motion from its arrival
 //! until the force reaches the limit of the surface. At the release, the switching function and
 //! its rate are zero up to rounding, which must not determine the side; so the surface is

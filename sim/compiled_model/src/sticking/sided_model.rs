@@ -25,7 +25,7 @@ const MIN_JUMP_FRACTION: f64 = 0.5;
 pub(super) type TimeAndState<'p> = (f64, &'p [f64]);
 
 /// A model whose inputs include the sides of the surfaces that can hold a motion, at one set of
-/// parameters; see [`Driven::with_sliding`](crate::Driven::with_sliding).
+/// parameters; see [`DrivenModel::with_sliding`](crate::DrivenModel::with_sliding).
 pub struct SidedModel {
     evaluator: Evaluator,
     model_input_count: usize,

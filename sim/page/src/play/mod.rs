@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 pub use slider::{Slider, format_unit};
 
 /// Start of every script: the classes `Machine` (an emitted module with its arrays) and `Motion`
-/// (its integration), `bytes` (the inverse of [`encoded`]), and functions for pictures and sliders.
+/// (its integration), `bytes` (the inverse of [`encode_base64`]), and functions for pictures and sliders.
 const COMMON_SCRIPTS: [&str; 3] = [
     include_str!("motion.js"),
     include_str!("canvas.js"),

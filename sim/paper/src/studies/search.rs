@@ -96,7 +96,7 @@ impl JudgedSet {
         )
     }
 
-    /// Parses a line of [`Judged::line`].
+    /// Parses a line of [`JudgedSet::to_line`].
     pub fn parse(line: &str) -> Option<Self> {
         let fields: Vec<&str> = line.split(',').collect();
         let [index, i, a, b, f, c, _, _, letters, strict] = fields[..] else {

@@ -5,7 +5,7 @@
 //! - [`balance`]: power balance along trajectories;
 //! - [`nesting`]: agreement between orders;
 //! - [`outputs`]: requested outputs;
-//! - [`emitted`]: emitted source, with `kinds` for single precision, SIMD and requested outputs;
+//! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!

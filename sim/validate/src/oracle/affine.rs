@@ -13,7 +13,7 @@ pub(super) enum Variable {
     Time,
     Entry(usize),
     Input(usize),
-    /// Subexpression that is not affine, by its index in [`Forms`].
+    /// Subexpression that is not affine, by its index in [`AffineForms`].
     Atom(usize),
 }
 

@@ -73,7 +73,7 @@ use tree::Tree;
 /// Evaluator of the equations of motion of one variant at any state.
 ///
 /// # Errors
-/// Methods return [`OracleError::Length`] if the length of an argument does not match the model.
+/// Methods return [`OracleError::WrongLength`] if the length of an argument does not match the model.
 #[derive(Debug)]
 pub struct Oracle {
     system: System,
