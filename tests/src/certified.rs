@@ -6,7 +6,7 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::certify::{Subject, certify};
+use eomgen_validate::certify::{self, Subject};
 use eomgen_validate::derived::Derived;
 use eomgen_validate::derived_outputs::DerivedOutputs;
 use eomgen_validate::outputs::Outputs;
@@ -41,7 +41,7 @@ pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Ce
         let program = derived.map_err(|found| found.render(false))?.program;
         Ok(Box::new(DerivedOutputs::new(Evaluator::new(program))) as Box<dyn Outputs>)
     };
-    certify(&Subject {
+    certify::certify(&Subject {
         model,
         order,
         parameters: &parameters,

@@ -111,7 +111,7 @@ impl KineticRows {
         })
     }
 
-    /// Counts the operations, including those of `near_multiple`, with shared nodes once.
+    /// Counts the operations, including those of `beside`, with shared nodes once.
     fn operations(&self, graph: &Graph, beside: &[NodeId]) -> usize {
         let mut nodes = self.velocity_terms.nodes();
         nodes.extend(beside);

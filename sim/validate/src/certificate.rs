@@ -130,7 +130,7 @@ pub struct CertificateHeader {
 }
 
 impl Certificate {
-    /// Creates the certificate of `header`. A certificate without checks does not pass.
+    /// Creates the certificate of `about`. A certificate without checks does not pass.
     pub fn new(about: CertificateHeader, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
         let verdict = Verdict::from_checks(&checks);
         Self {

@@ -10,7 +10,7 @@ fn assert_passes(text: &str) -> Certificate {
     let certificate = certify(&model, &model);
     let failures: Vec<_> = certificate.failures().collect();
     assert!(certificate.passed, "{failures:#?}\n{text}");
-    certify
+    certificate
 }
 
 /// Asserts that the equations of `text` fail once `part` is replaced by `changed`.
