@@ -22,7 +22,7 @@
 //! let found = eomgen_discover::discover(specification, dataset, &effects, 1, &progress)?;
 //! if found.verdict == Verdict::EffectsFound {
 //!     for effect in &found.effects {
-//!         println!("{} on {}: {}", effect.at.effect, effect.at.on, effect.term);
+//!         println!("{} on {}: {}", effect.at.effect, effect.at.site, effect.term);
 //!     }
 //!     std::fs::write("extended.toml", &found.extended)?;
 //! }

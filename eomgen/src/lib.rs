@@ -118,10 +118,10 @@ pub use eomgen_macros::model;
 /// use eomgen::library::{CompiledModel, Orders, Solver};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let model = CompiledModel::load("../model-spec/models/planetary_arm.toml", Orders::All(2))?;
-/// let run = model.with(&[("b_sp", 50e-6)])?;
+/// let model = CompiledModel::load("../model-spec/models/planetary_arm.toml", Orders::Uniform(2))?;
+/// let run = model.with_parameters(&[("b_sp", 50e-6)])?;
 /// let times = [0.0, 0.01, 0.02];
-/// let motion = run.simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)?;
+/// let motion = run.simulate(run.initial_state(), &times, &run.default_inputs(), Solver::Auto)?;
 /// assert_eq!(motion.solver, Solver::Exact);
 /// let shown = run.observables(&motion)?;
 /// assert_eq!(shown.len(), times.len());

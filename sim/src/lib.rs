@@ -23,7 +23,7 @@
 //! struct Mass;
 //!
 //! impl System for Mass {
-//!     fn states(&self) -> usize {
+//!     fn state_count(&self) -> usize {
 //!         2
 //!     }
 //!
@@ -64,7 +64,7 @@
 //! spring = "1/2*k*deadzone(x, b)^2"
 //! "#;
 //! let model = eomgen_model_spec::check(Source::new("mass_with_play.toml", text))?.model;
-//! let mut propagator = PiecewiseLinear::of(&model, &[])?.propagator(&model)?;
+//! let mut propagator = PiecewiseLinear::derive(&model, &[])?.propagator_for_model(&model)?;
 //! let none = HeldInputs::zero(0);
 //! let exact = propagator.simulate(&initial, span, &samples, &none, &mut |_| {})?;
 //!

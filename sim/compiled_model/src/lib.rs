@@ -27,10 +27,10 @@
 //! [potential]
 //! spring = "1/2*k*x^2"
 //! "#;
-//! let model = CompiledModel::of_text("oscillator.toml", text, Orders::Declared)?;
-//! let run = model.with(&[("k", 18.0)])?;
+//! let model = CompiledModel::from_text("oscillator.toml", text, Orders::Declared)?;
+//! let run = model.with_parameters(&[("k", 18.0)])?;
 //! let times = [0.0, 0.5, 1.0];
-//! let motion = run.simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)?;
+//! let motion = run.simulate(run.initial_state(), &times, &run.default_inputs(), Solver::Auto)?;
 //! assert_eq!(motion.solver, Solver::Exact);
 //! for (t, state) in times.iter().zip(&motion.trajectory.states) {
 //!     assert!((state[0] - 0.1 * (3.0 * t).cos()).abs() < 1e-12);

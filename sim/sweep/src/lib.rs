@@ -17,7 +17,7 @@
 //! use eomgen_sweep::{job::Plan, parameters};
 //!
 //! let shipped = eomgen_model_spec::models::PLANETARY_ARM;
-//! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
+//! let model = CompiledModel::from_text("planetary_arm.toml", shipped.text, Orders::Uniform(0))?;
 //! let grid = Points::Grid(Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?);
 //! let span = Span { transient: 2, periods: 20 };
 //! let window = Window::Periods { forcing: "omega".to_owned(), span };
