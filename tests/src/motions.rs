@@ -159,7 +159,7 @@ impl TestMotion {
         propagator.simulate(&self.initial, span, times, &self.inputs, &mut |_| {})
     }
 
-    /// Simulates like [`try_exact`](Self::try_exact); asserts success and that every sample is
+    /// Simulates like [`try_simulate_exactly`](Self::try_simulate_exactly); asserts success and that every sample is
     /// present.
     pub fn simulate_exactly(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
         let trajectory = self

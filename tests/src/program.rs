@@ -102,7 +102,7 @@ pub fn run_on_dataset(command: &str, paths: [&PathBuf; 3]) -> Value {
     serde_json::from_str(&document).expect("JSON")
 }
 
-/// Writes the texts to a temporary folder and runs [`answered`].
+/// Writes the texts to a temporary folder and runs [`run_on_dataset`].
 pub fn run_on_texts(command: &str, texts: Texts<'_>) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);

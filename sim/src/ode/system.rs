@@ -26,10 +26,10 @@ pub trait System {
     /// Returns the number of states.
     fn state_count(&self) -> usize;
 
-    /// Writes y' at time `t` and state `y` to `out`; all have [`System::states`] entries.
+    /// Writes y' at time `t` and state `y` to `out`; all have [`System::state_count`] entries.
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]);
 
-    /// Returns the typical sizes of the states, [`System::states`] entries in the units of the
+    /// Returns the typical sizes of the states, [`System::state_count`] entries in the units of the
     /// states. Solvers compare states near 0 with them.
     fn typical_sizes(&self) -> Vec<f64> {
         vec![1.0; self.state_count()]

@@ -38,7 +38,7 @@ pub struct Run<T> {
 
 impl<T: Scalar> Run<T> {
     /// Integrates from rest at zero through `times`, in s and ascending. Steps are at most
-    /// `longest`, in s and a power of two; with [`LONGEST`] the motion determines them.
+    /// `longest`, in s and a power of two; with [`MAX_STEP_S`] the motion determines them.
     pub fn simulate(case: Case, times: &[f64], longest: f64) -> Self {
         let arm = Arm::<T>::from_case(case);
         let tips = arm.modes.iter().map(|mode| mode.tip).collect();

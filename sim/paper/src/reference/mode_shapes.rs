@@ -100,7 +100,7 @@ impl ModeShape {
 
     /// Returns the integrals of a shape with correct boundary conditions in closed form: xi^2, -2
     /// xi/z^2 and z^4 xi^2 (from phi'''' = z^4 phi and partial integration). For a shape from
-    /// [`ModeShape::printed`] use [`ModeShape::integrals_by_quadrature`].
+    /// [`ModeShape::as_printed`] use [`ModeShape::integrals_by_quadrature`].
     pub fn integrals(&self) -> ModalIntegrals {
         let phi_squared = self.xi * self.xi;
         ModalIntegrals {

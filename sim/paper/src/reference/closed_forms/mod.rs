@@ -1,7 +1,7 @@
 //! Closed forms of other machines from textbooks, one file per machine: mass matrix and forces, in
 //! the coordinates and parameter names of the specification of the same name.
 //!
-//! [`find`] returns the closed form for the name of a model. An optional parameter (a damping, an
+//! [`find_closed_form`] returns the closed form for the name of a model. An optional parameter (a damping, an
 //! inertia) that is missing counts as 0.
 
 mod cart_two_arms;
