@@ -3,7 +3,7 @@
 //!
 //! All numbers are in coherent SI units. State of a model of order S: the coordinates in the
 //! order of the specification, each field's S modes, the rates of all these in the same order,
-//! and the states of first order.
+//! and the first-order states.
 
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ pub struct Model {
     pub coordinates: Vec<Coordinate>,
     /// Signals supplied at run time.
     pub inputs: Vec<Input>,
-    /// States of first order, with rates given by the specification.
+    /// First-order states, with rates given by the specification.
     pub states: Vec<State>,
     /// Flexible fields.
     pub fields: Vec<Field>,
@@ -223,7 +223,7 @@ pub struct Input {
     pub span: Span,
 }
 
-/// State of first order z, with dz/dt = `rate`: a filter, an actuator, a current.
+/// First-order state z, with dz/dt = `rate`: a filter, an actuator, a current.
 #[derive(Clone, Debug)]
 pub struct State {
     /// ASCII name.
@@ -570,7 +570,7 @@ pub enum ExprKind {
     Coordinate(CoordinateId),
     /// Input.
     Input(InputId),
-    /// State of first order.
+    /// First-order state.
     State(StateId),
     /// Definition.
     Definition(DefinitionId),

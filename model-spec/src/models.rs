@@ -72,7 +72,7 @@ pub const CRANE: ShippedModel = ShippedModel {
     text: include_str!("../models/crane.toml"),
 };
 
-/// Moving-coil loudspeaker, with currents as states of first order.
+/// Moving-coil loudspeaker, with currents as first-order states.
 pub const LOUDSPEAKER: ShippedModel = ShippedModel {
     name: "loudspeaker",
     text: include_str!("../models/loudspeaker.toml"),

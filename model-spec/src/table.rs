@@ -50,7 +50,7 @@ pub enum Quantity {
     Expression(StringValue),
     /// TOML array: a vector from its components.
     Vector(Vec<Quantity>, Span),
-    /// Expression that replaces a short form.
+    /// Expression that replaces a shorthand.
     Expansion(Box<Syntax>),
 }
 

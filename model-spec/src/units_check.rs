@@ -270,8 +270,8 @@ impl Units<'_, '_> {
         }
     }
 
-    /// Checks the units of the quantities of short forms. Returns false after an error: the
-    /// energies of the short form would repeat it.
+    /// Checks the units of the quantities of shorthands. Returns false after an error: the
+    /// energies of the shorthand would repeat it.
     fn short_forms(
         &mut self,
         demanded: &[(Expr, Dimension, String)],

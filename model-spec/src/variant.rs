@@ -108,7 +108,7 @@ impl Model {
     }
 
     /// Returns the initial state in SI at these orders: values of coordinates and modes (0), their
-    /// rates, and the states of first order.
+    /// rates, and the first-order states.
     ///
     /// # Errors
     /// Those of [`Model::parameter_values`], and initial values that are not finite.
@@ -142,7 +142,7 @@ impl Model {
             .collect())
     }
 
-    /// Returns the ranges of the states of first order, in SI; `None` without a `range`.
+    /// Returns the ranges of the first-order states, in SI; `None` without a `range`.
     ///
     /// # Errors
     /// Those of [`Model::parameter_values`].
@@ -288,7 +288,7 @@ impl Model {
     }
 
     /// Returns the names of the states at these orders: coordinates, modes `q_1 ..`, their rates
-    /// `NAME_dot` in the same order, and the states of first order.
+    /// `NAME_dot` in the same order, and the first-order states.
     pub fn state_names(&self, orders: &[usize]) -> Vec<String> {
         let mut names: Vec<String> = self.coordinates.iter().map(|c| c.name.clone()).collect();
         for (field, order) in self.fields.iter().zip(orders) {

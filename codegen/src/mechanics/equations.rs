@@ -54,7 +54,7 @@ pub struct Equations {
     pub(crate) constraint_rows: Vec<RowNodes>,
     /// Impacts.
     pub impacts: Vec<Impact<NodeId, RowNodes>>,
-    /// Rates of the states of first order.
+    /// Rates of the first-order states.
     pub state_rates: Vec<NodeId>,
     /// Power of all non-conservative forces in W: d(T + V)/dt.
     pub power: NodeId,
@@ -75,7 +75,7 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// Returns the nodes of the accelerations and of the rates of the states of first order.
+    /// Returns the nodes of the accelerations and of the rates of the first-order states.
     pub(crate) fn rate_nodes(&self) -> Vec<NodeId> {
         let mut nodes = self.accelerations.rows.nodes();
         nodes.extend(&self.state_rates);

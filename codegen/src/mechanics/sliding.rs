@@ -90,7 +90,7 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
     found
 }
 
-/// Returns the guards that depend on rates or on states of first order and cannot be constant in a regime,
+/// Returns the guards that depend on rates or on first-order states and cannot be constant in a regime,
 /// each with its index among all guard values.
 fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;

@@ -60,7 +60,7 @@ pub struct Translator<'m> {
     coefficients: Vec<NodeId>,
     residuals: HashMap<ConstraintId, NodeId>,
     multipliers: Vec<NodeId>,
-    /// Rates along the motion for held states of first order.
+    /// Rates along the motion for held first-order states.
     rates: KnownDerivatives,
 }
 
@@ -236,7 +236,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    /// Returns the rate of a node. Known rates are reused only without states of first order, whose rates
+    /// Returns the rate of a node. Known rates are reused only without first-order states, whose rates
     /// differ from node to node.
     fn rate_along(&mut self, node: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
         let tangent = |graph: &mut Graph, leaf: NodeId| rate_of_leaf(graph, leaf, rates);
@@ -400,7 +400,7 @@ pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
     Direction::new(&tangent).derivative(graph, node)
 }
 
-/// Returns the rate of a leaf; states of first order have the rates in `rates`, unknown rates are 0.
+/// Returns the rate of a leaf; first-order states have the rates in `rates`, unknown rates are 0.
 fn rate_of_leaf(graph: &mut Graph, leaf: NodeId, rates: &HashMap<StateId, NodeId>) -> NodeId {
     match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),

@@ -62,7 +62,7 @@ pub struct AffineRows {
 pub struct AffineSystem {
     /// Number of states.
     pub states: usize,
-    /// Degrees of freedom. The state holds the positions, then as many rates, then the states of first order.
+    /// Degrees of freedom. The state holds the positions, then as many rates, then the first-order states.
     pub degrees: usize,
     /// Rates of the state, one row for each state.
     pub rates: AffineRows,

@@ -90,7 +90,7 @@ pub struct Program {
     pub coordinates: Vec<Quantity>,
     /// Fields.
     pub fields: Vec<ProgramField>,
-    /// States of first order.
+    /// First-order states.
     pub first_order: Vec<Quantity>,
     /// Inputs.
     pub inputs: Vec<Quantity>,
@@ -102,7 +102,7 @@ pub struct Program {
     pub values: Vec<Value>,
     /// Accelerations.
     pub accelerations: RowValues,
-    /// Rates of the states of first order.
+    /// Rates of the first-order states.
     pub first_order_rates: Vec<ValueId>,
     /// Mass matrix.
     pub mass: MassBlocks,
@@ -162,7 +162,7 @@ impl Program {
         self.coordinates.len() + self.fields.iter().map(|f| f.order).sum::<usize>()
     }
 
-    /// Returns the number of states: coordinates, modes, the rates of both, and states of first order.
+    /// Returns the number of states: coordinates, modes, the rates of both, and first-order states.
     pub fn states(&self) -> usize {
         2 * self.degrees_of_freedom() + self.first_order.len()
     }
@@ -224,7 +224,7 @@ impl Program {
         }
     }
 
-    /// Returns the values of the accelerations and of the rates of the states of first order.
+    /// Returns the values of the accelerations and of the rates of the first-order states.
     pub fn rate_roots(&self) -> Vec<ValueId> {
         let mut roots = self.accelerations.all();
         roots.extend(&self.first_order_rates);

@@ -68,7 +68,7 @@ pub enum Op {
     ModeCoordinates(FieldId),
     /// Rates of a field's mode coordinates.
     ModeRates(FieldId),
-    /// State of first order.
+    /// First-order state.
     State(StateId),
     /// Input.
     Input(InputId),

@@ -24,7 +24,7 @@ pub(super) struct Outline<'a> {
     pub mass_matrix: Vec<(Formula, Formula, NodeId)>,
     pub velocity_terms: Vec<Shown>,
     pub forces: Vec<Shown>,
-    /// Rates of states of first order.
+    /// Rates of first-order states.
     pub state_rates: Vec<Shown>,
     pub constraints: Vec<Shown>,
     pub multipliers: Vec<Shown>,

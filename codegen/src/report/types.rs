@@ -35,7 +35,7 @@ pub struct Report {
     pub velocity_terms: Vec<Line>,
     /// Generalised forces f.
     pub forces: Vec<Line>,
-    /// Rates of states of first order.
+    /// Rates of first-order states.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub state_rates: Vec<Line>,
     /// Constraints, each with the expression that is zero.

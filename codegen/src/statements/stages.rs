@@ -281,7 +281,7 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<()> {
     Ok(())
 }
 
-/// Adapts a description that refers to the first half of the state: states of first order make the
+/// Adapts a description that refers to the first half of the state: first-order states make the
 /// coordinates and modes less than half.
 pub(super) fn describe_by_positions(program: &Program, doc: &str) -> String {
     match program.first_order.is_empty() {

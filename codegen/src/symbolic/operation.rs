@@ -56,7 +56,7 @@ pub enum Variable {
     Rate(CoordinateId),
     /// Rates of a field's mode coordinates.
     ModeRates(FieldId),
-    /// State of first order.
+    /// First-order state.
     State(StateId),
     /// Input.
     Input(InputId),
@@ -90,7 +90,7 @@ pub enum Operation {
     Coordinate(CoordinateId),
     /// Rate of a generalised coordinate.
     Rate(CoordinateId),
-    /// State of first order.
+    /// First-order state.
     State(StateId),
     /// Input.
     Input(InputId),

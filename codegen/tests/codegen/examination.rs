@@ -168,7 +168,7 @@ fn named_coefficients(count: usize) -> String {
     masses_between_springs(count) + "[coefficients]\n" + &lines(count, &named(0), &named)
 }
 
-/// Returns masses with forces that each follow an input through a state of first order.
+/// Returns masses with forces that each follow an input through a first-order state.
 fn masses_with_states(count: usize) -> String {
     let input = |place: usize| format!("u{place} = {{ unit = \"N\" }}");
     let state = |place: usize| {

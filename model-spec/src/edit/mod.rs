@@ -73,7 +73,7 @@ pub enum Edit {
     AddParameter(NewParameter),
     /// Adds a coordinate.
     AddCoordinate(NewCoordinate),
-    /// Adds a state of first order.
+    /// Adds a first-order state.
     AddState(NewState),
     /// Adds a force.
     AddForce(NewForce),
@@ -166,7 +166,7 @@ pub struct NewCoordinate {
     pub initial: Option<NewValue>,
 }
 
-/// New state of first order, with the initial value 0.
+/// New first-order state, with the initial value 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewState {
     /// Name.

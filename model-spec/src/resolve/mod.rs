@@ -34,7 +34,7 @@ pub struct ResolvedModel {
     pub model: Model,
     /// Declared units of the observables, in their order.
     pub declared_units: Vec<Option<Unit>>,
-    /// Quantities of short forms, each with its required unit and its name in messages.
+    /// Quantities of shorthands, each with its required unit and its name in messages.
     pub required_units: Vec<(Expr, Dimension, String)>,
     /// Components of vectors, which need one unit.
     pub same_unit_vectors: Vec<Vec<Expr>>,

@@ -1,4 +1,4 @@
-//! Requirements of short forms on their quantities, checked after units and values are known.
+//! Requirements of shorthands on their quantities, checked after units and values are known.
 
 use crate::ast::Syntax;
 use crate::dimension::Dimension;

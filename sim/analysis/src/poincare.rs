@@ -19,7 +19,7 @@ const DIMENSION_PAIR_SHARES: (f64, f64) = (0.01, 0.05);
 pub struct Section<'a> {
     /// Points one after another, each with as many coordinates as `scale`.
     pub points: &'a [f64],
-    /// Extent of each coordinate over the whole motion. The extent on the section is zero for a
+    /// Extent of each coordinate over the trajectory. The extent on the section is zero for a
     /// motion with the forcing period.
     pub scale: &'a [f64],
 }

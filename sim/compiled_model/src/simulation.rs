@@ -21,7 +21,7 @@ use crate::motion::{EarlyStop, Motion, Solver, SolverChoice, StopCause};
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
-/// changes to the implicit solver. That solver needs a few times less time for the whole motion.
+/// changes to the implicit solver. That solver needs a few times less time for the trajectory.
 const MAX_STIFF_STEPS: u64 = 100_000;
 
 /// Request for a simulation.

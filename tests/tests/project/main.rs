@@ -2,6 +2,7 @@
 
 mod built_once;
 mod files;
+mod glossary;
 mod imports;
 mod installed;
 mod packages;

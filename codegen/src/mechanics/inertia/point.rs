@@ -7,7 +7,7 @@ use crate::symbolic::graph::{Graph, NodeId, Operation};
 /// Parameters, state and inputs, in SI units.
 pub(crate) struct Point<'p> {
     pub(crate) parameters: &'p [f64],
-    /// Coordinates, their rates, then the states of first order.
+    /// Coordinates, their rates, then the first-order states.
     pub(crate) state: &'p [f64],
     pub(crate) inputs: &'p [f64],
     pub(crate) coordinates: usize,

@@ -70,7 +70,7 @@ pub struct Products<N, R> {
     /// Rows of the accelerations in the product with a direction. The rows above are components of the
     /// direction.
     pub forward: R,
-    /// Rows of the states of first order in this product.
+    /// Rows of the first-order states in this product.
     pub forward_first_order: Vec<N>,
     /// Product of the weights with the column of each variable, without the contribution of the weights of
     /// the coordinates' rates.

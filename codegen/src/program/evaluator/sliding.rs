@@ -10,7 +10,7 @@ pub struct SlidingValues {
     /// Derivative of that rate by each side.
     pub by_sides: Vec<f64>,
     /// Derivative of the state's rates by the surface's own side: one number for each degree of freedom, then
-    /// one for each state of first order.
+    /// one for each first-order state.
     pub column: Vec<f64>,
 }
 

@@ -31,7 +31,7 @@ const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// So many impacts within the shortest flights for each of them have no end.
 const MAX_CONSECUTIVE_IMPACTS: usize = 256;
 
-/// Corrections of a state with closed contacts; each squares what is left.
+/// Corrections of a state with closed contacts; each squares the residual.
 const CORRECTIONS: usize = 2;
 
 /// Contacts of a model along a motion.

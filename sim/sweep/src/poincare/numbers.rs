@@ -11,7 +11,7 @@ pub const MAX_RELATIVE_DISTANCE: f64 = 1e-3;
 pub enum CoordinateComparison {
     /// Difference relative to the extent of the motion.
     Linear {
-        /// Range of the coordinate over the whole motion.
+        /// Range of the coordinate over the trajectory.
         extent: f64,
     },
     /// Difference of angles, modulo full turns.
