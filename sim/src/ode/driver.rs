@@ -105,7 +105,6 @@ fn run<S: System + ?Sized, M: Stepper>(
         recent: VecDeque::new(),
         pace: Pace::new(span.0),
         approaches: VecDeque::new(),
-        stalled_since: None,
         resolution: Resolution::new(settings.tolerance),
         projected: None,
         trajectory,
@@ -138,8 +137,6 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) pace: Pace,
     /// The last approaches to switching surfaces.
     pub(super) approaches: VecDeque<Approach>,
-    /// Number of steps at which the motion began to stall beside a surface.
-    pub(super) stalled_since: Option<u64>,
     resolution: Resolution,
     /// The state here brought back onto what the motion keeps, if that moves it.
     projected: Option<Vec<f64>>,

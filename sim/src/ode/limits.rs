@@ -18,9 +18,6 @@ const APPROACHES: usize = 64;
 /// or fewer in 222 of 230 windows.
 const MOST_CROSSED: usize = 32;
 
-/// Number of steps that a stall beside a surface must take before the motion is given up.
-const STALLED_STEPS: u64 = 100_000;
-
 /// Times closer to 0 than this part of the span count as so far from it when a step is
 /// judged too short.
 const SMALLEST_TIME: f64 = 1e-6;
@@ -111,7 +108,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         guard: Option<usize>,
         has_crossed: bool,
     ) -> Result<(), SolveError> {
-        if !M::IS_EXPLICIT {
+        // A motion that reverses at a surface stalls for some approaches and then leaves. The projection is
+        // therefore only used by a caller that can change to an implicit method.
+        let can_change = self.settings.max_steps_if_stiff < self.settings.max_steps;
+        if !M::IS_EXPLICIT || !can_change {
             return Ok(());
         }
         let (t, steps) = (self.stepper.current_point().t, self.steps());
@@ -134,12 +134,6 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return Ok(());
         };
         if crossed > MOST_CROSSED || needed < most.saturating_sub(steps) as f64 {
-            self.stalled_since = None;
-            return Ok(());
-        }
-        // A motion that reverses at a surface stalls for some steps and then leaves.
-        let since = *self.stalled_since.get_or_insert(first.steps);
-        if steps - since < STALLED_STEPS {
             return Ok(());
         }
         Err(SolveError::StiffAtSurface {
