@@ -144,14 +144,14 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
 #[test]
 fn killed_run_resumes_to_same_bytes() {
     let place = SweepFolder::new();
-    // Points of some 0.01 s, so that a kill falls between the first and the last.
+    // Points of some 0.03 s, so that a kill falls between the first and the last.
     let slow = [
         "--vary",
         "c=400:1000:5",
         "--vary",
         "omega=1:3:12",
         "--transient",
-        "20000",
+        "500000",
         "--periods",
         "8",
     ];
