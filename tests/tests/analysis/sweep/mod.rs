@@ -144,16 +144,16 @@ fn kill_after(mut child: Child, folder: &Path, some: usize) {
 #[test]
 fn killed_run_resumes_to_same_bytes() {
     let place = SweepFolder::new();
-    // Points of some 0.03 s, so that a kill falls between the first and the last.
+    // Points that take long enough, so that a kill falls between the first and the last.
     let slow = [
         "--vary",
         "c=400:1000:5",
         "--vary",
         "omega=1:3:12",
         "--transient",
-        "500000",
+        "20000",
         "--periods",
-        "8",
+        "2000",
     ];
     accept(&place.sweep("whole", &slow));
     let killed = place.path_to("killed");
