@@ -61,7 +61,7 @@ pub struct Unit {
     pub variables: Vec<Variable>,
     /// Units of measurement.
     pub units: Units,
-    /// Whether the equations depend on time.
+    /// True if the equations depend on time.
     depends_on_time: bool,
 }
 

@@ -80,7 +80,7 @@ fn spread(expr: &Expr) -> Option<&Expr> {
     }
 }
 
-/// Whether an expression holds a field.
+/// Returns true if an expression holds a field.
 fn holds_field(expr: &Expr, field: FieldId) -> bool {
     let mut found = false;
     expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));

@@ -37,7 +37,7 @@ pub struct Candidate {
     pub angle_order: Option<(String, u32)>,
     /// Name of the spring or mesh whose load scales the effect.
     pub load: Option<String>,
-    /// Whether the effect acts on a mesh with play.
+    /// True if the effect acts on a mesh with play.
     pub on_mesh: bool,
     /// Stiffness parameter of an effect that only scales a stiffness.
     pub scaled_stiffness: Option<String>,
@@ -64,9 +64,9 @@ pub struct CandidateParameter {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Whether the parameter must not be negative.
+    /// True if the parameter must not be negative.
     pub is_positive: bool,
-    /// Whether the effect vanishes at infinity instead of 0.
+    /// True if the effect vanishes at infinity instead of 0.
     pub is_inverse: bool,
     /// Initial size of a shape parameter, which does not scale the effect.
     pub shape_size: Option<f64>,
@@ -87,7 +87,7 @@ pub struct ParameterOffset {
     pub bounds: Interval,
     /// The number of its units that one SI unit is.
     per_si: f64,
-    /// Whether the effect brings the parameter with it.
+    /// True if the effect brings the parameter with it.
     is_new: bool,
 }
 

@@ -12,7 +12,7 @@ pub struct CandidateUnknown {
     pub unknown: Unknown,
     /// Value without the effect, SI.
     pub base: f64,
-    /// Whether the parameter shapes the effect without scaling it. Its value is then fixed.
+    /// True if the parameter shapes the effect without scaling it. Its value is then fixed.
     pub is_shape: bool,
 }
 

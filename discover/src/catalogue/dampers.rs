@@ -48,7 +48,7 @@ pub(super) fn find_dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
     found
 }
 
-/// Whether a force acts on a deflection of this rate, and is no component of a vector, which a
+/// Returns true if a force acts on a deflection of this rate, and is no component of a vector, which a
 /// specification names otherwise.
 fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
     let named = model.source.text.get(force.span.start..force.span.end);

@@ -13,15 +13,15 @@ pub struct Effect {
     pub description: String,
     /// Experiment that shows it best.
     pub experiment: String,
-    /// Whether the effect is periodic in an angle and tried at several shaft orders.
+    /// True if the effect is periodic in an angle and tried at several shaft orders.
     pub has_orders: bool,
-    /// Whether the effect is tried with the load of each spring or mesh.
+    /// True if the effect is tried with the load of each spring or mesh.
     pub has_loads: bool,
     /// Parameters, at least one.
     pub parameters: Vec<EffectParameter>,
     /// Edits, at least one.
     pub edits: Vec<Change>,
-    /// Whether the effect is from a file of the user.
+    /// True if the effect is from a file of the user.
     pub is_user_defined: bool,
 }
 
@@ -100,11 +100,11 @@ pub struct EffectParameter {
     pub name: String,
     /// Unit, with placeholders.
     pub unit: String,
-    /// Whether the value must not be negative.
+    /// True if the value must not be negative.
     pub is_positive: bool,
     /// Description.
     pub doc: String,
-    /// Whether the effect vanishes at infinity instead of 0.
+    /// True if the effect vanishes at infinity instead of 0.
     pub is_inverse: bool,
     /// Initial size of a parameter that shapes the effect without scaling it.
     pub shape: Option<Shape>,

@@ -125,7 +125,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     })
 }
 
-/// Whether a key says true; false where it is absent.
+/// Returns true if a key says true; false where it is absent.
 fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool> {
     let truth = record.get(key).map(|entry| entry.boolean());
     truth.map_or(Some(false), |truth| found.push_error(truth))

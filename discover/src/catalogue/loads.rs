@@ -43,7 +43,7 @@ fn of_term(model: &Model, term: &Term) -> Vec<Load> {
     squares.iter().enumerate().filter_map(load).collect()
 }
 
-/// Whether what is squared is a deflection, or what is left of one beyond a play that does not move.
+/// Returns true if what is squared is a deflection, or what is left of one beyond a play that does not move.
 fn is_load(model: &Model, base: &Expr) -> bool {
     let is_play = match &base.kind {
         ExprKind::Call(Function::Deadzone, arguments) => {

@@ -50,7 +50,7 @@ fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
     });
 }
 
-/// Whether two deflections are written the same, however they are spaced.
+/// Returns true if two deflections are written the same, however they are spaced.
 fn is_same(model: &Model, one: &Expr, other: &Expr) -> bool {
     let plain = |expr: &Expr| {
         format_expression(model, expr)
@@ -94,7 +94,7 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
         .collect()
 }
 
-/// Whether an expression holds a function with play of what deflects.
+/// Returns true if an expression holds a function with play of what deflects.
 fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     let mut found = false;
     visit_play(expr, &mut |_, arguments| {

@@ -92,7 +92,7 @@ impl Polynomial {
         Some(found)
     }
 
-    /// Whether two agree but for rounding.
+    /// Returns true if two agree but for rounding.
     fn is_near(&self, other: &Self) -> bool {
         let of = |polynomial: &Self, monomial: &Monomial| {
             polynomial.0.get(monomial).copied().unwrap_or(0.0)

@@ -108,7 +108,7 @@ pub(super) fn is_deflection(model: &Model, expr: &Expr) -> bool {
     is_position(model, expr, &mut BTreeSet::new())
 }
 
-/// Whether an expression is a position: sums of coordinates, times what is fixed. `read`: definitions
+/// Returns true if an expression is a position: sums of coordinates, times what is fixed. `read`: definitions
 /// that were read before, each but once.
 fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) -> bool {
     match &expr.kind {

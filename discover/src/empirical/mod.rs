@@ -324,7 +324,7 @@ fn fitted(
     }
 }
 
-/// Whether an expression is accepted: by all that is asked of an effect, each of its terms by
+/// Returns true if an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
 fn accepted(
     (before, after): (&Fit, &Fit),

@@ -104,7 +104,7 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    /// Whether a motion stays within its limits.
+    /// Returns true if a motion stays within its limits.
     fn check(
         &self,
         bounds: &Bounds,

@@ -27,12 +27,12 @@ pub enum Waveform {
     Triangle(u32),
     /// Constant value at one end.
     Constant {
-        /// Whether the upper end is used.
+        /// True if the upper end is used.
         is_upper: bool,
     },
     /// One end for a fraction of the duration, then rest.
     Release {
-        /// Whether the upper end is used.
+        /// True if the upper end is used.
         is_upper: bool,
         /// Fraction of the duration.
         fraction: f64,

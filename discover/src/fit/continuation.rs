@@ -25,7 +25,7 @@ pub struct ContinuationResult {
     pub prior: InitialStatePrior,
     /// The estimate.
     pub estimate: Estimate,
-    /// Whether further steps would decrease the cost only slightly.
+    /// True if further steps would decrease the cost only slightly.
     pub is_converged: bool,
 }
 

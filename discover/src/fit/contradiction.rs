@@ -65,7 +65,7 @@ pub fn describe_contradictions(
     }
 }
 
-/// Whether records could still contradict each other, whatever so many more came to alone.
+/// Returns true if records could still contradict each other, whatever so many more came to alone.
 fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool {
     let of_its_own = records.iter().filter(|record| is_better_alone(record));
     if of_its_own.count() + more > 1 {
@@ -78,7 +78,7 @@ fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool 
     !Oddness::of(&left, floor).odd.is_empty()
 }
 
-/// Whether a record is explained much better alone than with the others.
+/// Returns true if a record is explained much better alone than with the others.
 fn is_better_alone(record: &SingleRecordFit) -> bool {
     record.rms.is_finite() && record.rms * thresholds::MIN_CONTRADICTION_RATIO < record.joint_rms
 }
@@ -265,7 +265,7 @@ mod tests {
         }
     }
 
-    /// Whether what was found of all records is a contradiction, but for their values.
+    /// Returns true if what was found of all records is a contradiction, but for their values.
     fn contradicts(records: &[SingleRecordFit]) -> bool {
         let own = records.iter().filter(|of| is_better_alone(of)).count();
         let left: Vec<f64> = records.iter().map(|of| of.rms).collect();

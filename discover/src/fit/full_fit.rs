@@ -26,9 +26,9 @@ struct StartingPoint {
     prior: InitialStatePrior,
     /// The estimate so far.
     estimate: Estimate,
-    /// Whether its windows were followed anew.
+    /// True if its windows were followed anew.
     is_followed: bool,
-    /// Whether it leaves too much to be worth more.
+    /// True if it leaves too much to be worth more.
     is_far: bool,
 }
 
@@ -38,7 +38,7 @@ struct Converged {
     prior: InitialStatePrior,
     /// What is left of them.
     residuals: Residuals,
-    /// Whether that is too much to be worth more.
+    /// True if that is too much to be worth more.
     is_far: bool,
 }
 

@@ -22,7 +22,7 @@ pub struct PreliminaryFit {
     /// Residual RMS of whole windows, in standard deviations, above which the initial states are
     /// not estimated again.
     pub(crate) max_rms: f64,
-    /// Whether further steps over the beginnings of windows would decrease the cost only slightly.
+    /// True if further steps over the beginnings of windows would decrease the cost only slightly.
     pub(crate) is_converged: bool,
     pub(crate) texts: SpecificationTexts,
     pub(crate) model: EstimationModel,

@@ -112,7 +112,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
 struct Correspondence {
     correlation: f64,
     factor: f64,
-    /// Whether there is enough to be followed.
+    /// True if there is enough to be followed.
     shows: bool,
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn compute_gap(
 /// Evidence for the certainty of effects, besides their own statistics.
 #[derive(Clone, Copy)]
 pub(crate) struct Certainty {
-    /// Whether the remaining gap and the nuisances allow a definite name.
+    /// True if the remaining gap and the nuisances allow a definite name.
     pub is_sure: bool,
     /// Noise floor, in standard deviations of the noise.
     pub floor: f64,

@@ -74,7 +74,7 @@ pub(crate) fn find_worst_window(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
 }
 
-/// Whether the residual's size follows the channel's speed.
+/// Returns true if the residual's size follows the channel's speed.
 fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();

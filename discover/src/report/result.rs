@@ -132,7 +132,7 @@ pub(crate) struct ResultFigures {
 /// Result of a comparison.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Whether the gap is larger than for a correct model.
+    /// True if the gap is larger than for a correct model.
     pub has_gap: bool,
     /// Results that a search also has.
     pub compared: CommonResult,
@@ -292,7 +292,7 @@ pub struct SearchStep {
 /// Result of the checks of the extended equations.
 #[derive(Clone, Debug)]
 pub struct Validation {
-    /// Whether all checks passed.
+    /// True if all checks passed.
     pub has_passed: bool,
     /// Executed checks.
     pub checks: Vec<String>,

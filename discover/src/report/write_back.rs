@@ -85,7 +85,7 @@ fn provenance(problem: &EstimationProblem<'_>) -> String {
     }
 }
 
-/// Whether an unknown's estimate differs from where it began, at all or by more than its
+/// Returns true if an unknown's estimate differs from where it began, at all or by more than its
 /// uncertainty makes of it.
 fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     let least = if at_all {

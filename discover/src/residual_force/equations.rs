@@ -24,7 +24,7 @@ pub struct Equation {
     pub target: String,
     /// Unit of that expression, `rad` or `m`.
     pub unit: &'static str,
-    /// Whether the expression is the deflection of a mesh with play.
+    /// True if the expression is the deflection of a mesh with play.
     pub is_mesh: bool,
 }
 
@@ -262,7 +262,7 @@ fn bending(model: &Model) -> Vec<Option<bool>> {
     known
 }
 
-/// Whether an expression holds a field; none if it holds more than positions.
+/// Returns true if an expression holds a field; none if it holds more than positions.
 fn bends(known: &[Option<bool>], expr: &Expr) -> Option<bool> {
     let (mut bends, mut is_position) = (false, true);
     expr.visit(&mut |part| match &part.kind {

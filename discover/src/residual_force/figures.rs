@@ -19,9 +19,9 @@ const APART: f64 = 0.003;
 struct Picture {
     title: &'static str,
     axes: Axes,
-    /// Whether points belong to a line.
+    /// True if points belong to a line.
     is_line: bool,
-    /// Whether the force is free in every window, and small where they do not show it.
+    /// True if the force is free in every window, and small where they do not show it.
     by_window: bool,
     of: fn(&ResidualForce) -> &Profile,
 }
@@ -148,7 +148,7 @@ fn most(profile: &Profile) -> f64 {
     }
 }
 
-/// Whether lines with bends over the time of a window follow what the force does fastest.
+/// Returns true if lines with bends over the time of a window follow what the force does fastest.
 fn is_resolved(force: &ResidualForce) -> bool {
     let gap = match force.time.arguments[..] {
         [first, second, ..] => second - first,

@@ -12,7 +12,7 @@ use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
 use eomgen_sim::ode::runge_kutta::RungeKutta;
 
-/// Whether each of a step's four slopes is at its beginning, its middle or its end.
+/// True if each of a step's four slopes is at its beginning, its middle or its end.
 const POINTS: [usize; 4] = [0, 1, 1, 2];
 
 /// A window of a model that is simulated by Runge-Kutta steps.

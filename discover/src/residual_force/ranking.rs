@@ -17,11 +17,11 @@ pub(crate) struct EquationRanking {
     pub best: EquationId,
     /// Best family of the best equation.
     pub family: FamilyId,
-    /// Whether that family is a function of rate or position.
+    /// True if that family is a function of rate or position.
     pub is_state: bool,
     /// Explained fraction of the squares.
     pub explained_fraction: f64,
-    /// Whether the force is significant.
+    /// True if the force is significant.
     pub is_significant: bool,
 }
 

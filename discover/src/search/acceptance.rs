@@ -33,7 +33,7 @@ pub struct EffectUnknown {
     pub effect: EffectId,
     /// Value without the effect, SI.
     pub base: f64,
-    /// Whether it shapes the effect without scaling it.
+    /// True if it shapes the effect without scaling it.
     pub is_shape: bool,
     /// Standard deviation of its removed prior, SI.
     pub dropped_prior_sd: Option<f64>,

@@ -50,7 +50,7 @@ pub fn eliminate_backwards(
     }
 }
 
-/// Whether a fit with less leaves no more than one with more, but for what is asked of an effect.
+/// Returns true if a fit with less leaves no more than one with more, but for what is asked of an effect.
 fn is_as_good(with: &Fit, without: &Fit) -> bool {
     let worse =
         |with: f64, without: f64| with < (1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * without;

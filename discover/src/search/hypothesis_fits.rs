@@ -24,7 +24,7 @@ pub struct FittedHypothesis {
     pub fit: Fit,
     /// Result of the acceptance test.
     pub verdict: Result<TestStatistics, Rejection>,
-    /// Whether the candidates explain the records, even if their sizes are uncertain. They are then
+    /// True if the candidates explain the records, even if their sizes are uncertain. They are then
     /// equivalent to an accepted effect.
     pub explains_records: bool,
     /// P-value of the test records.

@@ -15,7 +15,7 @@ pub struct CandidatePool<'r> {
     pub candidates: &'r [Candidate],
     /// Screening results.
     pub screening: &'r Screening,
-    /// Whether the screening used whole windows.
+    /// True if the screening used whole windows.
     pub uses_whole_windows: bool,
     /// Maximum number of preliminary fits.
     pub max_preliminary_fits: usize,

@@ -26,7 +26,7 @@ use crate::thresholds;
 pub struct SearchRound<'l> {
     /// Context of the round.
     pub context: RoundContext<'l>,
-    /// Whether no effect was accepted yet.
+    /// True if no effect was accepted yet.
     pub is_first_round: bool,
 }
 
@@ -117,18 +117,18 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Whether a fitted hypothesis is accepted and leaves little.
+    /// Returns true if a fitted hypothesis is accepted and leaves little.
     fn is_close(&self, fitted: &FittedHypothesis) -> bool {
         fitted.verdict.is_ok() && self.context.explains_most_of_gap(&fitted.fit)
     }
 
-    /// Whether a fitted hypothesis is accepted and leaves little more than a right model would.
+    /// Returns true if a fitted hypothesis is accepted and leaves little more than a right model would.
     fn is_near_floor(&self, fitted: &FittedHypothesis) -> bool {
         let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * self.context.floor;
         fitted.verdict.is_ok() && fitted.fit.is_below(little)
     }
 
-    /// Whether a fitted hypothesis is accepted and leaves no more than a right model would.
+    /// Returns true if a fitted hypothesis is accepted and leaves no more than a right model would.
     fn is_enough(&self, fitted: &FittedHypothesis) -> bool {
         fitted.verdict.is_ok() && fitted.fit.is_at_floor(self.context.floor)
     }
@@ -285,7 +285,7 @@ impl SearchRound<'_> {
             .partition(|c| c.angle_order.is_none() || !has_play)
     }
 
-    /// Whether one of the screened promises most of the gap.
+    /// Returns true if one of the screened promises most of the gap.
     fn promises_enough(&self, screening: &Screening) -> bool {
         let best = screening
             .responses
@@ -331,7 +331,7 @@ fn best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
     accepted.min_by(|a, b| a.fit.rms().total_cmp(&b.fit.rms()))
 }
 
-/// Whether any fitted hypothesis is such.
+/// Returns true if any fitted hypothesis is such.
 fn is_any(tested: &[TestedPool], is: &dyn Fn(&FittedHypothesis) -> bool) -> bool {
     tested
         .iter()

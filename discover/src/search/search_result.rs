@@ -37,7 +37,7 @@ pub struct RejectedCandidate {
     pub candidate: Candidate,
     /// Reason of the rejection.
     pub reason: String,
-    /// Whether the records cannot show the effect.
+    /// True if the records cannot show the effect.
     pub is_untestable: bool,
     /// P-value of the test records; `None` if the candidate was not fitted.
     pub p_value: Option<f64>,

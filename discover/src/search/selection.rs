@@ -237,7 +237,7 @@ pub fn select_best_fit(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedI
     }
 }
 
-/// Whether a fit leaves clearly less than another: on both sets of records, or of the test records
+/// Returns true if a fit leaves clearly less than another: on both sets of records, or of the test records
 /// for certain and of the training records no more, where the other's further unknowns help it.
 fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     let statistics = compute_test_statistics(other, one, &[]);
@@ -292,7 +292,7 @@ fn similarity(
     }
 }
 
-/// Whether records do not distinguish what led to a fit from what led to another: the responses are
+/// Returns true if records do not distinguish what led to a fit from what led to another: the responses are
 /// similar, and the other leaves no more of the test records; nor, but for two names of one thing, of
 /// the training records. One that leaves less, though not so clearly that it is named instead, is no worse a name.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {

@@ -44,7 +44,7 @@ pub fn restart_shapes(pool: &CandidatePool<'_>, fitted_hypotheses: &mut [FittedH
     }
 }
 
-/// Whether a fitted hypothesis is accepted where another is not, or else leaves less.
+/// Returns true if a fitted hypothesis is accepted where another is not, or else leaves less.
 fn is_better(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
     match (one.verdict.is_ok(), other.verdict.is_ok()) {
         (true, false) => true,

@@ -54,13 +54,13 @@ pub enum SolveError {
     /// The system is stiff beside a switching surface: trial states of an explicit method overshoot it
     /// unless steps are so short that there would be no end within the limit on steps.
     StiffAtSurface {
-        /// Where the solver stands.
+        /// Time, s.
         t: f64,
-        /// The index of the switching function.
+        /// Index of the switching function.
         guard: usize,
         /// Average step between two approaches to the surface, s.
         within: f64,
-        /// How many more steps there would be.
+        /// Estimated number of further steps.
         steps: f64,
     },
     /// The limit on steps is reached.

@@ -100,9 +100,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// Takes note of an approach to the surface `guard`. Returns an error if trial states of an explicit method
-    /// overshoot a surface, which the motion itself does not cross, so often that there would be no end: the
-    /// rates lead back to the surface within less than a step.
+    /// Records an approach to the surface `guard`. Returns an error if trial states of an explicit method overshoot
+    /// a surface that the motion does not cross, and the projected number of steps exceeds `max_steps_if_stiff`.
     pub(super) fn check_approaches(
         &mut self,
         guard: Option<usize>,
@@ -128,12 +127,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         };
         let crossed = self.approaches.iter().filter(|a| a.has_crossed).count();
         let needed = (self.end - t) / (t - first.t) * (steps - first.steps) as f64;
-        let settings = self.settings;
-        let most = settings.max_steps.min(settings.max_steps_if_stiff);
+        let allowed = self.settings.max_steps_if_stiff.saturating_sub(steps);
         let Some(guard) = guard else {
             return Ok(());
         };
-        if crossed > MOST_CROSSED || needed < most.saturating_sub(steps) as f64 {
+        if crossed > MOST_CROSSED || needed < allowed as f64 {
             return Ok(());
         }
         Err(SolveError::StiffAtSurface {

@@ -24,7 +24,7 @@ pub struct Label {
     pub machine: crate::machines::Kind,
     /// Hidden effects.
     pub hidden: Vec<Truth>,
-    /// Whether all parameters and sensors deviate according to their priors.
+    /// True if all parameters and sensors deviate according to their priors.
     pub full_priors: bool,
     /// True values of the declared parameters, SI.
     pub declared: Vec<(String, f64)>,

@@ -128,7 +128,7 @@ fn step_table(steps: &[SearchStep]) -> Markup {
     table(&headings, &rows)
 }
 
-/// Whether the equations of the specification that was written are right.
+/// Returns true if the equations of the specification that was written are right.
 fn validation_line(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};

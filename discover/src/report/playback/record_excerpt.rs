@@ -26,7 +26,7 @@ pub(super) struct RecordExcerpt {
     pub windows: Vec<ExcerptWindow>,
     /// RMS residual of each channel for these samples, before and after the search, SI.
     pub rms_before_after: Vec<[f64; 2]>,
-    /// Whether the excerpt is the complete record.
+    /// True if the excerpt is the complete record.
     pub is_complete: bool,
 }
 

@@ -30,7 +30,7 @@ pub struct Judged {
     pub found: Vec<(String, String, String)>,
     /// Judgement.
     pub judgement: Judgement,
-    /// Whether all nuisances are at full priors.
+    /// True if all nuisances are at full priors.
     pub full_priors: bool,
     /// Number of effects in each found class.
     pub classes: Vec<usize>,

@@ -32,7 +32,7 @@ const MAX_RISE: f64 = 10.0;
 pub struct Verdict {
     pub failures: Vec<String>,
     pub runs: usize,
-    /// Whether the exact solver accepted the machine.
+    /// True if the exact solver accepted the machine.
     pub is_exact: bool,
     pub switches: usize,
     /// Largest rise of the energy relative to the allowed one.

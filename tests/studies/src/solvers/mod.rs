@@ -32,7 +32,7 @@ struct Outcome {
     /// Largest difference of two solvers relative to the allowed one.
     worst: f64,
     is_exact: bool,
-    /// Whether the machine is passive, so that its energy was checked.
+    /// True if the machine is passive, so that its energy was checked.
     is_passive: bool,
 }
 
