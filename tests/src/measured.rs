@@ -14,7 +14,7 @@ const STEP: f64 = 0.005;
 /// Noise of the position sensor, m.
 const NOISE: f64 = 1e-6;
 
-/// Temporary folder with a dataset and its records.
+/// Temporary folder for a dataset and its records.
 pub struct Measured {
     folder: tempfile::TempDir,
 }
@@ -102,6 +102,13 @@ pub fn record_with_force(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
 }
 
 impl Measured {
+    /// Creates an empty folder.
+    pub fn empty() -> Self {
+        Self {
+            folder: tempfile::tempdir().expect("a folder"),
+        }
+    }
+
     /// Writes two valid records of a stage with this dry friction, N.
     pub fn stage(friction: f64) -> Self {
         Self::stage_with_force(&dry(friction))
@@ -109,9 +116,7 @@ impl Measured {
 
     /// Writes two valid records of a stage with an additional force, in N.
     pub fn stage_with_force(other: &dyn Fn(Moment) -> f64) -> Self {
-        let measured = Self {
-            folder: tempfile::tempdir().expect("a folder"),
-        };
+        let measured = Self::empty();
         measured.write("dataset.toml", DESCRIPTION.as_bytes());
         measured.write("train.csv", record_with_force(other, 0.0).as_bytes());
         measured.write("test.csv", record_with_force(other, 1.0).as_bytes());

@@ -1,6 +1,7 @@
-//! Commands printed in README.md and docs/, with the output shown there.
+//! README.md and the pages of docs/: printed commands with the output shown there, files that the
+//! reader saves, links and pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::models::project;
 
@@ -24,30 +25,139 @@ pub struct OutputBlock {
     pub lines: Vec<String>,
 }
 
-/// Returns the names and texts of README.md and all pages of docs/.
+/// Returns the names and texts of README.md and all pages of docs/, in alphabetical order.
 pub fn pages() -> Vec<(String, String)> {
-    let docs = std::fs::read_dir(project().join("docs")).expect("docs");
-    let docs = docs.map(|entry| entry.expect("an entry").path());
-    let mut paths: Vec<PathBuf> = docs
-        .filter(|path| path.extension().is_some_and(|end| end == "md"))
-        .collect();
+    let mut paths = files_in(&project().join("docs"));
+    paths.retain(|path| path.extension().is_some_and(|end| end == "md"));
     paths.push(project().join("README.md"));
     paths.sort();
     let page = |path: PathBuf| {
-        let name = path.strip_prefix(project()).expect("in the project");
         let text = std::fs::read_to_string(&path).expect("a page");
-        (name.display().to_string(), text)
+        (name_in_project(&path), text)
     };
     paths.into_iter().map(page).collect()
 }
 
-/// Returns all commands in console blocks, in the order of the page, and the blocks without a
+/// Returns the names and texts of all pages of docs/recipes/.
+pub fn recipes() -> Vec<(String, String)> {
+    let mut pages = pages();
+    pages.retain(|(page, _)| is_recipe(page));
+    pages
+}
+
+/// Returns whether a page or a picture belongs to a recipe.
+pub fn is_recipe(name: &str) -> bool {
+    name.starts_with("docs/recipes/")
+}
+
+/// Returns the path of a file relative to the project's folder.
+pub fn name_in_project(path: &Path) -> String {
+    let name = path.strip_prefix(project()).expect("in the project");
+    name.display().to_string()
+}
+
+/// Returns all files below a folder, without those behind links.
+pub fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_symlink() {
+            continue;
+        }
+        if path.is_dir() {
+            files.extend(files_in(&path));
+        } else {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// Returns the texts of the fenced blocks in a language.
+pub fn blocks<'a>(text: &'a str, language: &'a str) -> impl Iterator<Item = &'a str> {
+    let fenced = fenced_blocks(text).into_iter();
+    fenced.filter_map(move |block| (block.language == language).then_some(block.text))
+}
+
+/// Returns the names and texts of the files that a page tells the reader to save: blocks below a
+/// paragraph with "Save this as `NAME`".
+pub fn saved_files(text: &str) -> Vec<(&str, &str)> {
+    fn file<'a>(block: FencedBlock<'a>) -> Option<(&'a str, &'a str)> {
+        let paragraph = block.before.trim_end().rsplit("\n\n").next()?;
+        let (_, name) = paragraph.split_once("Save this as `")?;
+        Some((name.split('`').next()?, block.text))
+    }
+    fenced_blocks(text).into_iter().filter_map(file).collect()
+}
+
+/// Returns the targets of all links and pictures outside code. The flag marks pictures.
+pub fn links(text: &str) -> Vec<(String, bool)> {
+    let mut found = Vec::new();
+    for prose in text.split("```").step_by(2) {
+        let prose: String = prose.split('`').step_by(2).collect::<Vec<_>>().join("`");
+        let mut rest = prose.as_str();
+        while let Some(place) = rest.find("](") {
+            let label = rest[..place].rfind('[').unwrap_or_default();
+            let is_picture = rest[..label].ends_with('!');
+            rest = &rest[place + 2..];
+            let target = rest.split(')').next().unwrap_or_default();
+            found.push((target.to_owned(), is_picture));
+        }
+    }
+    found
+}
+
+/// Returns the anchors of a page's headings, as a browser or an editor derives them.
+pub fn anchors(text: &str) -> Vec<String> {
+    let outside: String = text.split("```").step_by(2).collect();
+    let headings = outside.lines().filter(|line| line.starts_with('#'));
+    let anchor = |line: &str| {
+        let title = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = title.chars().filter_map(|letter| match letter {
+            ' ' => Some('-'),
+            letter if letter.is_alphanumeric() || "-_".contains(letter) => Some(letter),
+            _ => None,
+        });
+        kept.collect()
+    };
+    headings.map(anchor).collect()
+}
+
+/// Fenced block of a page.
+struct FencedBlock<'a> {
+    /// Text of the page before the block.
+    before: &'a str,
+    language: &'a str,
+    text: &'a str,
+}
+
+fn fenced_blocks(page: &str) -> Vec<FencedBlock<'_>> {
+    const FENCE: &str = "```";
+    let mut blocks = Vec::new();
+    let mut from = 0;
+    while let Some(begin) = page[from..].find(FENCE).map(|place| from + place) {
+        let opened = &page[begin + FENCE.len()..];
+        let (language, text) = opened.split_once('\n').unwrap_or((opened, ""));
+        let (text, _) = text.split_once(FENCE).unwrap_or((text, ""));
+        let start = begin + FENCE.len() + language.len() + 1;
+        blocks.push(FencedBlock {
+            before: &page[..begin],
+            language,
+            text,
+        });
+        from = (start + text.len() + FENCE.len()).min(page.len());
+    }
+    blocks
+}
+
+/// Returns all commands in console blocks of `pages`, in their order, and the blocks without a
 /// command.
-pub fn commands_in_blocks() -> (Vec<PrintedCommand>, Vec<OutputBlock>) {
+pub fn commands_in_blocks_of(
+    pages: &[(String, String)],
+) -> (Vec<PrintedCommand>, Vec<OutputBlock>) {
     let (mut printed, mut loose) = (Vec::new(), Vec::new());
-    for (page, text) in pages() {
-        for block in text.split("```console\n").skip(1) {
-            let block = block.split("```").next().unwrap_or_default();
+    for (page, text) in pages {
+        for block in blocks(text, "console") {
             let lines: Vec<String> = block.lines().map(str::to_owned).collect();
             if !lines.iter().any(|line| line.starts_with("$ ")) {
                 let page = page.clone();
@@ -55,7 +165,7 @@ pub fn commands_in_blocks() -> (Vec<PrintedCommand>, Vec<OutputBlock>) {
                 continue;
             }
             assert!(lines[0].starts_with("$ "), "{page}: {block}");
-            commands(&page, &lines, &mut printed);
+            commands(page, &lines, &mut printed);
         }
     }
     (printed, loose)
@@ -89,11 +199,11 @@ fn commands(page: &str, lines: &[String], printed: &mut Vec<PrintedCommand>) {
     }
 }
 
-/// Returns all commands in running text and tables.
-pub fn commands_in_text() -> Vec<PrintedCommand> {
+/// Returns all commands in running text and tables of `pages`.
+pub fn commands_in_text_of(pages: &[(String, String)]) -> Vec<PrintedCommand> {
     let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/"];
     let mut printed = Vec::new();
-    for (page, text) in pages() {
+    for (page, text) in pages {
         // Without the blocks, odd parts of the text are between single backticks.
         let prose: String = text.split("```").step_by(2).collect();
         for code in prose.split('`').skip(1).step_by(2) {

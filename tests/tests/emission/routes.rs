@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use eomgen_tests::models::{load, path, project, samples};
+use eomgen_tests::pages::{blocks, pages};
 use eomgen_tests::program::{eomgen, run};
 
 const ORDER: usize = 4;
@@ -149,17 +150,13 @@ fn command_line_example_prints_documented_line() {
     );
 }
 
-fn rust_blocks(page: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(project().join(page)).expect("the page");
-    let blocks = text.split("```rust\n").skip(1);
-    let blocks = blocks.filter_map(|rest| rest.split("```").next());
-    blocks.map(str::to_owned).collect()
-}
-
 #[test]
 fn pages_show_the_code_of_the_examples() {
-    let pages = ["README.md", "docs/embedding.md"];
-    let blocks: Vec<String> = pages.into_iter().flat_map(rust_blocks).collect();
+    let pages = pages();
+    let blocks: Vec<&str> = pages
+        .iter()
+        .flat_map(|(_, text)| blocks(text, "rust"))
+        .collect();
     let examples: Vec<String> = [
         "with_macro/src/lib.rs",
         "with_macro/src/main.rs",
@@ -174,11 +171,11 @@ fn pages_show_the_code_of_the_examples() {
     .map(|file| std::fs::read_to_string(project().join("examples").join(file)).expect("a file"))
     .collect();
     for block in &blocks {
-        let shown = examples.iter().any(|example| example.contains(block));
+        let shown = examples.iter().any(|example| example.contains(*block));
         assert!(shown, "no example contains:\n{block}");
     }
     for example in &examples {
-        let shown = blocks.iter().any(|block| example.contains(block));
+        let shown = blocks.iter().any(|block| example.contains(*block));
         assert!(shown, "no page contains:\n{example}");
     }
 }

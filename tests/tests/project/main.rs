@@ -6,6 +6,8 @@ mod glossary;
 mod imports;
 mod installed;
 mod packages;
+#[cfg(unix)]
+mod pictures;
 mod printed_commands;
 mod shells;
 mod streams;

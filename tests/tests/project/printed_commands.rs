@@ -1,21 +1,30 @@
-//! Commands printed in README.md and docs/. Commands of the program run in the order of the pages
-//! and in one folder, and their output must match. Other commands must occur in `.ci/run`. A
-//! command of an unknown form fails the test.
+//! Commands printed in README.md and docs/. The commands of a page run in order in one folder, with
+//! the files that the page tells the reader to save, and their output must match. So must the
+//! pictures of the page that they write ([`pictures`]). Other commands must occur in `.ci/run`. A command of an
+//! unknown form fails the test.
 //!
-//! The folder consists of links, and the commands need a Unix shell.
+//! The folders consist of links, and the commands need a Unix shell.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::{path, project};
-use eomgen_tests::pages::{PrintedCommand, commands_in_blocks, commands_in_text, pages};
+use eomgen_tests::pages::{
+    PrintedCommand, blocks, commands_in_blocks_of, commands_in_text_of, is_recipe, saved_files,
+};
 use eomgen_tests::program::{self, text};
 
+use super::pictures;
+
 const TIMEOUT: Duration = Duration::from_secs(300);
+
+/// Number of pages that run at the same time.
+const THREADS: usize = 2;
 
 /// Replacements that reduce long-running commands.
 const REDUCED: [(&str, &str); 2] = [
@@ -104,8 +113,11 @@ const SHOWN_ELSEWHERE: [(&str, &str); 1] = [(
     "tests/macro_errors/errors/misspelt_name.stderr",
 )];
 
-/// Figures written by a printed command, and their copies in the docs.
-const FIGURES: [(&str, &str); 1] = [("tour/trajectory.svg", "docs/tour.svg")];
+/// Commands that work from the first release on.
+const AFTER_RELEASE: [&str; 2] = ["cargo binstall eomgen-cli", "pip install eomgen"];
+
+/// Pages whose commands run in an empty folder.
+const IN_EMPTY_FOLDER: [&str; 1] = ["docs/first_machine.md"];
 
 /// Placeholders in commands, and their replacements.
 const PLACEHOLDERS: [(&str, &str); 3] = [
@@ -167,25 +179,29 @@ x = { unit = "m" }
 mass = "1/2*a*dot(x)^2"
 "#;
 
-/// Returns a folder with links to the project and the files that the pages tell the reader to
-/// write.
-fn reader_folder() -> Measured {
+/// Returns the folder of a reader who has saved the files of a page. Unless the page begins in an
+/// empty folder, it has links to the project, records, and the specifications that several pages
+/// name.
+fn reader_folder(page: &str, text: &str) -> Measured {
     // Records of a stage with dry friction, for `compare` and `discover`.
+    let measured = match IN_EMPTY_FOLDER.contains(&page) {
+        true => Measured::empty(),
+        false => folder_with_project(),
+    };
+    for (name, text) in saved_files(text) {
+        measured.write(name, text.as_bytes());
+    }
+    measured
+}
+
+fn folder_with_project() -> Measured {
     let measured = Measured::stage(3.0);
-    let (_, readme) = pages()
-        .into_iter()
-        .find(|(name, _)| name == "README.md")
-        .expect("README");
-    let specification = readme.split("```toml\n").nth(1).expect("a specification");
-    let specification = specification.split("```").next().expect("its end");
+    let language = std::fs::read_to_string(project().join("docs/specification.md"));
+    let language = language.expect("a page");
+    let specification = blocks(&language, "toml").next().expect("a specification");
     for name in ["driven_pendulum.toml", "my_machine.toml"] {
         measured.write(name, specification.as_bytes());
     }
-    let controller = project().join("examples/with_command_line/controller.rs");
-    measured.write(
-        "controller.rs",
-        &std::fs::read(controller).expect("an example"),
-    );
     for (name, text) in [("wrong", WRONG), ("misspelt", MISSPELT), ("circle", CIRCLE)] {
         measured.write(&format!("{name}.toml"), text.as_bytes());
     }
@@ -196,11 +212,26 @@ fn reader_folder() -> Measured {
     measured
 }
 
+/// Splits a command into words, which may be in quotes.
+fn words(command: &str) -> Vec<String> {
+    let (mut words, mut quote) = (vec![String::new()], None);
+    for letter in command.chars() {
+        match (quote, letter) {
+            (Some(open), _) if open == letter => quote = None,
+            (None, '\'' | '"') => quote = Some(letter),
+            (None, ' ') => words.push(String::new()),
+            _ => words.last_mut().expect("a word").push(letter),
+        }
+    }
+    assert!(quote.is_none(), "an open quote: {command}");
+    words
+}
+
 /// Runs a command of the program; returns its stdout and stderr. With `refused` it must exit with
-/// an error status. Words may be in single quotes but must not contain spaces.
+/// an error status.
 fn run_program(arguments: &str, folder: &Path, refused: bool) -> String {
     let output = assert_cmd::Command::new(program::path())
-        .args(arguments.split(' ').map(|word| word.trim_matches('\'')))
+        .args(words(arguments))
         .current_dir(folder)
         .timeout(TIMEOUT)
         .output()
@@ -211,7 +242,7 @@ fn run_program(arguments: &str, folder: &Path, refused: bool) -> String {
     said
 }
 
-/// Runs a line of compilers and compiled programs; returns the output.
+/// Runs a line of compilers, compiled programs and `cat`; returns the output.
 fn run_compilers(line: &str, folder: &Path) -> String {
     let output = Command::new("sh")
         .args(["-c", line])
@@ -281,10 +312,12 @@ fn assert_shows(shown: &[String], output: &str, command: &str) {
 /// Form of a printed command.
 enum Form<'a> {
     Program(&'a str),
-    /// Line of compiler commands.
+    /// Line of a shell with compilers, compiled programs or `cat`.
     Compilers,
     /// Python example that needs SciPy.
     Scipy,
+    /// Command of [`AFTER_RELEASE`].
+    AfterRelease,
     /// Command listed in the constants above.
     Elsewhere(&'static str),
     /// Tests of a package, or of one of its files, that the full test run includes.
@@ -295,6 +328,9 @@ enum Form<'a> {
 
 fn form(command: &str) -> Form<'_> {
     let words: Vec<&str> = command.split(' ').collect();
+    if AFTER_RELEASE.contains(&command) {
+        return Form::AfterRelease;
+    }
     if let Some((_, file)) = TESTED_ELSEWHERE
         .iter()
         .find(|(start, _)| command.starts_with(start))
@@ -306,7 +342,7 @@ fn form(command: &str) -> Form<'_> {
             Form::Program(command.trim_start_matches("cargo run --release -- "))
         }
         ["eomgen", ..] => Form::Program(command.trim_start_matches("eomgen ")),
-        ["rustc" | "cc", ..] => Form::Compilers,
+        ["rustc" | "cc" | "cat", ..] => Form::Compilers,
         ["python3", ..] => Form::Scipy,
         ["cargo", "test", "--release", ref rest @ ..] => match rest {
             ["--workspace"] => Form::Tests(""),
@@ -368,25 +404,34 @@ fn assert_are_tests(command: &str) {
     }
 }
 
-#[test]
-fn printed_commands_give_the_printed_output() {
-    let folder = reader_folder();
-    let place = folder.file(".");
-    let ci = std::fs::read_to_string(project().join(".ci/run")).expect(".ci/run");
-    let (in_blocks, _) = commands_in_blocks();
-    assert!(in_blocks.len() > 20, "{in_blocks:#?}");
-    let mut outputs: BTreeMap<String, String> = BTreeMap::new();
-    let scipy = has_scipy();
-    for PrintedCommand {
-        page,
-        command,
-        output,
-    } in commands_in_text().into_iter().chain(in_blocks)
-    {
-        let meant = runnable_command(&command);
+/// Returns the names and texts of the pages outside docs/recipes/, which have a test of their own.
+fn pages() -> Vec<(String, String)> {
+    let mut pages = eomgen_tests::pages::pages();
+    pages.retain(|(page, _)| !is_recipe(page));
+    pages
+}
+
+/// Runs the commands of a page.
+struct PageRun<'a> {
+    folder: Measured,
+    ci: &'a str,
+    has_scipy: bool,
+    /// Outputs of the commands that have run.
+    outputs: BTreeMap<String, String>,
+}
+
+impl PageRun<'_> {
+    fn run(&mut self, printed: &PrintedCommand) {
+        let PrintedCommand {
+            page,
+            command,
+            output,
+        } = printed;
+        let meant = runnable_command(command);
+        let place = self.folder.file(".");
         let mut once = |run: &dyn Fn() -> String| {
-            let found = outputs.entry(meant.clone()).or_insert_with(run);
-            assert_shows(&output, found, &command);
+            let found = self.outputs.entry(meant.clone()).or_insert_with(run);
+            assert_shows(output, found, command);
         };
         match form(&meant) {
             Form::Program(arguments) => {
@@ -394,35 +439,87 @@ fn printed_commands_give_the_printed_output() {
                 once(&|| run_program(arguments, &place, refused));
             }
             Form::Compilers => once(&|| run_compilers(&meant, &place)),
-            Form::Scipy if !scipy => {}
+            Form::Scipy if !self.has_scipy => {}
             Form::Scipy => {
                 let refused = output.iter().any(|line| line.starts_with("error"));
                 once(&|| run_python(&meant, &place, refused));
             }
+            Form::AfterRelease => {}
             Form::Elsewhere(file) => assert!(project().join(file).exists(), "{file}"),
             Form::Tests(command) => assert_are_tests(command),
             Form::Ci(words) => {
                 let line = |line: &str| words.iter().all(|word| line.contains(word));
                 assert!(
-                    ci.lines().any(line),
+                    self.ci.lines().any(line),
                     "{page}: .ci/run does not run {command}"
                 );
             }
         }
     }
-    for (left, kept) in FIGURES {
-        let kept = std::fs::read(project().join(kept)).expect("a figure");
-        let left = std::fs::read(folder.file(left)).expect("a figure");
+}
+
+#[test]
+fn printed_commands_give_the_printed_output() {
+    let ci = std::fs::read_to_string(project().join(".ci/run")).expect(".ci/run");
+    let has_scipy = has_scipy();
+    let pages = pages();
+    let in_text = commands_in_text_of(&pages);
+    let (in_blocks, _) = commands_in_blocks_of(&pages);
+    assert!(in_blocks.len() > 20, "{in_blocks:#?}");
+    let next = AtomicUsize::new(0);
+    let run_pages = || {
+        let mut compared = Vec::new();
+        while let Some((page, text)) = pages.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let printed = in_text.iter().chain(&in_blocks);
+            let printed: Vec<_> = printed.filter(|printed| printed.page == *page).collect();
+            if printed.is_empty() {
+                continue;
+            }
+            let mut run = PageRun {
+                folder: reader_folder(page, text),
+                ci: &ci,
+                has_scipy,
+                outputs: BTreeMap::new(),
+            };
+            for printed in printed {
+                run.run(printed);
+            }
+            compared.extend(pictures::assert_match(page, text, &run.folder.file(".")));
+        }
+        compared
+    };
+    let compared: Vec<String> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(run_pages)).collect();
+        let compared = threads.into_iter().map(|thread| match thread.join() {
+            Ok(compared) => compared,
+            Err(panic) => std::panic::resume_unwind(panic),
+        });
+        compared.flatten().collect()
+    });
+    pictures::assert_all_compared(&compared);
+}
+
+#[test]
+fn commands_that_need_a_release_are_marked() {
+    for command in AFTER_RELEASE {
+        let pages: Vec<(String, String)> = pages()
+            .into_iter()
+            .filter(|(_, text)| text.contains(&format!("`{command}`")))
+            .collect();
+        let [(page, text)] = &pages[..] else {
+            panic!("{command} is on {} pages", pages.len());
+        };
+        let mut paragraphs = text.split("\n\n").filter(|text| text.contains(command));
         assert!(
-            left == kept,
-            "the figure of a page differs from that of its command"
+            paragraphs.all(|text| text.contains("From the first release on")),
+            "{page}: {command}"
         );
     }
 }
 
 #[test]
 fn output_without_command_is_compared_in_another_test() {
-    for block in commands_in_blocks().1 {
+    for block in commands_in_blocks_of(&pages()).1 {
         let known = SHOWN_ELSEWHERE
             .iter()
             .find(|(first, _)| block.lines[0] == *first);
@@ -436,35 +533,10 @@ fn output_without_command_is_compared_in_another_test() {
 }
 
 #[test]
-fn figures_of_the_pages_have_commands() {
-    let table = std::fs::read_to_string(project().join("docs/figures.md")).expect("a page");
-    for entry in std::fs::read_dir(project().join("docs")).expect("docs") {
-        let path = entry.expect("an entry").path();
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        if name.ends_with(".svg") || name.ends_with(".png") {
-            let row = table
-                .lines()
-                .find(|line| line.contains(&format!("`{name}`")));
-            let row = row.unwrap_or_else(|| panic!("{name} is not in docs/figures.md"));
-            assert!(row.contains("`cargo run --release -"), "{name}: {row}");
-            let shown = pages()
-                .iter()
-                .any(|(_, text)| text.contains(&format!("{name})")));
-            assert!(shown, "no page shows {name}");
-        }
-    }
-}
-
-#[test]
 fn listed_commands_occur_in_the_pages() {
-    let all: Vec<PrintedCommand> = commands_in_text()
-        .into_iter()
-        .chain(commands_in_blocks().0)
-        .collect();
+    let pages = pages();
+    let mut all = commands_in_text_of(&pages);
+    all.extend(commands_in_blocks_of(&pages).0);
     let printed = |text: &str| all.iter().any(|printed| printed.command.contains(text));
     for text in REDUCED
         .iter()
