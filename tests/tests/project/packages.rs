@@ -85,7 +85,7 @@ fn published_packages_have_complete_metadata() {
 }
 
 #[test]
-fn repository_is_set_in_one_line() {
+fn repository_is_set_in_one_line_and_marked_as_placeholder() {
     let (published, all) = packages();
     let repository = published[0]["repository"].as_str().expect("a URL");
     let manifests = all.iter().map(|package| folder(package).join("Cargo.toml"));
@@ -95,6 +95,10 @@ fn repository_is_set_in_one_line() {
         .map(|path| text(path).matches(repository).count())
         .sum();
     assert_eq!(lines, 1, "{repository}");
+    let workspace = text(project().join("Cargo.toml"));
+    let mark =
+        format!("# A placeholder until the repository is public.\nrepository = \"{repository}\"");
+    assert!(workspace.contains(&mark), "{repository}");
 }
 
 #[test]
