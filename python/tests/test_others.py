@@ -16,13 +16,21 @@ def written(section, **names):
     return names
 
 
-def test_readme_examples_run(monkeypatch, capsys):
-    page = (PROJECT / "README.md").read_text(encoding="utf-8")
-    text = page.split("## From Python\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+def test_first_example_runs(monkeypatch, capsys):
     monkeypatch.chdir(PROJECT)
-    exec(compile(text, "README.md", "exec"), {})
+    written("Start")
     tip, *shape = capsys.readouterr().out.split(maxsplit=1)
     assert abs(float(tip)) < 1 and shape == ["(14, 14)\n"]
+
+
+def test_python_on_the_pages_compiles():
+    pages = [PROJECT / "README.md", PROJECT / "python" / "README.md", *PROJECT.glob("docs/**/*.md")]
+    blocks = 0
+    for page in pages:
+        for block in page.read_text(encoding="utf-8").split("```python\n")[1:]:
+            compile(block.split("```", 1)[0], str(page), "exec")
+            blocks += 1
+    assert blocks > 5
 
 
 def test_scipy_examples_run(pendulum):

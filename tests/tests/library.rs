@@ -1,4 +1,4 @@
-//! The example of the library that README.md shows, compiled and run in the project's folder.
+//! The example of the library that docs/library.md shows, compiled and run in the project's folder.
 
 use eomgen_tests::models::project;
 

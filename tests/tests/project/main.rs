@@ -1,5 +1,6 @@
 //! The program as a whole: options, files it writes, packages, documentation.
 
+mod book;
 mod built_once;
 mod files;
 mod glossary;

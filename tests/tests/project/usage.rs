@@ -454,7 +454,7 @@ fn exact_solver_rejects_nonlinear_models_and_ignores_tolerance() {
     assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
 }
 
-/// README.md lists the commands without `--json`: `schema`, `completions` and `man`.
+/// docs/commands.md lists the commands without `--json`: `schema`, `completions` and `man`.
 #[test]
 fn commands_on_a_specification_print_one_json_document() {
     for command in COMMANDS {
