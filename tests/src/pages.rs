@@ -204,10 +204,7 @@ pub fn commands_in_text_of(pages: &[(String, String)]) -> Vec<PrintedCommand> {
     let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/"];
     let mut printed = Vec::new();
     for (page, text) in pages {
-        // Without the blocks, odd parts of the text are between single backticks.
-        let prose: String = text.split("```").step_by(2).collect();
-        for code in prose.split('`').skip(1).step_by(2) {
-            let code = code.split_whitespace().collect::<Vec<_>>().join(" ");
+        for code in inline_code(text) {
             if begins.iter().any(|begin| code.starts_with(begin)) && code.split(' ').count() > 2 {
                 printed.push(PrintedCommand {
                     page: page.clone(),
@@ -218,4 +215,13 @@ pub fn commands_in_text_of(pages: &[(String, String)]) -> Vec<PrintedCommand> {
         }
     }
     printed
+}
+
+/// Returns the code in running text and tables, with single spaces between words.
+pub fn inline_code(text: &str) -> Vec<String> {
+    // Without the blocks, odd parts of the text are between single backticks.
+    let prose: String = text.split("```").step_by(2).collect();
+    let code = prose.split('`').skip(1).step_by(2);
+    code.map(|code| code.split_whitespace().collect::<Vec<_>>().join(" "))
+        .collect()
 }

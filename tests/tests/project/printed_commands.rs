@@ -15,7 +15,8 @@ use std::time::Duration;
 use eomgen_tests::measured::Measured;
 use eomgen_tests::models::{path, project};
 use eomgen_tests::pages::{
-    PrintedCommand, blocks, commands_in_blocks_of, commands_in_text_of, is_recipe, saved_files,
+    PrintedCommand, blocks, commands_in_blocks_of, commands_in_text_of, inline_code, is_recipe,
+    saved_files,
 };
 use eomgen_tests::program::{self, text};
 
@@ -497,6 +498,41 @@ fn printed_commands_give_the_printed_output() {
         compared.flatten().collect()
     });
     pictures::assert_all_compared(&compared);
+}
+
+/// Commands with placeholders, in running text and in blocks of text, do not run. Their names and
+/// options are those of `--help`.
+#[test]
+fn commands_in_running_text_exist() {
+    let mut helps: BTreeMap<Vec<String>, String> = BTreeMap::new();
+    let mut checked = 0;
+    for (page, text) in eomgen_tests::pages::pages() {
+        let shown = blocks(&text, "text").flat_map(str::lines);
+        let shown = shown.filter_map(|line| line.strip_prefix("$ ").map(str::to_owned));
+        for code in inline_code(&text).into_iter().chain(shown) {
+            let Some(arguments) = code.strip_prefix("eomgen ") else {
+                continue;
+            };
+            let arguments = words(arguments);
+            let length = if arguments[0] == "paper" { 2 } else { 1 };
+            let command = arguments[..length.min(arguments.len())].to_vec();
+            if command[0].starts_with('-') || command[0] == "COMMAND" {
+                continue;
+            }
+            let help = helps.entry(command).or_insert_with_key(|command| {
+                let arguments = format!("{} --help", command.join(" "));
+                run_program(&arguments, project(), false)
+            });
+            for option in arguments.iter().filter(|word| word.starts_with("--")) {
+                let is_option = help
+                    .split_whitespace()
+                    .any(|word| word.trim_end_matches(',') == option);
+                assert!(is_option, "{page}: {code}: unknown option {option}");
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked > 10, "{checked}");
 }
 
 #[test]
