@@ -536,6 +536,27 @@ fn commands_in_running_text_exist() {
 }
 
 #[test]
+fn commands_page_lists_every_command() {
+    let page = std::fs::read_to_string(project().join("docs/commands.md")).expect("a page");
+    let help = run_program("--help", project(), false);
+    let (_, commands) = help.split_once("Commands:\n").expect("commands");
+    let (commands, _) = commands.split_once("\n\n").expect("their end");
+    // Longer descriptions continue on further lines, with more spaces.
+    let names = commands
+        .lines()
+        .filter_map(|line| line.strip_prefix("  "))
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next())
+        .filter(|name| *name != "help");
+    let names: Vec<&str> = names.collect();
+    assert!(names.len() > 15, "{names:?}");
+    for name in names {
+        let row = format!("\n| `{name}");
+        assert!(page.contains(&row), "docs/commands.md does not list {name}");
+    }
+}
+
+#[test]
 fn commands_that_need_a_release_are_marked() {
     for command in AFTER_RELEASE {
         let pages: Vec<(String, String)> = pages()
