@@ -361,6 +361,42 @@ fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
 }
 
 #[test]
+fn stack_comes_to_rest_after_infinitely_many_impacts() {
+    // Impacts at the floor and between the balls alternate until both distances are rounding. Then
+    // one contact closes, and its correction moves the other by rounding.
+    let text = r#"
+[model]
+name = "stack"
+[parameters]
+g = { value = 9.81, unit = "m/s^2" }
+r = { value = 0.1, unit = "m" }
+m = { value = 0.68, unit = "kg" }
+M = { value = 1.47, unit = "kg" }
+[coordinates]
+y = { unit = "m", initial = 0.302 }
+z = { unit = "m", initial = 0.655 }
+[kinetic]
+both = "1/2*m*dot(y)^2 + 1/2*M*dot(z)^2"
+[potential]
+weight = "g*(m*y + M*z)"
+[impacts]
+floor = { when = "y - r", restitution = 0.43 }
+balls = { when = "z - y - 2*r", restitution = 0.08 }
+"#;
+    let model = CompiledModel::from_text("stack.toml", text, Orders::Declared).unwrap();
+    let run = model.with_declared_parameters().unwrap();
+    let times: Vec<f64> = (0..=20).map(|step| f64::from(step) * 0.1).collect();
+    for motion in simulate_with_all_solvers(&model, run.initial_state(), &times) {
+        for state in &motion.trajectory.states[4..] {
+            let rest = [0.1, 0.3, 0.0, 0.0];
+            let off = state.iter().zip(rest).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-12, "{state:?}");
+        }
+        assert!(motion.trajectory.statistics.steps < 1000);
+    }
+}
+
+#[test]
 fn light_ball_on_heavy_ball_rebounds_by_textbook_formula() {
     // With a small gap, the heavy ball has rebounded before they meet; then the textbook collision
     // of two bodies applies.

@@ -52,7 +52,20 @@ impl Contacts {
             let touching = std::mem::take(&mut self.closed);
             self.close(&touching, distance_rounding(state, degrees, t));
         }
+        self.keep_open_sides(&arrived);
         CORRECTIONS as u64 + 1
+    }
+
+    /// Offsets the distances of open contacts that a correction makes negative, because the motion
+    /// has not hit them yet.
+    fn keep_open_sides(&mut self, before: &[f64]) {
+        for (place, before) in before.iter().enumerate() {
+            let (distance, offset) = (self.at[place].distance, self.offsets[place]);
+            let was_open = !self.closed.contains(&place) && before + offset >= 0.0;
+            if was_open && distance + offset < 0.0 {
+                self.offsets[place] = -distance;
+            }
+        }
     }
 
     /// Returns the first open contact whose distance is below zero by more than errors of steps and by more than
