@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{coverage, grazing, solvers};
+use eomgen_studies::{contacts, coverage, grazing, solvers};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -19,6 +19,8 @@ struct Options {
 enum Study {
     /// Energy and agreement of the solvers for passive machines that graze their stops
     Grazing(Sample),
+    /// Stacks of balls and boxes that fall on a floor
+    Contacts(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
     Coverage(Sample),
     /// Agreement of the solvers on random machines
@@ -28,6 +30,7 @@ enum Study {
 fn main() -> ExitCode {
     let report = match Options::parse().study {
         Study::Grazing(sample) => grazing::run(&sample),
+        Study::Contacts(sample) => contacts::run(&sample),
         Study::Coverage(sample) => coverage::run(&sample),
         Study::Solvers(sample) => solvers::run(&sample),
     };
