@@ -1,6 +1,6 @@
 //! Interval arithmetic: bounds of an expression over all values of its variables.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::evaluate::call;
 use crate::model::Function;
@@ -62,6 +62,21 @@ impl Interval {
         let low = ends.into_iter().fold(f64::INFINITY, f64::min);
         let high = ends.into_iter().fold(f64::NEG_INFINITY, f64::max);
         Self::from_ends(low, high)
+    }
+
+    /// Returns the bounds of a difference.
+    pub fn subtract(self, other: Self) -> Self {
+        self.add_interval(other.negate())
+    }
+
+    /// Returns the bounds of the square of one number.
+    pub fn square(self) -> Self {
+        self.raise(2.0)
+    }
+
+    /// Returns true if the interval contains the number.
+    pub fn contains(self, number: f64) -> bool {
+        self.low <= number && number <= self.high
     }
 
     /// Returns the bounds of the reciprocal; all numbers if the interval contains 0.
@@ -128,7 +143,10 @@ impl Interval {
         let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
         let value = |x: f64| call(function, x, f64::NAN);
         match function {
-            Function::Sin | Function::Cos => Self::from_ends(-1.0, 1.0),
+            Function::Sin => self.apply_sine(),
+            Function::Cos => self
+                .add_interval(Self::from_ends(FRAC_PI_2, FRAC_PI_2))
+                .apply_sine(),
             Function::Asin => self.apply_non_decreasing((-1.0, 1.0), value),
             Function::Acos => Self::from_ends(0.0, PI),
             Function::Atan | Function::Sinh | Function::Tanh | Function::Exp => {
@@ -145,6 +163,29 @@ impl Interval {
             }
             _ => Self::ALL,
         }
+    }
+
+    fn apply_sine(self) -> Self {
+        let width = self.high - self.low;
+        if width.is_nan() || width >= TAU {
+            return Self::from_ends(-1.0, 1.0);
+        }
+        // Rounding of the argument and of the multiple of 2 pi.
+        let slack = 8.0 * f64::EPSILON * (1.0 + self.low.abs().max(self.high.abs()));
+        let contains_angle = |angle: f64| {
+            let turns = ((self.low - slack - angle) / TAU).ceil();
+            angle + TAU * turns <= self.high + slack
+        };
+        let (a, b) = (self.low.sin(), self.high.sin());
+        let low = match contains_angle(-FRAC_PI_2) {
+            true => -1.0,
+            false => a.min(b),
+        };
+        let high = match contains_angle(FRAC_PI_2) {
+            true => 1.0,
+            false => a.max(b),
+        };
+        Self::from_ends((low - slack).max(-1.0), (high + slack).min(1.0))
     }
 
     fn apply_binary(function: Function, x: Self, y: Self) -> Self {
@@ -196,6 +237,29 @@ mod tests {
         }
         assert_eq!(x.raise(2.0).low, 0.0);
         assert_eq!(x.reciprocal(), Interval::ALL);
+    }
+
+    #[test]
+    fn bounds_of_sine_and_cosine_are_attained() {
+        for start in [-1000.0, -7.0, -0.3, 0.0, 1.2, 40.0, 1e6] {
+            for width in [0.0, 0.01, 0.7, 3.0, 5.0, 6.2, 9.0] {
+                let x = Interval::from_ends(start, start + width);
+                let functions: [(Function, fn(f64) -> f64); 2] =
+                    [(Function::Sin, f64::sin), (Function::Cos, f64::cos)];
+                for (function, value) in functions {
+                    let bounds = Interval::apply_function(function, &[x]);
+                    let values = (0..=20_000).map(|k| value(start + width * f64::from(k) / 2e4));
+                    let (low, high) = values.fold((1.0_f64, -1.0_f64), |(low, high), value| {
+                        (low.min(value), high.max(value))
+                    });
+                    assert!(bounds.contains(low) && bounds.contains(high), "{x:?}");
+                    assert!(
+                        bounds.low > low - 1e-6 && bounds.high < high + 1e-6,
+                        "{x:?}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

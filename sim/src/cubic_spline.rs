@@ -4,6 +4,9 @@
 //! Boor, *A Practical Guide to Splines*, chapter IV), so a cubic is reproduced up to its ends.
 //! Outside the samples the spline has the constant value of the first or last sample.
 
+use eomgen_codegen::program::evaluator::Enclosure;
+use eomgen_model_spec::interval::Interval;
+
 /// A cubic spline through samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubicSpline {
@@ -52,6 +55,59 @@ impl CubicSpline {
             left * m_a + right * m_b,
         ]
     }
+}
+
+impl CubicSpline {
+    /// Returns the bounds of the value and its first and second derivative from `begin` to `end`, s.
+    pub fn bound(&self, begin: f64, end: f64) -> [Enclosure; 3] {
+        let first = self.times.partition_point(|time| *time <= begin);
+        let inside = self.times[first..].iter().take_while(|time| **time < end);
+        let mut knots = vec![begin];
+        knots.extend(inside);
+        knots.push(end);
+        let pieces = knots
+            .windows(2)
+            .map(|pair| self.bound_cubic(pair[0], pair[1]));
+        pieces
+            .reduce(|all, piece| {
+                std::array::from_fn(|order| {
+                    let (a, b) = (all[order], piece[order]);
+                    Enclosure::from_bounds(a.value().hull(b.value()), a.rate().hull(b.rate()))
+                })
+            })
+            .unwrap_or([Enclosure::UNKNOWN; 3])
+    }
+
+    /// Returns the same between two times without a sample between them.
+    fn bound_cubic(&self, begin: f64, end: f64) -> [Enclosure; 3] {
+        let duration = end - begin;
+        // At a sample at one end, the derivatives of the other piece may differ by rounding only,
+        // except at the first and the last sample.
+        let middle = self.evaluate(begin + 0.5 * duration);
+        let is_outside = end <= self.times[0] || begin >= self.times[self.times.len() - 1];
+        if is_outside {
+            return middle.map(Enclosure::constant);
+        }
+        let (a, b) = (self.evaluate(begin), self.evaluate(end));
+        let third = (b[2] - a[2]) / duration;
+        let curvature = hull([a[2], b[2]]);
+        let slope = hull([a[1], a[1] + 0.5 * duration * a[2], b[1]]);
+        let control = |(value, slope): (f64, f64)| value + slope * duration / 3.0;
+        let (c, d) = (control((a[0], a[1])), control((b[0], -b[1])));
+        let value = hull([a[0], c, d, b[0]]);
+        [
+            Enclosure::from_bounds(value, slope),
+            Enclosure::from_bounds(slope, curvature),
+            Enclosure::from_bounds(curvature, Interval::from_ends(third, third)),
+        ]
+    }
+}
+
+/// Returns the interval of the control points of a polynomial in Bernstein form.
+fn hull<const N: usize>(points: [f64; N]) -> Interval {
+    let low = points.into_iter().fold(f64::INFINITY, f64::min);
+    let high = points.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    Interval::from_ends(low, high)
 }
 
 /// Computes the second derivatives at the samples: a line through two samples, a parabola through

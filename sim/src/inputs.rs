@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use eomgen_codegen::program::evaluator::Enclosure;
+
 use crate::cubic_spline::CubicSpline;
 
 /// Inputs as a function of time, evaluated at every time of a solver's evaluations.
@@ -137,6 +139,20 @@ impl HeldInputs {
             inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));
         }
         Cow::Owned(inputs)
+    }
+
+    /// Returns the bounds of the inputs from `begin` to `end` (s), between which no input jumps.
+    /// Functions of time are not bounded.
+    pub fn bound(&self, begin: f64, end: f64) -> Vec<Enclosure> {
+        let held = self.last_sample(begin).iter();
+        let mut bounds: Vec<Enclosure> = held.map(|value| Enclosure::constant(*value)).collect();
+        for given in &self.functions {
+            bounds[given.place..given.place + given.count].fill(Enclosure::UNKNOWN);
+        }
+        for (place, spline) in &self.prescribed {
+            bounds[*place..*place + 3].copy_from_slice(&spline.bound(begin, end));
+        }
+        bounds
     }
 
     /// Returns the inputs of the last sample at or before a time (s), without prescribed motion

@@ -4,7 +4,7 @@
 use std::borrow::Borrow;
 use std::cell::{RefCell, RefMut};
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ObservedStep, Surface, System, jacobian_by_differences};
@@ -256,6 +256,25 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().write_guards((t, y), inputs, out);
+        }
+    }
+
+    fn bound_guards(&self, (begin, end): (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
+        let stretch = Stretch {
+            t: Enclosure::time(begin, end),
+            state,
+            inputs: &self.inputs.borrow().bound(begin, end),
+        };
+        let mut evaluator = self.evaluator();
+        let (own, more) = out.split_at_mut(evaluator.guard_count());
+        evaluator.bound_guards(&stretch, own);
+        if let Some(contacts) = &self.contacts {
+            contacts
+                .borrow()
+                .bound_guards(&mut evaluator, &stretch, more);
+        }
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow().bound_guards(out);
         }
     }
 

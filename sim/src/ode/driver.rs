@@ -4,13 +4,13 @@ use std::collections::VecDeque;
 
 use super::adams::Adams;
 use super::approach::Approach;
+use super::bernstein::BernsteinBasis;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
-use super::grazing::find_passed_surface;
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
-use super::resolution::{PARTS, Resolution};
+use super::resolution::Resolution;
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::stiffness::Pace;
@@ -21,18 +21,15 @@ use super::watch::WatchedSystem;
 /// The first step, relative to the span; the error estimate corrects it at once.
 const FIRST_STEP: f64 = 1e-6;
 
-/// A step that does not see what switching functions do is shortened so often at most: what is finer is
-/// taken for rounding.
+/// Number of times that a step is shortened because it does not resolve the switching functions. Finer
+/// changes of these count as rounding.
 const MOST_SHORTENED: u32 = 12;
 
-/// And by this at most each time. A step that leaves the domain of the rates is shortened by as much.
-const SHORTENED: f64 = 0.2;
+/// Factor by which a step is shortened at most, and if it leaves the domain of the rates.
+pub(super) const SHORTENED: f64 = 0.2;
 
 /// More samples than this in a step are many.
 const MANY: usize = 2;
-
-/// In a step that is this short beside the time, times inside are rounding.
-const SHORTEST_SEEN: f64 = 1e-12;
 
 /// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states at
 /// `samples` (s, ascending, inside the span). Calls `progress` with the time after every step.
@@ -106,6 +103,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         pace: Pace::new(span.0),
         approaches: VecDeque::new(),
         resolution: Resolution::new(settings.tolerance),
+        basis: BernsteinBasis::new(),
         projected: None,
         trajectory,
     };
@@ -137,7 +135,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) pace: Pace,
     /// The last approaches to switching surfaces.
     pub(super) approaches: VecDeque<Approach>,
-    resolution: Resolution,
+    pub(super) resolution: Resolution,
+    pub(super) basis: BernsteinBasis,
     /// The state here brought back onto what the motion keeps, if that moves it.
     projected: Option<Vec<f64>>,
     pub(super) trajectory: &'a mut Trajectory,
@@ -226,81 +225,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Takes an accepted step of `length` s back for a shorter one.
-    fn refuse(&mut self, length: f64) {
+    pub(super) fn refuse(&mut self, length: f64) {
         self.stepper.take_back();
         self.stepper.set_step(SHORTENED * length);
         self.trajectory.statistics.rejected_steps += 1;
-    }
-
-    /// The switching functions at [`PARTS`] of the last step; nothing where the method made none to here, or one
-    /// so short that times inside are rounding.
-    fn glimpses(&mut self) -> Option<[Vec<f64>; 5]> {
-        let (start, end) = (
-            self.stepper.step_start().clone(),
-            self.stepper.current_point().clone(),
-        );
-        let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
-        if is_short || !self.watched.has_guards() {
-            return None;
-        }
-        let mut values: [Vec<f64>; 5] = Default::default();
-        for (part, values) in PARTS.into_iter().zip(&mut values) {
-            let t = start.t + part * (end.t - start.t);
-            let state = match part {
-                0.0 => start.y.clone(),
-                1.0 => end.y.clone(),
-                _ => self.stepper.interpolated(t)?,
-            };
-            *values = self.watched.evaluate_guards_before(t, &state);
-        }
-        Some(values)
-    }
-
-    /// Takes an accepted step of `length` s back that did not see what switching functions do, for a shorter
-    /// one; else keeps the next one so short that it will.
-    fn shortened(&mut self, values: &[Vec<f64>; 5], length: f64) -> bool {
-        let side = |guard| self.watched.side(guard);
-        let mut longest = self.resolution.longest(values, side, &[]);
-        if longest < 1.0 {
-            let start = self.stepper.step_start();
-            let roundings = self.watched.guard_roundings(start.t, &start.y);
-            longest = self.resolution.longest(values, side, &roundings);
-        }
-        let is_seen = longest >= 1.0;
-        if is_seen {
-            let step = self.stepper.step();
-            self.stepper.set_step(step.min(longest * length));
-        } else {
-            self.stepper.take_back();
-            self.stepper.set_step(longest.max(SHORTENED) * length);
-            self.trajectory.statistics.rejected_steps += 1;
-        }
-        !is_seen
-    }
-
-    /// What became of an accepted step of `length` s; it may be `shortened` first.
-    pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
-        let values = self.glimpses();
-        if let Some(values) = &values {
-            if may_shorten && self.shortened(values, length) {
-                return Accepted::Shortened;
-            }
-            let trials = &mut self.trajectory.statistics.trial_steps;
-            if let Some(length) =
-                find_passed_surface(self.watched, &mut self.stepper, values, trials)
-            {
-                self.stepper.take_back();
-                return Accepted::SurfacePassed(length);
-            }
-        }
-        if !self.project() && may_shorten {
-            self.refuse(length);
-            return Accepted::Shortened;
-        }
-        if let Some(values) = &values {
-            self.resolution.settle(values);
-        }
-        Accepted::Continues
     }
 
     /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance

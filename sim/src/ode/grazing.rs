@@ -35,13 +35,13 @@ struct Sample {
     value: f64,
 }
 
-/// How far from its start (s) the last step of `stepper`, which was accepted, was beyond a surface
-/// that it neither began nor ended beyond; `None` if it was not. The switching functions have these values at
-/// [`PARTS`] of the step. `trials` counts the states that the stepper computes for it. A state
-/// inside that overflows or leaves the domain of the rates counts as one beyond.
+/// Returns how far from its start (s) the last, accepted step of a stepper was beyond a surface that it
+/// neither began nor ended beyond; `None` if it was not. `sides` are 0 for functions to ignore, and
+/// `values` those of the functions at [`PARTS`] of the step. `trials` counts the states that the stepper
+/// computes. A state inside that overflows or leaves the domain of the rates counts as one beyond.
 pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
-    watched: &WatchedSystem<'_, S>,
-    stepper: &mut M,
+    (watched, stepper): (&WatchedSystem<'_, S>, &mut M),
+    sides: &[f64],
     values: &[Vec<f64>; 5],
     trials: &mut u64,
 ) -> Option<f64> {
@@ -68,7 +68,7 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
         });
         (samples, DOUBT * third(0).max(third(1)))
     };
-    search(watched, end - begin, values[0].len(), samples, &mut after)
+    search(watched, end - begin, sides, samples, &mut after)
 }
 
 /// The same for one step of a method from `start` to `end`, whatever its error.
@@ -96,20 +96,22 @@ pub fn find_leapt_surface<S: System + ?Sized, M: Stepper>(
         });
         (samples, 0.0)
     };
-    search(watched, length, values[0].len(), samples, &mut after)
+    search(watched, length, &watched.sides(), samples, &mut after)
 }
 
-/// How far from its start (s) a motion in a step of `length` s is beyond a surface, given the `samples` of each of
-/// so many functions on a side and by how much their parabola may be off; `after` computes the point so far from the start.
+/// Returns how far from its start (s) a motion in a step of `length` s is beyond a surface, given the `samples` of
+/// each function on its side and the error of their parabola; `after` computes the point so far from the start.
 fn search<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     length: f64,
-    guards: usize,
+    sides: &[f64],
     samples: impl Fn(usize, f64) -> ([Sample; 3], f64),
     after: &mut impl FnMut(f64) -> Option<Point>,
 ) -> Option<f64> {
-    for guard in 0..guards {
-        let side = watched.side(guard);
+    for (guard, side) in sides.iter().copied().enumerate() {
+        if side == 0.0 {
+            continue;
+        }
         let (samples, doubt) = samples(guard, side);
         let highest = samples
             .map(|sample| sample.value)

@@ -4,8 +4,9 @@
 //! which the step began. A `stepper` makes single steps: `dormand_prince` (Runge-Kutta, order 8),
 //! `adams` (multistep, variable order; with `attempt` and `history`) or `radau` (implicit, order
 //! 5; with `collocation`). `crossing` approaches a switching surface by steps on one side and then
-//! steps across it. `grazing` finds surfaces that a step passed over, and `resolution` limits
-//! steps so that they resolve the switching functions. `driver` combines these into a
+//! steps across it. `examination` searches each step for crossings: `event_search` by bounds of the
+//! switching functions over its interior, a polynomial in `bernstein` form; `grazing` and
+//! `resolution` by samples, for functions without bounds. `driver` combines these into a
 //! [`Trajectory`], with `passage`, `limits` and `stiffness`. No step averages over a kink or jump
 //! of the right-hand side, which would reduce the order of the method.
 //!
@@ -27,12 +28,15 @@
 mod adams;
 mod approach;
 mod attempt;
+mod bernstein;
 mod collocation;
 mod continuous_extension;
 mod crossing;
 mod dormand_prince;
 mod driver;
 mod error;
+mod event_search;
+mod examination;
 mod grazing;
 mod history;
 mod limits;

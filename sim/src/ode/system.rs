@@ -1,5 +1,7 @@
 //! The interface between a system and its solver.
 
+use eomgen_codegen::program::evaluator::Enclosure;
+
 use super::settings::difference_step;
 
 /// An accepted step, for observers. Reading it does not change the motion.
@@ -50,6 +52,13 @@ pub trait System {
     /// Writes the value of each switching function to `out`, [`System::guard_count`] entries. The
     /// right-hand side may have a kink or jump only on a sign change of one of them.
     fn guards(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
+
+    /// Writes the bounds of the switching functions over a stretch of a motion to `out`,
+    /// [`System::guard_count`] entries: the times `t` (begin, end; s) and the bounds of the states.
+    /// Functions with [`Enclosure::UNKNOWN`] are searched by samples.
+    fn bound_guards(&self, _t: (f64, f64), _state: &[Enclosure], out: &mut [Enclosure]) {
+        out.fill(Enclosure::UNKNOWN);
+    }
 
     /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
     /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
@@ -119,6 +128,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
         (**self).guards(t, y, out);
+    }
+
+    fn bound_guards(&self, t: (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
+        (**self).bound_guards(t, state, out);
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

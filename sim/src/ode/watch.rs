@@ -5,6 +5,7 @@
 use std::cell::{Cell, RefCell};
 
 use differential_equations::ode::ODE;
+use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::point::Point;
 use super::settings::UNMOVED_SIZE_FRACTION;
@@ -136,11 +137,28 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.regime.borrow().get(guard).copied().unwrap_or(0.0)
     }
 
+    /// Returns the sides of all surfaces; see [`WatchedSystem::side`].
+    pub fn sides(&self) -> Vec<f64> {
+        self.regime.borrow().clone()
+    }
+
     /// The switching functions at `t` and `y`.
     pub fn evaluate_guards(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
         self.system.guards(t, y, &mut guards);
         guards
+    }
+
+    /// Writes the bounds of the switching functions over a stretch of a motion; see
+    /// [`System::bound_guards`].
+    pub fn bound_guards(
+        &self,
+        (begin, end): (f64, f64),
+        state: &[Enclosure],
+        out: &mut [Enclosure],
+    ) {
+        let t = (self.seen(begin), self.seen(end));
+        self.system.bound_guards(t, state, out);
     }
 
     /// By how much the rounding of `y` changes the switching functions there.

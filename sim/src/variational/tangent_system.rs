@@ -2,6 +2,8 @@
 
 use std::cell::{Cell, RefCell};
 
+use eomgen_codegen::program::evaluator::Enclosure;
+
 use super::saltation::{Surfaces, find_delay};
 use crate::ode::System;
 
@@ -83,6 +85,11 @@ impl<S: System + ?Sized> System for TangentSystem<'_, S> {
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.guards(t, &y[..self.system.state_count()], out);
+    }
+
+    fn bound_guards(&self, t: (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
+        let states = self.system.state_count();
+        self.system.bound_guards(t, &state[..states], out);
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

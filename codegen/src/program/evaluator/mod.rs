@@ -2,7 +2,9 @@
 //! a list of steps. It is slower than emitted code and computes the same bits. Machine code for the stages
 //! can replace the steps.
 
+mod bounds;
 mod code;
+mod enclosure;
 mod functions;
 mod impacts;
 mod matrices;
@@ -17,7 +19,10 @@ use eomgen_model_spec::ids::FieldId;
 use std::sync::Arc;
 
 use crate::program::{Extent, Op, Program, ValueId};
+use bounds::BoundsMemory;
+pub use bounds::Stretch;
 pub use code::{MachineCode, Stage};
+pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};
 pub use impacts::ImpactValues;
 pub use places::Places;
@@ -36,6 +41,8 @@ pub struct Evaluator {
     /// Steps of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<ValueId>; Stage::ALL.len()],
     code: Option<Arc<dyn MachineCode>>,
+    /// Allocated when bounds are first computed.
+    bounds: Option<BoundsMemory>,
 }
 
 impl Evaluator {
@@ -60,6 +67,7 @@ impl Evaluator {
             prepare,
             stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
             code: None,
+            bounds: None,
             program,
         };
         let defaults = evaluator.program.default_parameters();

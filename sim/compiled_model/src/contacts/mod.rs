@@ -17,7 +17,7 @@ mod start;
 use std::collections::VecDeque;
 
 use eomgen_codegen::independence::vectors::max_magnitude;
-use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Point, Stretch};
 
 use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
@@ -112,6 +112,17 @@ impl Contacts {
             for (place, force) in self.closed.iter().zip(self.forces()) {
                 out[*place] = force + self.allowances[*place];
             }
+        }
+    }
+
+    /// Writes the bounds of the guards; those of closed contacts are unknown.
+    pub fn bound_guards(&self, own: &mut Evaluator, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
+        own.bound_distances(stretch, out);
+        for (slot, offset) in out.iter_mut().zip(&self.offsets) {
+            *slot = slot.add(Enclosure::constant(*offset));
+        }
+        for place in &self.closed {
+            out[*place] = Enclosure::UNKNOWN;
         }
     }
 

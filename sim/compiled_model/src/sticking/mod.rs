@@ -16,6 +16,7 @@ pub(crate) use observed_motion::ObservedMotion;
 pub use observed_motion::StickingMotion;
 pub use sided_model::SidedModel;
 
+use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_sim::ode::difference_step;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
 use sided_model::CORRECTION_COUNT;
@@ -193,6 +194,22 @@ impl SurfaceStates {
                 SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
                 SurfaceState::Bearing { from, .. } => *slot = from,
                 SurfaceState::Leaving { side, moved } => *slot += side * moved,
+            }
+        }
+    }
+
+    /// Replaces the bounds of guards as [`SurfaceStates::write_guards`] replaces the guards. Those of
+    /// surfaces that hold are unknown.
+    pub fn bound_guards(&self, out: &mut [Enclosure]) {
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut out[self.sided.guard_index(surface)];
+            match *place {
+                SurfaceState::Free => {}
+                SurfaceState::Holding { .. } => *slot = Enclosure::UNKNOWN,
+                SurfaceState::Bearing { from, .. } => *slot = Enclosure::constant(from),
+                SurfaceState::Leaving { side, moved } => {
+                    *slot = slot.add(Enclosure::constant(side * moved));
+                }
             }
         }
     }

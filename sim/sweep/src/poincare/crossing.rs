@@ -4,6 +4,7 @@
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
+use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_model_spec::assignment::{Assignment, QuantityReader};
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -277,6 +278,13 @@ impl<S: System> System for SectionSystem<'_, S> {
         };
         *section = self.surface.guard(y);
         self.system.guards(t, y, others);
+    }
+
+    fn bound_guards(&self, t: (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
+        if let Some((section, others)) = out.split_last_mut() {
+            *section = Enclosure::UNKNOWN;
+            self.system.bound_guards(t, state, others);
+        }
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

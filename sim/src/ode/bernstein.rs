@@ -1,0 +1,178 @@
+//! The interior of a step as polynomials in Bernstein form. The control points of a polynomial bound
+//! it, and those of its halves bound it ever more closely (G. Farin, *Curves and Surfaces for CAGD*).
+
+use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
+use nalgebra::{SMatrix, SVector};
+
+/// Control points of a state; the interior has the degree of the continuous extension of
+/// `dormand_prince`.
+const POINTS: usize = DEGREE + 1;
+
+/// Parts of a step at which its interior is interpolated: the inner ones are Chebyshev points.
+const INNER_PARTS: [f64; POINTS - 2] = [
+    0.017_037_086_855_465_856,
+    0.146_446_609_406_726_24,
+    0.370_590_477_448_739_6,
+    0.629_409_522_551_260_4,
+    0.853_553_390_593_273_8,
+    0.982_962_913_144_534_1,
+];
+
+type Controls = [f64; POINTS];
+
+/// Conversion from values to control points.
+pub struct BernsteinBasis {
+    /// From the values at [`INNER_PARTS`], relative to the chord, to the inner control points.
+    inner: SMatrix<f64, { POINTS - 2 }, { POINTS - 2 }>,
+}
+
+/// Part of a step: control points of each state between two parts of the step.
+#[derive(Clone)]
+pub struct Piece {
+    /// Start, as a part of the step, 0 to 1.
+    pub from: f64,
+    /// End, as a part of the step.
+    pub to: f64,
+    controls: Vec<Controls>,
+}
+
+impl BernsteinBasis {
+    pub fn new() -> Self {
+        let basis = SMatrix::<f64, { POINTS - 2 }, { POINTS - 2 }>::from_fn(|row, column| {
+            bernstein(column + 1, INNER_PARTS[row])
+        });
+        // Different points determine the polynomial: there is an inverse.
+        let inner = basis.try_inverse();
+        Self {
+            inner: inner.unwrap_or_else(SMatrix::zeros),
+        }
+    }
+
+    /// Returns the interior of a step from `start` to `end`, as one piece. `interpolate` returns the
+    /// state at a part of the step.
+    pub fn fit(
+        &self,
+        (start, end): (&[f64], &[f64]),
+        mut interpolate: impl FnMut(f64) -> Option<Vec<f64>>,
+    ) -> Option<Piece> {
+        let mut values = vec![SVector::<f64, { POINTS - 2 }>::zeros(); start.len()];
+        for (place, part) in INNER_PARTS.into_iter().enumerate() {
+            let state = interpolate(part)?;
+            let entries = values.iter_mut().zip(state).zip(start.iter().zip(end));
+            for ((values, entry), (a, b)) in entries {
+                values[place] = entry - (a + part * (b - a));
+            }
+        }
+        let ends = start.iter().zip(end);
+        let controls = values.iter().zip(ends).map(|(values, (a, b))| {
+            let inner = self.inner * values;
+            std::array::from_fn(|place| match place {
+                0 => *a,
+                DEGREE => *b,
+                // The chord has equally spaced control points.
+                _ => a + (b - a) * place as f64 / DEGREE as f64 + inner[place - 1],
+            })
+        });
+        Some(Piece {
+            from: 0.0,
+            to: 1.0,
+            controls: controls.collect(),
+        })
+    }
+}
+
+impl Piece {
+    /// Returns the state at the end of the piece.
+    pub fn end_state(&self) -> Vec<f64> {
+        self.controls.iter().map(|points| points[DEGREE]).collect()
+    }
+
+    /// Returns the start of the piece, as a piece in which nothing moves.
+    pub fn start(&self) -> Self {
+        let at_start = |points: &Controls| [points[0]; POINTS];
+        Self {
+            from: self.from,
+            to: self.from,
+            controls: self.controls.iter().map(at_start).collect(),
+        }
+    }
+
+    /// Returns the first and the second half (de Casteljau's algorithm).
+    pub fn halves(&self) -> [Self; 2] {
+        let middle = 0.5 * (self.from + self.to);
+        let half = |from, to| Self {
+            from,
+            to,
+            controls: Vec::with_capacity(self.controls.len()),
+        };
+        let (mut first, mut second) = (half(self.from, middle), half(middle, self.to));
+        for controls in &self.controls {
+            let mut points = *controls;
+            let (mut left, mut right) = (points, points);
+            for level in 0..POINTS {
+                left[level] = points[0];
+                right[DEGREE - level] = points[DEGREE - level];
+                for place in 0..DEGREE - level {
+                    points[place] = 0.5 * (points[place] + points[place + 1]);
+                }
+            }
+            first.controls.push(left);
+            second.controls.push(right);
+        }
+        [first, second]
+    }
+
+    /// Writes the bounds of the state over the piece, of a step of `length` s, to `out`.
+    pub fn bound(&self, length: f64, out: &mut Vec<Enclosure>) {
+        let duration = (self.to - self.from) * length;
+        out.clear();
+        let bounds = |points: &Controls| Enclosure::polynomial(*points, duration);
+        out.extend(self.controls.iter().map(bounds));
+    }
+}
+
+/// Returns the value of a Bernstein polynomial of [`DEGREE`].
+fn bernstein(place: usize, part: f64) -> f64 {
+    let choices = (0..place).fold(1.0, |choices, k| {
+        choices * (DEGREE - k) as f64 / (k + 1) as f64
+    });
+    choices * part.powi(place as i32) * (1.0 - part).powi((DEGREE - place) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polynomial(s: f64) -> f64 {
+        1.0 + s * (0.3 + s * (-2.0 + s * (0.7 + s * (1.1 + s * (-0.4 + s * (0.9 - 1.3 * s))))))
+    }
+
+    fn piece() -> Piece {
+        let ends = ([polynomial(0.0)], [polynomial(1.0)]);
+        let fitted = BernsteinBasis::new().fit((&ends.0, &ends.1), |s| Some(vec![polynomial(s)]));
+        fitted.expect("a polynomial")
+    }
+
+    #[test]
+    fn halves_have_values_of_polynomial_and_bound_it() {
+        let mut pieces = vec![piece()];
+        for _ in 0..5 {
+            pieces = pieces.iter().flat_map(Piece::halves).collect();
+        }
+        let mut bounds = Vec::new();
+        for piece in &pieces {
+            assert!((piece.end_state()[0] - polynomial(piece.to)).abs() < 1e-13);
+            piece.bound(2.0, &mut bounds);
+            let (value, rate) = (bounds[0].value(), bounds[0].rate());
+            assert!(value.high - value.low < 0.1);
+            let step = 0.01 * (piece.to - piece.from);
+            for k in 0..100 {
+                let s = piece.from + f64::from(k) * step;
+                let (here, there) = (polynomial(s), polynomial(s + step));
+                assert!(value.low - 1e-13 < here && here < value.high + 1e-13);
+                let slope = (there - here) / (2.0 * step);
+                assert!(rate.low - 1e-9 < slope && slope < rate.high + 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! The search for surfaces that a motion crosses inside a step.
+//!
+//! The interior of a step is a polynomial. Interval arithmetic bounds each switching function and its
+//! rate over a piece of the step; with its values at both ends this bounds the function from below
+//! (mean-value form). Pieces in which a function may be negative are halved, so that no crossing of
+//! the interpolated motion is missed, however short. It does not depend on samples.
+
+use eomgen_codegen::program::evaluator::Enclosure;
+use eomgen_model_spec::interval::Interval;
+
+use super::bernstein::Piece;
+
+/// Negative values up to this part of the largest one in a step may be rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The same in widths of the bounds at one state. Rounding of a state grows by this in the control
+/// points of the interior.
+const MAX_ROUNDING_GROWTH: f64 = 100.0;
+
+/// Halvings of a step; a shorter stay beyond a surface is not resolved.
+const MAX_HALVINGS: i32 = 40;
+
+/// Pieces that are examined in one step. Throws at a disc need 30.
+const MAX_PIECES: usize = 500;
+
+/// Evaluations that the search needs.
+pub trait Functions {
+    /// Writes the switching functions at a part of the step, where the state is `y`.
+    fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64>;
+
+    /// Writes the bounds of the switching functions over a piece of the step.
+    fn bound(&mut self, piece: &Piece, out: &mut [Enclosure]);
+
+    /// Returns true if the motion at this part of the step, computed with the accuracy of the step,
+    /// is beyond the surface by more than `negligible`.
+    fn is_beyond(&mut self, part: f64, guard: usize, negligible: f64) -> bool;
+}
+
+/// Piece to be examined, with the functions at its ends and those that may be negative in it.
+struct Task {
+    piece: Piece,
+    start: Vec<f64>,
+    end: Vec<f64>,
+    guards: Vec<usize>,
+}
+
+/// Searches for the first crossing in a step of `length` s whose interior is `piece`, given the
+/// `sides` of the guards to examine (-1 or 1; others are 0) and the functions at both ends. Returns the
+/// part of the step at which the motion is beyond a surface. Guards are added to `undecided` if the
+/// motion does not confirm a crossing of the interior, or if their bounds are too wide.
+pub fn find_crossing(
+    (piece, length): (Piece, f64),
+    sides: &[f64],
+    (start, end): (Vec<f64>, Vec<f64>),
+    functions: &mut impl Functions,
+    undecided: &mut Vec<usize>,
+) -> Option<f64> {
+    let mut bounds = vec![Enclosure::UNKNOWN; sides.len()];
+    functions.bound(&piece.start(), &mut bounds);
+    let ends = start.iter().zip(&end).zip(&bounds);
+    let negligible: Vec<f64> = ends
+        .map(|((a, b), bound)| {
+            let rounding = MAX_ROUNDING_GROWTH * (bound.value().high - bound.value().low);
+            ROUNDING * a.abs().max(b.abs()) + rounding
+        })
+        .collect();
+    let guards = (0..sides.len()).filter(|guard| sides[*guard] != 0.0);
+    let mut tasks = vec![Task {
+        piece,
+        start,
+        end,
+        guards: guards.collect(),
+    }];
+    let mut examined = 0;
+    while let Some(mut task) = tasks.pop() {
+        examined += 1;
+        if examined > MAX_PIECES {
+            undecided.extend(&task.guards);
+            undecided.extend(tasks.iter().flat_map(|task| &task.guards));
+            return None;
+        }
+        functions.bound(&task.piece, &mut bounds);
+        for (bound, side) in bounds.iter_mut().zip(sides) {
+            *bound = bound.multiply(Enclosure::constant(*side));
+        }
+        let width = task.piece.to - task.piece.from;
+        task.guards.retain(|guard| {
+            if undecided.contains(guard) {
+                return false;
+            }
+            let side = sides[*guard];
+            let ends = (side * task.start[*guard], side * task.end[*guard]);
+            lower_bound(bounds[*guard], ends, width * length) < -negligible[*guard]
+        });
+        if task.guards.is_empty() {
+            continue;
+        }
+        let is_end_beyond = |guard: &usize| sides[*guard] * task.end[*guard] < -negligible[*guard];
+        let mut guards = task.guards.iter();
+        let falls = |guard: &usize| bounds[*guard].rate().high < 0.0;
+        if width <= 2.0_f64.powi(-MAX_HALVINGS) || guards.all(falls) {
+            let part = task.piece.to;
+            for guard in task.guards.iter().copied().filter(is_end_beyond) {
+                if functions.is_beyond(part, guard, negligible[guard]) {
+                    return Some(part);
+                }
+                undecided.push(guard);
+            }
+            continue;
+        }
+        let [first, second] = task.piece.halves();
+        let middle = functions.evaluate(first.to, &first.end_state());
+        tasks.push(Task {
+            piece: second,
+            start: middle.clone(),
+            end: task.end,
+            guards: task.guards.clone(),
+        });
+        tasks.push(Task {
+            piece: first,
+            start: task.start,
+            end: middle,
+            guards: task.guards,
+        });
+    }
+    None
+}
+
+/// Returns a lower bound of a function with these bounds over a `duration` in s and these values at
+/// its ends.
+fn lower_bound(bounds: Enclosure, (start, end): (f64, f64), duration: f64) -> f64 {
+    let Interval {
+        low: falling,
+        high: rising,
+    } = bounds.rate();
+    let by_rate = match () {
+        () if falling >= 0.0 => start,
+        () if rising <= 0.0 => end,
+        () if falling.is_infinite() || rising.is_infinite() => f64::NEG_INFINITY,
+        // The least value is where the steepest fall from the start meets that to the end.
+        () => {
+            let fall = start * rising - end * falling + falling * rising * duration;
+            (fall / (rising - falling)).min(start).min(end)
+        }
+    };
+    match by_rate.is_nan() {
+        true => bounds.value().low,
+        false => by_rate.max(bounds.value().low),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bernstein::BernsteinBasis;
+    use super::*;
+
+    /// The function norm(position) - radius of a point in the plane.
+    struct Disc {
+        radius: f64,
+        evaluations: usize,
+    }
+
+    impl Functions for Disc {
+        fn evaluate(&mut self, _: f64, y: &[f64]) -> Vec<f64> {
+            self.evaluations += 1;
+            vec![y[0].hypot(y[1]) - self.radius]
+        }
+
+        fn bound(&mut self, piece: &Piece, out: &mut [Enclosure]) {
+            let mut state = Vec::new();
+            piece.bound(1.0, &mut state);
+            let square = |x: Enclosure| x.value().square();
+            let distance = square(state[0]).add_interval(square(state[1])).raise(0.5);
+            let along = |x: Enclosure| x.value().multiply(x.rate());
+            let rate = along(state[0]).add_interval(along(state[1]));
+            let radius = Interval::from_ends(self.radius, self.radius);
+            let value = distance.subtract(radius);
+            out[0] = Enclosure::from_bounds(value, rate.multiply(distance.reciprocal()));
+        }
+
+        fn is_beyond(&mut self, _: f64, _: usize, _: f64) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn every_throw_at_disc_that_hits_is_found() {
+        let (mut hits, mut evaluations) = (0, 0);
+        for throw in 0..400 {
+            let number = |k: f64| (f64::from(throw) * k).fract();
+            let radius = 1e-3 * 300.0_f64.powf(number(0.618_034));
+            let offset = 2.0 * radius * number(0.414_214);
+            let bend = number(0.259_921) - 0.5;
+            let path = |s: f64| {
+                let x = 4.0 * (s - 0.2 - 0.6 * number(0.732_051));
+                vec![x, offset + bend * x * x]
+            };
+            let least = (0..=200_000)
+                .map(|k| path(f64::from(k) / 2e5))
+                .map(|point| point[0].hypot(point[1]) - radius)
+                .fold(f64::INFINITY, f64::min);
+            if least.abs() < 1e-6 {
+                continue;
+            }
+            let ends = (path(0.0), path(1.0));
+            let piece = BernsteinBasis::new().fit((&ends.0, &ends.1), |s| Some(path(s)));
+            let mut disc = Disc {
+                radius,
+                evaluations: 0,
+            };
+            let values = (disc.evaluate(0.0, &ends.0), disc.evaluate(1.0, &ends.1));
+            let piece = piece.expect("a polynomial");
+            let mut undecided = Vec::new();
+            let found = find_crossing((piece, 1.0), &[1.0], values, &mut disc, &mut undecided);
+            assert!(undecided.is_empty(), "{throw}");
+            match found {
+                Some(part) => {
+                    let point = path(part);
+                    assert!(point[0].hypot(point[1]) < radius, "{throw}: {part}");
+                }
+                None => assert!(least > 0.0, "{throw}: {least:e}"),
+            }
+            hits += usize::from(least < 0.0);
+            evaluations = evaluations.max(disc.evaluations);
+        }
+        assert!(hits > 100, "{hits} hits");
+        assert!(evaluations < 100, "{evaluations} evaluations");
+    }
+}

@@ -1,0 +1,188 @@
+//! The examination of an accepted step: surfaces that the motion crossed inside it.
+
+use eomgen_codegen::program::evaluator::Enclosure;
+
+use super::bernstein::Piece;
+use super::driver::{Accepted, Driver, SHORTENED};
+use super::event_search::{Functions, find_crossing};
+use super::grazing::find_passed_surface;
+use super::resolution::PARTS;
+use super::stepper::{Point, Stepper};
+use super::system::System;
+use super::watch::WatchedSystem;
+
+/// Shortest step, relative to the time, in which times can be told apart.
+const SHORTEST_SEEN: f64 = 1e-12;
+
+impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
+    /// Examines an accepted step of `length` s, which may be taken back and shortened first.
+    pub(super) fn look_at(&mut self, length: f64, may_shorten: bool) -> Accepted {
+        let found = self.find_crossing_inside(length, may_shorten);
+        match found {
+            Accepted::Continues => {}
+            Accepted::Shortened | Accepted::SurfacePassed(_) => return found,
+        }
+        if !self.project() && may_shorten {
+            self.refuse(length);
+            return Accepted::Shortened;
+        }
+        Accepted::Continues
+    }
+
+    /// Searches the last step, of `length` s, for crossings. Functions with bounds are searched by
+    /// these, others by samples.
+    fn find_crossing_inside(&mut self, length: f64, may_shorten: bool) -> Accepted {
+        let (start, end) = (
+            self.stepper.step_start().clone(),
+            self.stepper.current_point().clone(),
+        );
+        let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
+        if is_short || !self.watched.has_guards() {
+            return Accepted::Continues;
+        }
+        let stepper = &mut self.stepper;
+        let interpolate = |part: f64| stepper.interpolated(start.t + part * (end.t - start.t));
+        let Some(piece) = self.basis.fit((&start.y, &end.y), interpolate) else {
+            return Accepted::Continues;
+        };
+        let mut sampled: Vec<f64> = self.watched.sides();
+        let mut bounded = sampled.clone();
+        let mut step = Step {
+            watched: self.watched,
+            stepper: &mut self.stepper,
+            times: (start.t, end.t),
+            state: Vec::new(),
+            trials: 0,
+        };
+        let mut bounds = vec![Enclosure::UNKNOWN; bounded.len()];
+        step.bound(&piece, &mut bounds);
+        for (guard, bound) in bounds.iter().enumerate() {
+            let kind = match bound.is_unknown() {
+                true => &mut bounded,
+                false => &mut sampled,
+            };
+            kind[guard] = 0.0;
+        }
+        let ends = (step.evaluate(0.0, &start.y), step.evaluate(1.0, &end.y));
+        let mut undecided = Vec::new();
+        let interior = (piece, end.t - start.t);
+        let found = find_crossing(interior, &bounded, ends, &mut step, &mut undecided);
+        self.trajectory.statistics.trial_steps += step.trials;
+        if let Some(part) = found {
+            self.stepper.take_back();
+            return Accepted::SurfacePassed(part * length);
+        }
+        for guard in undecided {
+            sampled[guard] = bounded[guard];
+        }
+        match sampled.iter().any(|side| *side != 0.0) {
+            true => self.find_sampled_crossing(&sampled, length, may_shorten),
+            false => Accepted::Continues,
+        }
+    }
+
+    /// Searches for crossings of functions without bounds, whose `sides` are not 0.
+    fn find_sampled_crossing(&mut self, sides: &[f64], length: f64, may_shorten: bool) -> Accepted {
+        let Some(values) = self.sample_guards() else {
+            return Accepted::Continues;
+        };
+        if may_shorten && self.shorten_unresolved(&values, sides, length) {
+            return Accepted::Shortened;
+        }
+        let trials = &mut self.trajectory.statistics.trial_steps;
+        let step = (self.watched, &mut self.stepper);
+        if let Some(length) = find_passed_surface(step, sides, &values, trials) {
+            self.stepper.take_back();
+            return Accepted::SurfacePassed(length);
+        }
+        self.resolution.settle(&values);
+        Accepted::Continues
+    }
+
+    /// Evaluates the switching functions at [`PARTS`] of the last step. Returns `None` if the method
+    /// does not interpolate it.
+    fn sample_guards(&mut self) -> Option<[Vec<f64>; 5]> {
+        let (start, end) = (
+            self.stepper.step_start().clone(),
+            self.stepper.current_point().clone(),
+        );
+        let mut values: [Vec<f64>; 5] = Default::default();
+        for (part, values) in PARTS.into_iter().zip(&mut values) {
+            let t = start.t + part * (end.t - start.t);
+            let state = match part {
+                0.0 => start.y.clone(),
+                1.0 => end.y.clone(),
+                _ => self.stepper.interpolated(t)?,
+            };
+            *values = self.watched.evaluate_guards_before(t, &state);
+        }
+        Some(values)
+    }
+
+    /// Takes back an accepted step of `length` s that does not resolve the switching functions, and
+    /// shortens it; else limits the next step so that it resolves them. Returns true if it was taken
+    /// back.
+    fn shorten_unresolved(&mut self, values: &[Vec<f64>; 5], sides: &[f64], length: f64) -> bool {
+        let side = |guard: usize| sides[guard];
+        let mut longest = self.resolution.longest(values, side, &[]);
+        if longest < 1.0 {
+            let start = self.stepper.step_start();
+            let roundings = self.watched.guard_roundings(start.t, &start.y);
+            longest = self.resolution.longest(values, side, &roundings);
+        }
+        let is_resolved = longest >= 1.0;
+        if is_resolved {
+            let step = self.stepper.step();
+            self.stepper.set_step(step.min(longest * length));
+        } else {
+            self.stepper.take_back();
+            self.stepper.set_step(longest.max(SHORTENED) * length);
+            self.trajectory.statistics.rejected_steps += 1;
+        }
+        !is_resolved
+    }
+}
+
+/// The last step, whose interior is searched.
+struct Step<'a, S: System + ?Sized, M: Stepper> {
+    watched: &'a WatchedSystem<'a, S>,
+    stepper: &'a mut M,
+    /// Begin and end, s.
+    times: (f64, f64),
+    state: Vec<Enclosure>,
+    trials: u64,
+}
+
+impl<S: System + ?Sized, M: Stepper> Step<'_, S, M> {
+    fn time(&self, part: f64) -> f64 {
+        match part {
+            1.0 => self.times.1,
+            _ => self.times.0 + part * (self.times.1 - self.times.0),
+        }
+    }
+}
+
+impl<S: System + ?Sized, M: Stepper> Functions for Step<'_, S, M> {
+    fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64> {
+        self.watched.evaluate_guards_before(self.time(part), y)
+    }
+
+    fn bound(&mut self, piece: &Piece, out: &mut [Enclosure]) {
+        piece.bound(self.times.1 - self.times.0, &mut self.state);
+        let times = (self.time(piece.from), self.time(piece.to));
+        self.watched.bound_guards(times, &self.state, out);
+    }
+
+    fn is_beyond(&mut self, part: f64, guard: usize, negligible: f64) -> bool {
+        self.trials += 1;
+        self.watched.forget_trials();
+        let t = self.time(part);
+        let Some(y) = self.stepper.inside(self.watched, t) else {
+            return true;
+        };
+        let point = Point { t, y };
+        let value = self.watched.evaluate_guards_before(point.t, &point.y)[guard];
+        // Beyond a surface the rates may have returned the motion already.
+        self.watched.side(guard) * value < -negligible || self.watched.crossed_guard().is_some()
+    }
+}
