@@ -105,6 +105,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         resolution: Resolution::new(settings.tolerance),
         basis: BernsteinBasis::new(),
         projected: None,
+        rebounds: Vec::new(),
         trajectory,
     };
     driver.sample_start();
@@ -139,6 +140,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) basis: BernsteinBasis,
     /// The state here brought back onto what the motion keeps, if that moves it.
     projected: Option<Vec<f64>>,
+    /// Surfaces that returned the motion in the last step over them.
+    pub(super) rebounds: Vec<usize>,
     pub(super) trajectory: &'a mut Trajectory,
 }
 
@@ -321,6 +324,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         for guard in self.watched.enter_regime(t, &here.y) {
             if changed.iter().all(|(known, _)| *known != guard) {
                 changed.push((guard, self.watched.is_positive(guard)));
+            }
+        }
+        for guard in std::mem::take(&mut self.rebounds) {
+            let is_known = changed.iter().any(|(known, _)| *known == guard);
+            if !is_known {
+                let to_positive = self.watched.is_positive(guard);
+                self.trajectory.switches.push(Switch {
+                    t,
+                    guard,
+                    to_positive,
+                });
             }
         }
         for (guard, to_positive) in changed {

@@ -56,8 +56,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                     let mut point = self.stepper.current_point().clone();
                     self.stepper.take_back();
                     let start = self.stepper.current_point().clone();
-                    self.watched
-                        .apply_event((start.t, &start.y), point.t, &mut point.y);
+                    self.apply_event(&start, &mut point);
                     self.stepper.restart(point, length);
                     self.project();
                     return self.accept(begin);
@@ -81,8 +80,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 break;
             };
             if self.is_beyond(&point) {
-                self.watched
-                    .apply_event((start.t, &start.y), point.t, &mut point.y);
+                self.apply_event(&start, &mut point);
                 self.stepper.restart(point, length);
                 self.project();
                 self.accept(start.t)?;
@@ -105,6 +103,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         // meets the tolerance.
         self.stepper.restart(start, 0.25 * length);
         Ok(false)
+    }
+
+    /// Applies the event at the surfaces between `start` and `point`, and notes those that returned the
+    /// motion to its side.
+    fn apply_event(&mut self, start: &Point, point: &mut Point) {
+        let arrived = self.crossed_guards(point);
+        self.watched
+            .apply_event((start.t, &start.y), point.t, &mut point.y);
+        let beyond = self.crossed_guards(point);
+        self.rebounds = arrived;
+        self.rebounds.retain(|guard| !beyond.contains(guard));
     }
 
     /// The point that a step of `window` s leads to from `start`, if the step meets the tolerance. The error
@@ -135,8 +144,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// step may cross them.
     fn moves_by_rounding(&self, start: &Point, end: &Point) -> bool {
         let [from, to] = [start, end].map(|point| self.watched.evaluate_guards(point.t, &point.y));
-        let crossed = (0..to.len()).filter(|guard| self.watched.is_beyond(*guard, to[*guard]));
-        let crossed: Vec<usize> = crossed.collect();
+        let crossed = self.crossed_guards(end);
         if crossed.is_empty() {
             return false;
         }
@@ -164,7 +172,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Returns true if a point lies beyond a surface of the present regime.
     fn is_beyond(&self, point: &Point) -> bool {
+        !self.crossed_guards(point).is_empty()
+    }
+
+    /// Returns the surfaces of the present regime beyond which a point lies.
+    fn crossed_guards(&self, point: &Point) -> Vec<usize> {
         let guards = self.watched.evaluate_guards(point.t, &point.y);
-        (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
+        let values = guards.into_iter().enumerate();
+        let beyond = values.filter(|(guard, value)| self.watched.is_beyond(*guard, *value));
+        beyond.map(|(guard, _)| guard).collect()
     }
 }

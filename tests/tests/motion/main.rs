@@ -6,6 +6,7 @@ mod exact_properties;
 mod exact_reference;
 mod exact_survival;
 mod impacts;
+mod passed_surfaces;
 mod piecewise;
 mod reference_trajectory;
 mod stopped;
