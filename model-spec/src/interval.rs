@@ -244,9 +244,8 @@ mod tests {
         for start in [-1000.0, -7.0, -0.3, 0.0, 1.2, 40.0, 1e6] {
             for width in [0.0, 0.01, 0.7, 3.0, 5.0, 6.2, 9.0] {
                 let x = Interval::from_ends(start, start + width);
-                let functions: [(Function, fn(f64) -> f64); 2] =
-                    [(Function::Sin, f64::sin), (Function::Cos, f64::cos)];
-                for (function, value) in functions {
+                for function in [Function::Sin, Function::Cos] {
+                    let value = |x: f64| call(function, x, 0.0);
                     let bounds = Interval::apply_function(function, &[x]);
                     let values = (0..=20_000).map(|k| value(start + width * f64::from(k) / 2e4));
                     let (low, high) = values.fold((1.0_f64, -1.0_f64), |(low, high), value| {

@@ -1,9 +1,10 @@
 //! Bounds of the switching functions and of the distances at impacts over a stretch of a motion, by interval
 //! arithmetic with rates (R. E. Moore, *Methods and Applications of Interval Analysis*, mean-value form).
 
+use super::bounds_memory::BoundsMemory;
 use super::enclosure::Enclosure;
 use super::{Evaluator, Stage};
-use crate::program::{Arguments, Extent, Op, Program, ValueId};
+use crate::program::{Arguments, Extent, Op, ValueId};
 
 /// Stretch of a motion: bounds of time (rate 1), state and inputs.
 #[derive(Clone, Copy, Debug)]
@@ -14,30 +15,6 @@ pub struct Stretch<'a> {
     pub state: &'a [Enclosure],
     /// Inputs in the order of the program.
     pub inputs: &'a [Enclosure],
-}
-
-/// Bounds of the values of two stages.
-pub(super) struct BoundsMemory {
-    /// Place of each value's first bound; unused values have none.
-    places: Vec<Option<usize>>,
-    bounds: Vec<Enclosure>,
-}
-
-impl BoundsMemory {
-    fn new(program: &Program, steps: [&[ValueId]; 2]) -> Self {
-        let mut places = vec![None; program.values.len()];
-        let mut size = 0;
-        for id in steps.into_iter().flatten() {
-            if places[id.index()].is_none() {
-                places[id.index()] = Some(size);
-                size += program.value(*id).extent.length();
-            }
-        }
-        Self {
-            places,
-            bounds: vec![Enclosure::UNKNOWN; size],
-        }
-    }
 }
 
 impl Evaluator {
@@ -88,20 +65,15 @@ impl Evaluator {
             Extent::Scalar => 0,
             _ => index,
         };
-        let known = self.bounds.as_ref().and_then(|memory| {
-            let place = memory.places[id.index()]?;
-            memory.bounds.get(place + index)
-        });
-        known.copied().unwrap_or(Enclosure::UNKNOWN)
+        let memory = self.bounds.as_ref();
+        memory.map_or(Enclosure::UNKNOWN, |memory| memory.bound(id, index))
     }
 
     fn bound_value(&mut self, id: ValueId, stretch: &Stretch<'_>) {
         for index in 0..self.program.value(id).extent.length() {
             let bound = self.bound_element(id, index, stretch);
-            if let Some(memory) = &mut self.bounds
-                && let Some(place) = memory.places[id.index()]
-            {
-                memory.bounds[place + index] = bound;
+            if let Some(memory) = &mut self.bounds {
+                memory.set_bound(id, index, bound);
             }
         }
     }
@@ -120,7 +92,7 @@ impl Evaluator {
             Op::Input(place) => stretch.inputs.get(place.index()).copied(),
             Op::Time => Some(stretch.t),
             Op::Negate(a) => Some(of(*a).negate()),
-            Op::Add(a, b) => Some(of(*a).add(of(*b))),
+            Op::Add(a, b) => Some(of(*a).add_enclosure(of(*b))),
             Op::Subtract(a, b) => Some(of(*a).subtract(of(*b))),
             Op::Multiply(a, b) if a == b => Some(of(*a).raise(Enclosure::constant(2.0))),
             Op::Multiply(a, b) => Some(of(*a).multiply(of(*b))),
@@ -139,7 +111,7 @@ impl Evaluator {
             Op::Total(a) => {
                 let elements = 0..self.program.value(*a).extent.length();
                 let sum = elements.fold(Enclosure::constant(0.0), |sum, element| {
-                    sum.add(self.bound(*a, element))
+                    sum.add_enclosure(self.bound(*a, element))
                 });
                 Some(sum)
             }
@@ -173,7 +145,7 @@ impl Evaluator {
                 false => index * columns + term,
             };
             let product = self.bound(matrix, place).multiply(self.bound(vector, term));
-            sum.add(product)
+            sum.add_enclosure(product)
         });
         Some(sum)
     }

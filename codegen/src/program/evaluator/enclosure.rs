@@ -99,7 +99,7 @@ impl Enclosure {
 
     /// Returns the bounds of a sum.
     #[must_use]
-    pub fn add(self, other: Self) -> Self {
+    pub fn add_enclosure(self, other: Self) -> Self {
         let controls: [f64; DEGREE + 1] =
             std::array::from_fn(|place| self.controls[place] + other.controls[place]);
         let terms = self.controls.iter().chain(&other.controls);
@@ -140,7 +140,7 @@ impl Enclosure {
     }
 
     pub(super) fn subtract(self, other: Self) -> Self {
-        self.add(other.negate())
+        self.add_enclosure(other.negate())
     }
 
     /// Returns the bounds of a product.
@@ -232,7 +232,7 @@ fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosur
         (Function::Max, &[x, y]) if is_positive(x.subtract(y)) => Some(x),
         (Function::Max, &[x, y]) if is_positive(y.subtract(x)) => Some(y),
         (Function::Deadzone, &[x, width]) => {
-            let (above, below) = (x.subtract(width), x.add(width));
+            let (above, below) = (x.subtract(width), x.add_enclosure(width));
             match () {
                 () if is_positive(above) => Some(above),
                 () if is_positive(below.negate()) => Some(below),
@@ -281,7 +281,9 @@ fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
             turned.multiply(distance.reciprocal())
         }
         Function::Min | Function::Max => x.rate().hull(y.rate()),
-        Function::Deadzone => ZERO.hull(x.subtract(y).rate()).hull(x.add(y).rate()),
+        Function::Deadzone => ZERO
+            .hull(x.subtract(y).rate())
+            .hull(x.add_enclosure(y).rate()),
         Function::Contact => {
             let is_inside = x_value.high <= y_value.low && -y_value.low <= x_value.low;
             let is_outside = x_value.low > y_value.high || x_value.high < -y_value.high;
@@ -311,7 +313,7 @@ mod tests {
         };
         let square = Enclosure::polynomial(power(2), 2.0);
         let cube = Enclosure::polynomial(power(3), 2.0);
-        [square.add(Enclosure::constant(constant)), cube]
+        [square.add_enclosure(Enclosure::constant(constant)), cube]
     }
 
     #[test]
@@ -327,7 +329,7 @@ mod tests {
         let value = |t: f64| (t * t + 0.5, t * t * t);
         type Pair = (Enclosure, fn(f64, f64) -> f64);
         let cases: [Pair; 9] = [
-            (a.add(b), |a, b| a + b),
+            (a.add_enclosure(b), |a, b| a + b),
             (a.multiply(b), |a, b| a * b),
             (b.divide(a), |a, b| b / a),
             (a.raise(Enclosure::constant(1.5)), |a, _| a.powf(1.5)),

@@ -3,6 +3,7 @@
 //! can replace the steps.
 
 mod bounds;
+mod bounds_memory;
 mod code;
 mod enclosure;
 mod functions;
@@ -19,8 +20,8 @@ use eomgen_model_spec::ids::FieldId;
 use std::sync::Arc;
 
 use crate::program::{Extent, Op, Program, ValueId};
-use bounds::BoundsMemory;
 pub use bounds::Stretch;
+use bounds_memory::BoundsMemory;
 pub use code::{MachineCode, Stage};
 pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};

@@ -119,7 +119,7 @@ impl Contacts {
     pub fn bound_guards(&self, own: &mut Evaluator, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
         own.bound_distances(stretch, out);
         for (slot, offset) in out.iter_mut().zip(&self.offsets) {
-            *slot = slot.add(Enclosure::constant(*offset));
+            *slot = slot.add_enclosure(Enclosure::constant(*offset));
         }
         for place in &self.closed {
             out[*place] = Enclosure::UNKNOWN;

@@ -208,7 +208,7 @@ impl SurfaceStates {
                 SurfaceState::Holding { .. } => *slot = Enclosure::UNKNOWN,
                 SurfaceState::Bearing { from, .. } => *slot = Enclosure::constant(from),
                 SurfaceState::Leaving { side, moved } => {
-                    *slot = slot.add(Enclosure::constant(side * moved));
+                    *slot = slot.add_enclosure(Enclosure::constant(side * moved));
                 }
             }
         }
