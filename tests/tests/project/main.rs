@@ -10,6 +10,8 @@ mod packages;
 #[cfg(unix)]
 mod pictures;
 mod printed_commands;
+#[cfg(unix)]
+mod recipes;
 mod shells;
 mod streams;
 mod usage;
