@@ -5,9 +5,10 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use eomgen_benches::contenders::{equation_22, floor};
+use eomgen_benches::eliminated_arm::EliminatedArm;
 use eomgen_benches::{at_all_orders, generated, state, variants};
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{EliminatedArm, Equation22};
+use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
 /// Results are observed in place, so that the time of a copy is not included.
 macro_rules! compare {

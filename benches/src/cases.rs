@@ -6,10 +6,11 @@ use std::path::Path;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{EliminatedArm, Equation22};
+use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
 use crate::contenders::equation_22;
+use crate::eliminated_arm::EliminatedArm;
 use crate::instructions::CALLS;
 use crate::{state, variants};
 

@@ -1,7 +1,9 @@
 //! Code that generated code is compared with. Each contender is a call that is not inlined, as emitted functions are not
 //! inlined into other crates. All write their result to memory of the caller.
 
-use eomgen_paper::reference::equation_22::{Equation22, copy_in_pairs};
+use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
+
+use crate::eliminated_arm::copy_in_pairs;
 
 /// Calls a macro with every compared order and its module of [`crate::variants`].
 #[macro_export]

@@ -5,6 +5,7 @@
 pub mod casadi_contender;
 pub mod cases;
 pub mod contenders;
+pub mod eliminated_arm;
 pub mod history;
 pub mod instructions;
 pub mod rigid_specifications;

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eomgen_codegen::rust::Packaging;
 use eomgen_model_spec::model::Model;
-use eomgen_paper::certification::certify_source;
-use eomgen_validate::model_certificate::unchecked_certificate;
+use eomgen_validate::model_certificate::{certify_source, unchecked_certificate};
 use serde_json::{Value, json};
 
 use crate::certification::document;

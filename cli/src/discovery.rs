@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use eomgen_discover::report::result::Validation;
 use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
-use eomgen_paper::certification::certify;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::{Check, Verdict};
+use eomgen_validate::model_certificate::certify_model;
 use serde_json::{Value, json};
 
 use crate::error::{Error, Result, warn};
@@ -94,7 +94,7 @@ fn validate(path: &str, text: &str, order: Option<usize>) -> Result<Option<Valid
     if orders.iter().any(|other| *other != orders[0]) {
         return Ok(None);
     }
-    let certificate = certify(&model, &orders, &[])?;
+    let certificate = certify_model(&model, &orders, &[])?;
     let names = |wanted: fn(&Check) -> bool| -> Vec<String> {
         let checks = certificate.checks.iter().filter(|check| wanted(check));
         checks.map(|check| check.name.clone()).collect()

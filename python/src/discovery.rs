@@ -7,9 +7,9 @@ use eomgen_discover::report::result::{Discovery, Validation};
 use eomgen_discover::{Specification, catalogue, discover_until};
 use eomgen_model_spec::hidden_characters::escape_hidden;
 use eomgen_model_spec::source::Source;
-use eomgen_paper::certification::certify;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::{Check, Verdict};
+use eomgen_validate::model_certificate::certify_model;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -82,7 +82,7 @@ fn validate(extended: Source, order: Option<usize>) -> Result<Option<Validation>
     if orders.windows(2).any(|pair| pair[0] != pair[1]) {
         return Ok(None);
     }
-    let certificate = certify(&model, &orders, &[])?;
+    let certificate = certify_model(&model, &orders, &[])?;
     let names = |wanted: fn(&Check) -> bool| {
         let checks = certificate.checks.iter().filter(|check| wanted(check));
         checks.map(|check| check.name.clone()).collect()

@@ -11,12 +11,12 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use eomgen_benches::eliminated_arm::EliminatedArm;
 use eomgen_benches::variants;
 use eomgen_codegen::c;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::EliminatedArm;
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
 /// Number of states in a pass.
 const STATES: usize = 1024;

@@ -10,11 +10,12 @@ use std::process::Command;
 use std::time::Instant;
 
 use eomgen_benches::contenders::{equation_22, floor};
+use eomgen_benches::eliminated_arm::EliminatedArm;
 use eomgen_benches::history::{Contenders, Times, curves, development, heading, line, table};
 use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
 use eomgen_benches::{at_all_orders, cases, state, variants};
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{EliminatedArm, Equation22};
+use eomgen_validate::references::planetary_arm::dimensionless_equation_22::Equation22;
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
 /// Number of calls per measurement.
 const CALLS: u32 = 100;

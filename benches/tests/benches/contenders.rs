@@ -1,8 +1,9 @@
 //! Agreement of the contenders of the bench `rates`.
 
+use eomgen_benches::eliminated_arm::EliminatedArm;
 use eomgen_benches::{state, variants};
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{Coefficients, EliminatedArm};
+use eomgen_validate::references::planetary_arm::equation_22::Coefficients;
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 
 /// Rounding error of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;

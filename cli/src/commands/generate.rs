@@ -4,8 +4,8 @@ use std::path::Path;
 
 use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant;
-use eomgen_paper::certification::certify_source;
 use eomgen_validate::certificate::Certificate;
+use eomgen_validate::model_certificate::certify_source;
 use serde_json::json;
 
 use crate::arguments::{Extra, Generate};

@@ -1,6 +1,6 @@
 //! `eomgen validate`: the certificate of a variant.
 
-use eomgen_paper::certification::certify;
+use eomgen_validate::model_certificate::certify_model;
 
 use crate::arguments::{Extra, Validate};
 use crate::certification::{document, summary};
@@ -18,7 +18,7 @@ pub fn run(options: &Validate) -> Result {
     let orders = orders(&model, options.model.order.text())?;
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));
-        certify(&model, &orders, &Extra::outputs(&options.with))?
+        certify_model(&model, &orders, &Extra::outputs(&options.with))?
     };
     let text = document(&certificate)?;
     if let Some(destination) = &destination {

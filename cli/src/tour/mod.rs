@@ -13,9 +13,9 @@ use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 use eomgen_page::Figure;
-use eomgen_paper::certification::certify;
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
+use eomgen_validate::model_certificate::certify_model;
 
 use crate::emission::source;
 use crate::error::{Error, Result};
@@ -82,7 +82,7 @@ pub fn run(out: &Path) -> Result<TourResult> {
     watch.lap("emit Rust");
     drop(note);
     let note = Note::new("validating against independent equations");
-    let certificate = certify(compiled.model(), &[ORDER], &[])?;
+    let certificate = certify_model(compiled.model(), &[ORDER], &[])?;
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
     let run = compiled.with_declared_parameters()?;

@@ -3,8 +3,9 @@
 //! The [`oracle`] forms the equations of motion a second time, from the checked model by automatic
 //! differentiation. It shares no code with the derivation under test. The [`sampler`] draws
 //! [`random`] states in every regime. The [`checks`] compare a [`variant::Variant`] and its
-//! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source.
-//! [`certify`](certify::certify) runs all checks and writes the [`certificate`].
+//! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source. Hand-written
+//! equations of known machines are [`mod@references`]. [`certify`](certify::certify) runs all checks
+//! and writes the [`certificate`]; [`model_certificate`] certifies a model with its emitted source.
 //!
 //! Example: residuals of the oracle's own accelerations of a pendulum.
 //!
@@ -36,6 +37,7 @@ pub mod model_certificate;
 pub mod oracle;
 pub mod outputs;
 pub mod random;
+pub mod references;
 mod regime_search;
 mod regimes;
 mod sample;

@@ -9,32 +9,74 @@ use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::lowering::lower_with_outputs;
 use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant as DerivedVariant;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
-use crate::certify::{
-    Emitted, EmittedFunction, ReferenceEquations, ScaledRates, Subject, certificate_header, certify,
-};
+use crate::certify::{Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify};
 use crate::derived::Derived;
 use crate::derived_outputs::DerivedOutputs;
 use crate::outputs::Outputs;
+use crate::references::reference_equations;
 use crate::variant::Variant;
-use eomgen_compiled_model::{CompiledModel, Orders};
+use eomgen_compiled_model::{CompiledModel, Error, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
 
-/// Derives `model` at `order` and returns its certificate; `emitted` is the source with `outputs`.
+/// Certifies a model as emitted with `outputs`, by an oracle and by the hand-written equations that
+/// apply to it. `orders` must be equal for all fields.
 ///
 /// # Errors
-/// [`ModelError`] if a parameter has no finite value.
-pub fn certificate(
+/// Models that cannot be derived or emitted, and orders that differ.
+pub fn certify_model(
+    model: &Model,
+    orders: &[usize],
+    outputs: &[Output],
+) -> Result<Certificate, Error> {
+    common_order(model, orders)?;
+    let variant = DerivedVariant::derive_with(model, orders, outputs)?;
+    let emitted = emit(&variant.program, Packaging::Crate);
+    let emitted = emitted.map_err(|error| Error::Request(error.to_string()))?;
+    certify_source(model, orders, outputs, emitted)
+}
+
+/// Certifies an emitted source of `model` with `outputs`.
+///
+/// # Errors
+/// As [`certify_model`].
+pub fn certify_source(
+    model: &Model,
+    orders: &[usize],
+    outputs: &[Output],
+    emitted: String,
+) -> Result<Certificate, Error> {
+    let order = common_order(model, orders)?;
+    let certificate = certificate(model, order, outputs, emitted)
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
+    Ok(certificate)
+}
+
+fn common_order(model: &Model, orders: &[usize]) -> Result<usize, Error> {
+    let order = orders.first().copied().unwrap_or(0);
+    if orders.iter().any(|other| *other != order) {
+        return Err(Error::Request(format!(
+            "the fields of {} have the orders {orders:?}; a certificate is for one order: \
+             give --order",
+            model.name
+        )));
+    }
+    Ok(order)
+}
+
+fn certificate(
     model: &Model,
     order: usize,
     outputs: &[Output],
     emitted: String,
-    reference_equations: &ReferenceEquations,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
+    let reference_equations = reference_equations(model, order, &parameters);
     let variants = |order: usize| build_variant(model, order, &parameters);
     let output_functions = || build_outputs(model, order, &parameters, outputs);
     let propagator = build_propagator(model, order).map(RefCell::new);

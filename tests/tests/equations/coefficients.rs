@@ -2,9 +2,9 @@
 //! of Eq. (22), and sufficient to assemble the equations.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_paper::reference::PlanetaryArmParameters;
-use eomgen_paper::reference::equation_22::{Coefficients, ModeRow};
 use eomgen_tests::models::{load, samples, variant};
+use eomgen_validate::references::planetary_arm::equation_22::{Coefficients, ModeRow};
+use eomgen_validate::references::planetary_arm::parameters::PlanetaryArmParameters;
 use eomgen_validate::sampler::Sample;
 
 /// Maximum relative deviation. Both sides are tens of roundings away from the parameters, and a_16

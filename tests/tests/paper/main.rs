@@ -2,5 +2,6 @@
 
 mod claims_page;
 mod errata;
+mod studies;
 mod study;
 mod study_search;

@@ -171,3 +171,23 @@ fn macro_depends_on_no_solver() {
     }
     assert!(names.len() <= 45, "{}: {names:?}", names.len());
 }
+
+#[test]
+fn only_paper_commands_use_the_paper_crate() {
+    let (published, _) = packages();
+    let mut users: Vec<String> = published
+        .iter()
+        .flat_map(|package| sources(folder(package)))
+        .filter(|path| {
+            let source = std::fs::read_to_string(path).expect("a source file");
+            source.contains("eomgen_paper::")
+        })
+        .map(|path| {
+            let own = path.strip_prefix(project()).expect("a file of the project");
+            own.display().to_string()
+        })
+        .collect();
+    users.sort();
+    let commands = ["cli/src/commands/claims.rs", "cli/src/commands/study.rs"];
+    assert_eq!(users, commands);
+}

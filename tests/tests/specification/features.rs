@@ -7,8 +7,7 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{samples, variant};
-use eomgen_validate::certify::ReferenceEquations;
-use eomgen_validate::model_certificate::certificate;
+use eomgen_validate::model_certificate::certify_source;
 use eomgen_validate::sampler::Sample;
 
 /// Declares one test per file and a test that every file is listed.
@@ -116,14 +115,9 @@ fn certify(name: &str, orders: &[usize]) {
     let model = load(name);
     let mut failures = Vec::new();
     for &order in orders {
-        let certificate = certificate(
-            &model,
-            order,
-            &[],
-            emit_source(&model, order),
-            &ReferenceEquations::default(),
-        )
-        .unwrap();
+        let orders = vec![order; model.fields.len().max(1)];
+        let source = emit_source(&model, order);
+        let certificate = certify_source(&model, &orders, &[], source).unwrap();
         failures.extend(certificate.failures().map(|check| {
             format!(
                 "order {order}, {}: {:?} ({})",

@@ -1,16 +1,16 @@
 //! Planetary arm with any values of the parameters that the paper does not disclose.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 
 use super::error::StudyError;
-use crate::reference::mode_shapes::ModeShape;
 use eomgen_analysis::natural_modes::{NaturalMode, natural_modes};
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sim::piecewise_linear::Propagator;
+use eomgen_validate::references::planetary_arm::mode_shapes::ModeShape;
 
 /// Shipped specification of the arm.
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
@@ -82,7 +82,10 @@ impl ArmShapes {
     fn shape(self, number: usize) -> ModeShape {
         match self {
             Self::Corrected => ModeShape::clamped_free(number),
-            Self::Printed => ModeShape::as_printed(number),
+            Self::Printed => {
+                let z = PI * (number as f64 - 0.5);
+                ModeShape::with_values(z, (z.cos() + z.cosh()) / (z.sin() + z.sinh()))
+            }
         }
     }
 }

@@ -1,0 +1,110 @@
+//! Closed forms of other machines from textbooks, one file per machine: mass matrix and forces, in
+//! the coordinates and parameter names of the specification of the same name.
+//!
+//! An optional parameter (a damping, an inertia) that is missing counts as 0.
+
+mod cart_two_arms;
+mod chaplygin_sleigh;
+mod crane;
+mod double_pendulum;
+mod emps;
+mod furuta_pendulum;
+mod hub_beam_tip_mass;
+mod linear_system;
+mod loudspeaker;
+mod pendulum;
+mod puma_560;
+mod quadrotor_slung_load;
+mod shaft_and_disc;
+mod two_link_arm;
+
+use std::fmt;
+
+use eomgen_model_spec::models::{self, ShippedModel};
+
+use crate::references::evaluation::Evaluation;
+
+/// State, parameters and inputs for the evaluation of a closed form.
+pub struct StateAndParameters<'a> {
+    /// Parameters by name, SI.
+    pub parameter: &'a dyn Fn(&str) -> Option<f64>,
+    /// Inputs by name, SI; an input without a value is 0.
+    pub input: &'a dyn Fn(&str) -> Option<f64>,
+    /// Truncation order of the flexible field, 0 without a field.
+    pub order: usize,
+    /// Coordinates in the order of the specification, the modes, the rates of all, then first-order
+    /// states.
+    pub state: &'a [f64],
+}
+
+/// Accelerations of a machine in the order of its coordinates, then rates of first-order states,
+/// with row scales.
+pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
+
+/// Reason that a closed form does not apply.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotApplicable {
+    /// A required parameter is missing.
+    Parameter(&'static str),
+    /// The number of entries of the state differs from this number.
+    State(usize),
+    /// The mass matrix is singular.
+    Mass,
+}
+
+impl fmt::Display for NotApplicable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(name) => write!(f, "the closed form needs the parameter {name}"),
+            Self::State(entries) => write!(f, "the closed form needs a state of {entries} entries"),
+            Self::Mass => write!(f, "the closed form's mass matrix is singular"),
+        }
+    }
+}
+
+impl std::error::Error for NotApplicable {}
+
+/// Shipped models and their closed forms.
+pub const CLOSED_FORMS: [(ShippedModel, ClosedForm); 13] = [
+    (models::CART_TWO_ARMS, cart_two_arms::accelerations),
+    (models::CHAPLYGIN_SLEIGH, chaplygin_sleigh::accelerations),
+    (models::CRANE, crane::accelerations),
+    (models::DOUBLE_PENDULUM, double_pendulum::accelerations),
+    (models::EMPS, emps::accelerations),
+    (models::FURUTA_PENDULUM, furuta_pendulum::accelerations),
+    (models::HUB_BEAM_TIP_MASS, hub_beam_tip_mass::accelerations),
+    (models::LOUDSPEAKER, loudspeaker::accelerations),
+    (models::PENDULUM, pendulum::accelerations),
+    (models::PUMA_560, puma_560::accelerations),
+    (
+        models::QUADROTOR_SLUNG_LOAD,
+        quadrotor_slung_load::accelerations,
+    ),
+    (models::SHAFT_AND_DISC, shaft_and_disc::accelerations),
+    (models::TWO_LINK_ARM, two_link_arm::accelerations),
+];
+
+impl StateAndParameters<'_> {
+    fn required(&self, name: &'static str) -> Result<f64, NotApplicable> {
+        (self.parameter)(name).ok_or(NotApplicable::Parameter(name))
+    }
+
+    /// Returns a parameter, or 0 if it is missing.
+    fn optional(&self, name: &str) -> f64 {
+        (self.parameter)(name).unwrap_or(0.0)
+    }
+
+    /// Returns an input, or 0 without a value.
+    fn input(&self, name: &str) -> f64 {
+        (self.input)(name).unwrap_or(0.0)
+    }
+
+    /// Returns coordinates and rates of a machine with `N` coordinates and no field.
+    fn motion<const N: usize>(&self) -> Result<([f64; N], [f64; N]), NotApplicable> {
+        let (position, rate) = self.state.split_at(self.state.len() / 2);
+        match (position.try_into(), rate.try_into()) {
+            (Ok(position), Ok(rate)) => Ok((position, rate)),
+            _ => Err(NotApplicable::State(2 * N)),
+        }
+    }
+}
