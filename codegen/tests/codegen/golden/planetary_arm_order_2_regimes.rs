@@ -1,3 +1,4 @@
+
 /// Regime of a state: bit k is set if number k of [`guards`] is positive, for up to 32 of
 /// them. Crossing a surface flips its bit. SIMD lanes must be in one regime: a bit is set
 /// if it is set in all of them.
