@@ -1,9 +1,73 @@
 //! Variants for the tests of the certificate: textbook equations with optional faults.
 
 use super::certify::ScaledRates;
-use super::oracle::Oracle;
+use super::oracle::{Oracle, OracleError};
 use super::variant::Variant;
-use nalgebra::{DMatrix, DVector};
+
+/// Quantities of a model at one state.
+#[derive(Default)]
+pub(super) struct Quantities {
+    pub mass: Vec<f64>,
+    pub bias: Vec<f64>,
+    pub forces: Vec<f64>,
+    pub rates: Vec<f64>,
+    pub energy: f64,
+    pub power: f64,
+    pub guards: Vec<f64>,
+}
+
+/// Hand-written equations of a model without observables.
+pub(super) trait Equations {
+    fn names(&self) -> Vec<String>;
+
+    fn evaluate(&self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Quantities, String>;
+}
+
+impl<T: Equations> Variant for T {
+    fn coordinate_names(&self) -> Vec<String> {
+        self.names()
+    }
+
+    fn rates(&mut self, t: f64, x: &[f64], u: &[f64], rates: &mut [f64]) -> Result<(), String> {
+        rates.copy_from_slice(&self.evaluate(t, x, u)?.rates);
+        Ok(())
+    }
+
+    fn mass_matrix(&mut self, t: f64, x: &[f64], u: &[f64], m: &mut [f64]) -> Result<(), String> {
+        m.copy_from_slice(&self.evaluate(t, x, u)?.mass);
+        Ok(())
+    }
+
+    fn bias_and_forces(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        u: &[f64],
+        bias: &mut [f64],
+        forces: &mut [f64],
+    ) -> Result<(), String> {
+        let found = self.evaluate(t, x, u)?;
+        bias.copy_from_slice(&found.bias);
+        forces.copy_from_slice(&found.forces);
+        Ok(())
+    }
+
+    fn energy(&mut self, t: f64, x: &[f64], u: &[f64]) -> Result<f64, String> {
+        Ok(self.evaluate(t, x, u)?.energy)
+    }
+
+    fn power(&mut self, t: f64, x: &[f64], u: &[f64]) -> Result<f64, String> {
+        Ok(self.evaluate(t, x, u)?.power)
+    }
+
+    fn guards(&mut self, t: f64, x: &[f64], u: &[f64]) -> Result<Vec<f64>, String> {
+        Ok(self.evaluate(t, x, u)?.guards)
+    }
+
+    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
+        Ok(Vec::new())
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fault {
@@ -29,176 +93,100 @@ const L_1: f64 = 0.9;
 const L_2: f64 = 0.6;
 const C: f64 = 0.2;
 
-impl DoublePendulum {
-    fn mass(&self, state: &[f64]) -> [f64; 4] {
-        let coupling = M_2 * L_1 * L_2 * (state[0] - state[1]).cos();
-        [(M_1 + M_2) * L_1 * L_1, coupling, coupling, M_2 * L_2 * L_2]
-    }
-
-    fn bias(&self, state: &[f64]) -> [f64; 2] {
-        let gyration = M_2 * L_1 * L_2 * (state[0] - state[1]).sin();
-        let sign = if self.0 == Fault::VelocitySign {
-            -1.0
-        } else {
-            1.0
-        };
-        [
-            gyration * state[3].powi(2),
-            -sign * gyration * state[2].powi(2),
-        ]
-    }
-
-    fn forces(&self, state: &[f64]) -> [f64; 2] {
-        let joint = C * (state[3] - state[2]);
-        [
-            -(M_1 + M_2) * G * L_1 * state[0].sin() + joint,
-            -M_2 * G * L_2 * state[1].sin() - joint,
-        ]
-    }
-}
-
-impl Variant for DoublePendulum {
-    fn coordinate_names(&self) -> Vec<String> {
+impl Equations for DoublePendulum {
+    fn names(&self) -> Vec<String> {
         vec!["theta_1".into(), "theta_2".into()]
     }
 
-    fn rates(&mut self, _: f64, state: &[f64], _: &[f64], rates: &mut [f64]) -> Result<(), String> {
-        let [m_11, mut m_12, m_21, m_22] = self.mass(state);
-        if self.0 == Fault::Coupling {
-            m_12 = 0.0;
-        }
-        let (bias, forces) = (self.bias(state), self.forces(state));
+    fn evaluate(&self, _: f64, state: &[f64], _: &[f64]) -> Result<Quantities, String> {
+        let [a, b, first, second] = *state else {
+            return Err("four states".into());
+        };
+        let fault = self.0;
+        let coupling = M_2 * L_1 * L_2 * (a - b).cos();
+        let (m_11, m_22) = ((M_1 + M_2) * L_1 * L_1, M_2 * L_2 * L_2);
+        let gyration = M_2 * L_1 * L_2 * (a - b).sin();
+        let sign = if fault == Fault::VelocitySign {
+            1.0
+        } else {
+            -1.0
+        };
+        let bias = [gyration * second * second, sign * gyration * first * first];
+        let joint = C * (second - first);
+        let forces = [
+            -(M_1 + M_2) * G * L_1 * a.sin() + joint,
+            -M_2 * G * L_2 * b.sin() - joint,
+        ];
         let (f_1, f_2) = (forces[0] - bias[0], forces[1] - bias[1]);
-        let determinant = m_11 * m_22 - m_12 * m_21;
-        rates[..2].copy_from_slice(&state[2..]);
-        rates[2] = (m_22 * f_1 - m_12 * f_2) / determinant;
-        rates[3] = (m_11 * f_2 - m_21 * f_1) / determinant;
-        match self.0 {
+        let m_12 = if fault == Fault::Coupling {
+            0.0
+        } else {
+            coupling
+        };
+        let determinant = m_11 * m_22 - m_12 * coupling;
+        let mut rates = vec![
+            first,
+            second,
+            (m_22 * f_1 - m_12 * f_2) / determinant,
+            (m_11 * f_2 - coupling * f_1) / determinant,
+        ];
+        match fault {
             Fault::NotANumber => rates[3] = f64::NAN,
-            Fault::WrongRate => rates[0] = state[3],
+            Fault::WrongRate => rates[0] = second,
             Fault::Refusal => return Err("a pivot is not positive".into()),
             _ => {}
         }
-        Ok(())
-    }
-
-    fn mass_matrix(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        _: &[f64],
-        mass: &mut [f64],
-    ) -> Result<(), String> {
-        mass.copy_from_slice(&self.mass(state));
-        if self.0 == Fault::Asymmetry {
-            mass[1] *= 1.0 + 1e-14;
-        }
-        Ok(())
-    }
-
-    fn bias_and_forces(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        _: &[f64],
-        bias: &mut [f64],
-        forces: &mut [f64],
-    ) -> Result<(), String> {
-        bias.copy_from_slice(&self.bias(state));
-        forces.copy_from_slice(&self.forces(state));
-        Ok(())
-    }
-
-    fn energy(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        let [m_11, m_12, _, m_22] = self.mass(state);
-        let (first, second) = (state[2], state[3]);
-        let kinetic = 0.5 * (m_11 * first * first + m_22 * second * second) + m_12 * first * second;
-        let height = -(M_1 + M_2) * L_1 * state[0].cos() - M_2 * L_2 * state[1].cos();
-        let share = if self.0 == Fault::Energy { 0.0 } else { 1.0 };
-        Ok(share * kinetic + G * height)
-    }
-
-    fn power(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        let sign = if self.0 == Fault::Power { 1.0 } else { -1.0 };
-        Ok(sign * C * (state[3] - state[2]).powi(2))
-    }
-
-    fn guards(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
-    }
-
-    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
+        let asymmetry = if fault == Fault::Asymmetry {
+            1e-14
+        } else {
+            0.0
+        };
+        let kinetic =
+            0.5 * (m_11 * first * first + m_22 * second * second) + coupling * first * second;
+        let height = -(M_1 + M_2) * L_1 * a.cos() - M_2 * L_2 * b.cos();
+        let share = if fault == Fault::Energy { 0.0 } else { 1.0 };
+        let dissipation = C * (second - first).powi(2);
+        Ok(Quantities {
+            mass: vec![m_11, coupling * (1.0 + asymmetry), coupling, m_22],
+            bias: bias.to_vec(),
+            forces: forces.to_vec(),
+            rates,
+            energy: share * kinetic + G * height,
+            power: if fault == Fault::Power {
+                dissipation
+            } else {
+                -dissipation
+            },
+            guards: Vec::new(),
+        })
     }
 }
 
 pub(super) struct Spring(pub Fault);
 
-impl Variant for Spring {
-    fn coordinate_names(&self) -> Vec<String> {
+impl Equations for Spring {
+    fn names(&self) -> Vec<String> {
         vec!["y".into()]
     }
 
-    fn rates(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        inputs: &[f64],
-        rates: &mut [f64],
-    ) -> Result<(), String> {
-        let [mut bias, mut forces] = [[0.0]; 2];
-        self.bias_and_forces(0.0, state, inputs, &mut bias, &mut forces)?;
-        rates.copy_from_slice(&[state[1], forces[0] / 2.0]);
-        Ok(())
-    }
-
-    fn mass_matrix(
-        &mut self,
-        _: f64,
-        _: &[f64],
-        _: &[f64],
-        mass: &mut [f64],
-    ) -> Result<(), String> {
-        mass.copy_from_slice(&[2.0]);
-        Ok(())
-    }
-
-    fn bias_and_forces(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        inputs: &[f64],
-        bias: &mut [f64],
-        forces: &mut [f64],
-    ) -> Result<(), String> {
+    fn evaluate(&self, _: f64, state: &[f64], inputs: &[f64]) -> Result<Quantities, String> {
         let (y, rate) = (state[0], state[1]);
         let stretch = y - y.clamp(-0.01, 0.01);
         let touching = if y.abs() > 0.01 { 1.0 } else { 0.0 };
-        bias.copy_from_slice(&[0.0]);
-        forces.copy_from_slice(&[inputs[0] - 300.0 * stretch - 5.0 * touching * rate]);
-        Ok(())
-    }
-
-    fn energy(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        let stretch = state[0] - state[0].clamp(-0.01, 0.01);
-        Ok(state[1] * state[1] + 150.0 * stretch * stretch)
-    }
-
-    fn power(&mut self, _: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
-        let touching = if state[0].abs() > 0.01 { 1.0 } else { 0.0 };
-        Ok(state[1] * inputs[0] - 5.0 * touching * state[1] * state[1])
-    }
-
-    fn guards(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        let mut guards = vec![state[0] - 0.01, state[0] + 0.01];
+        let force = inputs[0] - 300.0 * stretch - 5.0 * touching * rate;
+        let mut guards = vec![y - 0.01, y + 0.01];
         if self.0 == Fault::Guard {
             guards.pop();
         }
-        Ok(guards)
-    }
-
-    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
+        Ok(Quantities {
+            mass: vec![2.0],
+            bias: vec![0.0],
+            forces: vec![force],
+            rates: vec![rate, force / 2.0],
+            energy: rate * rate + 150.0 * stretch * stretch,
+            power: rate * inputs[0] - 5.0 * touching * rate * rate,
+            guards,
+        })
     }
 }
 
@@ -249,53 +237,21 @@ pub(super) const FAR_TERM: SingleCoordinate = SingleCoordinate {
     },
 };
 
-impl Variant for SingleCoordinate {
-    fn coordinate_names(&self) -> Vec<String> {
+impl Equations for SingleCoordinate {
+    fn names(&self) -> Vec<String> {
         vec![self.name.into()]
     }
 
-    fn rates(&mut self, t: f64, state: &[f64], _: &[f64], rates: &mut [f64]) -> Result<(), String> {
-        rates.copy_from_slice(&[state[1], (self.acceleration)(t, state[0], state[1])]);
-        Ok(())
-    }
-
-    fn mass_matrix(
-        &mut self,
-        t: f64,
-        state: &[f64],
-        _: &[f64],
-        mass: &mut [f64],
-    ) -> Result<(), String> {
-        mass.copy_from_slice(&[(self.mass)(t, state[0], state[1])]);
-        Ok(())
-    }
-
-    /// Only certificates of models with fields call this method.
-    fn bias_and_forces(
-        &mut self,
-        _: f64,
-        _: &[f64],
-        _: &[f64],
-        _: &mut [f64],
-        _: &mut [f64],
-    ) -> Result<(), String> {
-        Err("not supported".into())
-    }
-
-    fn energy(&mut self, t: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        Ok((self.energy)(t, state[0], state[1]))
-    }
-
-    fn power(&mut self, t: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        Ok((self.power)(t, state[0], state[1]))
-    }
-
-    fn guards(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
-    }
-
-    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
+    fn evaluate(&self, t: f64, state: &[f64], _: &[f64]) -> Result<Quantities, String> {
+        let (x, rate) = (state[0], state[1]);
+        // Only certificates of models with fields use bias and forces.
+        Ok(Quantities {
+            mass: vec![(self.mass)(t, x, rate)],
+            rates: vec![rate, (self.acceleration)(t, x, rate)],
+            energy: (self.energy)(t, x, rate),
+            power: (self.power)(t, x, rate),
+            ..Quantities::default()
+        })
     }
 }
 
@@ -329,55 +285,24 @@ impl Preload {
     }
 }
 
-impl Variant for Preload {
-    fn coordinate_names(&self) -> Vec<String> {
+impl Equations for Preload {
+    fn names(&self) -> Vec<String> {
         vec!["y".into()]
     }
 
-    fn rates(&mut self, _: f64, state: &[f64], _: &[f64], rates: &mut [f64]) -> Result<(), String> {
-        rates.copy_from_slice(&[state[1], Self::force(state[0]) / 2.0]);
-        Ok(())
-    }
-
-    fn mass_matrix(
-        &mut self,
-        _: f64,
-        _: &[f64],
-        _: &[f64],
-        mass: &mut [f64],
-    ) -> Result<(), String> {
-        mass.copy_from_slice(&[2.0]);
-        Ok(())
-    }
-
-    fn bias_and_forces(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        _: &[f64],
-        bias: &mut [f64],
-        forces: &mut [f64],
-    ) -> Result<(), String> {
-        bias.copy_from_slice(&[0.0]);
-        forces.copy_from_slice(&[Self::force(state[0])]);
-        Ok(())
-    }
-
-    fn energy(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        Ok(state[1] * state[1])
-    }
-
-    fn power(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
-        Ok(state[1] * Self::force(state[0]))
-    }
-
-    fn guards(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        let stretch = state[0] - state[0].clamp(-0.01, 0.01);
-        Ok(vec![state[0] - 0.01, state[0] + 0.01, stretch, -stretch])
-    }
-
-    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
+    fn evaluate(&self, _: f64, state: &[f64], _: &[f64]) -> Result<Quantities, String> {
+        let (y, rate) = (state[0], state[1]);
+        let stretch = y - y.clamp(-0.01, 0.01);
+        let force = Self::force(y);
+        Ok(Quantities {
+            mass: vec![2.0],
+            bias: vec![0.0],
+            forces: vec![force],
+            rates: vec![rate, force / 2.0],
+            energy: rate * rate,
+            power: rate * force,
+            guards: vec![y - 0.01, y + 0.01, stretch, -stretch],
+        })
     }
 }
 
@@ -418,83 +343,31 @@ pub(super) struct Beam {
     pub coupled: bool,
 }
 
-impl Beam {
-    fn sides(&self, state: &[f64], inputs: &[f64]) -> Result<(DMatrix<f64>, DVector<f64>), String> {
-        let equations = self.oracle.equations(0.0, state, inputs);
-        let mut equations = equations.map_err(|error| error.to_string())?;
-        let modes = equations.size() - 1;
-        if !self.coupled && modes > 3 {
-            equations.mass[(0, 3)] = 0.0;
-            equations.mass[(3, 0)] = 0.0;
-        }
-        let right = equations.right_side();
-        Ok((equations.mass, right))
-    }
-}
-
-impl Variant for Beam {
-    fn coordinate_names(&self) -> Vec<String> {
+impl Equations for Beam {
+    fn names(&self) -> Vec<String> {
         self.oracle.names().to_vec()
     }
 
-    fn rates(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        inputs: &[f64],
-        rates: &mut [f64],
-    ) -> Result<(), String> {
-        let (mass, right) = self.sides(state, inputs)?;
-        let solution = mass
-            .cholesky()
-            .ok_or("not positive definite")?
-            .solve(&right);
-        let size = right.len();
-        rates[..size].copy_from_slice(&state[size..]);
-        rates[size..].copy_from_slice(solution.as_slice());
-        Ok(())
-    }
-
-    fn mass_matrix(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        inputs: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), String> {
-        out.copy_from_slice(self.sides(state, inputs)?.0.transpose().as_slice());
-        Ok(())
-    }
-
-    fn bias_and_forces(
-        &mut self,
-        _: f64,
-        state: &[f64],
-        inputs: &[f64],
-        bias: &mut [f64],
-        forces: &mut [f64],
-    ) -> Result<(), String> {
-        bias.fill(0.0);
-        forces.copy_from_slice(self.sides(state, inputs)?.1.as_slice());
-        Ok(())
-    }
-
-    fn energy(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
-        let energy = self.oracle.energy(time, state, inputs);
-        Ok(energy.map_err(|error| error.to_string())?.value)
-    }
-
-    fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
-        let power = self.oracle.power(time, state, inputs);
-        Ok(power.map_err(|error| error.to_string())?.value)
-    }
-
-    fn guards(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
-    }
-
-    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
-        Ok(Vec::new())
+    fn evaluate(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Quantities, String> {
+        let message = |error: OracleError| error.to_string();
+        let mut equations = self.oracle.equations(0.0, state, inputs).map_err(message)?;
+        let size = equations.size();
+        if !self.coupled && size > 4 {
+            equations.mass[(0, 3)] = 0.0;
+            equations.mass[(3, 0)] = 0.0;
+        }
+        let forces = equations.right_side();
+        let mass = equations.mass.clone().cholesky();
+        let accelerations = mass.ok_or("not positive definite")?.solve(&forces);
+        Ok(Quantities {
+            mass: equations.mass.transpose().as_slice().to_vec(),
+            bias: vec![0.0; size],
+            rates: [&state[size..], accelerations.as_slice()].concat(),
+            forces: forces.as_slice().to_vec(),
+            energy: self.oracle.energy(t, state, inputs).map_err(message)?.value,
+            power: self.oracle.power(t, state, inputs).map_err(message)?.value,
+            guards: Vec::new(),
+        })
     }
 }
 
