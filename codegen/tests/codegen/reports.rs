@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::report::Report;
@@ -54,23 +53,16 @@ fn lever_mass() -> Model {
 }
 
 #[test]
-fn long_equations_take_seconds_and_less_than_a_megabyte() {
+fn long_equations_take_less_than_a_megabyte() {
     let chain = (
         "a chain of forty".to_owned(),
         model(&chain_of_pendulums(40)),
     );
     for (name, model) in specifications().into_iter().chain([chain]) {
-        let start = Instant::now();
         let report = report(&model);
         for text in [report.text(), report.latex(), json(&report)] {
             assert!(text.len() < 1_000_000, "{name}: {}", text.len());
         }
-        // A tenth of that on an idle machine.
-        assert!(
-            start.elapsed() < Duration::from_secs(10),
-            "{name}: {:?}",
-            start.elapsed()
-        );
     }
 }
 

@@ -2,7 +2,6 @@
 //! models.
 
 use std::fmt::Write;
-use std::time::{Duration, Instant};
 
 use crate::support::{accelerations, emitted, equations, evaluator, model, shipped};
 
@@ -41,7 +40,7 @@ fn derivation_and_statements_do_not_grow_with_the_order() {
 
 // The mass matrix of a chain of masses is diagonal and must remain so.
 #[test]
-fn chain_of_sixty_masses_is_derived_in_seconds() {
+fn derivation_of_a_chain_grows_linearly() {
     let count = 60;
     let mut text = String::from(
         "[model]\nname = \"chain\"\ntitle = \"A chain\"\n[parameters]\n\
@@ -52,15 +51,10 @@ fn chain_of_sixty_masses_is_derived_in_seconds() {
     (0..count).for_each(|i| writeln!(text, "m_{i} = \"1/2*m*dot(x_{i})^2\"").unwrap());
     text.push_str("[potential]\n");
     (1..count).for_each(|i| writeln!(text, "k_{i} = \"1/2*k*(x_{i} - x_{})^2\"", i - 1).unwrap());
-    let start = Instant::now();
     let model = model(&text);
     let source = emitted(&model, 0);
-    // A derivation with cubic growth in the chain takes minutes.
-    assert!(
-        start.elapsed() < Duration::from_secs(10),
-        "{:?}",
-        start.elapsed()
-    );
+    let nodes = equations(&model, 0).graph.len();
+    assert!(nodes < 25 * count, "{nodes}");
     assert!(statements(&source) < 20 * count, "{}", statements(&source));
     let mut state = vec![0.0; 2 * count];
     state[30] = 1.0;
@@ -78,7 +72,7 @@ fn chain_of_sixty_masses_is_derived_in_seconds() {
 
 // The mass matrix is full and depends on the state.
 #[test]
-fn pendulum_of_twelve_links_is_derived_in_seconds() {
+fn pendulum_of_twelve_links_has_a_small_graph() {
     let count = 12;
     let mut text = String::from(
         "[model]\nname = \"links\"\ntitle = \"Links\"\n[parameters]\nm = { value = 0.3, unit = \"kg\" }\n\
@@ -100,19 +94,9 @@ fn pendulum_of_twelve_links_is_derived_in_seconds() {
         .for_each(|i| writeln!(text, "b_{i} = \"1/2*m*(dot(x_{i})^2 + dot(y_{i})^2)\"").unwrap());
     text.push_str("[potential]\n");
     (0..count).for_each(|i| writeln!(text, "h_{i} = \"m*g*y_{i}\"").unwrap());
-    let start = Instant::now();
     let model = model(&text);
-    let source = emitted(&model, 0);
-    assert!(
-        start.elapsed() < Duration::from_secs(10),
-        "{:?}",
-        start.elapsed()
-    );
-    eprintln!(
-        "twelve links: {} statements, {:?}",
-        statements(&source),
-        start.elapsed()
-    );
+    let nodes = equations(&model, 0).graph.len();
+    assert!(nodes < 10_000, "{nodes}");
     // At rest in the lowest position, the pendulum remains at rest.
     let still = accelerations(&mut evaluator(&model, 0), &vec![0.0; 2 * count]);
     assert!(still.iter().all(|a| a.abs() < 1e-12), "{still:?}");
@@ -127,14 +111,10 @@ fn deep_products_stay_small() {
          [coordinates]\nx = {{ unit = \"1\" }}\n[kinetic]\nall = \"1/2*m*dot(x)^2*{}\"\n",
         factors.join("*")
     );
-    let start = Instant::now();
     let model = model(&text);
+    let nodes = equations(&model, 0).graph.len();
+    assert!(nodes < 20_000, "{nodes}");
     let source = emitted(&model, 0);
-    assert!(
-        start.elapsed() < Duration::from_secs(10),
-        "{:?}",
-        start.elapsed()
-    );
     // Each number is written with the conversion of its type.
     let length = source.replace("T::number(", "(").len();
     assert!(length < 200_000, "{length}");
@@ -150,18 +130,13 @@ fn deep_products_stay_small() {
 
 // High powers of the position are integrated with the weights at the nodes.
 #[test]
-fn nested_powers_of_the_position_are_fast() {
+fn nested_powers_of_the_position_stay_small() {
     let nested = (0..6).fold("x/l".to_owned(), |inner, _| format!("({inner})^8"));
     let text = format!(
         "[model]\nname = \"nested\"\ntitle = \"Nested\"\n[parameters]\nmu = {{ value = 1, unit = \"kg/m\" }}\n\
          l = {{ value = 1, unit = \"m\" }}\n[fields.w]\nalong = \"x\"\nfrom = 0\nto = \"l\"\nbasis = \"clamped_free\"\n\
          coordinates = \"q\"\norder = 1\nunit = \"m\"\n[kinetic]\nall = \"1/2*integral(mu*(1 + {nested})*dot(w)^2, w)\"\n"
     );
-    let start = Instant::now();
-    evaluator(&model(&text), 2);
-    assert!(
-        start.elapsed() < Duration::from_secs(2),
-        "{:?}",
-        start.elapsed()
-    );
+    let nodes = equations(&model(&text), 2).graph.len();
+    assert!(nodes < 150, "{nodes}");
 }

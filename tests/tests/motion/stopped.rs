@@ -3,7 +3,6 @@
 
 use std::path::Path;
 use std::process::Output;
-use std::time::{Duration, Instant};
 
 use eomgen_tests::program::{run, run_accepted, text};
 
@@ -127,7 +126,6 @@ spring = "1/2*k*phi^2"
 struct Stopped {
     output: Output,
     rows: Vec<Vec<f64>>,
-    took: Duration,
 }
 
 impl Stopped {
@@ -169,9 +167,7 @@ fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     );
     let shown = out.display().to_string();
     let arguments = ["simulate", &spec, "--until", until, "--out", &shown];
-    let begun = Instant::now();
     let output = run(&[&arguments[..], more].concat());
-    let took = begun.elapsed();
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     let table = std::fs::read_to_string(&out).expect("the rows so far");
@@ -184,7 +180,7 @@ fn run_until_stop(specification: &str, until: &str, more: &[&str]) -> Stopped {
     let rows: Vec<_> = rows.collect();
     assert!(rows.iter().flatten().all(|number| number.is_finite()));
     assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
-    Stopped { output, rows, took }
+    Stopped { output, rows }
 }
 
 #[test]
@@ -325,13 +321,12 @@ fn diverging_motion_is_not_reported_as_friction() {
 }
 
 #[test]
-fn explicit_solvers_report_stiffness_within_seconds() {
+fn explicit_solvers_report_stiffness() {
     for solver in ["rk", "adams"] {
         let found = run_until_stop(STIFF, "100", &["--solver", solver]);
         found.assert_says(&["stiff", "`theta_dot`", "stopped at t = "]);
         found.assert_omits(&["sticks"]);
         assert!(!found.rows.is_empty());
-        assert!(found.took < Duration::from_secs(20), "{:?}", found.took);
     }
 }
 
@@ -345,7 +340,6 @@ fn auto_solves_stiff_friction_with_radau() {
         folder.path().join("a.csv"),
     );
     let shown = out.display().to_string();
-    let begun = Instant::now();
     let output = run(&[
         "simulate",
         &spec,
@@ -370,7 +364,6 @@ fn auto_solves_stiff_friction_with_radau() {
         document["evaluations"].as_u64().expect("a number") < 30_000,
         "{document}"
     );
-    assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
 fn simulate_orifice(solver: &str) -> (serde_json::Value, String) {

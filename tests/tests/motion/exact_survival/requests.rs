@@ -131,13 +131,13 @@ fn extreme_parameters_of_arm_are_rejected_or_solved() {
         let Ok(model) = model.with_parameter(name, value) else {
             continue;
         };
-        let begun = std::time::Instant::now();
         match TestMotion::new(model, 4).try_simulate_exactly((0.0, 1e-4), &[1e-4]) {
-            Ok(motion) => assert!(motion.final_state.iter().all(|y| y.is_finite())),
+            Ok(motion) => {
+                assert!(motion.final_state.iter().all(|y| y.is_finite()));
+                assert!(motion.statistics.steps < 500_000, "{:?}", motion.statistics);
+            }
             Err(error) => println!("{name} = {value:e}: {error}"),
         }
-        println!("{name} = {value:e}: {:?}", begun.elapsed());
-        assert!(begun.elapsed().as_secs() < 10);
     }
 }
 

@@ -1,7 +1,5 @@
 //! Stops: impacts, grazing, starts on the stop and a million switches, against closed forms.
 
-use std::time::{Duration, Instant};
-
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, TestMotion, difference, grid};
@@ -215,22 +213,22 @@ fn million_switches_match_closed_form() {
     // Two switches per half period; the end is a quarter of a free flight after the middle.
     let until = 500_000.0 * half + 0.5 * b / v;
     let subject = TestMotion::new(spec.model(), 0);
-    let begun = Instant::now();
     let motion = subject.simulate_exactly((0.0, until), &[until]);
-    let taken = begun.elapsed();
     let [x, speed] = motion.final_state[..] else {
         panic!("two states")
     };
     println!(
-        "{} switches in {taken:?}: x off by {:e}, v by {:e}",
-        motion.switches.len(),
+        "{:?}: x off by {:e}, v by {:e}",
+        motion.statistics,
         x - 0.5 * b,
         speed - v
     );
     assert_eq!(motion.switches.len(), 1_000_000);
     // Each half period has the same rounding error, so the errors add up.
     assert!((x - 0.5 * b).abs() < 1e-6 * b && (speed - v).abs() < 1e-10);
-    assert!(taken < Duration::from_secs(20), "{taken:?}");
+    // At most two steps per switch.
+    let work = motion.statistics;
+    assert!(work.steps <= 2_000_000, "{work:?}");
 }
 
 #[test]
@@ -272,14 +270,12 @@ fn accumulating_switches_end() {
             .coordinate("x", [1.0, 0.0])
             .kinetic("1/2*m*dot(x)^2")
             .force("x", "-F*sign(x) - T*sign(dot(x))");
-        let begun = Instant::now();
         let ended = TestMotion::new(spec.model(), 0).try_simulate_exactly((0.0, 100.0), &[100.0]);
         println!(
-            "dry {dry}: {:?} in {:?}",
+            "dry {dry}: {:?}",
             ended
                 .as_ref()
-                .map(|m| (m.final_state.clone(), m.switches.len())),
-            begun.elapsed()
+                .map(|m| (m.final_state.clone(), m.switches.len(), m.statistics))
         );
         match ended {
             Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-9)),
@@ -291,7 +287,6 @@ fn accumulating_switches_end() {
                 "{error}"
             ),
         }
-        assert!(begun.elapsed() < Duration::from_secs(5));
     }
     // With a damper, each period is slightly shorter, without end.
     let spec = Spec::default()
@@ -301,14 +296,12 @@ fn accumulating_switches_end() {
         .coordinate("x", [1.0, 0.0])
         .kinetic("1/2*m*dot(x)^2")
         .force("x", "-F*sign(x) - c*dot(x)");
-    let begun = Instant::now();
     let ended = TestMotion::new(spec.model(), 0).try_simulate_exactly((0.0, 50.0), &[50.0]);
     println!(
-        "damper: {:?} in {:?}",
+        "damper: {:?}",
         ended
             .as_ref()
-            .map(|m| (m.final_state.clone(), m.switches.len())),
-        begun.elapsed()
+            .map(|m| (m.final_state.clone(), m.switches.len(), m.statistics))
     );
     match ended {
         Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-4)),
@@ -320,7 +313,6 @@ fn accumulating_switches_end() {
             "{error}"
         ),
     }
-    assert!(begun.elapsed() < Duration::from_secs(20));
 }
 
 #[test]
