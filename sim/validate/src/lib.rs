@@ -6,6 +6,7 @@
 //! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source. Hand-written
 //! equations of known machines are [`mod@references`]. [`certify`](certify::certify) runs all checks
 //! and writes the [`certificate`]; [`model_certificate`] certifies a model with its emitted source.
+//! [`meaning`] describes the checks in words.
 //!
 //! Example: residuals of the oracle's own accelerations of a pendulum.
 //!
@@ -33,6 +34,7 @@ pub mod derived;
 pub mod derived_outputs;
 mod differences;
 mod feasibility;
+pub mod meaning;
 pub mod model_certificate;
 pub mod oracle;
 pub mod outputs;

@@ -3,6 +3,7 @@
 use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
+use super::meaning::describe;
 use super::oracle::Oracle;
 use super::outputs::Outputs;
 use super::test_models::{
@@ -105,6 +106,23 @@ fn find_check<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
         .iter()
         .find(|check| check.name == name)
         .unwrap()
+}
+
+#[test]
+fn every_check_has_a_meaning() {
+    let certificates = [
+        certify_pendulum(Fault::None),
+        certify_beam(2, false),
+        certify_preload("0.0", true),
+    ];
+    for check in certificates.iter().flat_map(|of| &of.checks) {
+        let sentence = describe(&check.name).expect(&check.name);
+        assert!(
+            sentence.ends_with('.') && !sentence.contains('_'),
+            "{sentence}"
+        );
+    }
+    assert_eq!(describe("unknown"), None);
 }
 
 #[test]
