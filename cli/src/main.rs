@@ -15,6 +15,7 @@ mod document;
 mod emission;
 mod engines;
 mod error;
+mod field_shapes;
 mod figures;
 mod fmu;
 mod history;

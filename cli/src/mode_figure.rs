@@ -2,14 +2,11 @@
 //! the regime of a piecewise model.
 
 use eomgen_analysis::natural_modes::NaturalMode;
-use eomgen_codegen::mechanics::fields::modes::table;
-use eomgen_codegen::symbolic::tables::TableKind;
 use eomgen_compiled_model::{CompiledModel, Instance};
-use eomgen_model_spec::evaluate::evaluate;
-use eomgen_model_spec::model::Field;
 use eomgen_plot::modes::{Bar, Mode, Modes, Shape, modes};
 
 use crate::error::{Error, Result};
+use crate::field_shapes::{FieldShapes, field_shapes};
 use crate::regime::{Side, summary};
 
 /// Maximum number of modes in a figure.
@@ -27,12 +24,15 @@ const INTERVALS: usize = 120;
 
 pub fn figure(run: &Instance<'_>, regime: &[Side], found: &[NaturalMode]) -> Result<String> {
     let compiled = run.model();
-    let fields = fields(run)?;
+    let fields = field_shapes(compiled, INTERVALS)?;
     let bars = bars(compiled, found);
     let shown = found.iter().take(MAX_MODES).enumerate();
     let of_mode = |(place, mode): (usize, &NaturalMode)| Mode {
         title: format!("mode {}: {}", place + 1, describe_mode(mode)),
-        fields: fields.iter().map(|field| field.shape(mode)).collect(),
+        fields: fields
+            .iter()
+            .map(|field| field_shape(field, mode))
+            .collect(),
         bars: bars.iter().map(|bar| bar.bar(mode)).collect(),
     };
     let model = compiled.model();
@@ -77,66 +77,21 @@ fn describe_mode(mode: &NaturalMode) -> String {
     format!("{frequency:.6} Hz, damping ratio {damping:.6}").replace('-', "−")
 }
 
-/// Field with its shape functions at the drawn positions.
-struct DrawnField<'m> {
-    field: &'m Field,
-    positions: Vec<f64>,
-    /// A row per position, a number per mode of the field.
-    functions: Vec<Vec<f64>>,
-    /// Index of its first modal coordinate in a mode shape.
-    first: usize,
-}
-
-fn fields<'m>(run: &Instance<'m>) -> Result<Vec<DrawnField<'m>>> {
-    let compiled = run.model();
-    let model = compiled.model();
-    let values = model.parameter_values();
-    let values = values.map_err(|error| Error::model(&model.source, error))?;
-    let mut first = model.coordinates.len();
-    let mut drawn = Vec::new();
-    for (field, order) in model.fields.iter().zip(compiled.orders()) {
-        let [from, to] = [&field.from, &field.to].map(|end| evaluate(end, &values));
-        let shares: Vec<f64> = (0..=INTERVALS)
-            .map(|n| n as f64 / INTERVALS as f64)
-            .collect();
-        let functions = |s: &f64| {
-            let (bits, derivative) = (s.to_bits(), 0);
-            table(
-                &field.basis,
-                *order,
-                TableKind::ShapeAtPlace { bits, derivative },
-            )
-        };
-        if *order > 0 {
-            drawn.push(DrawnField {
-                field,
-                positions: shares.iter().map(|s| from + s * (to - from)).collect(),
-                functions: shares.iter().map(functions).collect(),
-                first,
-            });
-        }
-        first += order;
-    }
-    Ok(drawn)
-}
-
-impl DrawnField<'_> {
-    /// Returns the field in a mode: the sum of shape functions times modal coordinates.
-    fn shape(&self, mode: &NaturalMode) -> Shape {
-        let coordinates = mode.shape.get(self.first..).unwrap_or_default();
-        let amplitude = |functions: &Vec<f64>| {
-            let terms = functions.iter().zip(coordinates);
-            terms.fold([0.0, 0.0], |[re, im], (phi, q)| {
-                [re + phi * q.re, im + phi * q.im]
-            })
-        };
-        Shape {
-            name: self.field.name.clone(),
-            unit: self.field.unit.to_string(),
-            position_name: self.field.along.clone(),
-            positions: self.positions.clone(),
-            amplitudes: self.functions.iter().map(amplitude).collect(),
-        }
+/// Returns a field in a mode: the sum of shape functions times modal coordinates.
+fn field_shape(shapes: &FieldShapes<'_>, mode: &NaturalMode) -> Shape {
+    let coordinates = mode.shape.get(shapes.first..).unwrap_or_default();
+    let amplitude = |functions: &Vec<f64>| {
+        let terms = functions.iter().zip(coordinates);
+        terms.fold([0.0, 0.0], |[re, im], (phi, q)| {
+            [re + phi * q.re, im + phi * q.im]
+        })
+    };
+    Shape {
+        name: shapes.field.name.clone(),
+        unit: shapes.field.unit.to_string(),
+        position_name: shapes.field.along.clone(),
+        positions: shapes.positions.clone(),
+        amplitudes: shapes.functions.iter().map(amplitude).collect(),
     }
 }
 
