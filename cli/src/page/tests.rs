@@ -1,7 +1,7 @@
 //! Tests of the tour's page: sections, self-containedness, escaping.
 
 use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
-use eomgen_codegen::symbolic::formula::Formula;
+use eomgen_codegen::symbolic::formula::{Formula, Index};
 
 use super::*;
 
@@ -39,6 +39,8 @@ fn report(text: &str) -> Report {
         coefficients: vec![CoefficientLine {
             name: Formula::from_name(text),
             formula: Formula::from_name(text),
+            indices: vec![Index::I],
+            columns: 1,
             values: vec![0.25; 10],
         }],
         accelerations: vec![line(text, text)],

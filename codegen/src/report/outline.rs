@@ -114,9 +114,7 @@ impl<'a> Outline<'a> {
     fn terms(&self) -> Vec<Shown> {
         let model = self.model;
         let named = |symbol: &'static str, terms: &'a [Term]| {
-            terms
-                .iter()
-                .map(move |term| Formula::from_name(&format!("{symbol}_{}", term.name)))
+            terms.iter().map(move |term| term_symbol(symbol, term))
         };
         named("T", &model.kinetic)
             .chain(named("V", &model.potential))
@@ -191,4 +189,9 @@ impl<'a> Outline<'a> {
         }
         entries
     }
+}
+
+/// Returns the symbol of a term of an energy or of the dissipation.
+pub(super) fn term_symbol(symbol: &str, term: &Term) -> Formula {
+    Formula::Symbol(Symbol::part_of(symbol, vec![Symbol::plain(&term.name)]))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::symbolic::formula::Formula;
+use crate::symbolic::formula::{Formula, Index};
 
 /// Equations of one variant. In JSON, formulas and names are plain text.
 #[derive(Clone, Debug, Serialize)]
@@ -83,6 +83,12 @@ pub struct CoefficientLine {
     pub name: Formula,
     /// Formula.
     pub formula: Formula,
+    /// Indices over the modes: none for a scalar, one for a vector, two for a matrix.
+    #[serde(skip)]
+    pub indices: Vec<Index>,
+    /// Number of columns of a matrix, else 1.
+    #[serde(skip)]
+    pub columns: usize,
     /// Value, or one value for each mode (a matrix row by row), at the specification's parameters in SI
     /// units; empty if it depends on time or state.
     pub values: Vec<f64>,

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::model::Term;
 
-use super::outline::{Outline, Shown};
+use super::outline::{Outline, Shown, term_symbol};
 use super::types::{CoefficientLine, Line, MassMatrixEntry, Sentence};
 use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
@@ -57,8 +57,8 @@ impl Writer<'_> {
 
     /// Returns an energy as the sum of the names of its terms.
     pub fn sum_of_terms(&self, symbol: &str, terms: &[Term]) -> Formula {
-        let names = terms.iter().map(|term| format!("{symbol}_{}", term.name));
-        Formula::sum(names.map(|name| Formula::from_name(&name)).collect())
+        let names = terms.iter().map(|term| term_symbol(symbol, term));
+        Formula::sum(names.collect())
     }
 
     /// Returns the nodes that have names, with their formulas.
@@ -97,6 +97,8 @@ impl Writer<'_> {
             .zip(&evaluator.program().coefficient_values)
             .map(|(coefficient, value)| CoefficientLine {
                 name: Formula::from_name(&coefficient.name),
+                indices: self.mode_indices(coefficient.value).to_vec(),
+                columns: self.mode_columns(coefficient.value),
                 formula: self.reader.formula(coefficient.value),
                 values: if evaluator.program().value(*value).parameter_only {
                     evaluator.slice(*value).to_vec()
@@ -105,6 +107,22 @@ impl Writer<'_> {
                 },
             })
             .collect()
+    }
+
+    fn mode_indices(&self, value: NodeId) -> &'static [Index] {
+        match self.equations.graph.shape(value) {
+            Shape::Scalar => &[],
+            Shape::Vector(_) => &[Index::I],
+            Shape::Matrix(..) => &[Index::I, Index::J],
+        }
+    }
+
+    fn mode_columns(&self, value: NodeId) -> usize {
+        let graph = &self.equations.graph;
+        match graph.shape(value) {
+            Shape::Scalar | Shape::Vector(_) => 1,
+            Shape::Matrix(_, columns) => graph.size(columns),
+        }
     }
 
     /// Returns each row with named factors as their sum.

@@ -261,6 +261,8 @@ fn symbol(symbol: &Symbol) -> String {
     };
     let indices: String = symbol.indices.iter().map(|index| index.name()).collect();
     parts.push(&indices);
+    let owners: Vec<String> = symbol.owners.iter().map(self::symbol).collect();
+    parts.extend(owners.iter().map(String::as_str));
     format!("{head}{}", subscript(&parts))
 }
 

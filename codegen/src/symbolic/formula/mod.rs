@@ -18,4 +18,6 @@ pub use letters::letter;
 pub use read::{Reader, abridged_formula, full_formula};
 pub use shared::SharedExpressions;
 pub use symbol::{Index, Symbol};
-pub use tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
+pub use tree::{
+    Choice, Formula, Level, MatrixPart, Term, multiple_of_pi, powers_of_ten, small_fraction,
+};

@@ -84,6 +84,9 @@ impl<'a> Reader<'a> {
     /// Returns the symbol for a name of the graph. The suffixes `_dot` and `_ddot` after the name of a moving
     /// quantity become dots.
     pub fn symbol(&self, name: &str) -> Symbol {
+        if let Some(entry) = self.factorisation_symbol(name) {
+            return entry;
+        }
         for (ending, dots) in [("_dot", 1), ("_ddot", 2)] {
             if let Some(stem) = name.strip_suffix(ending)
                 && self.is_moving(stem)
@@ -92,6 +95,33 @@ impl<'a> Reader<'a> {
             }
         }
         Symbol::plain(name)
+    }
+
+    /// Returns the symbol for the name of an entry of the mass matrix or of a pivot; its subscripts are the
+    /// symbols of the rows.
+    fn factorisation_symbol(&self, name: &str) -> Option<Symbol> {
+        let (head, rows) = name.split_once('_')?;
+        match head {
+            "pivot" => Some(Symbol::part_of(head, vec![self.row(rows, Index::I)?])),
+            "M" => rows.match_indices('_').find_map(|(place, _)| {
+                let row = self.row(&rows[..place], Index::I)?;
+                let is_modal = !row.indices.is_empty();
+                let index = if is_modal { Index::J } else { Index::I };
+                let column = self.row(&rows[place + 1..], index)?;
+                Some(Symbol::part_of(head, vec![row, column]))
+            }),
+            _ => None,
+        }
+    }
+
+    /// Returns the symbol of a row of the equations; `index` is the index over the modes of a field.
+    fn row(&self, name: &str, index: Index) -> Option<Symbol> {
+        let model = self.model;
+        if model.coordinates.iter().any(|known| known.name == name) {
+            return Some(Symbol::plain(name));
+        }
+        let is_field = model.fields.iter().any(|known| known.coordinates == name);
+        is_field.then(|| Symbol::plain(name).with_indices(&[index]))
     }
 
     fn is_moving(&self, name: &str) -> bool {
@@ -119,6 +149,9 @@ impl<'a> Reader<'a> {
     }
 
     fn indexed(&self, symbol: Symbol, id: NodeId) -> Symbol {
+        if !symbol.owners.is_empty() {
+            return symbol;
+        }
         match self.graph.shape(id) {
             Shape::Scalar => symbol,
             Shape::Vector(_) => symbol.with_indices(&[Index::I]),

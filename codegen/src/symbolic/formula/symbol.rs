@@ -30,6 +30,9 @@ pub struct Symbol {
     pub dots: u8,
     /// Indices: none for a scalar, one for a vector, two for a matrix.
     pub indices: Vec<Index>,
+    /// Symbols that are the subscripts, such as row and column of an entry of a matrix. They replace the
+    /// parts of the name after the first.
+    pub owners: Vec<Self>,
 }
 
 impl Symbol {
@@ -39,6 +42,19 @@ impl Symbol {
             name: name.to_owned(),
             dots: 0,
             indices: Vec::new(),
+            owners: Vec::new(),
+        }
+    }
+
+    /// Returns the symbol of a part of other quantities: M of two coordinates is an entry of the mass
+    /// matrix.
+    pub fn part_of(head: &str, owners: Vec<Self>) -> Self {
+        let names = owners.iter().map(|owner| owner.name.as_str());
+        let names: Vec<&str> = std::iter::once(head).chain(names).collect();
+        let name = names.join("_");
+        Self {
+            owners,
+            ..Self::plain(&name)
         }
     }
 
@@ -54,19 +70,24 @@ impl Symbol {
         self
     }
 
-    /// Returns the symbol of a state; the suffix `_dot` denotes a rate.
+    /// Returns the symbol of a state or an input; the suffixes `_dot` and `_ddot` denote rates.
     pub fn from_state(name: &str) -> Self {
-        match name.strip_suffix("_dot").filter(|stem| !stem.is_empty()) {
-            Some(stem) => Self::plain(stem).with_dots(1),
-            None => Self::plain(name),
+        let stem = |suffix| name.strip_suffix(suffix).filter(|stem| !stem.is_empty());
+        match (stem("_ddot"), stem("_dot")) {
+            (Some(stem), _) => Self::plain(stem).with_dots(2),
+            (None, Some(stem)) => Self::plain(stem).with_dots(1),
+            (None, None) => Self::plain(name),
         }
     }
 
     /// Splits the name into head and subscripts: `theta_s` is theta with s. A name with empty parts is not
-    /// split.
+    /// split. The subscripts of a symbol with owners are these.
     pub fn parts(&self) -> (&str, Vec<&str>) {
         let mut parts = self.name.split('_');
         let head = parts.next().unwrap_or_default();
+        if !self.owners.is_empty() {
+            return (head, Vec::new());
+        }
         let rest: Vec<&str> = parts.collect();
         if head.is_empty() || rest.iter().any(|part| part.is_empty()) {
             return (&self.name, Vec::new());
@@ -110,6 +131,15 @@ mod tests {
     }
 
     #[test]
+    fn entry_has_its_row_and_column_as_subscripts() {
+        let owners = ["x_sp", "q"].map(Symbol::plain);
+        let entry = Symbol::part_of("M", owners.to_vec());
+        assert_eq!(entry.to_string(), "M_x_sp_q");
+        assert_eq!(entry.parts(), ("M", vec![]));
+        assert_eq!(entry.owners, owners);
+    }
+
+    #[test]
     fn symbol_prints_dots_and_indices() {
         let symbol = Symbol::plain("q").with_indices(&[Index::I]);
         assert_eq!(symbol.to_string(), "q_i");
@@ -117,5 +147,6 @@ mod tests {
         let matrix = Symbol::plain("a_qq").with_indices(&[Index::I, Index::J]);
         assert_eq!(matrix.to_string(), "a_qq_ij");
         assert_eq!(Symbol::from_state("x_sp_dot").to_string(), "dot(x_sp)");
+        assert_eq!(Symbol::from_state("a_ddot").to_string(), "ddot(a)");
     }
 }

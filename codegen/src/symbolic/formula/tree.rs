@@ -212,6 +212,25 @@ pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     })
 }
 
+/// Largest power of pi that [`multiple_of_pi`] finds.
+const MAX_POWER_OF_PI: i32 = 4;
+
+/// Returns the factor and the power of a magnitude that is a small whole number or fraction times a power
+/// of pi, to rounding: 39.478... is 4 times pi to the power 2.
+pub fn multiple_of_pi(magnitude: f64) -> Option<(f64, i32)> {
+    (1..=MAX_POWER_OF_PI).find_map(|power| {
+        let rough = magnitude / std::f64::consts::PI.powi(power);
+        let exact = (1..=12_u32).find_map(|denominator| {
+            let denominator = f64::from(denominator);
+            let numerator = (rough * denominator).round();
+            let exact = numerator / denominator;
+            let is_small = (1.0..=1000.0).contains(&numerator);
+            (is_small && (rough / exact - 1.0).abs() < 4.0 * f64::EPSILON).then_some(exact)
+        });
+        exact.map(|factor| (factor, power))
+    })
+}
+
 /// Returns mantissa and exponent of ten of a very small or large number; None for others.
 pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
     let magnitude = value.abs();
@@ -221,4 +240,20 @@ pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;
     Some((mantissa.to_owned(), exponent.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::multiple_of_pi;
+    use std::f64::consts::{PI, TAU};
+
+    #[test]
+    fn multiples_of_pi_are_found() {
+        assert_eq!(multiple_of_pi(39.47841760435743), Some((4.0, 2)));
+        assert_eq!(multiple_of_pi(TAU), Some((2.0, 1)));
+        assert_eq!(multiple_of_pi(PI / 6.0), Some((1.0 / 6.0, 1)));
+        for other in [0.0, 1.0, 39.478, 9.81, 1e6 * PI, f64::NAN] {
+            assert_eq!(multiple_of_pi(other), None, "{other}");
+        }
+    }
 }
