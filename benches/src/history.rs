@@ -211,6 +211,7 @@ fn frame<'a>(
         label: label.clone(),
         abscissa,
         values,
+        ..Series::default()
     });
     Frame {
         panel: Panel {

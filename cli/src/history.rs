@@ -30,6 +30,7 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
                 label: name.clone(),
                 abscissa: times,
                 values,
+                ..Series::default()
             };
             let mut known = panels[first..].iter_mut();
             match known.find(|panel| panel.unit == unit && panel.series.len() < MOST_CURVES) {

@@ -159,6 +159,7 @@ fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
                 label: name.to_owned(),
                 abscissa: t,
                 values: column(name)?,
+                ..Series::default()
             }],
             references,
         })

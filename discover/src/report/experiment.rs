@@ -134,6 +134,7 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
                         label: label.clone(),
                         abscissa: &file.times,
                         values,
+                        ..Series::default()
                     })
                     .collect(),
                 references: references.clone(),

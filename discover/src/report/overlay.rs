@@ -177,6 +177,7 @@ impl Seen {
                             label: label.clone(),
                             abscissa: times,
                             values,
+                            ..Series::default()
                         })
                         .collect(),
                     references: Vec::new(),

@@ -98,6 +98,7 @@ pub(crate) fn draw_residuals(
                         label: (*label).to_owned(),
                         abscissa: &times,
                         values,
+                        ..Series::default()
                     })
                     .collect(),
                 references: Vec::new(),
@@ -127,6 +128,7 @@ pub(crate) fn draw_residuals(
                         label: (*label).to_owned(),
                         abscissa: &spectrum.frequency,
                         values: &spectrum.density,
+                        ..Series::default()
                     })
                     .collect(),
                 references: Vec::new(),

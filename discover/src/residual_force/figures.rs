@@ -64,6 +64,7 @@ pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> S
                     label: (*label).to_owned(),
                     abscissa: &points.0,
                     values: &points.1,
+                    ..Series::default()
                 })
                 .collect(),
             references: Vec::new(),

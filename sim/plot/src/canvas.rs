@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::decimate::Point;
 use super::lettering::{escape_xml, svg_spans};
+use super::palette::dark_style;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
@@ -180,15 +181,19 @@ impl Canvas {
     }
 
     pub fn document(self, title: &str, width: f64, height: f64) -> String {
-        format!(
+        let head = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              width=\"{width}\" height=\"{height}\" role=\"img\" \
              font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
-             fill=\"#222222\">\n<title>{}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escape_xml(title),
+             fill=\"#222222\">\n<title>{}</title>\n",
+            escape_xml(title)
+        );
+        let body = format!(
+            "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
             self.body
-        )
+        );
+        let style = dark_style(&format!("{head}{body}"));
+        format!("{head}{style}{body}")
     }
 }
 

@@ -32,6 +32,30 @@ pub enum FrequencyAxis {
     Logarithmic,
 }
 
+/// Width of a figure. Lettering has the same size in px in both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FigureWidth {
+    /// 900 px, for wide windows and printing.
+    #[default]
+    Wide,
+    /// 330 px, for narrow windows.
+    Narrow,
+}
+
+/// Role of a series in a comparison. A role has the same colour in all figures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SeriesRole {
+    /// No role: the colour follows the order of the series.
+    #[default]
+    Plain,
+    /// Measurement: a broad curve, which does not hide a simulation.
+    Measured,
+    /// Original model.
+    Before,
+    /// Extended model.
+    After,
+}
+
 /// Style of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SeriesStyle {
@@ -68,6 +92,8 @@ pub struct Series<'a> {
     pub abscissa: &'a [f64],
     /// Values in the panel's unit, one per abscissa; a value that is not finite leaves a gap.
     pub values: &'a [f64],
+    /// Role in a comparison. Series are drawn in their order, so a measurement is the first.
+    pub role: SeriesRole,
 }
 
 /// Dashed reference line with its label next to the frame.

@@ -2,11 +2,13 @@
 
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
-use super::figure::{Panel, Series, SeriesStyle};
-use super::lettering::{text_width, truncate_to_width};
+use super::figure::{FigureWidth, Panel, Series, SeriesStyle};
+use super::lettering::{text_width, truncate_to_width, wrap_to_width};
 use super::quantity::Quantity;
 
-pub(super) const WIDTH: f64 = 900.0;
+/// Widths of figures, in px.
+const WIDE: f64 = 900.0;
+const NARROW: f64 = 330.0;
 pub(super) const TICK_SIZE: f64 = 14.0;
 pub(super) const LABEL_SIZE: f64 = 15.0;
 pub(super) const TITLE_SIZE: f64 = 16.0;
@@ -46,16 +48,21 @@ pub(super) struct Format {
 }
 
 impl Format {
-    pub fn stacked(panels: usize) -> Self {
-        let (frame, up) = match panels {
+    /// Returns the format of panels over one axis in a figure of this width.
+    pub fn stacked(panels: usize, width: FigureWidth) -> Self {
+        let (frame, up): (f64, usize) = match panels {
             1 => (300.0, 7),
             2 => (200.0, 6),
             _ => (150.0, 5),
         };
+        let (width, frame, along) = match width {
+            FigureWidth::Wide => (WIDE, frame, 8),
+            FigureWidth::Narrow => (NARROW, frame.min(170.0), 4),
+        };
         Self {
-            width: WIDTH,
+            width,
             frame,
-            ticks: (8, up),
+            ticks: (along, up),
             margins: (0.0, 22.0),
             headroom_fraction: 0.0,
             is_overlaid: false,
@@ -70,7 +77,10 @@ pub(super) struct Layout {
     pub abscissa_quantity: Quantity,
     pub abscissa_ticks: Vec<Tick>,
     pub places: Vec<Place>,
+    pub width: f64,
     pub height: f64,
+    /// Left end of the titles: that of the frames, or of the figure if it is narrow.
+    pub title_edge: f64,
     /// Width of the columns for the decimation of curves.
     pub column: f64,
     pub is_overlaid: bool,
@@ -82,7 +92,8 @@ pub(super) struct Place {
     pub ordinate: Axis,
     pub quantity: Quantity,
     pub ticks: Vec<Tick>,
-    pub title: f64,
+    /// Lines of the title with their base lines.
+    pub title: Vec<(f64, String)>,
     pub legend: Vec<((f64, f64), String)>,
 }
 
@@ -120,10 +131,16 @@ impl Layout {
             range,
             pixels: edges,
         };
+        let title_edge = if format.width > NARROW { edges.0 } else { 6.0 };
         let mut top = 6.0;
         let mut places = Vec::with_capacity(panels.len());
         for (panel, ordinate) in panels.iter().zip(ordinates) {
-            let place = Place::new(panel, ordinate, scale, (top, format.frame), edges);
+            let place = Place::new(
+                (panel, ordinate),
+                scale,
+                (top, format.frame),
+                (title_edge, edges),
+            );
             top = place.ordinate.pixels.0 + 16.0;
             places.push(place);
         }
@@ -134,6 +151,8 @@ impl Layout {
             abscissa_quantity: quantity,
             abscissa_ticks: ticks(abscissa.scale, range, along),
             places,
+            width: format.width,
+            title_edge,
             height: (top + 40.0).ceil(),
             column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
             is_overlaid: format.is_overlaid,
@@ -190,24 +209,25 @@ impl Ordinate {
 }
 
 impl Place {
-    /// Computes the positions of a panel from `(top, frame height)` and left and right `edges`.
+    /// Computes the positions of a panel from `(top, frame height)`, the left end of titles, and left and
+    /// right `edges`.
     fn new(
-        panel: &Panel<'_>,
-        ordinate: Ordinate,
+        (panel, ordinate): (&Panel<'_>, Ordinate),
         scale: Scale,
         (top, frame): (f64, f64),
-        edges: (f64, f64),
+        (title_edge, edges): (f64, (f64, f64)),
     ) -> Self {
-        let title_row = if panel.title.is_empty() {
-            6.0
-        } else {
-            TITLE_ROW
-        };
-        let legend = legend(panel, top + title_row, edges);
+        let lines = wrap_to_width(&panel.title, TITLE_SIZE, edges.1 - title_edge);
+        let title: Vec<(f64, String)> = (1..)
+            .zip(lines)
+            .map(|(row, line)| (top + f64::from(row) * TITLE_ROW - 8.0, line))
+            .collect();
+        let title_rows = (TITLE_ROW * title.len() as f64).max(6.0);
+        let legend = legend(panel, top + title_rows, (title_edge, edges.1));
         let legend_rows = legend
             .last()
-            .map_or(0.0, |((_, y), _)| y + 8.0 - (top + title_row));
-        let frame_top = top + title_row + legend_rows;
+            .map_or(0.0, |((_, y), _)| y + 8.0 - (top + title_rows));
+        let frame_top = top + title_rows + legend_rows;
         Self {
             ordinate: Axis {
                 scale,
@@ -216,7 +236,7 @@ impl Place {
             },
             quantity: ordinate.quantity,
             ticks: ordinate.ticks,
-            title: top + title_row - 8.0,
+            title,
             legend,
         }
     }

@@ -41,6 +41,21 @@ pub(super) fn truncate_to_width(text: &str, size: f64, available: f64) -> String
     format!("{}…", kept.trim_end())
 }
 
+/// Splits text at spaces into lines of at most `available` px; a longer word is truncated.
+pub(super) fn wrap_to_width(text: &str, size: f64, available: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match (longer, lines.last_mut()) {
+            (Some(longer), Some(line)) if truncate_to_width(&longer, size, available) == longer => {
+                *line = longer;
+            }
+            _ => lines.push(truncate_to_width(word, size, available)),
+        }
+    }
+    lines
+}
+
 /// Returns the maximum width of a character in units of the usual width.
 fn relative_width(c: char) -> f64 {
     match c {
@@ -138,6 +153,17 @@ mod tests {
              <tspan dy=\"-2.2\" font-size=\"10.0\"> [</tspan>µm]"
         );
         assert_eq!(svg_spans("a < b & c", 10.0), "a &lt; b &amp; c");
+    }
+
+    #[test]
+    fn long_text_is_wrapped_at_spaces() {
+        let text = "Relative displacement of sun and planet along the line of action";
+        let lines = wrap_to_width(text, 16.0, 300.0);
+        assert!(lines.len() > 1 && lines.join(" ") == text, "{lines:?}");
+        assert!(lines.iter().all(|line| text_width(line, 16.0) <= 300.0));
+        assert!(wrap_to_width("", 16.0, 300.0).is_empty());
+        let word = "x".repeat(100);
+        assert!(wrap_to_width(&word, 16.0, 300.0)[0].ends_with('…'));
     }
 
     #[test]

@@ -12,6 +12,7 @@
 //!         label: "w".to_owned(),
 //!         abscissa: &t,
 //!         values: &x,
+//!         ..Series::default()
 //!     }],
 //!     references: Vec::new(),
 //! };
@@ -31,8 +32,8 @@
 //! maps and scatter plots, and [`mod@drawing`] free drawings. [`render_png`] renders the SVG of any
 //! of them. This crate does not depend on models.
 //!
-//! The SVG has no script, style sheet, identifier or external reference, so a page can contain it
-//! several times. The crate writes it directly: plotting crates round points to whole pixels or
+//! The SVG has no script, identifier or external reference, so a page can contain it several times. Its
+//! only style sheet replaces the colours (`palette`) if the reader prefers a dark scheme. The crate writes it directly: plotting crates round points to whole pixels or
 //! misalign the frames of stacked panels.
 
 mod axis;
@@ -47,6 +48,7 @@ mod layout;
 mod lettering;
 pub mod map;
 pub mod modes;
+mod palette;
 mod panel;
 pub mod plate;
 mod quantity;
@@ -57,9 +59,12 @@ mod symbol;
 mod tests;
 
 pub use error::PlotError;
-pub use figure::{FrequencyAxis, Panel, Reference, Series, SeriesStyle, Spectrum, TimeHistory};
+pub use figure::{
+    FigureWidth, FrequencyAxis, Panel, Reference, Series, SeriesRole, SeriesStyle, Spectrum,
+    TimeHistory,
+};
 pub use map::{draw_map, draw_scatter};
-pub use plate::{Axes, Frame, Plate, plate};
+pub use plate::{Axes, Frame, Plate, plate, plate_at};
 pub use quantity::scaled_unit;
 pub use rendering::render_png;
 
@@ -74,12 +79,21 @@ use layout::{Abscissa, Format, Layout};
 /// [`PlotError`] without panels, for a panel or a series without anything to draw, for times that
 /// are not finite or that decrease, and for different numbers of values and times.
 pub fn time_history(plot: &TimeHistory<'_>) -> Result<String, PlotError> {
+    time_history_at(plot, FigureWidth::Wide)
+}
+
+/// Draws quantities over time like [`time_history`], with a given width.
+///
+/// # Errors
+///
+/// Same as [`time_history`].
+pub fn time_history_at(plot: &TimeHistory<'_>, width: FigureWidth) -> Result<String, PlotError> {
     let abscissa = Abscissa {
         symbol: "t",
         unit: "s",
         scale: Scale::Linear,
     };
-    draw(&plot.title, &plot.panels, &abscissa, Scale::Linear)
+    draw((&plot.title, &plot.panels), &abscissa, Scale::Linear, width)
 }
 
 /// Draws power spectral densities over frequency, with a logarithmic axis for the densities.
@@ -89,6 +103,15 @@ pub fn time_history(plot: &TimeHistory<'_>) -> Result<String, PlotError> {
 ///
 /// Same as [`time_history`].
 pub fn spectrum(plot: &Spectrum<'_>) -> Result<String, PlotError> {
+    spectrum_at(plot, FigureWidth::Wide)
+}
+
+/// Draws power spectral densities like [`spectrum`], with a given width.
+///
+/// # Errors
+///
+/// Same as [`time_history`].
+pub fn spectrum_at(plot: &Spectrum<'_>, width: FigureWidth) -> Result<String, PlotError> {
     let abscissa = Abscissa {
         symbol: "f",
         unit: "Hz",
@@ -97,21 +120,31 @@ pub fn spectrum(plot: &Spectrum<'_>) -> Result<String, PlotError> {
             FrequencyAxis::Logarithmic => Scale::Logarithmic,
         },
     };
-    draw(&plot.title, &plot.panels, &abscissa, Scale::Logarithmic)
+    draw(
+        (&plot.title, &plot.panels),
+        &abscissa,
+        Scale::Logarithmic,
+        width,
+    )
 }
 
 fn draw(
-    title: &str,
-    panels: &[Panel<'_>],
+    (title, panels): (&str, &[Panel<'_>]),
     abscissa: &Abscissa,
     ordinate: Scale,
+    width: FigureWidth,
 ) -> Result<String, PlotError> {
     error::check_panels(panels, |_| SeriesStyle::Curve)?;
-    let layout = Layout::new(panels, abscissa, ordinate, Format::stacked(panels.len()))?;
+    let layout = Layout::new(
+        panels,
+        abscissa,
+        ordinate,
+        Format::stacked(panels.len(), width),
+    )?;
     let mut canvas = canvas::Canvas::default();
     for (panel, place) in panels.iter().zip(&layout.places) {
         panel::draw_panel(&mut canvas, panel, place, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);
-    Ok(canvas.document(title, layout::WIDTH, layout.height))
+    Ok(canvas.document(title, layout.width, layout.height))
 }

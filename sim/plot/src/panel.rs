@@ -4,7 +4,7 @@ use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, FRAME_STROKE, GRID_STROKE, Stroke, Text};
 use super::decimate::{Point, polylines, separate_points, thin_orbit};
 use super::error::is_drawable;
-use super::figure::{Panel, Reference, Series, SeriesStyle};
+use super::figure::{Panel, Reference, Series, SeriesRole, SeriesStyle};
 use super::layout::{
     LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
 };
@@ -17,6 +17,7 @@ const COLOURS: [&str; 7] = [
 /// Dashes distinguish curves after all colours are used, and overlapping curves.
 const DASHES: [&str; 3] = ["", "7 3", "2 3"];
 
+const MEASURED_STROKE: Stroke = Stroke::new("#b9c2ca", 4.5, "");
 const REFERENCE_STROKE: Stroke = Stroke::new("#6a6a6a", 1.1, "6 4");
 const MARK_STROKE: Stroke = Stroke::new("#8a8a8a", 0.9, "2 3");
 
@@ -30,7 +31,7 @@ pub(super) fn draw_panel(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, 
             SeriesStyle::Orbit => thin_orbit(samples),
             SeriesStyle::Points => separate_points(samples),
         };
-        canvas.lines(&lines, curve_stroke(index, layout));
+        canvas.lines(&lines, curve_stroke((index, series.role), layout));
     }
     draw_frame(canvas, place, layout);
     draw_text(canvas, panel, place, layout);
@@ -99,14 +100,21 @@ pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     });
 }
 
-fn curve_stroke(index: usize, layout: &Layout) -> Stroke {
+/// Returns the stroke of a series from its index and role.
+fn curve_stroke((index, role): (usize, SeriesRole), layout: &Layout) -> Stroke {
+    let colour = match role {
+        SeriesRole::Measured => return MEASURED_STROKE,
+        SeriesRole::Plain => index,
+        SeriesRole::After => 0,
+        SeriesRole::Before => 1,
+    };
     let dashes = if layout.is_overlaid {
         index
     } else {
         index / COLOURS.len()
     };
     Stroke {
-        colour: COLOURS[index % COLOURS.len()],
+        colour: COLOURS[colour % COLOURS.len()],
         width: match layout.style {
             SeriesStyle::Curve => 1.2,
             SeriesStyle::Orbit => 0.7,
@@ -230,7 +238,7 @@ fn minor_marks(axis: &Axis) -> impl Iterator<Item = f64> {
 }
 
 fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
-    let (left, right) = layout.abscissa.pixels;
+    let (left, _) = layout.abscissa.pixels;
     let (bottom, top) = place.ordinate.pixels;
     for tick in &place.ticks {
         canvas.text(Text {
@@ -252,24 +260,26 @@ fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Lay
         is_bold: false,
     };
     canvas.rotated_text(label, -90.0);
-    if !panel.title.is_empty() {
+    for (y, line) in &place.title {
         canvas.text(Text {
-            text: &truncate_to_width(&panel.title, TITLE_SIZE, right - left),
-            position: (left, place.title),
+            text: line,
+            position: (layout.title_edge, *y),
             size: TITLE_SIZE,
             anchor: Anchor::Start,
             is_bold: true,
         });
     }
-    draw_legend(canvas, place, layout);
+    draw_legend(canvas, panel, place, layout);
 }
 
-fn draw_legend(canvas: &mut Canvas, place: &Place, layout: &Layout) {
-    for (index, ((x, y), label)) in place.legend.iter().enumerate() {
+fn draw_legend(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+    let roles = panel.series.iter().map(|series| series.role).enumerate();
+    for (series, ((x, y), label)) in roles.zip(&place.legend) {
         let middle = y - 0.25 * LEGEND_ROW;
+        let stroke = curve_stroke(series, layout);
         let stroke = Stroke {
-            width: 2.0,
-            ..curve_stroke(index, layout)
+            width: stroke.width.max(2.0),
+            ..stroke
         };
         canvas.segments(&[((*x, middle), (x + LEGEND_LINE, middle))], stroke);
         canvas.text(Text {

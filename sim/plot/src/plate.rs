@@ -3,7 +3,7 @@
 use super::axis::Scale;
 use super::canvas::Canvas;
 use super::error::{PlotError, check_panels};
-use super::figure::{Panel, Reference, SeriesStyle};
+use super::figure::{FigureWidth, Panel, Reference, SeriesStyle};
 use super::layout::{Abscissa, Format, Layout};
 use super::panel;
 
@@ -16,6 +16,14 @@ const FORMAT: Format = Format {
     headroom_fraction: 0.0,
     is_overlaid: false,
     style: SeriesStyle::Curve,
+};
+/// Format in a narrow figure, which has one column.
+const NARROW_FORMAT: Format = Format {
+    width: 330.0,
+    frame: 190.0,
+    ticks: (4, 6),
+    margins: (0.0, 22.0),
+    ..FORMAT
 };
 /// Fraction of a frame's height for the names of marks.
 const NAMES_OF_MARKS: f64 = 0.09;
@@ -91,6 +99,15 @@ impl Axes {
 ///
 /// Same as [`super::time_history`], with panels counted row by row.
 pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
+    plate_at(plate, FigureWidth::Wide)
+}
+
+/// Draws a plate like [`plate`], with a given width; a narrow plate has one column.
+///
+/// # Errors
+///
+/// Same as [`super::time_history`], with panels counted row by row.
+pub fn plate_at(plate: &Plate<'_>, width: FigureWidth) -> Result<String, PlotError> {
     let panels: Vec<Panel<'_>> = plate.frames.iter().map(|f| f.panel.clone()).collect();
     check_panels(&panels, |place| {
         plate
@@ -98,23 +115,26 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
             .get(place)
             .map_or(SeriesStyle::Curve, |f| f.style)
     })?;
-    let columns = plate.columns.max(1);
+    let (columns, format) = match width {
+        FigureWidth::Wide => (plate.columns.max(1), FORMAT),
+        FigureWidth::Narrow => (1, NARROW_FORMAT),
+    };
     let mut canvas = Canvas::default();
     let mut top = 0.0;
     for row in plate.frames.chunks(columns) {
         let mut height = 0.0_f64;
         for (column, frame) in row.iter().enumerate() {
-            let (drawing, tall) = draw_frame(frame)?;
-            canvas.insert(drawing, (column as f64 * FORMAT.width, top));
+            let (drawing, tall) = draw_frame(frame, format)?;
+            canvas.insert(drawing, (column as f64 * format.width, top));
             height = height.max(tall);
         }
         top += height;
     }
-    let width = FORMAT.width * columns as f64;
+    let width = format.width * columns as f64;
     Ok(canvas.document(&plate.title, width, top))
 }
 
-fn draw_frame(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
+fn draw_frame(frame: &Frame<'_>, format: Format) -> Result<(Canvas, f64), PlotError> {
     let (abscissa, scale) = frame.axes.scales();
     let panels = std::slice::from_ref(&frame.panel);
     let format = Format {
@@ -124,7 +144,7 @@ fn draw_frame(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
         },
         is_overlaid: frame.is_overlaid,
         style: frame.style,
-        ..FORMAT
+        ..format
     };
     let layout = Layout::new(panels, &abscissa, scale, format)?;
     let mut canvas = Canvas::default();

@@ -7,6 +7,7 @@ use resvg::usvg::fontdb::{Database, Source};
 use resvg::usvg::{ImageKind, Node, Options, Tree};
 
 use super::PlotError;
+use super::palette::without_style;
 
 /// Renders an SVG document of this crate as PNG with its width and height in px. The font is
 /// DejaVu Sans, which is part of the program; fonts of the machine are not used.
@@ -24,7 +25,7 @@ pub fn render_png(svg: &str) -> Result<Vec<u8>, PlotError> {
         ..Options::default()
     };
     // Without zero-width non-joiners, a letter and its subscript could become a ligature (f_la).
-    let svg = svg.replace("<tspan", "\u{200c}<tspan");
+    let svg = without_style(svg).replace("<tspan", "\u{200c}<tspan");
     let tree = Tree::from_str(&svg, &options).map_err(encoding_error)?;
     let size = tree.size().to_int_size();
     let mut pixmap = Pixmap::new(size.width(), size.height())

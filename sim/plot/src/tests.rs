@@ -24,6 +24,7 @@ fn series<'a>(label: &str, abscissa: &'a [f64], values: &'a [f64]) -> Series<'a>
         label: label.to_owned(),
         abscissa,
         values,
+        role: SeriesRole::Plain,
     }
 }
 
@@ -176,7 +177,7 @@ fn markup_in_text_is_escaped() -> Result<(), Box<dyn std::error::Error>> {
         panels: vec![panel],
     })?;
     let document = Document::parse(&svg)?;
-    let allowed = ["svg", "title", "rect", "path", "text", "tspan"];
+    let allowed = ["svg", "title", "style", "rect", "path", "text", "tspan"];
     for node in document.descendants().filter(Node::is_element) {
         assert!(allowed.contains(&node.tag_name().name()), "{node:?}");
     }
@@ -298,5 +299,113 @@ fn overlaid_curves_are_dashed() -> Result<(), Box<dyn std::error::Error>> {
     // Curves, then lines of the legend.
     assert_eq!(dashes(true)?, [false, true, false, true]);
     assert_eq!(dashes(false)?, [false; 4]);
+    Ok(())
+}
+
+/// Returns the smallest font size of a figure and its width, px.
+fn smallest_lettering(svg: &str) -> Result<(f64, f64), Box<dyn std::error::Error>> {
+    let document = Document::parse(svg)?;
+    let sizes = document
+        .descendants()
+        .filter_map(|node| node.attribute("font-size")?.parse().ok());
+    let width = document.root_element().attribute("width").unwrap_or("");
+    Ok((sizes.fold(f64::INFINITY, f64::min), width.parse()?))
+}
+
+#[test]
+fn narrow_figures_are_readable_without_scaling() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let mut content = panel(
+        "x_sp",
+        "m",
+        vec![series("before", &t, &t), series("after", &t, &t)],
+    );
+    content.title = "Relative displacement of sun and planet along the line of action".to_owned();
+    let frames = vec![Frame {
+        panel: content.clone(),
+        ..Frame::default()
+    }];
+    let history = TimeHistory {
+        title: String::new(),
+        panels: vec![content],
+    };
+    let plate = Plate {
+        title: String::new(),
+        columns: 2,
+        frames: [frames.clone(), frames].concat(),
+    };
+    for svg in [
+        time_history_at(&history, FigureWidth::Narrow)?,
+        plate_at(&plate, FigureWidth::Narrow)?,
+    ] {
+        let (size, width) = smallest_lettering(&svg)?;
+        assert!(size >= 11.0 && width <= 330.0, "{size} {width}");
+        assert!(!svg.contains('…'), "a text is cut: {svg}");
+        assert!(
+            texts(&Document::parse(&svg)?).contains(&"action".to_owned()),
+            "{svg}"
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn roles_have_the_same_colours_in_any_order() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let of = |role| Series {
+        role,
+        ..series("a", &t, &t)
+    };
+    let colours = |roles: &[SeriesRole]| -> Result<Vec<String>, Box<dyn std::error::Error>> {
+        let all = roles.iter().map(|role| of(*role)).collect();
+        let svg = history(vec![panel("x", "m", all)])?;
+        let document = Document::parse(&svg)?;
+        let strokes = document.descendants().filter_map(|n| n.attribute("stroke"));
+        let known = ["#b9c2ca", "#0072b2", "#d55e00"];
+        let strokes = strokes.filter(|stroke| known.contains(stroke));
+        Ok(strokes.take(roles.len()).map(str::to_owned).collect())
+    };
+    use SeriesRole::{After, Before, Measured};
+    assert_eq!(colours(&[Measured, Before])?, ["#b9c2ca", "#d55e00"]);
+    assert_eq!(
+        colours(&[Measured, Before, After])?,
+        ["#b9c2ca", "#d55e00", "#0072b2"]
+    );
+    assert_eq!(colours(&[Before, After])?, ["#d55e00", "#0072b2"]);
+    Ok(())
+}
+
+#[test]
+fn every_colour_has_a_dark_counterpart() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let all = (0..9).map(|_| series("a", &t, &t)).collect();
+    let svg = history(vec![panel("x", "m", all)])?;
+    let bars = bars::histogram(&bars::Histogram {
+        counts: &[1, 2],
+        ..bars::Histogram::default()
+    })?;
+    for svg in [svg, bars] {
+        let document = Document::parse(&svg)?;
+        let style = document
+            .descendants()
+            .find(|node| node.has_tag_name("style"));
+        let style = style.and_then(|node| node.text()).unwrap_or_default();
+        assert!(
+            style.starts_with("@media (prefers-color-scheme:dark)"),
+            "{style}"
+        );
+        for node in document.descendants() {
+            for name in ["fill", "stroke"] {
+                let colour = node
+                    .attribute(name)
+                    .filter(|colour| colour.starts_with('#'));
+                let Some(colour) = colour else { continue };
+                assert!(
+                    style.contains(&format!("[{name}=\"{colour}\"]")),
+                    "{colour}"
+                );
+            }
+        }
+    }
     Ok(())
 }

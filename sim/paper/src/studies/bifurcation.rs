@@ -113,6 +113,7 @@ fn frame<'a>(title: String, quantity: &str, b: &'a [f64], values: &'a [f64]) -> 
                 label: String::new(),
                 abscissa: b,
                 values,
+                ..Series::default()
             }],
             references: Vec::new(),
         },

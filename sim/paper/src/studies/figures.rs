@@ -150,6 +150,7 @@ fn history<'a>(row: &Row<'a>) -> Frame<'a> {
         label: label.clone(),
         abscissa: &display.history.times,
         values: row.quantity.history(display),
+        ..Series::default()
     });
     Frame {
         panel: Panel {
@@ -183,6 +184,7 @@ fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
         label: label.clone(),
         abscissa: &row.quantity.spectrum(display).frequency,
         values: density,
+        ..Series::default()
     });
     Frame {
         panel: density_panel(row.quantity.name(), curves.collect()),

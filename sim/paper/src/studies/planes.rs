@@ -37,6 +37,7 @@ fn panel<'a>(title: String, x_sp: &'a [f64], x_sp_dot: &'a [f64]) -> Panel<'a> {
             label: String::new(),
             abscissa: x_sp,
             values: x_sp_dot,
+            ..Series::default()
         }],
         references: Vec::new(),
     }

@@ -179,7 +179,7 @@ fn diagram_is_independent_of_order_and_reproducible() -> Result<(), PlotError> {
 fn check(svg: &str) -> Result<(), PlotError> {
     let document = Document::parse(svg).unwrap();
     let allowed = [
-        "svg", "title", "rect", "path", "text", "tspan", "image", "g", "circle",
+        "svg", "title", "style", "rect", "path", "text", "tspan", "image", "g", "circle",
     ];
     for node in document.descendants().filter(Node::is_element) {
         assert!(allowed.contains(&node.tag_name().name()), "{node:?}");

@@ -88,6 +88,7 @@ pub(super) fn chaotic(
         label: format!("S = {order}"),
         abscissa: times,
         values,
+        ..Series::default()
     });
     let title = format!("(a) difference of x_sp to S = {REFERENCE_ORDER}");
     let growth = Frame {
@@ -156,6 +157,7 @@ fn history<'a>(
         label: (*label).to_owned(),
         abscissa,
         values,
+        ..Series::default()
     });
     Frame {
         panel: panel(title, quantity, curves.collect()),
@@ -168,6 +170,7 @@ fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) 
         label: (*name).to_owned(),
         abscissa: &of.orders,
         values,
+        ..Series::default()
     });
     Frame {
         panel: Panel {
@@ -191,6 +194,7 @@ fn spectra<'a>(
         label: format!("S = {}", display.case.order),
         abscissa: &display.dr.frequency,
         values: density,
+        ..Series::default()
     });
     let mut panel = density_panel(of, curves.collect());
     panel.title = format!("{letter} {}", panel.title);
