@@ -1,4 +1,5 @@
-//! Figure (SVG) of a motion over time: coordinates, first-order states and observables, a panel for each unit.
+//! Figure (SVG) of a motion over time: coordinates, first-order states and observables. Quantities of the same kind and
+//! unit share a panel, unless one of them would be a flat line in it.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -10,7 +11,10 @@ use crate::table::Table;
 const MOST_CURVES: usize = 6;
 
 /// Maximum number of panels in a figure.
-const MOST_PANELS: usize = 10;
+const MOST_PANELS: usize = 24;
+
+/// Smallest range of a curve that varies, as a fraction of the range of its panel.
+const MIN_RANGE_FRACTION: f64 = 0.05;
 
 /// Draws a table of states and observables, without rates.
 pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
@@ -21,29 +25,35 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
         (first_order(compiled), "First-order states"),
         (observables(compiled), "Observables"),
     ] {
-        let first = panels.len();
+        let mut group: Vec<Panel<'_>> = Vec::new();
         for (name, unit) in names {
             let Some(values) = table.column(&name) else {
                 continue;
             };
             let curve = Series {
-                label: name.clone(),
+                label: name,
                 abscissa: times,
                 values,
                 ..Series::default()
             };
-            let mut known = panels[first..].iter_mut();
-            match known.find(|panel| panel.unit == unit && panel.series.len() < MOST_CURVES) {
+            let known = group.iter_mut();
+            match known
+                .filter(|panel| panel.unit == unit)
+                .find(|panel| has_room(panel, &curve))
+            {
                 Some(panel) => panel.series.push(curve),
-                None => panels.push(Panel {
-                    title: what.to_owned(),
-                    quantity: String::new(),
+                None => group.push(Panel {
                     unit,
                     series: vec![curve],
-                    references: Vec::new(),
+                    ..Panel::default()
                 }),
             }
         }
+        for panel in &mut group {
+            let names: Vec<&str> = panel.series.iter().map(|curve| &curve.label[..]).collect();
+            panel.title = format!("{what}: {}", names.join(", "));
+        }
+        panels.extend(group);
     }
     panels.truncate(MOST_PANELS);
     for panel in &mut panels {
@@ -56,6 +66,29 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
         panels,
     };
     time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
+}
+
+/// Returns true if all curves of the panel and the new one are visible in it together.
+fn has_room(panel: &Panel<'_>, curve: &Series<'_>) -> bool {
+    let curves = panel.series.iter().chain([curve]);
+    let ranges: Vec<(f64, f64)> = curves.map(|curve| range(curve.values)).collect();
+    let (low, high) = ranges
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| {
+            (low.min(own.0), high.max(own.1))
+        });
+    let is_visible = |(least, most): &(f64, f64)| {
+        most - least >= MIN_RANGE_FRACTION * (high - low) || most <= least
+    };
+    panel.series.len() < MOST_CURVES && ranges.iter().all(is_visible)
+}
+
+/// Returns the smallest and the largest finite value.
+fn range(values: &[f64]) -> (f64, f64) {
+    let finite = values.iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    })
 }
 
 fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
@@ -81,4 +114,32 @@ fn observables(compiled: &CompiledModel) -> Vec<(String, String)> {
     let own = all.filter(|known| !states.contains(&known.name));
     own.map(|known| (known.name.clone(), known.unit.clone()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(values: &[f64]) -> Series<'_> {
+        Series {
+            abscissa: &[0.0, 1.0],
+            values,
+            ..Series::default()
+        }
+    }
+
+    #[test]
+    fn small_curves_have_their_own_panel() {
+        let panel = |values: &'static [f64]| Panel {
+            series: vec![curve(values)],
+            ..Panel::default()
+        };
+        let large = panel(&[-1.0, 1.0]);
+        assert!(has_room(&large, &curve(&[0.0, 0.2])));
+        assert!(!has_room(&large, &curve(&[0.0, 0.05])));
+        // A constant is visible anywhere, but it must not flatten others.
+        assert!(has_room(&large, &curve(&[3.0, 3.0])));
+        assert!(!has_room(&panel(&[0.0, 0.01]), &curve(&[3.0, 3.0])));
+        assert!(has_room(&panel(&[0.0, 0.0]), &curve(&[0.0, 1.0])));
+    }
 }

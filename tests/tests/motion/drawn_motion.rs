@@ -1,0 +1,39 @@
+//! Figure of `simulate --plot`: panels named by their quantities, and no flat curve in the panel of a large one.
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::run_accepted;
+
+/// Returns the titles of the panels, which are bold.
+fn titles(svg: &str) -> Vec<String> {
+    let bold = svg.split(" font-weight=\"600\"").skip(1);
+    let elements = bold.filter_map(|rest| rest.split("</text>").next());
+    let plain = |element: &str| -> String {
+        let pieces = element.split('<');
+        pieces.filter_map(|piece| piece.split('>').nth(1)).collect()
+    };
+    elements.map(plain).collect()
+}
+
+#[test]
+fn panels_are_named_by_their_quantities() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let (table, figure) = (place("arm.csv"), place("arm.svg"));
+    let spec = path("planetary_arm").display().to_string();
+    let arguments = ["simulate", &spec, "--until", "0.2", "--interval", "0.001"];
+    run_accepted(&[&arguments[..], &["--out", &table, "--plot", &figure]].concat());
+    let svg = std::fs::read_to_string(figure).expect("a figure");
+    let titles = titles(&svg);
+    // The carrier turns by radians, its error by microradians.
+    let panel_of = |name: &str| {
+        titles
+            .iter()
+            .position(|title| title.contains(name))
+            .expect(name)
+    };
+    assert_ne!(panel_of("θc"), panel_of("Δθ"), "{titles:?}");
+    for (place, title) in titles.iter().enumerate() {
+        assert!(title.contains(": "), "{title}");
+        assert!(!titles[..place].contains(title), "{title} twice");
+    }
+}
