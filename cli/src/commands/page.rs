@@ -7,6 +7,7 @@ use crate::document::SCHEMA;
 use crate::emission::without_impacts;
 use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
+use crate::motion::note_moved;
 use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::page::interactive_page;
@@ -19,10 +20,11 @@ pub fn run(options: &Page) -> Result {
     let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    let initial = initial_state(
-        &compiled.with_declared_parameters()?,
-        &options.initial.state,
-    )?;
+    let run = compiled.with_declared_parameters()?;
+    let requested = initial_state(&run, &options.initial.state)?;
+    // The page moves the state again after a change of a slider.
+    let (initial, moved) = run.find_consistent_state(&requested, 0.0, &run.default_inputs())?;
+    note_moved("initial state", &moved);
     let page = interactive_page(&compiled, &initial)?;
     destination.write(page.as_bytes())?;
     if options.output.json {

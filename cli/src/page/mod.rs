@@ -1,8 +1,8 @@
-//! HTML pages. `play` is the interactive page of a model. [`Tour`] is the page of the tour: specification, equations,
-//! emitted source, certificate, simulation and discovery.
+//! HTML pages. `play` is the interactive page of a model. [`Tour`] is the page of the tour: the moving arm, specification,
+//! equations, emitted source, certificate, simulation and discovery.
 //!
-//! The page of the tour is self-contained. Its only script is that of the discovery's report, in a separate frame. Text of
-//! a specification is escaped.
+//! The page of the tour is self-contained. The reports are in separate frames, because each has a script. Text
+//! of a specification is escaped.
 
 mod play;
 mod steps;
@@ -10,23 +10,26 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-pub use play::interactive_page;
+pub use play::{InteractivePart, interactive_page};
 
 use eomgen_codegen::report::Report;
-use eomgen_page::{Figure, document, equations};
+use eomgen_page::{Figure, equations};
 use maud::{Markup, html};
 
 /// Content of the tour's page.
-#[derive(Clone, Debug)]
 pub struct Tour<'a> {
     /// Title of the model.
     pub title: &'a str,
+    /// What the discovery found, in one sentence.
+    pub found: &'a str,
+    /// The moving arm.
+    pub arm: &'a InteractivePart,
     /// Name and version of the program.
     pub generated_by: &'a str,
     pub specification: Specification<'a>,
     pub equations: &'a Report,
     pub source: Source<'a>,
-    pub checks: Vec<CheckRow<'a>>,
+    pub checks: Vec<CheckRow>,
     pub simulation: Simulation<'a>,
     pub hidden: Hidden<'a>,
     /// Durations of the steps, in order.
@@ -53,15 +56,16 @@ pub struct Source<'a> {
 
 /// Check of the certificate.
 #[derive(Clone, Debug)]
-pub struct CheckRow<'a> {
-    pub name: &'a str,
+pub struct CheckRow {
+    /// Statement that the check confirms.
+    pub sentence: String,
     /// Largest deviation, if any.
     pub value: Option<f64>,
     pub tolerance: f64,
     pub passed: bool,
     pub skipped: bool,
-    /// Place of the largest deviation, or the reason for skipping.
-    pub detail: &'a str,
+    /// Place of the deviation of a failed check, or the reason for skipping it; empty if it passed.
+    pub detail: String,
 }
 
 #[derive(Clone, Debug)]
@@ -76,8 +80,8 @@ pub struct Simulation<'a> {
 /// Discovery of a hidden effect.
 #[derive(Clone, Debug)]
 pub struct Hidden<'a> {
-    /// Sentences about the hidden effect and the result.
-    pub summary: &'a str,
+    /// Facts about the hidden effect and the result, each with its name.
+    pub facts: Vec<(&'a str, String)>,
     /// Folder of the records and results.
     pub path: &'a str,
     /// Extended specification.
@@ -115,8 +119,13 @@ impl Tour<'_> {
             header {
                 h1 { (self.title) }
                 p.lead {
-                    "From the Lagrangian in one file to a running simulation: this page shows the result "
-                    "of each step."
+                    "From the Lagrangian in one file to a running simulation, and from records to the missing term. "
+                    strong { (self.found) }
+                }
+                (self.arm.body)
+                p.note {
+                    "The arm on its reducer, computed on this page with the derived equations. The deflection of the arm "
+                    "is drawn enlarged; the short lines are a tooth of the sun and of a planet."
                 }
                 nav { ol {
                     @for step in &steps { li { a href={ "#" (step.anchor) } { (step.heading) } } }
@@ -132,7 +141,7 @@ impl Tour<'_> {
             }
             footer { p { "Written by " (self.generated_by) "." } }
         };
-        document(self.title, &body)
+        self.arm.document(self.title, &body)
     }
 
     fn steps(&self) -> [Step; 8] {

@@ -1,6 +1,6 @@
 //! Sections of the tour's page, except the equations.
 
-use eomgen_page::{collapsible_file, figure, number, table};
+use eomgen_page::{aligned, collapsible_file, figure, table};
 use maud::{Markup, html};
 
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
@@ -50,14 +50,21 @@ fn rates_function(text: &str) -> Option<&str> {
     text.get(start.checked_sub(attached)?..start + end)
 }
 
-pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
+pub(super) fn certificate(checks: &[CheckRow]) -> Markup {
     let passed = checks.iter().filter(|check| check.passed).count();
     let skipped = checks.iter().filter(|check| check.skipped).count();
     let failed = checks
         .iter()
         .filter(|check| !check.passed && !check.skipped)
         .count();
-    let rows = html! { @for check in checks { (check_row(check)) } };
+    let values: Vec<Option<f64>> = checks.iter().map(|check| check.value).collect();
+    let tolerances: Vec<Option<f64>> = checks.iter().map(|check| Some(check.tolerance)).collect();
+    let (values, tolerances) = (aligned(&values, 1), aligned(&tolerances, 1));
+    let rows = html! {
+        @for (check, (value, tolerance)) in checks.iter().zip(values.iter().zip(&tolerances)) {
+            (check_row(check, value, tolerance))
+        }
+    };
     html! {
         p {
             @match (failed, passed) {
@@ -73,7 +80,7 @@ pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
     }
 }
 
-fn check_row(check: &CheckRow<'_>) -> Markup {
+fn check_row(check: &CheckRow, value: &Markup, tolerance: &Markup) -> Markup {
     let (class, result) = match (check.passed, check.skipped) {
         (true, _) => ("passed", "✓ passed"),
         (false, true) => ("skipped", "– not run"),
@@ -81,14 +88,12 @@ fn check_row(check: &CheckRow<'_>) -> Markup {
     };
     html! {
         tr {
-            th scope="row" { (check.name) br; small { (check.detail) } }
-            td.number {
-                @match check.value {
-                    Some(value) => (number(value, 1)),
-                    None => "–",
-                }
+            th scope="row" {
+                (check.sentence)
+                @if !check.detail.is_empty() { br; small { (check.detail) } }
             }
-            td.number { (number(check.tolerance, 1)) }
+            td.number { (value) }
+            td.number { (tolerance) }
             td class=(class) { (result) }
         }
     }
@@ -103,7 +108,7 @@ pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
 
 pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     let [before, after] = hidden.reports;
-    // The report of the discovery runs a script; the sandbox isolates it from this page.
+    // A report runs a script; the sandbox isolates it from this page.
     let page = |summary: &str, report: &str, is_open: bool| {
         html! {
             details open[is_open] {
@@ -113,7 +118,16 @@ pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
         }
     };
     html! {
-        p { (hidden.summary) " Records and results are in " code { (hidden.path) } "." }
+        p {
+            "The records are simulated positions of a positioning stage with a dry friction that its specification "
+            "lacks. Records and results are in " code { (hidden.path) } "."
+        }
+        dl.values {
+            @for (name, fact) in &hidden.facts {
+                dt { (name) }
+                dd { (fact) }
+            }
+        }
         (page("Report of the comparison", before, false))
         (page("Report of the discovery", after, true))
         (collapsible_file("Extended specification", hidden.extended, false))
@@ -145,7 +159,13 @@ pub(super) fn next(commands: &[NextCommand<'_>]) -> Markup {
         dl {
             @for next in commands {
                 dt { (next.purpose) }
-                dd { pre { code { (next.command) } } }
+                dd { pre { code {
+                    // Words do not break at their hyphens.
+                    @for (place, word) in next.command.split(' ').enumerate() {
+                        @if place > 0 { " " }
+                        span.word { (word) }
+                    }
+                } } }
             }
         }
     }

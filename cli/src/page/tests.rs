@@ -2,6 +2,7 @@
 
 use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use eomgen_codegen::symbolic::formula::{Formula, Index};
+use maud::html;
 
 use super::*;
 
@@ -59,20 +60,30 @@ fn report(text: &str) -> Report {
     }
 }
 
-fn check<'a>(name: &'a str, passed: bool, skipped: bool) -> CheckRow<'a> {
+fn check(sentence: &str, passed: bool, skipped: bool) -> CheckRow {
     CheckRow {
-        name,
+        sentence: sentence.to_owned(),
         value: passed.then_some(3e-15),
         tolerance: 1e-12,
         passed,
         skipped,
-        detail: name,
+        detail: sentence.to_owned(),
     }
+}
+
+fn arm() -> &'static InteractivePart {
+    static ARM: std::sync::OnceLock<InteractivePart> = std::sync::OnceLock::new();
+    ARM.get_or_init(|| InteractivePart {
+        body: html! { canvas #drawing {} },
+        data: "{}".to_owned(),
+    })
 }
 
 fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
     Tour {
         title: text,
+        found: text,
+        arm: arm(),
         generated_by: text,
         specification: Specification {
             path: text,
@@ -87,11 +98,12 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
             path: text,
             figures: vec![Figure {
                 svg: "<svg><path d=\"M0,0\"/></svg>",
+                narrow: "",
                 caption: text,
             }],
         },
         hidden: Hidden {
-            summary: text,
+            facts: vec![(text, text.to_owned())],
             path: text,
             extended: text,
             reports: [text, text],
@@ -105,6 +117,11 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
             purpose: text,
         }],
     }
+}
+
+/// Returns the page without its scripts.
+fn without_scripts(page: &str) -> &str {
+    page.split("<script").next().unwrap_or_default()
 }
 
 /// Returns the names of opened elements, in order.
@@ -127,13 +144,14 @@ fn text_of_a_specification_is_escaped() {
         "</pre></code></title><script>alert(\"1\")</script><img src=x onerror='a'>\" onload=\"b";
     let (harmless, injected) = (report("plain"), report(hostile));
     let page = tour(hostile, &injected).render();
-    for forbidden in ["<script", "<img", "alert(\"", "\" onload"] {
+    for forbidden in ["<img", "alert(\"", "\" onload"] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
+    assert_eq!(page.matches("<script").count(), 2);
     let outside_formulas = |page: &str| -> Vec<String> {
         let elements = elements(page)
             .into_iter()
-            .filter(|name| !["i", "sub", "sup"].contains(name));
+            .filter(|name| !["i", "sub", "sup", "span"].contains(name));
         elements.map(str::to_owned).collect()
     };
     assert_eq!(
@@ -149,8 +167,6 @@ fn page_is_self_contained() {
     for forbidden in [
         "http:",
         "https:",
-        "//",
-        "<script",
         "<link",
         "src=",
         "url(",
@@ -198,11 +214,11 @@ fn page_has_every_section() {
         "most expensive order takes 202",
         "one warning",
         "Checks passed: 1; failed: 0; not run: 1",
-        "<msup><mn>10</mn><mn>−12</mn></msup>",
-        "<mn>3</mn><mo>·</mo><msup><mn>10</mn><mn>−15</mn></msup>",
+        "·10<sup>−12</sup>",
+        "·10<sup>−15</sup>",
         "<svg>",
         "500.0 ms",
-        "(10 values)",
+        "the first 8 of 10 modes",
         "<msub><mi>x</mi><mi>sp</mi></msub>",
         "Shared subexpressions",
         "The model is not linear: <math>",
@@ -228,7 +244,7 @@ fn elements_are_closed_in_order() {
     let report = report("dot(x_sp)^2*sum_i(q_i^(2)");
     let page = tour("a < b", &report).render();
     let mut open: Vec<&str> = Vec::new();
-    for piece in page.split('<').skip(1) {
+    for piece in without_scripts(&page).split('<').skip(1) {
         let tag = piece.split('>').next().unwrap_or_default();
         let is_void =
             tag.ends_with('/') || tag == "br" || tag.starts_with('!') || tag.starts_with("meta ");
@@ -238,5 +254,5 @@ fn elements_are_closed_in_order() {
             None => open.extend(tag.split(' ').next()),
         }
     }
-    assert!(open.is_empty(), "{open:?}");
+    assert_eq!(open, ["html", "body"]);
 }

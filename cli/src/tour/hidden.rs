@@ -34,9 +34,8 @@ const NOISE: f64 = 2e-6;
 /// Relative tolerance of the simulation.
 const TOLERANCE: f64 = 1e-9;
 
-/// Results of the comparison and the discovery.
+/// Result of the discovery, and the reports of comparison and discovery.
 pub struct Rediscovery {
-    comparison: Value,
     discovery: Value,
     reports: [String; 2],
     extended: String,
@@ -62,10 +61,9 @@ pub fn rediscover(out: &Path) -> Result<Rediscovery> {
         out,
         seed: 1,
     };
-    let comparison = discovery::compare(&task(&compared))?;
+    discovery::compare(&task(&compared))?;
     let discovery = discovery::discover(&task(&found), None, None)?;
     Ok(Rediscovery {
-        comparison,
         discovery,
         reports: [
             text(compared.join("report.html"))?,
@@ -160,47 +158,85 @@ fn description() -> String {
 }
 
 impl Rediscovery {
-    /// Describes the hidden friction and the discovery.
-    pub fn summary(&self) -> String {
-        let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-        let gap = &self.discovery["gap"]["q"];
-        let found: Vec<String> = self.discovery["effects"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .map(effect)
-            .collect();
-        let found = match found.len() {
-            0 => "no effect".to_owned(),
-            _ => found.join(", "),
-        };
+    /// Returns the result in one sentence.
+    pub fn sentence(&self) -> String {
         format!(
-            "The records are simulated positions of a stage with a dry friction of {FRICTION} N that the specification \
-             lacks, and with a sensor noise of {:.0} um (standard deviation). Result of the comparison: {}. Discovered \
-             effect: {found}. On held-out data, the RMS residual fell from {:.1} um to {:.1} um; the noise floor is \
-             {:.1} um.",
-            1e6 * NOISE,
-            self.comparison["where"]
-                .as_str()
-                .unwrap_or_default()
-                .trim_end_matches('.'),
-            1e6 * number(&gap["before"]["test"]),
-            1e6 * number(&gap["after"]["test"]),
-            1e6 * number(&gap["floor"]),
+            "From noisy records of a positioning stage, eomgen found {}, which the specification lacks: on held-out \
+             data, the RMS residual fell from {} to {}.",
+            self.found(),
+            self.residual("before"),
+            self.residual("after"),
         )
     }
 
-    pub fn chapter<'a>(&'a self, summary: &'a str) -> page::Hidden<'a> {
+    pub fn chapter(&self) -> page::Hidden<'_> {
+        let floor = micrometres(&self.discovery["gap"]["q"]["floor"]);
+        let facts = [
+            (
+                "Hidden in the records",
+                format!(
+                    "a dry friction of {FRICTION} N, and noise of the position of {:.0} µm (standard deviation)",
+                    1e6 * NOISE
+                ),
+            ),
+            (
+                "Residual of the original model",
+                format!(
+                    "{} on held-out data, {}",
+                    self.residual("before"),
+                    self.multiple("before")
+                ),
+            ),
+            ("Found", self.found()),
+            (
+                "Residual with the found effect",
+                format!(
+                    "{} on held-out data, {}",
+                    self.residual("after"),
+                    self.multiple("after")
+                ),
+            ),
+            (
+                "Noise floor",
+                format!("{floor}, the residual of a correct model"),
+            ),
+        ];
         page::Hidden {
-            summary,
+            facts: facts.to_vec(),
             path: "hidden",
             extended: &self.extended,
             reports: [&self.reports[0], &self.reports[1]],
         }
     }
+
+    /// Describes the found effects.
+    fn found(&self) -> String {
+        let effects = self.discovery["effects"].as_array().into_iter().flatten();
+        match effects.map(effect).collect::<Vec<String>>() {
+            all if all.is_empty() => "no effect".to_owned(),
+            all => all.join(" and "),
+        }
+    }
+
+    /// Returns the RMS residual on held-out data.
+    fn residual(&self, when: &str) -> String {
+        micrometres(&self.discovery["gap"]["q"][when]["test"])
+    }
+
+    /// Returns the same as a multiple of the noise floor.
+    fn multiple(&self, when: &str) -> String {
+        let gap = &self.discovery["gap"]["q"];
+        let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+        let multiple = number(&gap[when]["test"]) / number(&gap["floor"]);
+        format!("{multiple:.1} times the noise floor")
+    }
 }
 
-/// Names an effect with its first parameter.
+fn micrometres(value: &Value) -> String {
+    format!("{:.1} µm", 1e6 * value.as_f64().unwrap_or(f64::NAN))
+}
+
+/// Describes an effect with its first parameter.
 fn effect(entry: &Value) -> String {
     let word = |key: &str| entry[key].as_str().unwrap_or_default().replace('_', " ");
     let parameter = entry["parameters"]
@@ -211,5 +247,5 @@ fn effect(entry: &Value) -> String {
         let unit = p["unit"].as_str().unwrap_or_default();
         format!(" of {:.2} ± {:.2} {unit}", number("value"), number("sd"))
     });
-    format!("{} on {}{size}", word("effect"), word("on"))
+    format!("{}{size} on {}", word("effect"), word("on"))
 }

@@ -2,6 +2,7 @@
 //! files that the page shows.
 
 mod hidden;
+mod moving_arm;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -13,8 +14,9 @@ use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 use eomgen_page::Figure;
-use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
-use eomgen_validate::certificate::Certificate;
+use eomgen_plot::{FigureWidth, Panel, Reference, Series, TimeHistory, time_history_at};
+use eomgen_validate::certificate::{Certificate, Check};
+use eomgen_validate::meaning::describe;
 use eomgen_validate::model_certificate::certify_model;
 
 use crate::emission::source;
@@ -22,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{describe_work, simulate, table};
 use crate::output::{file_place, write_file};
-use crate::page;
+use crate::page::{self, InteractivePart};
 use crate::progress::Note;
 use crate::table::Table;
 use hidden::{Rediscovery, rediscover};
@@ -101,14 +103,28 @@ pub fn run(out: &Path) -> Result<TourResult> {
     let motion = simulate(&run, &request)?;
     let table = table(&run, &motion)?;
     watch.lap("simulate two seconds");
-    let figure = figure(&run, &table)?;
-    write_files(out, &compiled, &rust, &certificate, &table, &figure)?;
+    let figures = [FigureWidth::Wide, FigureWidth::Narrow].map(|width| figure(&run, &table, width));
+    let [wide, narrow] = figures;
+    let figures = [wide?, narrow?];
+    write_files(out, &compiled, &rust, &certificate, &table, &figures[0])?;
+    let moving = moving_arm::specification();
+    write_file(&out.join(moving_arm::PATH), moving.as_bytes())?;
+    let arm = moving_arm::derive_arm(&moving, ORDER)?;
+    let initial = arm.with_declared_parameters()?.initial_state().to_vec();
+    let arm = InteractivePart::of_parameters(&arm, &initial, &moving_arm::MOVED)?;
     let note = Note::new("discovering a hidden friction in a positioning stage");
     let rediscovery = rediscover(out)?;
     watch.lap("hide a friction in a positioning stage, compare, discover");
     drop(note);
-    let parts = (&rust[..], &figure[..], &rediscovery);
-    let page = page_text(&compiled, parts, &certificate, &motion, &watch)?;
+    let parts = Parts {
+        rust: &rust,
+        figures: &figures,
+        rediscovery: &rediscovery,
+        certificate: &certificate,
+        motion: &motion,
+        arm: &arm,
+    };
+    let page = page_text(&compiled, &parts, &watch)?;
     write_file(&path, page.as_bytes())?;
     Ok(TourResult {
         page: path,
@@ -142,7 +158,7 @@ fn write_files(
 }
 
 /// Draws mesh deflection and positioning error over time.
-fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
+fn figure(run: &Instance<'_>, table: &Table, width: FigureWidth) -> Result<String> {
     let column = |name: &str| {
         table
             .column(name)
@@ -187,17 +203,30 @@ fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
             )?,
         ],
     };
-    time_history(&history).map_err(|error| Error::input(error.to_string()))
+    time_history_at(&history, width).map_err(|error| Error::input(error.to_string()))
 }
 
-/// Renders the page. `parts`: the emitted Rust, the figure and the discovery.
-fn page_text(
-    compiled: &CompiledModel,
-    (rust, figure, rediscovery): (&str, &str, &Rediscovery),
-    certificate: &Certificate,
-    motion: &Motion,
-    watch: &Stopwatch,
-) -> Result<String> {
+/// Results that the page shows.
+struct Parts<'a> {
+    rust: &'a str,
+    /// Wide and narrow figure of the simulation.
+    figures: &'a [String; 2],
+    rediscovery: &'a Rediscovery,
+    certificate: &'a Certificate,
+    motion: &'a Motion,
+    arm: &'a InteractivePart,
+}
+
+/// Renders the page.
+fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> Result<String> {
+    let Parts {
+        rust,
+        figures: [wide, narrow],
+        rediscovery,
+        certificate,
+        motion,
+        arm,
+    } = parts;
     let evaluator = Evaluator::new(compiled.program().clone());
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let summary = format!(
@@ -206,21 +235,12 @@ fn page_text(
         motion.trajectory.switches.len(),
         describe_work(motion)
     );
-    let checks = certificate
-        .checks
-        .iter()
-        .map(|check| page::CheckRow {
-            name: &check.name,
-            value: check.value,
-            tolerance: check.tolerance,
-            passed: check.passed,
-            skipped: check.skipped.is_some(),
-            detail: &check.detail,
-        })
-        .collect();
-    let found = rediscovery.summary();
+    let found = rediscovery.sentence();
+    let chapter = rediscovery.chapter();
     let tour = page::Tour {
         title: &compiled.model().title,
+        found: &found,
+        arm,
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
         specification: page::Specification {
             path: SPECIFICATION_PATH,
@@ -232,18 +252,19 @@ fn page_text(
             path: "lib.rs",
             text: rust,
         },
-        checks,
+        checks: check_rows(&certificate.checks),
         simulation: page::Simulation {
             summary: &summary,
             path: "trajectory.csv",
             figures: vec![Figure {
-                svg: figure,
+                svg: wide,
+                narrow,
                 caption: "Top: the tooth flanks are in contact outside the dashed lines and separated \
                           between them; each contact vibrates at the natural frequency of the mesh. Bottom: \
                           positioning error of the arm's end, from backlash and bending.",
             }],
         },
-        hidden: rediscovery.chapter(&found),
+        hidden: chapter,
         durations: watch
             .steps
             .iter()
@@ -255,6 +276,32 @@ fn page_text(
         next: next_commands(),
     };
     Ok(tour.render())
+}
+
+/// Returns a row for each kind of check: checks of the same kind in different regimes have one row with the largest
+/// deviation.
+fn check_rows(checks: &[Check]) -> Vec<page::CheckRow> {
+    let kind = |check: &Check| check.name.split(' ').next().unwrap_or_default().to_owned();
+    let groups = checks.chunk_by(|one, next| kind(one) == kind(next) && kind(one) != "reference");
+    let row = |group: &[Check]| {
+        let failed = group.iter().find(|check| !check.passed);
+        let worst = group.iter().filter_map(|check| check.value);
+        let first = &group[0];
+        let regimes = match group.len() {
+            1 => String::new(),
+            count => format!(" {count} regimes."),
+        };
+        let sentence = describe(&first.name).unwrap_or_else(|| first.name.replace('_', " "));
+        page::CheckRow {
+            sentence: sentence + &regimes,
+            value: worst.reduce(f64::max),
+            tolerance: first.tolerance,
+            passed: failed.is_none(),
+            skipped: group.iter().all(|check| check.skipped.is_some()),
+            detail: failed.map_or_else(String::new, |check| check.detail.clone()),
+        }
+    };
+    groups.map(row).collect()
 }
 
 fn next_commands() -> Vec<page::NextCommand<'static>> {

@@ -1,12 +1,13 @@
 //! Text and figures of the next experiment.
 
-use eomgen_page::{Figure, figure, section};
-use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
+use eomgen_page::section;
+use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history_at};
 use eomgen_records::dataset::Channel;
 use maud::{Markup, html};
 
 use crate::experiment::next_experiment::{ExperimentFile, MemberPair, NextExperiment};
 use crate::model::problem::EstimationProblem;
+use crate::report::pictures::responsive_figure;
 use crate::report::quantity::{format_number, format_quantity};
 use crate::thresholds;
 
@@ -141,6 +142,6 @@ fn figure_of(file: &ExperimentFile, channels: &[Channel], noise: &[f64]) -> Mark
             })
             .collect(),
     };
-    let svg = time_history(&history).unwrap_or_default();
-    html! { @if !svg.is_empty() { (figure(Figure { svg: &svg, caption: "" })) } }
+    let caption = format!("Proposed record: file `{}`.", file.name);
+    responsive_figure(&caption, |width| time_history_at(&history, width))
 }

@@ -5,6 +5,7 @@ use crate::fit::residual_spectrum::{SpectralPeak, find_training_peak};
 use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::differentiate_column;
+use crate::report::quantity::{format_number, format_quantity};
 use crate::residual_force::types::ResidualForce;
 use crate::residual_force::wording::describe_residual_force;
 use crate::thresholds;
@@ -39,13 +40,15 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     };
     let channel = &problem.dataset.channels[worst];
     let mut text = format!(
-        "The residual is largest in {}: {:.3e} {} or {:.1} times its noise.",
-        channel.name, fit.train.channel_rms[worst], channel.unit, normalised_rms[worst]
+        "The residual is largest in {}: {} or {} times its noise.",
+        channel.name,
+        format_quantity(fit.train.channel_rms[worst], 3, &channel.unit),
+        format_number(normalised_rms[worst], 3)
     );
     if let Some(worst) = find_worst_window(problem, fit) {
         let window = &problem.train.windows[worst];
         text += &format!(
-            " It is largest from {:.3} s to {:.3} s of {}.",
+            " It is largest from {:.3} s to {:.3} s of `{}`.",
             window.times[0],
             window.times[window.times.len() - 1],
             problem.train.records[window.record].name

@@ -1,8 +1,7 @@
 //! Measured and simulated motion in one figure: for the first held-out record, and for the part of
 //! the training records with the largest residuals of the original model.
 
-use eomgen_page::{Figure, figure};
-use eomgen_plot::{Panel, Series, TimeHistory, time_history};
+use eomgen_plot::{Panel, Series, SeriesRole, TimeHistory, time_history_at};
 use eomgen_records::windows::{Window, Windows};
 use maud::{Markup, html};
 
@@ -11,6 +10,7 @@ use crate::fit::residuals::{Residuals, channel_residuals};
 use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::report::location::find_worst_window;
+use crate::report::pictures::{name_record, responsive_figure, stage_label};
 
 /// The part of a record that is drawn once more, larger.
 const STRETCH: f64 = 0.1;
@@ -26,37 +26,39 @@ pub(crate) fn draw_overlays(
 ) -> Markup {
     let test = fits(before, after, |fit| &fit.test);
     let seen = Seen::of(problem, (&problem.test, 0), &test);
-    let whole = seen.drawn(
-        0..seen.times.len(),
-        "Measured and simulated on the test record",
+    let caption = format!(
+        "{}, which was not used in the fit.",
+        name_record(&problem.test.records[0])
     );
+    let whole = seen.drawn(0..seen.times.len(), &caption);
     let train = fits(before, after, |fit| &fit.train);
     // The window that the sentence on the page names.
     let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
     let record = problem.train.windows[worst].record;
     let trained = Seen::of(problem, (&problem.train, record), &train);
     let stretch = trained.stretch(&problem.train.windows[worst]);
-    let title = format!(
-        "Largest residual of the original model, {}",
-        problem.train.records[record].name
+    let caption = format!(
+        "{}, which was used in the fit.",
+        name_record(&problem.train.records[record])
     );
     html! {
         (whole)
         @if !stretch.is_empty() {
-            h3 { (title) }
-            (trained.drawn(stretch, &title))
+            h3 { "Largest residual of the original model" }
+            (trained.drawn(stretch, &caption))
         }
     }
 }
 
-/// The residuals of one set of records that the models leave, by the models' names.
+/// The residuals of one set of records that the models leave, by the models' roles.
 fn fits<'f>(
     before: &'f Fit,
     after: Option<&'f Fit>,
     of: fn(&Fit) -> &Residuals,
-) -> Vec<(&'static str, &'f Residuals)> {
-    let after = after.map(|after| ("after", of(after)));
-    [("before", of(before))].into_iter().chain(after).collect()
+) -> Vec<(SeriesRole, &'f Residuals)> {
+    let after = after.map(|after| (SeriesRole::After, of(after)));
+    let before = (SeriesRole::Before, of(before));
+    std::iter::once(before).chain(after).collect()
 }
 
 /// The columns of one record, sample by sample.
@@ -71,8 +73,8 @@ struct Channel {
     unit: String,
     noise: f64,
     measured: Vec<f64>,
-    /// By the name of the model.
-    simulated: Vec<(&'static str, Vec<f64>)>,
+    /// By the role of the model.
+    simulated: Vec<(SeriesRole, Vec<f64>)>,
 }
 
 impl Seen {
@@ -80,7 +82,7 @@ impl Seen {
     fn of(
         problem: &EstimationProblem<'_>,
         (set, record): (&Windows<'_>, usize),
-        fits: &[(&'static str, &Residuals)],
+        fits: &[(SeriesRole, &Residuals)],
     ) -> Self {
         let windows = || {
             let all = set.windows.iter().enumerate();
@@ -149,23 +151,31 @@ impl Seen {
         begin..begin + length
     }
 
-    /// A panel for each channel.
-    fn drawn(&self, samples: std::ops::Range<usize>, title: &str) -> Markup {
+    /// A panel for each channel. The measurement is below the simulations.
+    fn drawn(&self, samples: std::ops::Range<usize>, caption: &str) -> Markup {
         let times = &self.times[samples.clone()];
         let panel = |channel: &'_ Channel| {
-            let series = |label: &str, values: &'_ [f64]| (label.to_owned(), values.to_vec());
-            let mut all = Vec::new();
-            for (name, values) in &channel.simulated {
-                let label = format!("simulated {name}");
-                all.push(series(&label, &values[samples.clone()]));
-            }
-            all.push(series("measured", &channel.measured[samples.clone()]));
-            all
+            let measured = (
+                SeriesRole::Measured,
+                channel.measured[samples.clone()].to_vec(),
+            );
+            let simulated = channel.simulated.iter();
+            let simulated =
+                simulated.map(|(role, values)| (*role, values[samples.clone()].to_vec()));
+            std::iter::once(measured).chain(simulated).collect()
         };
-        let columns: Vec<Vec<(String, Vec<f64>)>> = self.channels.iter().map(panel).collect();
+        let columns: Vec<Vec<(SeriesRole, Vec<f64>)>> = self.channels.iter().map(panel).collect();
+        let has_after = self
+            .channels
+            .iter()
+            .any(|channel| channel.simulated.len() > 1);
+        let label = |role: SeriesRole| match role {
+            SeriesRole::Measured => "measured".to_owned(),
+            role => stage_label("simulated", role, has_after),
+        };
         let panels = self.channels.iter().zip(&columns);
         let history = TimeHistory {
-            title: title.to_owned(),
+            title: format!("Measured and simulated. {caption}"),
             panels: panels
                 .map(|(channel, columns)| Panel {
                     title: format!("{}: measured and simulated", channel.name),
@@ -173,19 +183,18 @@ impl Seen {
                     unit: channel.unit.clone(),
                     series: columns
                         .iter()
-                        .map(|(label, values)| Series {
-                            label: label.clone(),
+                        .map(|(role, values)| Series {
+                            label: label(*role),
                             abscissa: times,
                             values,
-                            ..Series::default()
+                            role: *role,
                         })
                         .collect(),
                     references: Vec::new(),
                 })
                 .collect(),
         };
-        let svg = time_history(&history).unwrap_or_default();
-        html! { @if !svg.is_empty() { (figure(Figure { svg: &svg, caption: "" })) } }
+        responsive_figure(caption, |width| time_history_at(&history, width))
     }
 }
 

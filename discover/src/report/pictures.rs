@@ -2,7 +2,11 @@
 
 use eomgen_analysis::spectrum::PowerSpectrum;
 use eomgen_page::{Figure, figure, table};
-use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
+use eomgen_plot::{
+    FigureWidth, FrequencyAxis, Panel, PlotError, Series, SeriesRole, Spectrum, TimeHistory,
+    scaled_unit, spectrum_at, time_history_at,
+};
+use eomgen_records::record::Record;
 use eomgen_records::windows::Window;
 use maud::{Markup, html};
 
@@ -36,13 +40,44 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
             "Force in this equation, with error bars of one standard deviation. "
             "Parts that the records do not show are omitted."
         }
-        (drawn(&figures_of_force(force, after)))
+        (responsive_figure("Estimated from all training records together.", |width| {
+            Ok(figures_of_force(force, after, width))
+        }))
     }
 }
 
-/// A figure, if anything was drawn.
-fn drawn(svg: &str) -> Markup {
-    html! { @if !svg.is_empty() { (figure(Figure { svg, caption: "" })) } }
+/// Returns a figure for wide and narrow windows with its caption; nothing if it cannot be drawn.
+pub(crate) fn responsive_figure(
+    caption: &str,
+    draw: impl Fn(FigureWidth) -> Result<String, PlotError>,
+) -> Markup {
+    let [svg, narrow] =
+        [FigureWidth::Wide, FigureWidth::Narrow].map(|width| draw(width).unwrap_or_default());
+    let drawn = Figure {
+        svg: &svg,
+        narrow: &narrow,
+        caption,
+    };
+    html! { @if !svg.is_empty() { (figure(drawn)) } }
+}
+
+/// Returns name and file of a record for a caption.
+pub(crate) fn name_record(record: &Record) -> String {
+    let file = record.path.file_name().unwrap_or(record.path.as_os_str());
+    format!(
+        "Record `{}`, file `{}`",
+        record.name,
+        file.to_string_lossy()
+    )
+}
+
+/// Returns the label of a simulation: with its stage, if there are two.
+pub(crate) fn stage_label(name: &str, role: SeriesRole, has_after: bool) -> String {
+    match (role, has_after) {
+        (SeriesRole::Before, true) => format!("{name} before"),
+        (SeriesRole::After, true) => format!("{name} after"),
+        _ => name.to_owned(),
+    }
 }
 
 /// Draws residuals over time and their spectra, before and after the search.
@@ -68,12 +103,12 @@ pub(crate) fn draw_residuals(
             .map(|r| r * problem.noise[channel])
             .collect()
     };
-    let mut fits: Vec<(&'static str, &Fit)> = vec![("before", before)];
-    fits.extend(after.map(|after| ("after", after)));
-    let columns: Vec<Vec<(&str, Vec<f64>)>> = (0..count)
+    let mut fits: Vec<(SeriesRole, &Fit)> = vec![(SeriesRole::Before, before)];
+    fits.extend(after.map(|after| (SeriesRole::After, after)));
+    let columns: Vec<Vec<(SeriesRole, Vec<f64>)>> = (0..count)
         .map(|channel| {
             fits.iter()
-                .map(|(name, fit)| (*name, column(fit, channel)))
+                .map(|(role, fit)| (*role, column(fit, channel)))
                 .collect()
         })
         .collect();
@@ -94,21 +129,36 @@ pub(crate) fn draw_residuals(
                 unit: unit.clone(),
                 series: series
                     .iter()
-                    .map(|(label, values)| Series {
-                        label: (*label).to_owned(),
+                    .map(|(role, values)| Series {
+                        label: stage_label("residual", *role, after.is_some()),
                         abscissa: &times,
                         values,
-                        ..Series::default()
+                        role: *role,
                     })
                     .collect(),
                 references: Vec::new(),
             })
             .collect(),
     };
-    let over_time = time_history(&history).unwrap_or_default();
-    let spectra: Vec<Vec<(&str, PowerSpectrum)>> = (0..count)
-        .map(|channel| {
-            let of = |(name, fit): &(&'static str, &Fit)| (*name, density(problem, fit, channel));
+    let units: Vec<(f64, String)> = named
+        .iter()
+        .zip(&columns)
+        .map(|((_, unit), series)| {
+            let values = series.iter().flat_map(|(_, values)| values);
+            let finite = values.filter(|value| value.is_finite());
+            scaled_unit(
+                unit,
+                finite.fold(0.0, |most: f64, value| most.max(value.abs())),
+            )
+        })
+        .collect();
+    let spectra: Vec<Vec<(SeriesRole, PowerSpectrum)>> = units
+        .iter()
+        .enumerate()
+        .map(|(channel, (scale, _))| {
+            let of = |(role, fit): &(SeriesRole, &Fit)| {
+                (*role, density(problem, fit, (channel, *scale)))
+            };
             fits.iter().map(of).collect()
         })
         .collect();
@@ -117,27 +167,42 @@ pub(crate) fn draw_residuals(
         frequency: FrequencyAxis::Logarithmic,
         panels: named
             .iter()
+            .zip(&units)
             .zip(&spectra)
-            .map(|((name, unit), series)| Panel {
-                title: format!("{name}: spectrum of the residual"),
-                quantity: name.clone(),
-                unit: format!("({unit})^2/Hz"),
+            .map(|(((name, _), (_, unit)), series)| Panel {
+                title: format!("{name}: power spectral density of the residual"),
+                quantity: "density".to_owned(),
+                unit: density_unit(unit),
                 series: series
                     .iter()
-                    .map(|(label, spectrum)| Series {
-                        label: (*label).to_owned(),
+                    .map(|(role, spectrum)| Series {
+                        label: stage_label("residual", *role, after.is_some()),
                         abscissa: &spectrum.frequency,
                         values: &spectrum.density,
-                        ..Series::default()
+                        role: *role,
                     })
                     .collect(),
                 references: Vec::new(),
             })
             .collect(),
     };
+    let record = name_record(&problem.test.records[0]);
+    let over_time = format!(
+        "{record}: residuals of the compared samples. Between the windows nothing is compared."
+    );
+    let spectra = format!("{record}: mean spectrum of the residuals in its windows.");
     html! {
-        (drawn(&over_time))
-        (drawn(&spectrum(&plot).unwrap_or_default()))
+        (responsive_figure(&over_time, |width| time_history_at(&history, width)))
+        (responsive_figure(&spectra, |width| spectrum_at(&plot, width)))
+    }
+}
+
+/// Returns the unit of a spectral density of a quantity with this unit.
+fn density_unit(unit: &str) -> String {
+    match unit {
+        "" => "1/Hz".to_owned(),
+        unit if unit.chars().all(char::is_alphabetic) => format!("{unit}²/Hz"),
+        unit => format!("({unit})²/Hz"),
     }
 }
 
@@ -151,9 +216,13 @@ fn windows_of_first_record<'a>(
     first.map(|(window, residual)| (window, residual.as_slice()))
 }
 
-/// The spectrum of a channel's residuals in windows of the first test record, SI, without the density at
-/// 0 Hz; empty if windows are too short.
-fn density(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> PowerSpectrum {
+/// The spectrum of a channel's residuals in windows of the first test record, in units of `scale`, without
+/// the density at 0 Hz; empty if windows are too short.
+fn density(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    (channel, scale): (usize, f64),
+) -> PowerSpectrum {
     let windows: Vec<_> = windows_of_first_record(problem, fit).collect();
     let Some((mut spectrum, _)) = compute_residual_spectrum(&windows, channel, problem.noise.len())
     else {
@@ -161,10 +230,28 @@ fn density(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> PowerS
     };
     spectrum.frequency.remove(0);
     spectrum.density.remove(0);
-    let square = problem.noise[channel].powi(2);
+    let square = (problem.noise[channel] / scale).powi(2);
     spectrum
         .density
         .iter_mut()
         .for_each(|density| *density *= square);
     spectrum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::density_unit;
+
+    #[test]
+    fn density_has_the_square_of_the_scaled_unit() {
+        for (unit, expected) in [
+            ("mm", "mm²/Hz"),
+            ("µm", "µm²/Hz"),
+            ("mN·m", "(mN·m)²/Hz"),
+            ("rad/s", "(rad/s)²/Hz"),
+            ("", "1/Hz"),
+        ] {
+            assert_eq!(density_unit(unit), expected);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Figures of the residual force over time, rate, position, shaft order, frequency and amplitude,
 //! before and after the search. Error bars are one standard deviation.
 
-use eomgen_plot::{Axes, Frame, Panel, Plate, Series, plate};
+use eomgen_plot::{Axes, FigureWidth, Frame, Panel, Plate, Series, SeriesRole, plate_at};
 
 use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{Profile, ResidualForce};
@@ -27,17 +27,21 @@ struct Picture {
 }
 
 /// Draws the profiles of one equation; empty if there is nothing to draw.
-pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> String {
+pub fn draw_profiles(
+    before: &ResidualForce,
+    after: Option<&ResidualForce>,
+    width: FigureWidth,
+) -> String {
     let equation = &before.equations[before.equation];
-    let mut forces = vec![("before", before)];
-    forces.extend(after.map(|after| ("after", after)));
+    let mut forces = vec![(SeriesRole::Before, before)];
+    forces.extend(after.map(|after| (SeriesRole::After, after)));
     let pictures = pictures(equation);
-    let drawn: Vec<(&Picture, Vec<(&str, Points)>)> = pictures
+    let drawn: Vec<(&Picture, Vec<(SeriesRole, Points)>)> = pictures
         .iter()
         .map(|picture| {
-            let of = |(name, force): &(&'static str, &ResidualForce)| {
+            let of = |(role, force): &(SeriesRole, &ResidualForce)| {
                 let most = most((picture.of)(before));
-                (*name, points((picture.of)(force), picture.is_line, most))
+                (*role, points((picture.of)(force), picture.is_line, most))
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
         })
@@ -60,11 +64,15 @@ pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> S
             series: series
                 .iter()
                 .filter(|(_, points)| points.1.iter().any(|v| v.is_finite()))
-                .map(|(label, points)| Series {
-                    label: (*label).to_owned(),
+                .map(|(role, points)| Series {
+                    label: match role {
+                        SeriesRole::After => "after",
+                        _ => "before",
+                    }
+                    .to_owned(),
                     abscissa: &points.0,
                     values: &points.1,
-                    ..Series::default()
+                    role: *role,
                 })
                 .collect(),
             references: Vec::new(),
@@ -77,7 +85,7 @@ pub fn draw_profiles(before: &ResidualForce, after: Option<&ResidualForce>) -> S
         columns: 2,
         frames: frames.collect(),
     };
-    plate(&figure).unwrap_or_default()
+    plate_at(&figure, width).unwrap_or_default()
 }
 
 fn pictures(equation: &Equation) -> [Picture; 6] {
@@ -102,7 +110,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
             of: |force| &force.position,
         },
         Picture {
-            title: "over time, first record",
+            title: "over time, record train[0]",
             axes: Axes::Time,
             is_line: true,
             by_window: true,

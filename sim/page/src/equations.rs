@@ -5,11 +5,15 @@ use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sen
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use maud::{Markup, html};
 
-use crate::formula::formula;
-use crate::number::number;
+use crate::aligned::aligned;
+use crate::formula::{entry_name, formula};
 use crate::parts::table;
 
-const MAX_SHOWN_VALUES: usize = 8;
+/// Number of modes whose values are shown.
+const MAX_SHOWN_MODES: usize = 8;
+
+/// Digits of a value after the first.
+const SHOWN_DIGITS: usize = 5;
 
 /// Returns the equations of a report, with formulas as MathML.
 pub fn equations(report: &Report) -> Markup {
@@ -18,7 +22,7 @@ pub fn equations(report: &Report) -> Markup {
         "Terms of the energies " i { "T" } " and " i { "V" } ", of the dissipation, and forces"
     };
     html! {
-        (introduction(report))
+        (introduction(report, has_modes))
         (equation_section(&html! { "Definitions" }, &report.definitions, formula))
         (equation_section(&terms, &report.terms, formula))
         (energies(report))
@@ -30,10 +34,10 @@ pub fn equations(report: &Report) -> Markup {
             formula,
         ))
         (equation_section(&html! { "Velocity terms " i { "c" } }, &report.velocity_terms, |name| {
-            indexed_letter("c", &[name])
+            entry_name("c", &[name])
         }))
         (equation_section(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
-            indexed_letter("f", &[name])
+            entry_name("f", &[name])
         }))
         (equation_section(&html! { "Rates of first-order states" }, &report.state_rates, formula))
         (equation_section(&html! { "Constraints, which are zero" }, &report.constraints, formula))
@@ -46,7 +50,7 @@ pub fn equations(report: &Report) -> Markup {
     }
 }
 
-fn introduction(report: &Report) -> Markup {
+fn introduction(report: &Report, has_modes: bool) -> Markup {
     html! {
         p {
             "Lagrange’s equations, in the form "
@@ -61,9 +65,11 @@ fn introduction(report: &Report) -> Markup {
                     (comma_list(orders, |order| html! { (order) })) " modes."
                 },
             }
-            " Sums run over the modes " i { "i" } "; integrals over the mode shapes " i { "φ" }
-            " use " i { "s" } " = " i { "x" } "/" i { "l" }
-            " from 0 to 1, with primes for derivatives by " i { "s" } "."
+            @if has_modes {
+                " Sums run over the modes " i { "i" } "; integrals over the mode shapes " i { "φ" }
+                " use " i { "s" } " = " i { "x" } "/" i { "l" }
+                " from 0 to 1, with primes for derivatives by " i { "s" } "."
+            }
         }
         p {
             "The state: "
@@ -80,10 +86,6 @@ fn comma_list<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
             (set(item))
         }
     }
-}
-
-fn indexed_letter(letter: &str, names: &[&Formula]) -> Markup {
-    html! { i { (letter) } sub { (comma_list(names, |name| formula(name))) } }
 }
 
 fn sentence(sentence: &Sentence) -> Markup {
@@ -115,50 +117,115 @@ fn equation_section(heading: &Markup, lines: &[Line], name: impl Fn(&Formula) ->
 
 fn energies(report: &Report) -> Markup {
     let rows = html! {
-        (equation_row(&html! { i { "T" } }, &report.kinetic))
-        (equation_row(&html! { i { "V" } }, &report.potential))
+        (equation_row(&formula(&Formula::from_name("T")), &report.kinetic))
+        (equation_row(&formula(&Formula::from_name("V")), &report.potential))
     };
     section_under_heading(&html! { "Kinetic and potential energy" }, &rows)
 }
 
 fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
     let rows = html! {
-        @for entry in entries {
-            (equation_row(&indexed_letter("M", &[&entry.row, &entry.column]), &entry.formula))
-        }
+        @for entry in entries { (equation_row(&entry_of(entry), &entry.formula)) }
     };
     let heading = html! { "Mass matrix " b { "M" } ": symmetric, its nonzero entries" };
     section_under_heading(&heading, &rows)
+}
+
+/// Returns the name of an entry of the mass matrix. The column of a block of modes has its own index.
+fn entry_of(entry: &MassMatrixEntry) -> Markup {
+    let column = match &entry.row {
+        Formula::Symbol(row) if !row.indices.is_empty() => entry.column.clone().split_by_columns(),
+        _ => entry.column.clone(),
+    };
+    entry_name("M", &[&entry.row, &column])
 }
 
 fn coefficients(lines: &[CoefficientLine]) -> Markup {
     if lines.is_empty() {
         return html! {};
     }
+    let scalars: Vec<Option<f64>> = lines.iter().map(scalar).collect();
+    let scalars = aligned(&scalars, SHOWN_DIGITS);
     let rows = html! {
-        @for line in lines {
+        @for (line, scalar) in lines.iter().zip(&scalars) {
             tr {
-                th.formula scope="row" { (formula(&line.name)) }
-                td.formula { (formula(&line.formula)) }
-                td.values { (values(&line.values)) }
+                th.formula scope="row" { (formula(&indexed_name(line))) }
+                @if line.columns > 1 {
+                    td.formula colspan="2" { (formula(&line.formula)) }
+                } @else {
+                    td.formula { (formula(&line.formula)) }
+                    td.amounts { (values(line, scalar)) }
+                }
+            }
+            @if line.columns > 1 {
+                tr { td {} td.amounts colspan="2" { (values(line, scalar)) } }
             }
         }
     };
     html! {
         h3 { "Coefficients" }
-        p { "Names as in the specification; values in SI units for its parameters." }
-        (table(&["coefficient", "formula", "value, or one per mode"], &rows))
+        p {
+            "Names as in the specification; values in SI units for its parameters, by the modes "
+            i { "i" } " and " i { "j" } " of a coefficient with these indices."
+        }
+        (table(&["coefficient", "formula", "value"], &rows))
     }
 }
 
-fn values(values: &[f64]) -> Markup {
+/// Returns the name of a coefficient with the indices of its values.
+fn indexed_name(line: &CoefficientLine) -> Formula {
+    match &line.name {
+        Formula::Symbol(symbol) => Formula::Symbol(symbol.clone().with_indices(&line.indices)),
+        name => name.clone(),
+    }
+}
+
+/// Returns the value of a scalar coefficient.
+fn scalar(line: &CoefficientLine) -> Option<f64> {
+    match (&line.indices[..], &line.values[..]) {
+        ([], [only]) => Some(*only),
+        _ => None,
+    }
+}
+
+fn values(line: &CoefficientLine, scalar: &Markup) -> Markup {
+    match (line.values.is_empty(), line.indices.is_empty()) {
+        (true, _) => html! { "varies with time or state" },
+        (false, true) => scalar.clone(),
+        (false, false) => mode_table(&line.values, line.columns.max(1)),
+    }
+}
+
+/// Returns values by mode: a row for each mode, and a column for each mode of a matrix.
+fn mode_table(values: &[f64], columns: usize) -> Markup {
+    let shown = columns.min(MAX_SHOWN_MODES);
+    let rows: Vec<&[f64]> = values.chunks(columns).take(MAX_SHOWN_MODES).collect();
+    let numbers = |column: usize| -> Vec<Markup> {
+        let of_column: Vec<Option<f64>> = rows.iter().map(|row| row.get(column).copied()).collect();
+        aligned(&of_column, SHOWN_DIGITS)
+    };
+    let cells: Vec<Vec<Markup>> = (0..shown).map(numbers).collect();
+    let modes = values.len() / columns;
     html! {
-        @if values.is_empty() { "varies with time or state" }
-        @for (place, value) in values.iter().take(MAX_SHOWN_VALUES).enumerate() {
-            @if place > 0 { br; }
-            (number(*value, 5))
+        table.modes {
+            @if columns > 1 {
+                thead { tr {
+                    th {}
+                    @for column in 1..=shown { th scope="col" { i { "j" } " = " (column) } }
+                } }
+            }
+            tbody {
+                @for row in 0..rows.len() {
+                    tr {
+                        th scope="row" { i { "i" } " = " (row + 1) }
+                        @for column in &cells { td { (column[row]) } }
+                    }
+                }
+            }
         }
-        @if values.len() > MAX_SHOWN_VALUES { br; "… (" (values.len()) " values)" }
+        @if modes.max(columns) > MAX_SHOWN_MODES {
+            small { "the first " (MAX_SHOWN_MODES) " of " (modes.max(columns)) " modes" }
+        }
     }
 }
 

@@ -12,9 +12,10 @@
 //! ```
 //!
 //! Modules: `document` (head, style sheet, body), `parts` (sections, tables, figures, collapsible
-//! files), `number`, [`mod@formula`] (formulas as MathML), `equations` (formulas of a report),
+//! files), `number`, `aligned` (columns of numbers), [`mod@formula`] (formulas as MathML), `equations` (formulas of a report),
 //! [`mod@play`] (scripts of pages that compute).
 
+mod aligned;
 mod document;
 mod equations;
 pub mod formula;
@@ -22,8 +23,9 @@ mod number;
 mod parts;
 pub mod play;
 
+pub use aligned::aligned;
 pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;
-pub use formula::formula;
+pub use formula::{formula, name_letters};
 pub use number::number;
-pub use parts::{Figure, collapsible_file, figure, section, table};
+pub use parts::{Figure, collapsible_file, figure, prose, section, table};

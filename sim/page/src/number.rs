@@ -9,18 +9,24 @@ pub fn number(value: f64, digits: usize) -> Markup {
     if !value.is_finite() {
         return html! { (value.to_string()) };
     }
+    let (mantissa, exponent) = rounded(value, digits);
+    html! { math { (power_of_ten(&mantissa, exponent.as_deref())) } }
+}
+
+/// Rounds a number to `digits` digits after the first. Returns its digits, and the exponent of ten of a very
+/// small or large number, both with minus signs.
+pub(crate) fn rounded(value: f64, digits: usize) -> (String, Option<String>) {
+    let signed = |number: &str| number.replace('-', "\u{2212}");
     let text = format!("{value:.digits$e}");
     // Cannot fail: the text was formatted from a number.
     let rounded: f64 = text.parse().unwrap_or(value);
     let magnitude = rounded.abs();
-    let element = if magnitude == 0.0 || (1e-3..1e5).contains(&magnitude) {
-        power_of_ten(&rounded.to_string(), None)
-    } else {
-        let shortest = format!("{rounded:e}");
-        let (mantissa, exponent) = shortest.split_once('e').unwrap_or((&shortest, "0"));
-        power_of_ten(mantissa, Some(exponent))
-    };
-    html! { math { (element) } }
+    if magnitude == 0.0 || !magnitude.is_finite() || (1e-3..1e5).contains(&magnitude) {
+        return (signed(&rounded.to_string()), None);
+    }
+    let shortest = format!("{rounded:e}");
+    let (mantissa, exponent) = shortest.split_once('e').unwrap_or((&shortest, "0"));
+    (signed(mantissa), Some(signed(exponent)))
 }
 
 #[cfg(test)]

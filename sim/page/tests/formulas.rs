@@ -93,3 +93,97 @@ fn markup_in_names_is_escaped() {
     let named = formula(&Formula::from_name("<b>&\"'")).into_string();
     assert_eq!(named, "<math><mi>&lt;b&gt;&amp;&quot;'</mi></math>");
 }
+
+/// Returns the formula of a line of the planetary arm with its name as plain text.
+fn typeset<'a>(lines: &'a [eomgen_codegen::report::Line], name: &str) -> &'a Formula {
+    let mut lines = lines.iter();
+    &lines
+        .find(|line| line.name.to_string() == name)
+        .expect(name)
+        .formula
+}
+
+#[test]
+fn entry_of_mass_matrix_has_one_spelling() {
+    let report = report(models::PLANETARY_ARM.text);
+    let page = eomgen_page::equations(&report).into_string();
+    let entry = "<msub><mi>M</mi><mrow><msub><mi>x</mi><mi>sp</mi></msub><mo>,</mo><msub><mi>x</mi><mi>sp</mi></msub></mrow></msub>";
+    // Its own line, the entries that contain it, and the pivot.
+    assert!(page.matches(entry).count() > 4, "{page}");
+    let pivot = "<msub><mi>pivot</mi><mrow><msub><mi>x</mi><mi>c</mi></msub></mrow></msub>";
+    assert!(page.matches(pivot).count() > 4, "{page}");
+    let term = "<msub><mi>V</mi><mrow><msub><mi>mesh</mi><mi>sp</mi></msub></mrow></msub>";
+    assert_eq!(page.matches(term).count(), 2, "{page}");
+    for wrong in ["x,sp", "x,c", "mesh,sp", "<i>M</i>"] {
+        assert!(!page.contains(wrong), "{wrong}");
+    }
+}
+
+#[test]
+fn numbers_and_integrals_are_at_their_places() {
+    let report = report(models::PLANETARY_ARM.text);
+    let carrier = formula(typeset(&report.terms, "T_carrier")).into_string();
+    // 1/2 is part of the fraction, and the exponent is at the cosine.
+    assert!(carrier.starts_with("<math><mfrac><mrow>"), "{carrier}");
+    assert!(carrier.contains("<mrow><mn>2</mn>"), "{carrier}");
+    assert!(
+        carrier.contains("<msup><mi>cos</mi><mrow><mn>2</mn></mrow></msup>"),
+        "{carrier}"
+    );
+    let bending = formula(typeset(&report.terms, "V_bending")).into_string();
+    assert_eq!(bending.matches("<mi>φ</mi>").count(), 1, "{bending}");
+    for line in &report.coefficients {
+        let text = formula(&line.formula).into_string();
+        let differential = "<mi mathvariant=\"normal\">d</mi><mi>s</mi></mrow>";
+        for after in text.split(differential).skip(1) {
+            let product = "<mo lspace=\"0.17em\" rspace=\"0\">\u{2062}</mo>";
+            let next = after
+                .strip_prefix(product)
+                .unwrap_or("<mrow><msubsup><mo>∫");
+            assert!(
+                next.starts_with("<mrow><msubsup><mo>∫"),
+                "a factor after ds: {text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn multiples_of_pi_are_not_decimal_numbers() {
+    let text = "[model]\nname = \"a\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                f_d = { value = 2, unit = \"1/s\" }\n[coordinates]\nx = { unit = \"m\" }\n\
+                [kinetic]\nmass = \"1/2*m*dot(x)^2\"\n\
+                [potential]\nspring = \"1/2*m*(2*pi*f_d)^2*x^2\"\n";
+    let report = report(text);
+    let page = eomgen_page::equations(&report).into_string();
+    assert!(page.contains("<msup><mi>π</mi><mn>2</mn></msup>"), "{page}");
+    assert!(!page.contains("39.47") && !page.contains("19.73"), "{page}");
+}
+
+#[test]
+fn modes_are_mentioned_only_with_modes() {
+    let of = |text: &str| eomgen_page::equations(&report(text)).into_string();
+    assert!(!of(models::DOUBLE_PENDULUM.text).contains("modes"));
+    assert!(of(models::PLANETARY_ARM.text).contains("Sums run over the modes"));
+}
+
+#[test]
+fn values_by_mode_have_labelled_rows_and_columns() {
+    let page = eomgen_page::equations(&report(models::PLANETARY_ARM.text)).into_string();
+    let matrix = page
+        .split("<table class=\"modes\"><thead>")
+        .nth(1)
+        .expect("a matrix");
+    let matrix = matrix.split("</table>").next().expect("its end");
+    assert_eq!(
+        matrix.matches("<th scope=\"col\"><i>j</i>").count(),
+        4,
+        "{matrix}"
+    );
+    assert_eq!(
+        matrix.matches("<th scope=\"row\"><i>i</i>").count(),
+        4,
+        "{matrix}"
+    );
+    assert_eq!(matrix.matches("<td>").count(), 16, "{matrix}");
+}

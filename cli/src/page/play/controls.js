@@ -5,6 +5,9 @@ const BUDGET = 11;
 /** Longest time between frames that the clock follows, s; a hidden page has longer ones. */
 const LONGEST_FRAME = 0.1;
 
+/** Time for which a change of the initial state is noted, s. */
+const NOTED = 3;
+
 const model = JSON.parse(document.getElementById("model").textContent);
 const element = (id) => document.getElementById(id);
 const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
@@ -13,11 +16,19 @@ const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
 class Page {
   constructor(exports) {
     this.machine = new Machine(model, exports);
-    model.inputs.forEach((input, place) => {
-      this.machine.inputs[place] = input.value;
-    });
+    const driven = () => {
+      this.motion.begin();
+      this.remember();
+    };
+    this.signals = Array.from(
+      document.querySelectorAll("[data-signal]"),
+      (signal) => new Signal(signal, model.inputs[signal.dataset.place].value, driven),
+    );
+    this.machine.drive = (t) => {
+      for (const signal of this.signals) signal.write(t, this.machine.inputs);
+    };
     this.initial = Float64Array.from(model.state, (quantity) => quantity.initial);
-    this.motion = new Motion(this.machine, this.initial);
+    this.motion = new Motion(this.machine, this.start());
     this.picture = model.drawing ? new Plane(model) : new Instruments(model);
     this.record = new Record();
     this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -46,7 +57,8 @@ class Page {
     });
     element("reset").addEventListener("click", () => this.restart());
     element("defaults").addEventListener("click", () => {
-      for (const control of document.querySelectorAll("[data-kind]")) control.reset();
+      for (const control of this.controls) control.reset();
+      for (const signal of this.signals) signal.reset();
       this.restart();
     });
     element("speed").addEventListener("input", () => this.label());
@@ -56,7 +68,8 @@ class Page {
     element("shown").addEventListener("change", stale);
     addEventListener("resize", stale);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", stale);
-    for (const control of document.querySelectorAll("[data-kind]")) this.connect(control);
+    this.controls = Array.from(document.querySelectorAll("[data-kind]")).filter((one) => !one.closest("[data-signal]"));
+    for (const control of this.controls) this.connect(control);
   }
 
   /** Connects a control to the model. */
@@ -72,18 +85,21 @@ class Page {
       this.machine.prepare();
       this.motion.begin();
       this.remember();
-    } else if (kind === "input") {
-      this.machine.inputs[place] = value ?? model.inputs[place].value;
-      this.motion.begin();
-      this.remember();
     } else {
       this.initial[place] = value ?? model.state[place].initial;
       this.restart();
     }
   }
 
+  /** Returns the initial state on the constraints. */
+  start() {
+    const state = Float64Array.from(this.initial);
+    this.projected = model.stabilisation === null ? "unchanged" : project(this.machine, model.stabilisation, 0, state);
+    return state;
+  }
+
   restart() {
-    this.motion.restart(this.initial);
+    this.motion.restart(this.start());
     this.picture.clear();
     this.record.clear();
     this.remember();
@@ -137,6 +153,7 @@ class Page {
   /** Shows the reason for a stopped motion. */
   obstacle() {
     if (!this.machine.usable) return "With these parameters the mass matrix is not positive definite: there is no motion.";
+    if (this.projected === "failed") return "No state near this initial state satisfies the constraints.";
     if (this.motion.failed) return "The motion ends here: its rates are no longer numbers, or change too fast to follow.";
     return "";
   }
@@ -144,6 +161,7 @@ class Page {
   /** Updates the status and the clock. */
   note() {
     if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
+    if (this.projected === "moved" && this.motion.t < NOTED) return "The initial state was moved onto the constraints.";
     return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
   }
 

@@ -54,7 +54,7 @@ function ends(values) {
   return [step * Math.floor(low / step), step * Math.ceil(high / step)];
 }
 
-/** Draws the strips. `quantities`: name, unit and index in a row of each. */
+/** Draws the strips. `quantities`: symbol, unit and index in a row of each. */
 function drawCurves(canvas, record, quantities, t, span) {
   const { context, width, height } = cleared(canvas);
   const colour = colours();
@@ -64,7 +64,7 @@ function drawCurves(canvas, record, quantities, t, span) {
   const across = (time) => left + ((time - start) / span) * (width - left - right);
   let first = record.times.findIndex((time) => time >= start);
   first = Math.max(0, first - 1);
-  for (const [strip, { name, unit, place, mark }] of quantities.entries()) {
+  for (const [strip, { symbol, unit, place, mark }] of quantities.entries()) {
     const [top, bottom] = [gap + strip * tall, (strip + 1) * tall];
     const values = record.rows.slice(first).map((row) => row[place]);
     const [low, high] = ends(values);
@@ -83,13 +83,14 @@ function drawCurves(canvas, record, quantities, t, span) {
     context.stroke();
     context.fillStyle = colour.soft;
     context.textAlign = "right";
-    context.fillText(shown(high, 3), left - 8, top + 9, left - 10);
-    context.fillText(shown(low, 3), left - 8, bottom, left - 10);
+    const scaled = multiple(Math.max(Math.abs(low), Math.abs(high)), unit);
+    context.fillText(shown(high / scaled.size, 3), left - 8, top + 9, left - 10);
+    context.fillText(shown(low / scaled.size, 3), left - 8, bottom, left - 10);
     context.textAlign = "left";
     context.fillStyle = colour.ink;
     const value = values.at(-1);
-    const reading = value === undefined ? "" : ` = ${shown(value)} ${unit}`;
-    context.fillText(name + reading, left, top - 6, width - left - right);
+    const reading = value === undefined ? "" : ` = ${shown(value / scaled.size)} ${scaled.unit}`;
+    writeSymbol(context, symbol, reading, [left, top - 6], width - left - right);
     context.save();
     context.beginPath();
     context.rect(left, top - 2, width - left - right, bottom - top + 4);

@@ -1,12 +1,17 @@
 //! Input of the script, as JSON.
 
 use eomgen_compiled_model::CompiledModel;
-use eomgen_model_spec::model::{Drawing, Ordinate};
+use eomgen_model_spec::model::{Drawing, Ordinate, STABILISATION_RATE};
+use eomgen_page::name_letters;
 use eomgen_page::play::{encode_base64, format_unit};
 use serde_json::{Value, json};
 
 use super::quantities::Quantities;
 use crate::error::{Error, Result};
+use crate::field_shapes::{FieldShapes, field_shapes};
+
+/// Number of intervals along a field.
+const INTERVALS: usize = 40;
 
 /// Returns the data of a model with an initial state and its WebAssembly module.
 pub(super) fn json(
@@ -19,13 +24,17 @@ pub(super) fn json(
     let names = compiled.state_names().into_iter();
     let state = names.zip(&quantities.units).zip(initial);
     let state: Vec<Value> = state
-        .map(|((name, unit), initial)| json!({ "name": name, "unit": format_unit(unit), "initial": initial }))
+        .map(|((name, unit), initial)| json!({ "symbol": name_letters(&name), "unit": format_unit(unit), "initial": initial }))
         .collect();
-    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": format_unit(&quantity.unit) });
-    let inputs = program.inputs.iter().zip(compiled.default_inputs());
-    let inputs = inputs.map(|(input, value)| {
-        json!({ "name": input.name, "unit": format_unit(&input.unit), "value": value })
-    });
+    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "symbol": name_letters(&quantity.name), "unit": format_unit(&quantity.unit) });
+    let inputs = compiled.default_inputs().into_iter();
+    let inputs = inputs.map(|value| json!({ "value": value }));
+    let stabilisation = program
+        .parameters
+        .iter()
+        .position(|parameter| parameter.quantity.name == STABILISATION_RATE)
+        .filter(|_| !compiled.model().constraints.is_empty());
+    let fields = field_shapes(compiled, INTERVALS)?;
     let evaluator = compiled.evaluator(&program.default_parameters());
     let document = json!({
         "module": encode_base64(module),
@@ -34,9 +43,26 @@ pub(super) fn json(
         "inputs": inputs.collect::<Vec<_>>(),
         "observables": program.observables.iter().map(of).collect::<Vec<_>>(),
         "guards": evaluator.guard_count(),
+        "degrees": program.degrees_of_freedom(),
+        "stabilisation": stabilisation,
+        "coordinates": compiled.model().coordinates.len(),
+        "fields": fields.iter().map(field).collect::<Vec<_>>(),
         "drawing": compiled.model().drawing.as_ref().map(drawing),
     });
     serde_json::to_string(&document).map_err(|error| Error::input(error.to_string()))
+}
+
+/// Returns a field with its shape functions, a row per position.
+fn field(shapes: &FieldShapes<'_>) -> Value {
+    let ends = shapes.positions.first().zip(shapes.positions.last());
+    json!({
+        "symbol": name_letters(&shapes.field.name),
+        "unit": format_unit(&shapes.field.unit.to_string()),
+        "along": shapes.field.along,
+        "length": ends.map(|(from, to)| to - from),
+        "first": shapes.first,
+        "functions": shapes.functions,
+    })
 }
 
 /// Returns points with their coordinates, and lines with the indices of their points.

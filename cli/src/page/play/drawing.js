@@ -1,5 +1,5 @@
-// Drawing of the machine: points and lines if the specification has a drawing, else an instrument for every
-// coordinate.
+// Drawing of the machine: points and lines if the specification has a drawing, else the deflection of every field and an
+// instrument for every coordinate.
 
 /** Length of a trail, in frames. */
 const TRAIL = 400;
@@ -110,19 +110,32 @@ class Plane {
 /** Maximum number of instruments. */
 const INSTRUMENTS = 12;
 
-/** Instruments: a dial for an angle, a block on a rail for a length, a bar for other quantities. */
+/** Fraction of the height for the fields. */
+const FIELDS = 0.5;
+
+/** Instruments: a line for the deflection of a field, a dial for an angle, a block on a rail for other quantities. */
 class Instruments {
   constructor(model) {
-    this.all = model.state.slice(0, Math.min(model.state.length / 2, INSTRUMENTS));
+    this.fields = model.fields;
+    this.all = model.state.slice(0, Math.min(model.coordinates, INSTRUMENTS));
     this.clear();
   }
 
   clear() {
     this.reach = this.all.map(() => 0);
+    this.deflections = this.fields.map(() => 0);
   }
 
   follow(state) {
     this.values = this.all.map((_, place) => state[place]);
+    this.lines = this.fields.map(({ first, functions }) =>
+      functions.map((row) => row.reduce((sum, phi, mode) => sum + phi * state[first + mode], 0)),
+    );
+    this.lines.forEach((line, place) => {
+      for (const value of line) {
+        if (Number.isFinite(value)) this.deflections[place] = Math.max(this.deflections[place], Math.abs(value));
+      }
+    });
     this.reach = this.reach.map((reach, place) => Math.max(reach, Math.abs(this.values[place]) || 0));
   }
 
@@ -130,22 +143,60 @@ class Instruments {
     const { context, width, height } = cleared(canvas);
     const colour = colours();
     const count = this.all.length;
+    const above = this.fields.length === 0 ? 0 : count === 0 ? height : FIELDS * height;
+    for (const place of this.fields.keys()) {
+      const tall = above / this.fields.length;
+      this.field(context, { top: place * tall, width, tall, colour }, place);
+    }
     // Number of columns with the most nearly square cells.
-    const columns = Math.max(1, Math.min(count, Math.round(Math.sqrt((count * width) / Math.max(height, 1)))));
+    const room = height - above;
+    const columns = Math.max(1, Math.min(count, Math.round(Math.sqrt((count * width) / Math.max(room, 1)))));
     const rows = Math.ceil(count / columns);
-    const [wide, tall] = [width / columns, height / rows];
+    const [wide, tall] = [width / columns, room / rows];
     for (const [place, quantity] of this.all.entries()) {
-      const [x, y] = [(place % columns) * wide, Math.floor(place / columns) * tall];
+      const [x, y] = [(place % columns) * wide, above + Math.floor(place / columns) * tall];
       const cell = { x: x + wide / 2, y: y + tall / 2 - 8, wide: wide - 24, tall: tall - 44, colour };
       const value = this.values[place];
       context.fillStyle = colour.soft;
       context.textAlign = "center";
-      context.fillText(`${quantity.name} = ${shown(value)} ${quantity.unit}`, x + wide / 2, y + tall - 10, wide - 8);
+      const scaled = quantity.unit === "rad" ? { size: 1, unit: "rad" } : multiple(this.reach[place], quantity.unit);
+      writeSymbol(context, quantity.symbol, ` = ${shown(value / scaled.size)} ${scaled.unit}`, [x + wide / 2, y + tall - 10], wide - 8);
       if (!Number.isFinite(value)) continue;
       const mark = colour.marks[place % colour.marks.length];
       if (quantity.unit === "rad") this.dial(context, cell, value, mark);
       else this.rail(context, cell, value / round(Math.max(this.reach[place], 1e-12)), mark);
     }
+  }
+
+  /** Draws the deflection of a field over its length, enlarged to the height. */
+  field(context, { top, width, tall, colour }, place) {
+    const { symbol, unit, along, length } = this.fields[place];
+    const line = this.lines[place];
+    const [left, right, middle] = [24, width - 24, top + (tall - 18) / 2];
+    const scale = (0.5 * (tall - 18) - 14) / round(Math.max(this.deflections[place], 1e-12));
+    const across = (index) => left + (index / (line.length - 1)) * (right - left);
+    context.strokeStyle = colour.line;
+    context.lineWidth = 1.5;
+    context.setLineDash([6, 5]);
+    context.beginPath();
+    context.moveTo(left, middle);
+    context.lineTo(right, middle);
+    context.stroke();
+    context.setLineDash([]);
+    context.strokeStyle = colour.marks[place % colour.marks.length];
+    context.lineWidth = 5;
+    context.beginPath();
+    for (const [index, value] of line.entries()) {
+      if (Number.isFinite(value)) context.lineTo(across(index), middle - scale * value);
+    }
+    context.stroke();
+    context.fillStyle = colour.soft;
+    context.textAlign = "left";
+    // The scale along the field is that of its length, if both are lengths.
+    const times = unit === "m" && length > 0 ? `, drawn ${shown((scale * length) / (right - left), 2)} times larger` : "";
+    const scaled = multiple(this.deflections[place], unit);
+    const end = `${shown(line.at(-1) / scaled.size, 3)} ${scaled.unit}`;
+    writeSymbol(context, symbol, `(${along}) = ${end} at the end${times}`, [left, top + tall - 8], right - left);
   }
 
   /** Draws an arm at an angle from hanging down. */

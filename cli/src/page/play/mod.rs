@@ -2,15 +2,17 @@
 //! computes with the emitted WebAssembly module.
 //!
 //! `quantities` selects the sliders and their ranges, `controls` renders them, `data` is the input of the script. The
-//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js` and `controls.js`.
+//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (inputs over
+//! time), `constraints.js` (initial states) and `controls.js`.
 
 mod controls;
 mod data;
 mod quantities;
 
 use eomgen_codegen::report::Report;
+use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use eomgen_compiled_model::CompiledModel;
-use eomgen_page::{ScriptedDocument, equations, play, scripted_document};
+use eomgen_page::{ScriptedDocument, equations, formula, play, scripted_document};
 use maud::{Markup, html};
 
 use crate::emission::module;
@@ -21,35 +23,104 @@ use quantities::Quantities;
 const STYLE: &str = include_str!("play.css");
 
 /// Script, in addition to the common one.
-const SCRIPT: [&str; 3] = [
+const SCRIPT: [&str; 5] = [
     include_str!("drawing.js"),
     include_str!("curves.js"),
+    include_str!("signals.js"),
+    include_str!("constraints.js"),
     include_str!("controls.js"),
 ];
+
+/// Initial speeds of the clock, as logarithms to the base 10.
+const REAL_TIME: f64 = 0.0;
+const SLOW_MOTION: f64 = -1.0;
+
+/// Interactive part of a page. A page has at most one.
+pub struct InteractivePart {
+    /// Drawing, curves and controls.
+    pub body: Markup,
+    /// Input of the script, as JSON.
+    pub data: String,
+}
+
+impl InteractivePart {
+    /// Builds the part of a model with an initial state, with controls for all quantities.
+    ///
+    /// # Errors
+    /// Declared parameters without a motion, or a module that cannot be emitted.
+    pub fn new(compiled: &CompiledModel, initial: &[f64]) -> Result<Self> {
+        Self::with_quantities(
+            compiled,
+            initial,
+            &Quantities::new(compiled, initial)?,
+            REAL_TIME,
+        )
+    }
+
+    /// Builds the part of a model with controls for some of its parameters only. Its clock starts at a tenth of
+    /// real time.
+    ///
+    /// # Errors
+    /// Same as [`InteractivePart::new`].
+    pub fn of_parameters(
+        compiled: &CompiledModel,
+        initial: &[f64],
+        parameters: &[&str],
+    ) -> Result<Self> {
+        let mut quantities = Quantities::new(compiled, initial)?;
+        quantities
+            .parameters
+            .retain(|slider| parameters.contains(&&*slider.name));
+        quantities.initial.clear();
+        Self::with_quantities(compiled, initial, &quantities, SLOW_MOTION)
+    }
+
+    fn with_quantities(
+        compiled: &CompiledModel,
+        initial: &[f64],
+        quantities: &Quantities<'_>,
+        speed: f64,
+    ) -> Result<Self> {
+        let module = module(compiled.program())?;
+        let body = html! {
+            noscript { p { "Without JavaScript nothing moves on this page." } }
+            div.instrument {
+                div.seen {
+                    (drawing(&compiled.model().title, speed))
+                    (curves(quantities))
+                }
+                (controls::panel(quantities))
+            }
+        };
+        Ok(Self {
+            body,
+            data: data::json(compiled, quantities, initial, &module)?,
+        })
+    }
+
+    /// Renders a document with this part as its interactive part; `body` contains its markup.
+    pub fn document(&self, title: &str, body: &Markup) -> String {
+        scripted_document(&ScriptedDocument {
+            title,
+            style: &[play::STYLE, STYLE].concat(),
+            body,
+            data: &self.data,
+            script: &play::join_scripts(&SCRIPT),
+        })
+    }
+}
 
 /// Renders the page of a model with an initial state.
 ///
 /// # Errors
-/// Declared parameters without a motion, or a module that cannot be emitted.
+/// Same as [`InteractivePart::new`].
 pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<String> {
     let instance = compiled.with_declared_parameters()?;
-    let module = module(compiled.program())?;
-    let quantities = Quantities::new(compiled, initial)?;
     let evaluator = instance.evaluator()?;
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
-    let data = data::json(compiled, &quantities, initial, &module)?;
-    Ok(scripted_document(&ScriptedDocument {
-        title: &compiled.model().title,
-        style: &[play::STYLE, STYLE].concat(),
-        body: &body(compiled, &quantities, &report),
-        data: &data,
-        script: &play::join_scripts(&SCRIPT),
-    }))
-}
-
-fn body(compiled: &CompiledModel, quantities: &Quantities<'_>, report: &Report) -> Markup {
+    let part = InteractivePart::new(compiled, initial)?;
     let model = compiled.model();
-    html! {
+    let body = html! {
         header {
             h1 { (model.title) }
             p.lead {
@@ -58,17 +129,10 @@ fn body(compiled: &CompiledModel, quantities: &Quantities<'_>, report: &Report) 
             }
         }
         main {
-            noscript { p { "Without JavaScript this page shows the equations only." } }
-            div.instrument {
-                div.seen {
-                    (drawing(&model.title))
-                    (curves(quantities))
-                }
-                (controls::panel(quantities))
-            }
+            (part.body)
             section.equations-of-motion {
                 h2 { "Equations of motion" }
-                (equations(report))
+                (equations(&report))
             }
         }
         footer {
@@ -77,10 +141,11 @@ fn body(compiled: &CompiledModel, quantities: &Quantities<'_>, report: &Report) 
                 code { (model.name) } "."
             }
         }
-    }
+    };
+    Ok(part.document(&model.title, &body))
 }
 
-fn drawing(title: &str) -> Markup {
+fn drawing(title: &str, speed: f64) -> Markup {
     html! {
         section.panel aria-label="Drawing" {
             canvas #drawing role="img" aria-label={ "Drawing of " (title) ", moving" } {}
@@ -89,7 +154,7 @@ fn drawing(title: &str) -> Markup {
                 button #reset type="button" { "Reset" }
                 label {
                     "Speed"
-                    input #speed type="range" min="-4" max="1" step="0.1" value="0";
+                    input #speed type="range" min="-4" max="1" step="0.1" value=(speed);
                     output #speed-value for="speed" { "1 ×" }
                 }
                 output #clock aria-label="Time" { "0.00 s" }
@@ -101,17 +166,24 @@ fn drawing(title: &str) -> Markup {
     }
 }
 
+/// Largest number of quantities whose list is open at first.
+const MAX_OPEN_LIST: usize = 16;
+
 fn curves(quantities: &Quantities<'_>) -> Markup {
+    let all = &quantities.shown;
     html! {
         section.panel aria-label="Curves" {
             canvas #curves role="img" aria-label="Curves of the chosen quantities over time" {}
-            fieldset #shown {
-                legend.hidden { "Quantities shown as curves" }
-                @for shown in &quantities.shown {
-                    label {
-                        input type="checkbox" value=(shown.place) checked[shown.at_first];
-                        (shown.name)
-                        span.unit { "[" (shown.unit) "]" }
+            details open[all.len() <= MAX_OPEN_LIST] {
+                summary { "Quantities shown as curves" }
+                fieldset #shown {
+                    legend.hidden { "Quantities shown as curves" }
+                    @for shown in all {
+                        label {
+                            input type="checkbox" value=(shown.place) checked[shown.at_first];
+                            (formula(&Formula::Symbol(Symbol::from_state(&shown.name))))
+                            span.unit { "[" (shown.unit) "]" }
+                        }
                     }
                 }
             }

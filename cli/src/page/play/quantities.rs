@@ -22,12 +22,21 @@ pub(super) struct CurveQuantity {
     pub(super) at_first: bool,
 }
 
+/// Input that a page drives, with its rates.
+#[derive(Debug)]
+pub(super) struct Signal<'m> {
+    /// Value of the input, or its middle or start.
+    pub(super) value: Slider<'m>,
+    /// Indices of its first and second rate, as far as they are inputs.
+    pub(super) rates: Vec<usize>,
+}
+
 /// Quantities of a page.
 #[derive(Debug)]
 pub(super) struct Quantities<'m> {
     pub(super) parameters: Vec<Slider<'m>>,
     pub(super) initial: Vec<Slider<'m>>,
-    pub(super) inputs: Vec<Slider<'m>>,
+    pub(super) inputs: Vec<Signal<'m>>,
     pub(super) shown: Vec<CurveQuantity>,
     /// Units of the state, in its order.
     pub(super) units: Vec<String>,
@@ -54,17 +63,23 @@ impl<'m> Quantities<'m> {
             .zip(input_ranges)
             .zip(typical)
             .enumerate();
+        // A rate follows from the signal of its input.
+        let inputs = inputs.filter(|(_, ((input, _), _))| input.rate_of.is_none());
         let inputs = inputs.map(|(place, ((input, range), value))| {
             let (low, high) = range.unwrap_or((-10.0, 10.0));
-            Slider {
-                name: input.name.clone(),
-                unit: format_unit(&input.unit.to_string()),
-                doc: &input.doc,
-                place,
-                factor: 1.0,
-                value,
-                low: low.min(value),
-                high: high.max(value),
+            let rates = std::iter::successors(input.rate, |rate| model.inputs[*rate].rate);
+            Signal {
+                value: Slider {
+                    name: input.name.clone(),
+                    unit: format_unit(&input.unit.to_string()),
+                    doc: &input.doc,
+                    place,
+                    factor: 1.0,
+                    value,
+                    low: low.min(value),
+                    high: high.max(value),
+                },
+                rates: rates.map(|rate| rate.index()).collect(),
             }
         });
         Ok(Self {

@@ -1,6 +1,6 @@
 //! Rejected and untestable effects, grouped by reason.
 
-use eomgen_page::{section, table};
+use eomgen_page::{prose, section, table};
 use maud::{Markup, html};
 
 use crate::experiment::next_experiment::{ExperimentFile, NextExperiment};
@@ -92,7 +92,7 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     }
     let mut groups = Group::all(list, |of| &of.reason);
     groups.sort_by_key(|group| group.effects.len());
-    let row = |group: &Group<'_>| html! { tr { td { (group.names()) } td { (group.why()) } } };
+    let row = |group: &Group<'_>| html! { tr { td { (prose(&group.names())) } td { (prose(&group.why())) } } };
     section(
         "Rejected effects",
         &html! {
@@ -109,7 +109,7 @@ pub(super) fn list_untestable(list: &[RejectedEffect], files: &[ExperimentFile])
     }
     let groups = Group::all(list, |of| (&of.at.effect, &of.experiment));
     let row = |group: &Group<'_>| {
-        html! { tr { td { (group.names()) } td { (group.why()) } td { (group.experiment) (group.next(files)) } } }
+        html! { tr { td { (prose(&group.names())) } td { (prose(&group.why())) } td { (prose(group.experiment)) (prose(&group.next(files))) } } }
     };
     section(
         "Effects that these records cannot show",

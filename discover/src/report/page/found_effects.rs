@@ -1,6 +1,6 @@
 //! Found effects, the steps of the search, and the change of the specification.
 
-use eomgen_page::{section, table};
+use eomgen_page::{prose, section, table};
 use maud::{Markup, html};
 
 use crate::experiment::next_experiment::ExperimentFile;
@@ -26,9 +26,9 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
         rest.is_some_and(|rest| rest.starts_with(" = "))
     });
     html! {
-        h3 { (describe_effect(&effect.at)) }
+        h3 { (prose(&describe_effect(&effect.at))) }
         p {
-            @if !effect.description.is_empty() { (capitalised(&effect.description)) ". " }
+            @if !effect.description.is_empty() { (prose(&capitalised(&effect.description))) ". " }
             @match effect.status {
                 EffectStatus::Named => { "No other tested effect has the same response." },
                 EffectStatus::Provisional => {
@@ -37,7 +37,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 },
                 EffectStatus::Class => {
                     "The records do not separate it from "
-                    (effect.equivalents.iter().map(describe_effect).collect::<Vec<String>>().join(", or from ")) "."
+                    (prose(&effect.equivalents.iter().map(describe_effect).collect::<Vec<String>>().join(", or from "))) "."
                 },
                 EffectStatus::Empirical => { "It does not identify the cause." },
             }
@@ -48,10 +48,10 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 " It increases with the load of " code { (load) } "."
             }
             @if let Some(experiment) = &effect.experiment {
-                " Experiment to separate them: " (experiment) "."
+                " Experiment to separate them: " (prose(experiment)) "."
             }
             @if let Some(next) = &effect.next_experiment {
-                " " (format_readable(&describe_experiment(next, files)))
+                " " (prose(&format_readable(&describe_experiment(next, files))))
             }
         }
         dl.values {

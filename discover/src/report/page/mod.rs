@@ -15,7 +15,7 @@ mod verdict;
 #[cfg(test)]
 mod tests;
 
-use eomgen_page::{ScriptedDocument, document, scripted_document, section};
+use eomgen_page::{ScriptedDocument, document, prose, scripted_document, section};
 use maud::{Markup, html};
 
 use crate::report::playback::Playback;
@@ -91,7 +91,7 @@ fn playback(compared: &CommonResult) -> Markup {
     match &compared.pictures.playback {
         Playback::Computed { body, .. } => section("Interactive simulation", body),
         Playback::Unavailable(why) => html! {
-            p.note { "There is no interactive simulation: " (why) "." }
+            p.note { "There is no interactive simulation: " (prose(why)) "." }
         },
         Playback::NotNeeded => html! {},
     }
@@ -115,7 +115,7 @@ fn closing(compared: &CommonResult) -> Markup {
     html! {
         @if has_location || force.is_some() {
             (section("Location of the difference", &html! {
-                @if has_location { p { (format_readable(&compared.location)) } }
+                @if has_location { p { (prose(&format_readable(&compared.location))) } }
                 @if let Some((equation, force)) = force {
                     h3 { "Missing force on " code { (equation) } }
                     (force)
@@ -125,7 +125,7 @@ fn closing(compared: &CommonResult) -> Markup {
         (nuisances::list_nuisances(compared))
         @if !compared.notes.is_empty() {
             (section("Notes", &html! {
-                ul { @for note in &compared.notes { li { (format_readable(note)) } } }
+                ul { @for note in &compared.notes { li { (prose(&format_readable(note))) } } }
             }))
         }
     }

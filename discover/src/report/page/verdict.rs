@@ -1,5 +1,6 @@
 //! Verdict in words: found effects, closed gap, and remaining gap in noise floors.
 
+use eomgen_page::prose;
 use maud::{Markup, html};
 
 use crate::report::result::{Comparison, Discovery};
@@ -16,8 +17,8 @@ pub(super) fn write_discovery_verdict(discovery: &Discovery) -> Markup {
 fn shown(summary: &Summary) -> Markup {
     html! {
         p.verdict {
-            strong { (summary.headline) }
-            " " (summary.details)
+            strong { (prose(&summary.headline)) }
+            " " (prose(&summary.details))
         }
     }
 }

@@ -10,10 +10,6 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
 use crate::search::search_result::AcceptedEffect;
 
-/// How many digits of a value are shown: the script takes the specification's own number until
-/// somebody moves it.
-const DIGITS: i32 = 6;
-
 /// How far a sensor can be moved beyond what was found, in parts of that.
 const AROUND: f64 = 2.0;
 
@@ -48,7 +44,7 @@ fn control(
             doc: "",
             place: channel,
             factor: 1.0,
-            value: rounded(value),
+            value,
             low: neutral - reach,
             high: neutral + reach,
         }
@@ -77,15 +73,8 @@ fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
     };
     let place = place.index();
     let mut slider = Slider::from_parameter(declared, place, model.values[place]);
-    slider.value = rounded(slider.value);
     if is_inverse {
         (slider.low, slider.high) = (0.2 * slider.value, 5.0 * slider.value);
     }
     slider.control("parameter")
-}
-
-/// With few digits.
-fn rounded(value: f64) -> f64 {
-    let text = format!("{value:.*e}", DIGITS as usize - 1);
-    text.parse().unwrap_or(value)
 }

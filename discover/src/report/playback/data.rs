@@ -1,5 +1,6 @@
 //! Data of the script as JSON, with numeric columns as bytes in base 64.
 
+use eomgen_page::name_letters;
 use eomgen_page::play::{encode_base64, format_unit};
 use serde_json::{Value, json};
 
@@ -74,7 +75,7 @@ fn channels(
                 Output::Input(place) => json!({ "input": place }),
             };
             json!({
-                "name": channel.name,
+                "symbol": name_letters(&channel.name),
                 "unit": format_unit(&channel.unit),
                 "from": from,
                 "gain": sensors.gain[id],

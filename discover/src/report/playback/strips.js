@@ -13,19 +13,6 @@ function limits(columns) {
   return [low - margin, high + margin];
 }
 
-/** In which multiple of its unit a magnitude reads well: its size in the unit, and how it is written. */
-function multiple(magnitude, unit) {
-  const takesPrefix = /^(m|s|N|rad|V|A|W|J|Pa)(?=$|\/| )/.test(unit);
-  const steps = [
-    [1, ""],
-    [1e-3, "m"],
-    [1e-6, "µ"],
-    [1e-9, "n"],
-  ];
-  const [size, prefix] = (takesPrefix && steps.find(([least]) => magnitude >= 0.9995 * least)) || steps[0];
-  return { size, unit: unit === "1" ? "" : prefix + unit };
-}
-
 /** A strip of a canvas over time: where its numbers stand. */
 class Strip {
   constructor(context, { left, right, top, bottom }, [start, end], [low, high]) {
@@ -34,10 +21,10 @@ class Strip {
     this.up = (value) => bottom - ((value - low) / (high - low || 1)) * (bottom - top);
   }
 
-  frame(colour, name, unit) {
+  frame(colour, symbol, text, unit) {
     const { context, left, right, top, bottom, low, high } = this;
     const of = multiple(Math.max(Math.abs(low), Math.abs(high)), unit);
-    const title = of.unit === "" ? name : `${name} [${of.unit}]`;
+    const title = of.unit === "" ? text : `${text} [${of.unit}]`;
     context.strokeStyle = colour.line;
     context.lineWidth = 1;
     context.beginPath();
@@ -52,7 +39,7 @@ class Strip {
     context.fillText(shown(low / of.size, 3), left - 6, bottom, left - 8);
     context.textAlign = "left";
     context.fillStyle = colour.ink;
-    context.fillText(title, left, top - 6, right - left);
+    writeSymbol(context, symbol, title, [left, top - 6], right - left);
   }
 
   /** A curve, which ends where a window ends or a number is missing. */
@@ -78,25 +65,25 @@ class Strip {
   }
 }
 
-/** Draws all channels. Of each: `name`, `unit` and the columns `measured`, `before` and `now`. */
+/** Draws all channels. Of each: `symbol`, `unit` and the columns `measured`, `before` and `now`. */
 function drawStrips(canvas, times, breaks, channels) {
   const { context, width, height } = cleared(canvas);
   const colour = colours();
   const [left, right] = [62, width - 6];
   const tall = (height - 18) / channels.length;
   const span = [times[0], times.at(-1)];
-  for (const [place, { name, unit, measured, before, now }] of channels.entries()) {
+  for (const [place, { symbol, unit, measured, before, now }] of channels.entries()) {
     const top = place * tall;
     const less = (column) => column.map((value, sample) => value - measured[sample]);
     const motion = { left, right, top: top + 20, bottom: top + 0.58 * tall };
     const both = new Strip(context, motion, span, limits([measured, before]));
-    both.frame(colour, name, unit);
+    both.frame(colour, symbol, "", unit);
     both.curve(times, measured, breaks, colour.soft, 5);
     both.curve(times, before, breaks, colour.marks[1], 1.6);
     both.curve(times, now, breaks, colour.marks[0], 1.6);
     const [first, second] = [less(before), less(now)];
     const off = new Strip(context, { left, right, top: top + 0.58 * tall + 28, bottom: top + tall - 10 }, span, limits([first, [0]]));
-    off.frame(colour, `${name}: simulated minus measured`, unit);
+    off.frame(colour, symbol, ": simulated minus measured", unit);
     off.curve(times, first, breaks, colour.marks[1], 1.4);
     off.curve(times, second, breaks, colour.marks[0], 1.4);
   }

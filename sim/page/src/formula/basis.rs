@@ -21,6 +21,10 @@ pub(super) fn table(kind: TableKind) -> Markup {
             shape_at_position(derivative, &html! { mn { (f64::from_bits(bits)) } })
         }
         TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
+        TableKind::OwnMoment { power, left, right } if left == right => integral(
+            power,
+            &html! { msup { mrow { (shape("i", left)) } mn { "2" } } },
+        ),
         TableKind::OwnMoment { power, left, right } => {
             integral(power, &html! { (shape("i", left)) (shape("i", right)) })
         }
@@ -54,7 +58,17 @@ fn shape(index: &str, derivative: u8) -> Markup {
     let shape = element(&identifier("φ"), index);
     match derivative {
         0 => shape,
-        n => html! { msup { (shape) mo { ("′".repeat(usize::from(n))) } } },
+        n => html! { msup { (shape) mo { (primes(n)) } } },
+    }
+}
+
+/// Returns primes as one character, as far as there is one.
+fn primes(count: u8) -> String {
+    match count {
+        1 => "′".to_owned(),
+        2 => "″".to_owned(),
+        3 => "‴".to_owned(),
+        n => "′".repeat(usize::from(n)),
     }
 }
 
@@ -72,6 +86,7 @@ fn integral(power: u32, shapes: &Markup) -> Markup {
                 n => msup { mi { "s" } mn { (n) } },
             }
             (shapes)
+            mspace width="0.17em" {}
             mi mathvariant="normal" { "d" }
             mi { "s" }
         }

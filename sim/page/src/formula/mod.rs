@@ -1,16 +1,21 @@
 //! Formulas as MathML Core, which browsers render without a library. Each term of a formula's
 //! outermost sum is a separate element, because browsers break lines only between elements.
+//!
+//! `products` orders and merges the factors of products and quotients, `basis` writes constants of a
+//! basis.
 
 mod basis;
+mod products;
 
 use eomgen_codegen::symbolic::formula::{
-    Choice, Formula, Level, MatrixPart, Symbol, Term, letter, powers_of_ten, small_fraction,
+    Choice, Formula, Level, MatrixPart, Symbol, Term, letter, multiple_of_pi, powers_of_ten,
 };
 use eomgen_model_spec::model::Function;
 use maud::{Markup, html};
 
-/// Invisible multiplication sign of Unicode.
+/// Invisible multiplication sign and function application of Unicode.
 const INVISIBLE_TIMES: &str = "\u{2062}";
+const APPLY_FUNCTION: &str = "\u{2061}";
 
 /// Returns a formula as MathML elements; lines can break between them.
 pub fn formula(formula: &Formula) -> Markup {
@@ -43,11 +48,18 @@ fn identifier(name: &str) -> Markup {
 }
 
 fn parenthesise(open: &str, content: &Markup, close: &str) -> Markup {
-    html! { mrow { mo { (open) } (content) mo { (close) } } }
+    html! {
+        mrow {
+            mo form="prefix" lspace="0" rspace="0" { (open) }
+            (content)
+            mo form="postfix" lspace="0" rspace="0" { (close) }
+        }
+    }
 }
 
+/// Returns an invisible multiplication sign with a thin space, which separates names of several letters.
 fn times() -> Markup {
-    html! { mo { (INVISIBLE_TIMES) } }
+    html! { mo lspace="0.17em" rspace="0" { (INVISIBLE_TIMES) } }
 }
 
 /// Returns a formula at a level of precedence, with parentheses if necessary.
@@ -62,14 +74,10 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
         Formula::Sum(terms) => {
             html! { @for (place, of) in terms.iter().enumerate() { (term(of, place == 0)) } }
         }
-        Formula::Quotient { above, below } => quotient(above, below),
-        Formula::Power(base, exponent) => html! {
-            msup { mrow { (formula_at_level(base, Level::Base)) } mrow { (formula_at_level(exponent, Level::Sum)) } }
-        },
+        Formula::Quotient { above, below } => products::quotient(1.0, above, below),
+        Formula::Power(base, exponent) => power(base, exponent),
         Formula::Call(function, arguments) => call(*function, arguments),
-        Formula::Operation(name, operands) => {
-            html! { (identifier(name)) (argument_list(operands)) }
-        }
+        Formula::Operation(name, operands) => applied(&identifier(name), operands),
         Formula::Choice(choice) => cases(choice),
         Formula::Total(index, of) => html! {
             munder { mo { "∑" } (identifier(index.name())) }
@@ -97,44 +105,37 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
 fn term(term: &Term, is_first: bool) -> Markup {
     let magnitude = term.factor.abs();
     html! {
-        @if term.factor < 0.0 { mo { "\u{2212}" } } @else if !is_first { mo { "+" } }
+        // As the first element of its row, the sign would have the spacing of a prefix.
+        @if term.factor < 0.0 && is_first { mo { "\u{2212}" } }
+        @else if term.factor < 0.0 { mo form="infix" { "\u{2212}" } }
+        @else if !is_first { mo form="infix" { "+" } }
         @match &term.of {
             None => (number(magnitude)),
             Some(of) if term.factor == 1.0 => (formula_at_level(of, Level::Sum)),
+            Some(Formula::Quotient { above, below }) => (products::quotient(magnitude, above, below)),
             Some(of) if magnitude == 1.0 => (formula_at_level(of, Level::Product)),
-            Some(of) => { (factor(magnitude)) (times()) (formula_at_level(of, Level::Product)) },
+            Some(of) => { (products::factor(magnitude)) (times()) (formula_at_level(of, Level::Product)) },
         }
     }
 }
 
-/// Returns factors in a row; a sum over modes before other factors has parentheses.
-fn product(factors: &[Formula]) -> Markup {
-    if let [only] = factors {
-        return formula_at_level(only, Level::Sum);
-    }
-    let last = factors.len().saturating_sub(1);
-    html! {
-        @for (place, factor) in factors.iter().enumerate() {
-            @if place > 0 { (times()) }
-            @match factor {
-                Formula::Total(..) if place < last => (parenthesise("(", &formula_at_level(factor, Level::Sum), ")")),
-                _ => (formula_at_level(factor, Level::Product)),
-            }
+/// Returns a power. The exponent of a trigonometric function is at its name: cos² α.
+fn power(base: &Formula, exponent: &Formula) -> Markup {
+    let raised = html! { mrow { (formula_at_level(exponent, Level::Sum)) } };
+    match (base, exponent) {
+        (Formula::Call(function, arguments), Formula::Number(number))
+            if is_trigonometric(*function) && *number > 1.0 =>
+        {
+            let name = html! { msup { (identifier(function.name())) (raised) } };
+            applied(&name, arguments)
         }
+        _ => html! { msup { mrow { (formula_at_level(base, Level::Base)) } (raised) } },
     }
 }
 
-fn quotient(above: &[Formula], below: &[Formula]) -> Markup {
-    match (above, below) {
-        ([only], []) => formula_at_level(only, Level::Product),
-        (above, []) => product(above),
-        (above, below) => html! {
-            mfrac {
-                @if above.is_empty() { mn { "1" } } @else { mrow { (product(above)) } }
-                mrow { (product(below)) }
-            }
-        },
-    }
+fn is_trigonometric(function: Function) -> bool {
+    use Function::{Cos, Cosh, Sin, Sinh, Tan, Tanh};
+    [Sin, Cos, Tan, Sinh, Cosh, Tanh].contains(&function)
 }
 
 fn call(function: Function, arguments: &[Formula]) -> Markup {
@@ -143,8 +144,12 @@ fn call(function: Function, arguments: &[Formula]) -> Markup {
         (Function::Sqrt, [a]) => html! { msqrt { (inner(a)) } },
         (Function::Abs, [a]) => parenthesise("|", &inner(a), "|"),
         (Function::Exp, [a]) => html! { msup { mi { "e" } mrow { (inner(a)) } } },
-        _ => html! { (identifier(function.name())) (argument_list(arguments)) },
+        _ => applied(&identifier(function.name()), arguments),
     }
+}
+
+fn applied(name: &Markup, arguments: &[Formula]) -> Markup {
+    html! { (name) mo { (APPLY_FUNCTION) } (argument_list(arguments)) }
 }
 
 fn argument_list(arguments: &[Formula]) -> Markup {
@@ -202,14 +207,18 @@ fn element(of: &Markup, index: &str) -> Markup {
 }
 
 fn symbol(symbol: &Symbol) -> Markup {
-    let (head, mut parts) = symbol.parts();
-    let head = identifier(letter(head).unwrap_or(head));
-    let head = match symbol.dots {
-        0 => head,
-        dots => html! {
-            mover accent="true" { (head) mo { (if dots == 1 { "˙" } else { "¨" }) } }
-        },
+    // The rate of an input is an input whose name has the suffix of a rate.
+    let named = Symbol::from_state(&symbol.name);
+    let (head, mut parts) = if symbol.owners.is_empty() {
+        named.parts()
+    } else {
+        symbol.parts()
     };
+    let dots = symbol.dots + named.dots;
+    let head = dotted(&identifier(letter(head).unwrap_or(head)), dots);
+    if !symbol.owners.is_empty() {
+        return with_subscripts(&head, symbol.owners.iter().map(self::symbol));
+    }
     let indices: String = symbol.indices.iter().map(|index| index.name()).collect();
     if !indices.is_empty() {
         parts.push(&indices);
@@ -221,19 +230,55 @@ fn symbol(symbol: &Symbol) -> Markup {
     element(&head, &parts.collect::<Vec<_>>().join(","))
 }
 
-/// Returns the factor before a product, as a fraction if it is a small fraction exactly.
-fn factor(magnitude: f64) -> Markup {
-    match small_fraction(magnitude) {
-        Some((numerator, denominator)) => {
-            html! { mfrac { mn { (numerator.to_string()) } mn { (denominator) } } }
-        }
-        None => number(magnitude),
+fn dotted(head: &Markup, dots: u8) -> Markup {
+    match dots {
+        0 => head.clone(),
+        dots => html! {
+            mover accent="true" { (head) mo { (if dots == 1 { "˙" } else { "¨" }) } }
+        },
     }
 }
 
+/// Returns a letter with formulas as subscripts, with commas between them.
+fn with_subscripts(head: &Markup, subscripts: impl Iterator<Item = Markup>) -> Markup {
+    html! {
+        msub {
+            (head)
+            mrow {
+                @for (place, subscript) in subscripts.enumerate() {
+                    @if place > 0 { mo { "," } }
+                    (subscript)
+                }
+            }
+        }
+    }
+}
+
+/// Returns the name of an entry: a letter with the names of its rows and columns as subscripts.
+pub(crate) fn entry_name(letter: &str, rows: &[&Formula]) -> Markup {
+    let rows = rows.iter().map(|row| formula_at_level(row, Level::Sum));
+    html! { math { (with_subscripts(&identifier(letter), rows)) } }
+}
+
+/// Returns the letters of a name and those of its subscript as plain text with Greek letters and dots, for
+/// drawings on a canvas.
+pub fn name_letters(name: &str) -> (String, String) {
+    let symbol = Symbol::from_state(name);
+    let (head, parts) = symbol.parts();
+    let mut head = letter(head).unwrap_or(head).to_owned();
+    match symbol.dots {
+        0 => {}
+        1 => head.push('\u{307}'),
+        _ => head.push('\u{308}'),
+    }
+    let parts = parts.into_iter().map(|part| letter(part).unwrap_or(part));
+    (head, parts.collect::<Vec<_>>().join(","))
+}
+
 fn number(value: f64) -> Markup {
-    match powers_of_ten(value) {
-        Some((mantissa, exponent)) => power_of_ten(&mantissa, Some(&exponent)),
-        None => power_of_ten(&value.to_string(), None),
+    match (multiple_of_pi(value.abs()), powers_of_ten(value)) {
+        (Some(of), _) if value > 0.0 => products::power_of_pi(of),
+        (_, Some((mantissa, exponent))) => power_of_ten(&mantissa, Some(&exponent)),
+        (_, None) => power_of_ten(&value.to_string(), None),
     }
 }

@@ -1,5 +1,43 @@
 // Common functions of pictures on a canvas: colours, clearing, and formatted numbers.
 
+/** Sizes of letters and of subscripts, px. */
+const LETTERS = 13;
+const SUBSCRIPTS = 11;
+
+/** Returns the font of a size. */
+function font(size) {
+  return `${size}px system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif`;
+}
+
+/** Writes a symbol with its subscript and a text after it, at most `widest` px wide; narrower letters make it fit.
+ * `symbol`: letters of the name and of its subscript. */
+function writeSymbol(context, symbol, rest, [x, y], widest = Infinity) {
+  const [head, subscript] = symbol;
+  const parts = [
+    [head, LETTERS, 0],
+    [subscript, SUBSCRIPTS, 3],
+    [rest, LETTERS, 0],
+  ].map(([text, size, down]) => {
+    context.font = font(size);
+    return { text, size, down, width: context.measureText(text).width };
+  });
+  const total = parts.reduce((sum, { width }) => sum + width, 0);
+  context.save();
+  const shift = { center: 0.5, right: 1 }[context.textAlign] ?? 0;
+  const scale = Math.min(1, widest / (total || 1));
+  context.translate(x - shift * total * scale, y);
+  context.scale(scale, 1);
+  context.textAlign = "left";
+  let at = 0;
+  for (const { text, size, down, width } of parts) {
+    context.font = font(size);
+    context.fillText(text, at, down);
+    at += width;
+  }
+  context.restore();
+  context.font = font(LETTERS);
+}
+
 /** Returns the colours of the page. Every picture reads them again, because the scheme can change. */
 function colours() {
   const style = getComputedStyle(document.documentElement);
@@ -27,7 +65,7 @@ function cleared(canvas) {
   context.clearRect(0, 0, width, height);
   context.lineCap = "round";
   context.lineJoin = "round";
-  context.font = '13px system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif';
+  context.font = font(LETTERS);
   return { context, width, height };
 }
 
@@ -46,4 +84,17 @@ function shown(value, digits = 4) {
 function round(least) {
   const power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5, 10].find((step) => step * power >= least * (1 - 1e-12)) ?? 10);
+}
+
+/** Returns the multiple of a unit in which a magnitude is at least 1: its size in the unit and its name. */
+function multiple(magnitude, unit) {
+  const takesPrefix = /^(m|s|N|rad|V|A|W|J|Pa)(?=$|\/| )/.test(unit);
+  const steps = [
+    [1, ""],
+    [1e-3, "m"],
+    [1e-6, "µ"],
+    [1e-9, "n"],
+  ];
+  const [size, prefix] = (takesPrefix && steps.find(([least]) => magnitude >= 0.9995 * least)) || steps[0];
+  return { size, unit: unit === "1" ? "" : prefix + unit };
 }

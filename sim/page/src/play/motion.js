@@ -43,6 +43,8 @@ class Machine {
     this.observables = array("observables_at", model.observables.length);
     this.guards = array("guards_at", model.guards);
     this.usable = exports.prepare() === 1;
+    /** Sets the inputs for a time. */
+    this.drive = () => {};
   }
 
   /** Computes the coefficients after a change of parameters. */
@@ -52,6 +54,7 @@ class Machine {
 
   /** Writes the time derivative of a state to `rates`. */
   rate(t, state, rates) {
+    this.drive(t);
     this.state.set(state);
     this.exports.rates(t);
     rates.set(this.rates);
@@ -59,6 +62,7 @@ class Machine {
 
   /** Returns the observables of a state. */
   observe(t, state) {
+    this.drive(t);
     this.state.set(state);
     this.exports.observables(t);
     return this.observables;
@@ -67,6 +71,7 @@ class Machine {
   /** Returns the sides of all switching surfaces for a state. */
   sides(t, state) {
     if (this.guards.length === 0) return [];
+    this.drive(t);
     this.state.set(state);
     this.exports.guards(t);
     return Array.from(this.guards, (value) => value > 0);

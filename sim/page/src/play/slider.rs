@@ -8,6 +8,9 @@ use crate::formula::formula;
 
 const SLIDER_STEPS: f64 = 400.0;
 
+/// Significant digits of a number field.
+const SHOWN_DIGITS: usize = 6;
+
 /// Quantity that a page can change.
 #[derive(Clone, Debug)]
 pub struct Slider<'m> {
@@ -52,6 +55,12 @@ impl<'m> Slider<'m> {
 
     /// Returns the markup. The script identifies it by `kind` and index.
     pub fn control(&self, kind: &str) -> Markup {
+        let symbol = formula(&Formula::Symbol(Symbol::from_state(&self.name)));
+        self.labelled_control(kind, &symbol)
+    }
+
+    /// Returns the markup with words instead of a symbol as its label.
+    pub fn labelled_control(&self, kind: &str, label: &Markup) -> Markup {
         let Self {
             name,
             unit,
@@ -65,11 +74,11 @@ impl<'m> Slider<'m> {
 
         let id = format!("{kind}-{place}");
         let step = (high / SLIDER_STEPS - low / SLIDER_STEPS).max(f64::MIN_POSITIVE);
-        let [value, low, high, step] = [*value, *low, *high, step].map(format_number);
+        let [value, low, high, step] = [rounded(*value), *low, *high, step].map(format_number);
         html! {
             div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) {
                 label.name for=(id) {
-                    (formula(&Formula::Symbol(Symbol::from_state(name))))
+                    span { (label) }
                     @if unit != "1" { span.unit { (unit) } }
                 }
                 input type="number" step="any" value=(value) aria-label={ (name) " in " (unit) };
@@ -79,6 +88,13 @@ impl<'m> Slider<'m> {
             }
         }
     }
+}
+
+/// Rounds a number to the digits of a number field. The script uses the specification's own number until the field
+/// changes.
+fn rounded(value: f64) -> f64 {
+    let text = format!("{value:.*e}", SHOWN_DIGITS - 1);
+    text.parse().unwrap_or(value)
 }
 
 /// Returns the finite range from 0 to twice a value, or around 0 for 0.
@@ -138,6 +154,13 @@ mod tests {
             ("m^(1/2)", "m^(1/2)"),
         ] {
             assert_eq!(format_unit(unit), shown);
+        }
+    }
+
+    #[test]
+    fn field_has_few_digits() {
+        for (value, shown) in [(31.41592653589793, 31.4159), (-2.5e-5, -2.5e-5), (0.0, 0.0)] {
+            assert_eq!(rounded(value), shown);
         }
     }
 

@@ -1,11 +1,13 @@
 //! `eomgen page`: bits of its WebAssembly module, the pages in a browser, rejected options, and the
-//! interactive report of `discover`.
+//! interactive report of `discover`, and the legibility of all pages.
 
 mod bits;
 mod browser;
 mod command;
 mod drawing;
 mod hostile;
+mod inputs;
+mod legible;
 mod motion;
 mod report;
 

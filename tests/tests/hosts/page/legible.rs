@@ -1,0 +1,170 @@
+//! Legibility of the tour, of the reports and of interactive pages: no lettering below 11 px in a narrow window, no
+//! names of the program in prose, no cut commands, and figures in the colours of the page.
+
+use std::path::Path;
+
+use eomgen_tests::measured::{DESCRIPTION, Measured};
+use eomgen_tests::models::path;
+use eomgen_tests::program::run_accepted;
+use serde_json::{Value, json};
+
+use super::browser::{BrowserSettings, WIDE_WINDOW, browser, run_probe_script};
+use super::{drawn_example, write_page};
+
+/// Smallest lettering in a narrow window, px.
+const SMALLEST: f64 = 11.0;
+
+const NARROW_DARK: BrowserSettings = BrowserSettings {
+    width: 400,
+    dark: true,
+    still: false,
+};
+
+/// Asserts the legibility of a page, narrow and dark, and wide and light.
+fn assert_legible(browser: &str, page: &Path) {
+    for look in [NARROW_DARK, WIDE_WINDOW] {
+        let seen = run_probe_script("legible.js", browser, page, look);
+        assert_eq!(seen["errors"], json!([]), "{seen}");
+        assert_eq!(seen["excess"], 0, "wider than its window: {seen}");
+        let size = seen["smallest"].as_f64().expect("a number");
+        // Scaled figures have rounded sizes.
+        assert!(size > SMALLEST - 0.05 || look.width > 400, "{seen}");
+        for key in ["identifiers", "cut"] {
+            assert_eq!(seen[key], json!([]), "{key}: {seen}");
+        }
+        let figures = seen["backgrounds"].as_array().expect("a list");
+        assert!(figures.iter().all(|fill| *fill == seen["page"]), "{seen}");
+    }
+}
+
+#[test]
+fn tour_is_legible_and_moves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("tour");
+    run_accepted(&["tour", "--out", &out.display().to_string()]);
+    let page = std::fs::read_to_string(out.join("index.html")).expect("a page");
+    let opening = page.split("<nav>").next().expect("an opening");
+    assert!(
+        opening.contains("<canvas id=\"drawing\""),
+        "nothing moves at the top"
+    );
+    assert!(
+        opening.contains("eomgen found coulomb friction of 1"),
+        "{opening}"
+    );
+    for raw in ["nesting_bias", "regime_kernels", "train[0]", "e-5 m", "+-"] {
+        let prose = page
+            .split("<iframe")
+            .next()
+            .expect("text before the reports");
+        let prose = prose
+            .split("<pre>")
+            .map(|part| part.split_once("</pre>").map_or(part, |(_, rest)| rest));
+        assert!(prose.clone().all(|part| !part.contains(raw)), "{raw}");
+    }
+    let Some(browser) = browser() else { return };
+    assert_legible(browser, &out.join("index.html"));
+    let seen = run_probe_script("probe.js", browser, &out.join("index.html"), WIDE_WINDOW);
+    assert_eq!(seen["moved"], json!([true, true, true]), "{seen}");
+}
+
+/// Runs a command on a stage with hidden friction; returns its folder.
+fn run_report(command: &str) -> Measured {
+    let measured = Measured::stage(3.0);
+    measured.write(
+        "dataset.toml",
+        format!("title = \"Stage\"\n{DESCRIPTION}").as_bytes(),
+    );
+    measured.run_command(command, "out");
+    measured
+}
+
+#[test]
+fn reports_are_legible_and_name_their_records() {
+    for command in ["compare", "discover"] {
+        let measured = run_report(command);
+        let page = measured.read("out/report.html");
+        let figures: Vec<&str> = page.split("<figure>").skip(1).collect();
+        assert!(figures.len() > 3, "{} figures", figures.len());
+        for figure in figures {
+            let caption = figure.split("<figcaption>").nth(1).expect("a caption");
+            let caption = caption.split("</figcaption>").next().expect("its end");
+            assert!(caption.to_lowercase().contains("record"), "{caption}");
+        }
+        let labels = ["simulated before", "simulated after"];
+        let expected = command == "discover";
+        assert!(
+            labels.iter().all(|label| page.contains(label) == expected),
+            "{command}"
+        );
+        assert!(page.contains(">simulated<") != expected, "{command}");
+        for wrong in ["(m)²", "m²/Hz]</text>"] {
+            assert!(
+                !page
+                    .replace("mm²", "")
+                    .replace("µm²", "")
+                    .replace("nm²", "")
+                    .contains(wrong),
+                "{wrong}"
+            );
+        }
+        let Some(browser) = browser() else { return };
+        assert_legible(browser, &measured.file("out/report.html"));
+    }
+}
+
+#[test]
+fn interactive_pages_are_legible() {
+    let Some(browser) = browser() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    for spec in [
+        path("crane"),
+        path("planetary_arm"),
+        drawn_example("double_pendulum"),
+    ] {
+        assert_legible(browser, &write_page(&spec, &[], folder.path()));
+    }
+}
+
+/// Returns the data of a page's script.
+fn data(page: &str) -> Value {
+    let text = page
+        .split("<script id=\"model\" type=\"application/json\">")
+        .nth(1);
+    let text = text.and_then(|text| text.split("</script>").next());
+    serde_json::from_str(text.expect("data")).expect("JSON")
+}
+
+#[test]
+fn field_without_drawing_has_its_shapes() {
+    let spec = path("hub_beam_tip_mass").display().to_string();
+    let data = data(&run_accepted(&[
+        "page", &spec, "--order", "3", "--out", "-",
+    ]));
+    let field = &data["fields"][0];
+    let rows = field["functions"].as_array().expect("rows");
+    assert!(
+        rows.len() > 20
+            && rows
+                .iter()
+                .all(|row| row.as_array().expect("a row").len() == 3)
+    );
+    let first: Vec<f64> = rows
+        .iter()
+        .map(|row| row[0].as_f64().expect("a number"))
+        .collect();
+    // The first clamped-free mode is 0 at its clamp and grows to its end.
+    assert!(
+        first[0].abs() < 1e-12 && first.is_sorted() && first[rows.len() - 1] > 1.0,
+        "{first:?}"
+    );
+}
+
+#[test]
+fn names_are_symbols_on_canvas_and_controls() {
+    let spec = path("double_pendulum").display().to_string();
+    let page = run_accepted(&["page", &spec, "--out", "-"]);
+    assert_eq!(data(&page)["state"][0]["symbol"], json!(["θ", "1"]));
+    assert_eq!(data(&page)["state"][2]["symbol"], json!(["θ\u{307}", "1"]));
+    assert!(!page.contains(">theta_1") && !page.contains("Sums run over the modes"));
+}
