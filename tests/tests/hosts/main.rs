@@ -4,6 +4,7 @@
 mod c99;
 mod casadi;
 mod fmi;
+mod mujoco;
 mod page;
 mod python;
 mod slurm;

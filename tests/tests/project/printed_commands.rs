@@ -40,7 +40,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 15] = [
+const TESTED_ELSEWHERE: [(&str, &str); 16] = [
     (
         "cargo install --path cli",
         "tests/tests/project/installed.rs",
@@ -48,6 +48,11 @@ const TESTED_ELSEWHERE: [(&str, &str); 15] = [
     // The package's own page prints the same commands.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
     ("pip install ./python", "tests/tests/hosts/python.rs"),
+    // The test runs the script if MuJoCo is installed.
+    (
+        "python3 examples/measured/identify.py",
+        "tests/tests/hosts/mujoco.rs",
+    ),
     // The test checks the dependencies that this command adds.
     ("cargo add eomgen", "tests/tests/project/packages.rs"),
     // The test builds and runs the benchmark of a small machine.
