@@ -102,6 +102,42 @@ fn repository_is_set_in_one_line_and_marked_as_placeholder() {
 }
 
 #[test]
+fn binstall_downloads_the_archives_of_a_release() {
+    let (published, _) = packages();
+    let program = published
+        .iter()
+        .find(|package| name(package) == "eomgen-cli");
+    let program = program.expect("a package");
+    let text = |value: &Value| value.as_str().expect("a text").to_owned();
+    let (version, repository) = (text(&program["version"]), text(&program["repository"]));
+    let target = "x86_64-unknown-linux-musl";
+    let expanded = |key: &str| {
+        text(&program["metadata"]["binstall"][key])
+            .replace("{ repo }", &repository)
+            .replace("{ version }", &version)
+            .replace("{ target }", target)
+    };
+    let script = std::fs::read_to_string(project().join(".ci/pack_program")).expect("a script");
+    let archive = script.lines().find_map(|line| line.strip_prefix("name="));
+    let archive = archive.expect("the name of the archive").trim_matches('"');
+    let archive = archive
+        .replace("$version", &version)
+        .replace("$target", target);
+    let release = format!("{repository}/releases/download/v{version}");
+    assert_eq!(expanded("pkg-url"), format!("{release}/{archive}.tar.gz"));
+    assert_eq!(
+        expanded("bin-dir"),
+        format!("{archive}/{{ bin }}{{ binary-ext }}")
+    );
+    let workflow = project().join(".github/workflows/release.yml");
+    let workflow = std::fs::read_to_string(workflow).expect("a workflow");
+    assert!(
+        workflow.contains(&format!("target: {target} }}")),
+        "{workflow}"
+    );
+}
+
+#[test]
 fn published_packages_depend_on_published_packages_only() {
     let (published, _) = packages();
     let known: Vec<&str> = published.iter().map(name).collect();
