@@ -47,6 +47,7 @@ pub fn files(
         }
         Target::Fmu2 | Target::Fmu3 => {
             without_impacts(model, "a functional mock-up unit")?;
+            without_corners(program, "a functional mock-up unit")?;
             let version = match options.target {
                 Target::Fmu2 => Version::Two,
                 _ => Version::Three,
@@ -63,6 +64,18 @@ pub fn without_impacts(model: &Model, what: &str) -> Result<()> {
             "the model has impacts (`{}`), which {what} does not support: bodies would pass through each \
              other; use `eomgen simulate`",
             impact.name
+        )))
+    })
+}
+
+/// Rejects a program whose energies jump at a surface for targets without jumps of rates.
+pub fn without_corners(program: &Program, what: &str) -> Result<()> {
+    let mut guards = program.guards.iter();
+    guards.find(|guard| guard.is_corner).map_or(Ok(()), |guard| {
+        Err(Error::input(format!(
+            "the energies of the model jump where `{}` is zero, and the rates with them, which {what} does not \
+             support: use `eomgen simulate`",
+            guard.formula
         )))
     })
 }

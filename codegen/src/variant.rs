@@ -7,6 +7,7 @@ use crate::examination;
 use crate::independence::bounds::check_signs;
 use crate::independence::check_independence;
 use crate::independence::rows::{ConstraintRows, constraint_program};
+use crate::mechanics::corners::{add_corner_sides, has_jumping_momenta};
 use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
@@ -140,18 +141,53 @@ pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>
     if sliding.is_empty() {
         return Ok(None);
     }
-    let sides = (0..sliding.len()).map(|side| Quantity {
-        name: format!("side_{side}"),
-        unit: "1".to_owned(),
-        doc: "0 to 1; between them while the surface holds the motion".to_owned(),
-    });
+    let sides = sliding.len();
     let outputs = Outputs {
         sliding,
         ..Outputs::default()
     };
     let mut program = lower_with_outputs(model, &equations, &values, &outputs);
-    program.inputs.extend(sides);
+    program.inputs.extend(side_inputs(
+        sides,
+        "0 to 1; between them while the surface holds the motion",
+    ));
     Ok(Some(program))
+}
+
+/// Derives the program of the momenta and the energy at corners of the motion, in which the sides of their
+/// surfaces are additional inputs, after those of the model; see [`corners`](crate::mechanics::corners).
+/// Returns None if no momenta can jump.
+///
+/// # Errors
+/// Expressions that cannot be derived.
+pub fn derive_corners(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
+    let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
+    let values = model
+        .parameter_values()
+        .map_err(|error| found(error.diagnostic()))?;
+    let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
+    if !has_jumping_momenta(&equations) {
+        return Ok(None);
+    }
+    let sides = equations.corners.len();
+    let outputs = Outputs {
+        corners: Some(add_corner_sides(model, orders, &mut equations)),
+        ..Outputs::default()
+    };
+    let mut program = lower_with_outputs(model, &equations, &values, &outputs);
+    program.inputs.extend(side_inputs(
+        sides,
+        "1 where the function of the surface is positive, else 0",
+    ));
+    Ok(Some(program))
+}
+
+fn side_inputs(count: usize, doc: &str) -> impl Iterator<Item = Quantity> {
+    (0..count).map(move |side| Quantity {
+        name: format!("side_{side}"),
+        unit: "1".to_owned(),
+        doc: doc.to_owned(),
+    })
 }
 
 /// Returns the mass matrix at the initial state and the declared parameters, row by row.

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::arguments::Page;
 use crate::document::SCHEMA;
-use crate::emission::without_impacts;
+use crate::emission::{without_corners, without_impacts};
 use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
@@ -20,6 +20,7 @@ pub fn run(options: &Page) -> Result {
     let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
+    without_corners(compiled.program(), "a page")?;
     let run = compiled.with_declared_parameters()?;
     let requested = initial_state(&run, &options.initial.state)?;
     // The page moves the state again after a change of a slider.

@@ -10,6 +10,7 @@ use crate::mechanics::constraints::{Constraints, reaction_power};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::impacts::{Impact, impacts};
+use crate::mechanics::jumps::{Energies, Jump, check_mass, find_jumps};
 use crate::mechanics::kinetic::KineticRows;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
@@ -19,7 +20,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
 use crate::mechanics::sweeps::Momenta;
 use crate::mechanics::translate::{Derived, Translator};
-use crate::symbolic::graph::{Graph, NodeId};
+use crate::symbolic::graph::{Graph, NodeId, Shape};
 
 /// Equations of motion of one model.
 pub struct Equations {
@@ -60,6 +61,8 @@ pub struct Equations {
     pub power: NodeId,
     /// Switching surfaces.
     pub guards: Vec<Guard>,
+    /// Switching surfaces at which energies jump.
+    pub corners: Vec<Corner>,
     /// Observables of the specification.
     pub observables: Vec<NodeId>,
     /// Named coefficients of the specification.
@@ -72,6 +75,15 @@ pub struct Equations {
     pub inputs: usize,
     /// Modal blocks of the mass matrix on and above the diagonal.
     pub modal_blocks: Vec<ModalMassBlock>,
+}
+
+/// Switching surface at which an energy jumps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corner {
+    /// Index among the switching surfaces.
+    pub guard: usize,
+    /// True if rates of the coordinates jump, false if only an energy does, at an instant.
+    pub moves_rates: bool,
 }
 
 impl Equations {
@@ -90,6 +102,11 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let mut terms = Vec::new();
     let kinetic = sum_terms(&mut translator, &model.kinetic, "T", &mut terms)?;
     let potential = sum_terms(&mut translator, &model.potential, "V", &mut terms)?;
+    let energies = Energies {
+        kinetic,
+        potential,
+        positions: translator.positions().to_vec(),
+    };
     let dissipation = sum_terms(&mut translator, &model.dissipation, "R", &mut terms)?;
     let variables = Variables::new(model, orders);
     let KineticRows {
@@ -144,7 +161,12 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     moving.extend(mass.scalars.iter().flatten());
     moving.extend(accelerations.rows.nodes());
     moving.extend(&state_rates);
-    let guards = guards(&mut translator.graph, &moving);
+    let mut guards = guards(&mut translator.graph, &moving);
+    let jumps = find_jumps(&mut translator, &energies)?;
+    let corners = add_corners(&translator.graph, jumps, &mut guards);
+    if corners.iter().any(|corner| corner.moves_rates) {
+        check_mass(model, &translator.graph, &mass)?;
+    }
     let impacts = impacts(
         &mut translator,
         &variables,
@@ -175,6 +197,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         state_rates,
         power,
         guards,
+        corners,
         observables,
         coefficients,
         terms,
@@ -182,6 +205,29 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         inputs: model.inputs.len(),
         modal_blocks,
     })
+}
+
+/// Adds the surfaces at which rates jump to the switching surfaces. A surface at which only an energy jumps is
+/// kept if it switches the equations of motion.
+fn add_corners(graph: &Graph, jumps: Vec<Jump>, guards: &mut Vec<Guard>) -> Vec<Corner> {
+    let mut corners = Vec::with_capacity(jumps.len());
+    for Jump { guard, moves_rates } in jumps {
+        let known = guards.iter().position(|known| known.value == guard.value);
+        let is_scalar = graph.shape(guard.value) == Shape::Scalar;
+        let place = match known {
+            Some(place) if moves_rates || is_scalar => place,
+            None if moves_rates => {
+                guards.push(guard);
+                guards.len() - 1
+            }
+            _ => continue,
+        };
+        corners.push(Corner {
+            guard: place,
+            moves_rates,
+        });
+    }
+    corners
 }
 
 fn name_mass_matrix(graph: &mut Graph, model: &Model, mass: &MassMatrix) {

@@ -23,6 +23,8 @@ pub enum Linearity {
     Constrained,
     /// Model with impacts, at which rates jump.
     Impacts,
+    /// Model whose motion has corners, at which rates jump; the first of their surfaces.
+    Corners(NodeId),
     /// Nonlinear; the first nonlinear node.
     Nonlinear(NodeId),
 }
@@ -35,6 +37,10 @@ pub fn linearity(equations: &Equations) -> Linearity {
     }
     if !equations.impacts.is_empty() {
         return Linearity::Impacts;
+    }
+    let mut corners = equations.corners.iter();
+    if let Some(corner) = corners.find(|corner| corner.moves_rates) {
+        return Linearity::Corners(equations.guards[corner.guard].value);
     }
     let mut degrees = Degrees {
         graph,

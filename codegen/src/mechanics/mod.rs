@@ -6,6 +6,7 @@
 //! - `constraints`, `impacts` and `sliding` derive their terms; `solve` derives the accelerations.
 //! - `coefficients` derives named coefficients as in Eq. (22).
 //! - `equations` combines these; `outputs` derives additional functions on request.
+//! - `jumps` finds the surfaces at which the energies jump; `corners` derives the jumps of the rates there.
 //! - `linearity` tests linearity between switches; `sides` and `affine` derive the coefficients of such a
 //!   model.
 //! - `inertia` checks that every motion has inertia; `unsolved` translates a model without its equations.
@@ -13,12 +14,14 @@
 pub mod affine;
 pub mod coefficients;
 pub(crate) mod constraints;
+pub mod corners;
 pub mod equations;
 pub mod fields;
 mod forces;
 pub mod guard;
 pub mod impacts;
 pub(crate) mod inertia;
+mod jumps;
 mod kinetic;
 mod lagrange;
 pub mod linearity;

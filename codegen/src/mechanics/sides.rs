@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::model::Function;
 
-use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};
+use crate::mechanics::guard::Guard;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
@@ -20,20 +20,20 @@ pub(crate) struct Sides {
 
 impl Sides {
     /// Replaces the switching functions in `roots` by polynomials in sides. `side` returns the leaf for the
-    /// side of the guard with a given index, if it has one.
+    /// side of the one of `guards` with a given index, if it has one.
     pub fn replace_all(
-        equations: &mut Equations,
+        (graph, guards): (&mut Graph, &[Guard]),
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
     ) -> Self {
-        Self::replace(equations, roots, side, &|_| true)
+        Self::replace((graph, guards), roots, side, &|_| true)
     }
 
     /// Replaces only functions that jump. A continuous function has one value at its surface; off the
     /// surface, a wrong side can move the argument of another function out of its domain, for example in
     /// `sqrt(abs(p))`.
     pub fn replace_jumps(
-        equations: &mut Equations,
+        (graph, guards): (&mut Graph, &[Guard]),
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
     ) -> Self {
@@ -43,17 +43,16 @@ impl Sides {
                 Function::Abs | Function::Max | Function::Min | Function::Deadzone
             )
         };
-        Self::replace(equations, roots, side, &jumps)
+        Self::replace((graph, guards), roots, side, &jumps)
     }
 
     fn replace(
-        equations: &mut Equations,
+        (graph, guards): (&mut Graph, &[Guard]),
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
         has_side: &dyn Fn(Function) -> bool,
     ) -> Self {
-        let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
-        let graph = &mut equations.graph;
+        let values: Vec<NodeId> = guards.iter().map(|guard| guard.value).collect();
         let mut sides = Self {
             known: HashMap::new(),
             half_widths: Vec::new(),

@@ -34,7 +34,8 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
     let first = equations.inputs;
     let leaf = |side: usize| Operation::Input(InputId::new(first + side));
     let roots = roots(equations);
-    let mut known = Sides::replace_jumps(equations, &roots, &|guard| {
+    let given = (&mut equations.graph, &equations.guards[..]);
+    let mut known = Sides::replace_jumps(given, &roots, &|guard| {
         let mut places = sliding.iter();
         places.position(|(own, _)| *own == guard).map(leaf)
     })

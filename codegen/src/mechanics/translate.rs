@@ -60,6 +60,8 @@ pub struct Translator<'m> {
     coefficients: Vec<NodeId>,
     residuals: HashMap<ConstraintId, NodeId>,
     multipliers: Vec<NodeId>,
+    /// Arguments of dot() so far, with their places.
+    positions: Vec<(Span, NodeId)>,
     /// Rates along the motion for held first-order states.
     rates: KnownDerivatives,
 }
@@ -89,8 +91,14 @@ impl<'m> Translator<'m> {
             coefficients: Vec::new(),
             residuals: HashMap::new(),
             multipliers: Vec::new(),
+            positions: Vec::new(),
             rates: KnownDerivatives::default(),
         }
+    }
+
+    /// Returns the arguments of dot() that were translated so far, with their places.
+    pub(crate) fn positions(&self) -> &[(Span, NodeId)] {
+        &self.positions
     }
 
     /// Records the nodes of the multipliers, which observables can contain.
@@ -225,6 +233,7 @@ impl<'m> Translator<'m> {
                 if self.holds_input_without_rate(node) {
                     return Err(error(operand, "the rate of an input is unknown"));
                 }
+                self.positions.push((operand.span, node));
                 let rates = self.rates_within(node)?;
                 let rate = self.rate_along(node, &rates);
                 if let ExprKind::Definition(index) = operand.kind {

@@ -10,6 +10,7 @@ use crate::mechanics::constraints::nonlinear_error;
 use crate::mechanics::equations::{derived_parameters, sum_terms};
 use crate::mechanics::forces::translate_force;
 use crate::mechanics::impacts::immovable_distance_error;
+use crate::mechanics::jumps::{Energies, find_jumps};
 use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
 use crate::symbolic::graph::{Argument, Dependence, Graph, NodeId, Operation, Variable};
@@ -39,7 +40,12 @@ impl Unsolved {
         let mut terms = Vec::new();
         derived_parameters(&mut translator)?;
         let kinetic = sum_terms(&mut translator, &model.kinetic, "T", &mut terms)?;
-        sum_terms(&mut translator, &model.potential, "V", &mut terms)?;
+        let potential = sum_terms(&mut translator, &model.potential, "V", &mut terms)?;
+        let energies = Energies {
+            kinetic,
+            potential,
+            positions: translator.positions().to_vec(),
+        };
         sum_terms(&mut translator, &model.dissipation, "R", &mut terms)?;
         for force in &model.forces {
             translate_force(&mut translator, force)?;
@@ -53,6 +59,7 @@ impl Unsolved {
         }
         translate_coefficients(&mut translator)?;
         translate_impacts(&mut translator)?;
+        find_jumps(&mut translator, &energies)?;
         Ok(Self {
             graph: translator.graph,
             kinetic,

@@ -19,11 +19,11 @@ mod types;
 mod value;
 
 pub use crate::mechanics::impacts::Impact;
-pub use crate::mechanics::outputs::SlidingSurface;
 pub use crate::mechanics::outputs::{
     BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
     Outputs, Products, SURFACES_OF_A_REGIME, Switch,
 };
+pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};
 pub use types::{

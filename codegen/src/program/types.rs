@@ -46,6 +46,8 @@ pub struct ProgramGuard {
     pub formula: String,
     /// Value of the function.
     pub value: ValueId,
+    /// True if the energies jump on the surface, so that rates jump there.
+    pub is_corner: bool,
 }
 
 /// Blocks of the mass matrix.

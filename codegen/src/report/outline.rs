@@ -75,7 +75,7 @@ impl<'a> Outline<'a> {
         nodes.extend(pivots.filter(|pivot| self.graph().name(**pivot).is_some()));
         nodes.extend(equations.coefficients.iter().map(|known| known.value));
         nodes.extend(equations.guards.iter().map(|guard| guard.value));
-        if let Linearity::Nonlinear(node) = self.linearity {
+        if let Linearity::Nonlinear(node) | Linearity::Corners(node) = self.linearity {
             nodes.push(node);
         }
         nodes

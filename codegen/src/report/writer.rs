@@ -48,6 +48,10 @@ impl Writer<'_> {
                 "The model has impacts; these equations hold between them",
                 None,
             ),
+            Linearity::Corners(node) => (
+                "Rates jump by the corner conditions where the energies jump, first where this is zero",
+                Some(self.reader.formula(node)),
+            ),
             Linearity::Nonlinear(node) => {
                 ("The model is not linear", Some(self.reader.formula(node)))
             }

@@ -21,6 +21,10 @@ const NOT_DEFINITE: &str = "\n\n\
     The mass matrix varies with the state. If it is not positive definite, rates of velocities are\n\
     NaN, even if [`Coefficients::positive_definite`], which depends only on the parameters, is true.";
 
+const BETWEEN_CORNERS: &str = "\n\n\
+    These are the rates between corners of the motion. Where the energies of the specification jump,\n\
+    rates of coordinates jump, too. Those jumps are not included; `eomgen simulate` applies them.";
+
 const BETWEEN_IMPACTS: &str = "\n\n\
     These are the rates between impacts. Impacts and closed contacts of the specification are not\n\
     included.";
@@ -49,6 +53,9 @@ pub fn describe_rate_limits(file: &File<'_>) -> String {
     }
     if !file.program.impacts.is_empty() {
         said += BETWEEN_IMPACTS;
+    }
+    if file.program.guards.iter().any(|guard| guard.is_corner) {
+        said += BETWEEN_CORNERS;
     }
     said
 }

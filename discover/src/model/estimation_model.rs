@@ -113,6 +113,12 @@ impl EstimationModel {
         let rates = add_observed_rates(&mut model, channels);
         let compiled =
             CompiledModel::derive(model, order.map_or(Orders::Declared, Orders::Uniform))?;
+        if let Some(surface) = compiled.first_corner() {
+            return Err(Error::Request(format!(
+                "{name}: the energies of the model jump where `{surface}` is zero, and the rates with them, which \
+                 `compare` and `discover` do not support yet; `simulate` does"
+            )));
+        }
         let ranges = compiled.model().coordinate_ranges().map_err(|error| {
             Diagnostics::from_one(compiled.model().source.clone(), error.diagnostic())
         })?;

@@ -11,6 +11,7 @@ use eomgen_sim::ode::{ObservedStep, Surface, System, jacobian_by_differences};
 
 use crate::audit::{Audit, Auditor, EnergyAndPower};
 use crate::contacts::Contacts;
+use crate::corners::{CornerEnergy, Corners};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
 use crate::sticking::{SidedModel, SurfaceStates};
@@ -23,6 +24,7 @@ pub struct DrivenModel<E, I> {
     jacobians: Option<RefCell<JacobianEvaluator>>,
     projection: Option<Projection>,
     contacts: Option<RefCell<Contacts>>,
+    corners: Option<RefCell<Corners>>,
     sliding: Option<RefCell<SurfaceStates>>,
     auditor: Option<RefCell<Auditor>>,
     /// Typical sizes of the states; empty if all are 1.
@@ -38,6 +40,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             jacobians: None,
             projection: None,
             contacts: None,
+            corners: None,
             sliding: None,
             auditor: None,
             typical_sizes: Vec::new(),
@@ -93,6 +96,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
+    /// Enables corners of the motion, where the energies jump.
+    pub(crate) fn with_corners(mut self, corners: Option<Corners>) -> Self {
+        self.corners = corners.map(RefCell::new);
+        self
+    }
+
     /// Enables sticking on switching surfaces, as under dry friction, at the same parameters. The
     /// system keeps the state of sticking, so use it for one motion only.
     pub fn with_sliding(mut self, sided: Option<SidedModel>) -> Self {
@@ -113,6 +122,40 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
     pub(crate) fn overlap_message(&self) -> Option<String> {
         self.contacts.as_ref()?.borrow().overlap()
+    }
+
+    /// Returns cause and cure if the motion stopped at a corner.
+    pub(crate) fn corner_message(&self) -> Option<String> {
+        let corners = self.corners.as_ref()?.borrow();
+        corners.failure().map(str::to_owned)
+    }
+
+    /// Returns the inputs just before a time (s) and at it.
+    fn inputs_around(&self, t: f64) -> [Vec<f64>; 2] {
+        let given = self.inputs.borrow();
+        [t.next_down(), t].map(|t| given.evaluate(t).into_owned())
+    }
+
+    /// Applies the corner of the motion between a state on the near side of a surface and one just beyond
+    /// it. Returns true if the state changed.
+    fn apply_corner(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
+        let Some(corners) = &self.corners else {
+            return false;
+        };
+        let (given, arrived) = (self.inputs.borrow(), y.to_vec());
+        let inputs = [before.0, t].map(|t| given.evaluate(t).into_owned());
+        let inputs = [&inputs[0][..], &inputs[1][..]];
+        let Some(energy) = corners.borrow_mut().apply(before, (t, y), inputs) else {
+            return false;
+        };
+        if let Some(auditor) = &self.auditor {
+            let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+            let CornerEnergy { before, work } = energy;
+            auditor
+                .borrow_mut()
+                .audit_corner((t, y), (before, work), energies);
+        }
+        arrived != y
     }
 
     fn has_closed_contacts(&self) -> bool {
@@ -333,10 +376,37 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
         }
+        let has_corner = self.apply_corner(before, t, y);
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
-            sliding.borrow_mut().apply_crossing(inputs, before, t, y);
+            match has_corner {
+                // Rates that jump over a surface do not arrive on it.
+                true => sliding.borrow_mut().release_moved((t, y), inputs),
+                false => sliding.borrow_mut().apply_crossing(inputs, before, t, y),
+            }
         }
+    }
+
+    fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
+        let Some(corners) = &self.corners else {
+            return false;
+        };
+        let inputs = self.inputs_around(t);
+        let around = [&inputs[0][..], &inputs[1][..]];
+        let Some(energy) = corners.borrow_mut().apply_input_jump((t, y), around) else {
+            return false;
+        };
+        if let Some(auditor) = &self.auditor {
+            let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+            let CornerEnergy { before, work } = energy;
+            auditor
+                .borrow_mut()
+                .audit_corner_between_steps((t, y), (before, work), energies);
+        }
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow_mut().release_moved((t, y), &inputs[1]);
+        }
+        true
     }
 
     fn fix_sides(&self, sides: Option<&[f64]>) {
@@ -346,13 +416,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     }
 
     fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        let Some(sliding) = &self.sliding else {
-            return Vec::new();
-        };
+        let mut changed = Vec::new();
         let given = self.inputs.borrow();
-        let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));
-        let mut sliding = sliding.borrow_mut();
-        sliding.update((t, y), (earlier.as_ref(), inputs.as_ref()))
+        if let Some(corners) = &self.corners {
+            let mut corners = corners.borrow_mut();
+            corners.update((t, y), &given.evaluate(t));
+            changed = corners.take_returned();
+        }
+        if let Some(sliding) = &self.sliding {
+            let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));
+            let mut sliding = sliding.borrow_mut();
+            changed.extend(sliding.update((t, y), (earlier.as_ref(), inputs.as_ref())));
+        }
+        changed
     }
 
     fn is_observing(&self) -> bool {

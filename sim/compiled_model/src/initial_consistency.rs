@@ -51,6 +51,7 @@ impl Instance<'_> {
             .with_projection(self.projection()?);
         Ok(driven
             .with_impacts(impacts)
+            .with_corners(self.corners()?)
             .with_sliding(self.sided_model()?))
     }
 

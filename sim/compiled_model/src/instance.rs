@@ -8,6 +8,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
+use crate::corners::Corners;
 use crate::error::Error;
 use crate::model::CompiledModel;
 use crate::motion::Motion;
@@ -172,6 +173,14 @@ impl<'m> Instance<'m> {
     /// Terms that cannot be derived.
     pub(crate) fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
         self.model.sided_model(&self.parameters)
+    }
+
+    /// Returns the corners of the motion at these parameters; `None` if no momenta can jump.
+    ///
+    /// # Errors
+    /// Terms that cannot be derived.
+    pub(crate) fn corners(&self) -> Result<Option<Corners>, Error> {
+        self.model.corners(&self.parameters)
     }
 
     /// Returns an exact propagator at these parameters.

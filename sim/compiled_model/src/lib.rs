@@ -42,6 +42,7 @@
 
 mod audit;
 mod contacts;
+mod corners;
 mod cyclic_directions;
 mod driven_model;
 mod equilibrium;

@@ -4,17 +4,19 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use eomgen_codegen::independence::rows::constraint_program;
+use eomgen_codegen::mechanics::corners::has_jumping_momenta;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::mechanics::sliding::can_hold_motion;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::{Variant, derive_sliding};
+use eomgen_codegen::variant::{Variant, derive_corners, derive_sliding};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
+use crate::corners::Corners;
 use crate::error::Error;
 use crate::jacobian_program::JacobianProgram;
 use crate::sticking::SidedModel;
@@ -76,6 +78,7 @@ pub struct CompiledModel {
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
     sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
+    corners: OnceLock<Result<Option<Program>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
     typical_sizes: OnceLock<Vec<f64>>,
 }
@@ -131,6 +134,7 @@ impl CompiledModel {
             code: OnceLock::new(),
             piecewise_linear: OnceLock::new(),
             differentiated: OnceLock::new(),
+            corners: OnceLock::new(),
             sided: OnceLock::new(),
             constraints: OnceLock::new(),
             typical_sizes: OnceLock::new(),
@@ -267,6 +271,33 @@ impl CompiledModel {
             SidedModel::new(prepare_evaluator(program, code.as_ref(), parameters))
         });
         Ok(sided)
+    }
+
+    /// Returns the corners of a motion at these values of the independent parameters, SI. `None` if
+    /// no momenta can jump.
+    ///
+    /// # Errors
+    /// Terms that cannot be derived.
+    pub(crate) fn corners(&self, parameters: &[f64]) -> Result<Option<Corners>, Error> {
+        let made = self.corners.get_or_init(|| {
+            if !has_jumping_momenta(&self.equations) {
+                return Ok(None);
+            }
+            derive_corners(&self.model, &self.orders)
+        });
+        let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
+        let evaluator = |program| prepare_evaluator(program, None, parameters);
+        Ok(made
+            .as_ref()
+            .map(|program| Corners::new(evaluator(program))))
+    }
+
+    /// Returns the function of the first surface at which the energies jump, so that rates jump;
+    /// `None` if there is none.
+    pub fn first_corner(&self) -> Option<&str> {
+        let mut guards = self.program.guards.iter();
+        let corner = guards.find(|guard| guard.is_corner)?;
+        Some(&corner.formula)
     }
 
     /// Returns the piecewise-linear form of the model.

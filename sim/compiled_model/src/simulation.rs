@@ -216,6 +216,14 @@ impl Instance<'_> {
                     .to_owned(),
             ));
         }
+        if let Some(surface) = self.model.first_corner()
+            && settings.method == Method::Adams
+        {
+            return Err(Error::Request(format!(
+                "the solver adams uses the preceding steps, which jumps of the rates invalidate, and the \
+                 energies of this model jump where `{surface}` is zero: use --solver rk or radau"
+            )));
+        }
         if is_constrained && settings.method == Method::Adams {
             return Err(Error::Request(
                 "the solver adams uses the preceding steps, which the projection onto the constraints \
@@ -277,6 +285,9 @@ impl Instance<'_> {
                 };
                 let reason = match (system.overlap_message(), singular) {
                     (Some(overlap), _) => format!("at t = {ended_at:?} s {overlap}"),
+                    _ if system.corner_message().is_some() => {
+                        system.corner_message().unwrap_or_default()
+                    }
                     (None, Some(reason)) => reason,
                     (None, None) => {
                         self.format_named((&surfaces, solver), |names| error.format_named(names))

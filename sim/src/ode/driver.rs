@@ -292,7 +292,19 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 .states
                 .push(self.stepper.current_point().y.clone());
         }
+        self.pass_breakpoint();
         self.enter_regime()
+    }
+
+    /// Changes the state where it jumps with inputs.
+    fn pass_breakpoint(&mut self) {
+        let mut point = self.stepper.current_point().clone();
+        let is_changed = self.watched.has_breakpoint_at(point.t)
+            && self.watched.apply_breakpoint(point.t, &mut point.y);
+        if is_changed {
+            let step = self.stepper.step();
+            self.stepper.restart(point, step);
+        }
     }
 
     /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated.

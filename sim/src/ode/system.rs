@@ -83,6 +83,11 @@ pub trait System {
     /// surface, `t` and `y` are just beyond it. Impacts and tangent vectors jump here.
     fn apply_event(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
 
+    /// Changes `y` at a breakpoint `t`, where inputs jump. Returns true if it did.
+    fn apply_breakpoint(&self, _t: f64, _y: &mut [f64]) -> bool {
+        false
+    }
+
     /// Fixes the sides of surfaces that may hold a motion, so that the rates continue smoothly
     /// across them: -1, 1, or 0 (unknown) per switching function. `None` restores the rates of the
     /// side on which the state is. A system may ignore it.
@@ -148,6 +153,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
         (**self).apply_event(before, t, y);
+    }
+
+    fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
+        (**self).apply_breakpoint(t, y)
     }
 
     fn fix_sides(&self, sides: Option<&[f64]>) {

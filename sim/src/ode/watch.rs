@@ -211,6 +211,16 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.apply_event(before, t, y);
     }
 
+    /// Changes `y` where inputs jump at `t`, if they do; see [`System::apply_breakpoint`].
+    pub fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
+        self.system.apply_breakpoint(t, y)
+    }
+
+    /// Returns true if the system has a breakpoint at `t`, where steps end.
+    pub fn has_breakpoint_at(&self, t: f64) -> bool {
+        t == self.horizon.get()
+    }
+
     /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
     /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {

@@ -16,6 +16,11 @@ pub enum ExactError {
     Constrained,
     /// The model has impacts, at which rates jump.
     Impacts,
+    /// The energies jump at a surface, so that rates jump there.
+    Corners {
+        /// Function that is zero on the surface.
+        surface: String,
+    },
     /// The model is invalid.
     Model(String),
     /// A coefficient is not finite.
@@ -60,6 +65,10 @@ impl ExactError {
             Self::Impacts => "the model has impacts, at which rates jump. The exact solver \
                  does not support them; use the general solver (--solver rk)"
                 .to_owned(),
+            Self::Corners { surface } => format!(
+                "the energies of the model jump where `{surface}` is zero, so that rates jump there. The \
+                 exact solver does not support this; use the general solver (--solver rk)"
+            ),
             Self::Model(message) => message.clone(),
             Self::NotFinite => "a coefficient of the equations of motion is not finite: check \
                  for a mass, inertia or length of zero, or a parameter that is far too large"

@@ -32,6 +32,10 @@ impl PiecewiseLinear {
             Linearity::Linear | Linearity::PiecewiseLinear => {}
             Linearity::Constrained => return Err(ExactError::Constrained),
             Linearity::Impacts => return Err(ExactError::Impacts),
+            Linearity::Corners(node) => {
+                let surface = abridged_formula(&equations.graph, model, node).to_string();
+                return Err(ExactError::Corners { surface });
+            }
             Linearity::Nonlinear(node) => {
                 let formula = abridged_formula(&equations.graph, model, node).to_string();
                 return Err(ExactError::NotLinear { formula });

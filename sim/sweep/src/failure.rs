@@ -46,9 +46,10 @@ impl From<ExactError> for Failure {
             ExactError::Stopped(error) => error.into(),
             ExactError::Sticking { .. } => Self::Switching,
             ExactError::NotConverged => Self::Limit,
-            ExactError::NotLinear { .. } | ExactError::Constrained | ExactError::Impacts => {
-                Self::Undefined
-            }
+            ExactError::NotLinear { .. }
+            | ExactError::Constrained
+            | ExactError::Impacts
+            | ExactError::Corners { .. } => Self::Undefined,
             ExactError::Model(_)
             | ExactError::NotFinite
             | ExactError::NotPositiveDefinite

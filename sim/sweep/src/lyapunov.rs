@@ -43,6 +43,12 @@ impl<'a> Lyapunov<'a> {
                 impact.name
             )));
         }
+        if let Some(surface) = model.first_corner() {
+            return Err(SweepError::Request(format!(
+                "--measure lyapunov: the energies of the model jump where `{surface}` is zero, and the \
+                 rates with them, which this measure does not support yet"
+            )));
+        }
         if model.piecewise_linear().is_err() {
             let refused = |error| SweepError::Request(format!("--measure lyapunov: {error}"));
             model.differentiate().map_err(refused)?;

@@ -120,6 +120,13 @@ fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
         Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(describe_error)?,
         Err(reason) => exact::skipped_check(reason),
     });
+    checks.extend(variant.corner().map(|surface| {
+        let reason = format!(
+            "the energies jump where `{surface}` is zero; the checks cover the equations beside that surface, \
+             not the jump of the rates"
+        );
+        Check::with_skip("corners".to_owned(), 0.0, SkipKind::NotRun, reason)
+    }));
     Ok((checks, coverage))
 }
 

@@ -35,6 +35,12 @@ impl Variant for Derived {
         names
     }
 
+    fn corner(&self) -> Option<String> {
+        let mut guards = self.evaluator.program().guards.iter();
+        let corner = guards.find(|guard| guard.is_corner)?;
+        Some(corner.formula.clone())
+    }
+
     fn rates(
         &mut self,
         time: f64,

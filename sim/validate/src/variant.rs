@@ -45,6 +45,12 @@ pub trait Variant {
     /// Returns the power of all non-conservative forces, in W.
     fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String>;
 
+    /// Returns the function of a surface at which the energies jump, so that rates jump; `None` if there is
+    /// none.
+    fn corner(&self) -> Option<String> {
+        None
+    }
+
     /// Returns the guards. A guard changes sign at the switching surface of a piecewise function.
     fn guards(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, String>;
 

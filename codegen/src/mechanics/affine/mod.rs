@@ -62,7 +62,7 @@ pub fn derive_affine(mut equations: Equations) -> Result<AffineEquations, NodeId
         Linearity::Linear | Linearity::PiecewiseLinear => {}
         Linearity::Constrained => return Err(equations.multipliers[0]),
         Linearity::Impacts => return Err(equations.impacts[0].distance),
-        Linearity::Nonlinear(node) => return Err(node),
+        Linearity::Corners(node) | Linearity::Nonlinear(node) => return Err(node),
     }
     let not_scalar = |guard: &&crate::mechanics::guard::Guard| {
         equations.graph.shape(guard.value) != Shape::Scalar
@@ -73,7 +73,8 @@ pub fn derive_affine(mut equations: Equations) -> Result<AffineEquations, NodeId
     let first_side = equations.parameter_names.len();
     let mut roots = equations.rate_nodes();
     roots.extend(equations.guards.iter().map(|guard| guard.value));
-    let mut with_sides = Sides::replace_all(&mut equations, &roots, &|guard| {
+    let given = (&mut equations.graph, &equations.guards[..]);
+    let mut with_sides = Sides::replace_all(given, &roots, &|guard| {
         Some(Operation::Parameter(ParameterId::new(first_side + guard)))
     });
     let graph = &mut equations.graph;

@@ -20,6 +20,6 @@ pub(crate) use derive::guard_rate;
 pub use output::{Output, UnknownOutput};
 pub use regimes::{Decision, SURFACES_OF_A_REGIME, Switch};
 pub use types::{
-    BlockPlace, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
-    SlidingSurface,
+    BlockPlace, Corners, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs,
+    Products, RateRow, SlidingSurface,
 };

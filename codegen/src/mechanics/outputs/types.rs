@@ -27,6 +27,8 @@ pub struct Outputs<N, R> {
     pub regimes: Option<Vec<Switch<N>>>,
     /// Surfaces that can hold the motion, if their sides are inputs.
     pub sliding: Vec<SlidingSurface<N, R>>,
+    /// Momenta and energy at corners of the motion, if the sides of their surfaces are inputs.
+    pub corners: Option<Corners<N, R>>,
 }
 
 impl<N, R> Default for Outputs<N, R> {
@@ -41,6 +43,7 @@ impl<N, R> Default for Outputs<N, R> {
             gradient_derivative: None,
             regimes: None,
             sliding: Vec::new(),
+            corners: None,
         }
     }
 }
@@ -62,6 +65,33 @@ pub struct SlidingSurface<N, R> {
     pub column: R,
     /// Derivatives of the first-order rates by the surface's own side.
     pub first_order: Vec<N>,
+}
+
+/// Quantities that determine the rates beyond a corner, with nodes or values `N` and rows `R` of them. The
+/// mass matrix of the same program depends on the sides, too.
+#[derive(Clone, Debug)]
+pub struct Corners<N, R> {
+    /// Momenta p = dL/dq'.
+    pub momenta: R,
+    /// Hamiltonian p q' - L.
+    pub hamiltonian: N,
+    /// Energy T + V.
+    pub energy: N,
+    /// Surfaces, in the order of their sides.
+    pub surfaces: Vec<RateRow<N, R>>,
+    /// Constraints.
+    pub constraints: Vec<RateRow<N, R>>,
+}
+
+/// Rate of a function, and its derivatives by the rates of the coordinates.
+#[derive(Clone, Debug)]
+pub struct RateRow<N, R> {
+    /// Index of the function among all guard values, or among the constraints.
+    pub place: usize,
+    /// Rate.
+    pub rate: N,
+    /// Derivatives of the rate.
+    pub row: R,
 }
 
 /// Products with the rates' Jacobian by state and inputs.

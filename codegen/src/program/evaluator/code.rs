@@ -1,7 +1,7 @@
 //! Interface of the machine code that the evaluator calls.
 
 use super::point::Point;
-use crate::program::{Impact, Products, Program, RowValues, SlidingSurface, ValueId};
+use crate::program::{Corners, Impact, Products, Program, RowValues, SlidingSurface, ValueId};
 
 /// Quantities that one call computes together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub enum Stage {
     Impacts,
     /// All quantities of the surfaces that can hold the motion.
     Sliding,
+    /// All quantities at corners of the motion.
+    Corners,
     /// Blocks of the mass matrix.
     Mass,
     /// Velocity terms and generalised forces.
@@ -40,13 +42,14 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
         Self::Distances,
         Self::Impacts,
         Self::Sliding,
+        Self::Corners,
         Self::Mass,
         Self::Forces,
         Self::BiasForces,
@@ -75,6 +78,12 @@ impl Stage {
                 .sliding
                 .iter()
                 .flat_map(surface_values)
+                .collect(),
+            Self::Corners => program
+                .outputs
+                .corners
+                .iter()
+                .flat_map(corner_values)
                 .collect(),
             Self::Mass => {
                 let mass = &program.mass;
@@ -116,6 +125,16 @@ fn surface_values(surface: &SlidingSurface<ValueId, RowValues>) -> Vec<ValueId> 
     values.extend(&surface.by_sides);
     values.extend(&surface.first_order);
     values.extend(surface.column.all());
+    values
+}
+
+fn corner_values(corners: &Corners<ValueId, RowValues>) -> Vec<ValueId> {
+    let mut values = corners.momenta.all();
+    values.extend([corners.hamiltonian, corners.energy]);
+    for row in corners.surfaces.iter().chain(&corners.constraints) {
+        values.push(row.rate);
+        values.extend(row.row.all());
+    }
     values
 }
 

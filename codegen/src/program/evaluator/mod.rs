@@ -5,6 +5,7 @@
 mod bounds;
 mod bounds_memory;
 mod code;
+mod corners;
 mod enclosure;
 mod functions;
 mod impacts;
@@ -23,6 +24,7 @@ use crate::program::{Extent, Op, Program, ValueId};
 pub use bounds::Stretch;
 use bounds_memory::BoundsMemory;
 pub use code::{MachineCode, Stage};
+pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};
 pub use impacts::ImpactValues;

@@ -66,9 +66,14 @@ pub fn lower_with_outputs(
     let guards = equations
         .guards
         .iter()
-        .map(|guard| ProgramGuard {
+        .enumerate()
+        .map(|(place, guard)| ProgramGuard {
             formula: abridged_formula(&equations.graph, model, guard.value).to_string(),
             value: lowering.value(guard.value),
+            is_corner: equations
+                .corners
+                .iter()
+                .any(|corner| corner.guard == place && corner.moves_rates),
         })
         .collect();
     let pivots = equations

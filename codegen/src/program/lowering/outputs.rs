@@ -4,7 +4,7 @@ use super::values::Lowering;
 use crate::mechanics::outputs::SlidingSurface;
 use crate::mechanics::outputs::Switch;
 use crate::mechanics::outputs::{
-    GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
+    Corners, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products, RateRow,
 };
 use crate::mechanics::rows::RowNodes;
 use crate::program::{RowValues, ValueId};
@@ -67,6 +67,28 @@ impl Lowering<'_> {
                     .collect()
             }),
             sliding: outputs.sliding.iter().map(|s| self.sliding(s)).collect(),
+            corners: outputs
+                .corners
+                .as_ref()
+                .map(|corners| self.corners(corners)),
+        }
+    }
+
+    fn corners(&mut self, corners: &Corners<NodeId, RowNodes>) -> Corners<ValueId, RowValues> {
+        let mut rows = |rows: &[RateRow<NodeId, RowNodes>]| {
+            let lowered = rows.iter().map(|known| RateRow {
+                place: known.place,
+                rate: self.value(known.rate),
+                row: self.rows(&known.row),
+            });
+            lowered.collect()
+        };
+        Corners {
+            surfaces: rows(&corners.surfaces),
+            constraints: rows(&corners.constraints),
+            momenta: self.rows(&corners.momenta),
+            hamiltonian: self.value(corners.hamiltonian),
+            energy: self.value(corners.energy),
         }
     }
 

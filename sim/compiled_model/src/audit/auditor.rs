@@ -226,6 +226,47 @@ impl Auditor {
         }
     }
 
+    /// Audits a corner of the motion in the step that ends at this time (s) and state. The energy before it
+    /// and the work there (J) follow from the corner conditions.
+    pub fn audit_corner(
+        &mut self,
+        end: (f64, &[f64]),
+        corner: (f64, f64),
+        energies: &mut Energies<'_>,
+    ) {
+        self.pending_energy += self.audit_jump_of_rates(end, corner, energies) - corner.0;
+    }
+
+    /// Audits a corner between two steps.
+    pub fn audit_corner_between_steps(
+        &mut self,
+        start: (f64, &[f64]),
+        corner: (f64, f64),
+        energies: &mut Energies<'_>,
+    ) {
+        self.energy = Some(self.audit_jump_of_rates(start, corner, energies));
+    }
+
+    /// Audits the energy after a jump of rates and returns it.
+    fn audit_jump_of_rates(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        (before, work): (f64, f64),
+        energies: &mut Energies<'_>,
+    ) -> f64 {
+        let after = self.evaluate(energies, (t, state)).energy;
+        self.audit.energy_change += after - before;
+        self.audit.work += work;
+        let allowed = self.find_allowed_change(
+            energies,
+            TOLERANCE_ERROR_FACTOR,
+            &[(t, state)],
+            &[before, after, work],
+        );
+        self.record_excess(t, after - before - work, allowed);
+        after
+    }
+
     /// Returns the reason why closed contacts are not audited; `None` if they are.
     pub fn driven_contacts(&self) -> Option<&str> {
         self.driven_contacts.as_deref()

@@ -257,6 +257,24 @@ impl SurfaceStates {
         self.correct_onto_surfaces((t, state), inputs, true);
     }
 
+    /// Releases the motion from surfaces that a jump of the rates moved it away from.
+    pub fn release_moved(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
+        for (surface, place) in self.places.iter_mut().enumerate() {
+            let value = functions[surface];
+            let allowed = roundings[surface] + MAX_DRIFT_FRACTION * self.sizes[surface];
+            if *place != SurfaceState::Free && value.abs() > allowed {
+                if place.is_on() {
+                    self.changes
+                        .push((self.sided.guard_index(surface), value > 0.0));
+                }
+                *place = SurfaceState::Free;
+            }
+        }
+        self.found_at = None;
+    }
+
     /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
     /// If a function is exactly zero, its fixed side counts.
     fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {

@@ -1,0 +1,396 @@
+//! Corners of a motion, where the energies jump: at a surface g(q, t) = 0, or where inputs jump.
+//!
+//! Position and time are continuous there; momenta and energy follow the corner conditions of Weierstrass
+//! and Erdmann ([`law`]). The motion passes the surface, or returns from it if its energy does not suffice.
+//! Surfaces that are crossed at one instant are tried in every order, and all orders must agree.
+
+mod law;
+
+use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
+use law::{SidedPoint, pass, sides};
+use nalgebra::DVector;
+
+/// Maximum number of surfaces that are crossed at one instant.
+const MAX_COINCIDENT: usize = 4;
+
+/// Largest difference of rates, relative to the largest one, between orders of surfaces that agree.
+const ORDER_AGREEMENT: f64 = 1e-9;
+
+/// Number of attempts to move a state to the near side of a surface; the distance doubles each time.
+const RETURN_ATTEMPTS: usize = 60;
+
+/// First distance, relative to the magnitude of the terms of the function.
+const RETURN_FRACTION: f64 = 4.0 * f64::EPSILON;
+
+/// Corners along a motion.
+pub(crate) struct Corners {
+    evaluator: Evaluator,
+    /// Side of each surface, 0 or 1, on which the motion is; `None` if it has not been off the surface.
+    sides: Vec<Option<f64>>,
+    guards: Vec<f64>,
+    /// Cause of a stop.
+    failure: Option<String>,
+    /// Surfaces from which the motion returned, by their guards, with the side that it is on; not yet
+    /// reported.
+    returned: Vec<(usize, bool)>,
+}
+
+/// Energy at a corner, in J.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CornerEnergy {
+    /// Energy before.
+    pub before: f64,
+    /// Work of the surfaces and constraints that move with time.
+    pub work: f64,
+}
+
+/// Rates and sides after surfaces that are crossed at one instant.
+struct Outcome {
+    state: Vec<f64>,
+    sides: Vec<f64>,
+}
+
+impl Corners {
+    /// Wraps an evaluator of a program with the quantities at corners, prepared at its parameters.
+    pub fn new(evaluator: Evaluator) -> Self {
+        Self {
+            sides: vec![None; sides(&evaluator)],
+            guards: vec![0.0; evaluator.guard_count()],
+            failure: None,
+            returned: Vec::new(),
+            evaluator,
+        }
+    }
+
+    /// Returns the cause if the motion stopped at a corner.
+    pub fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// Returns the surfaces from which the motion returned since the last call: the guard, and true if the
+    /// motion stays on the positive side.
+    pub fn take_returned(&mut self) -> Vec<(usize, bool)> {
+        std::mem::take(&mut self.returned)
+    }
+
+    /// Records on which sides the motion is.
+    pub fn update(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+        let values = self.functions((t, state), inputs);
+        for (side, value) in self.sides.iter_mut().zip(values) {
+            *side = side_of(value).or(*side);
+        }
+    }
+
+    /// Changes the rates of a state just beyond surfaces; `before` is on their near side. A motion that
+    /// returns gets a position on the near side. Returns the energies if the motion has a corner.
+    pub fn apply(
+        &mut self,
+        (t_before, before): (f64, &[f64]),
+        (t, state): (f64, &mut [f64]),
+        [inputs_before, inputs]: [&[f64]; 2],
+    ) -> Option<CornerEnergy> {
+        self.failure = None;
+        let near = self.functions((t_before, before), inputs_before);
+        let beyond = self.functions((t, state), inputs);
+        let known = self.sides.iter().zip(&near);
+        let from: Vec<f64> = known
+            .zip(&beyond)
+            .map(|((side, near), beyond)| {
+                let side = side.or_else(|| side_of(*near)).or_else(|| side_of(*beyond));
+                side.unwrap_or(0.0)
+            })
+            .collect();
+        let to: Vec<f64> = beyond
+            .iter()
+            .zip(&from)
+            .map(|(value, side)| side_of(*value).unwrap_or(*side))
+            .collect();
+        let crossed: Vec<usize> = (0..to.len())
+            .filter(|place| to[*place] != from[*place])
+            .collect();
+        if crossed.is_empty() {
+            return None;
+        }
+        match self.find_outcome((t, state), inputs, (&from, &to, &crossed)) {
+            Ok(outcome) => {
+                let energy = self.energies((t, state), inputs, (&from, &crossed), &outcome);
+                state.copy_from_slice(&outcome.state);
+                self.return_to_sides((t, state), inputs, (&outcome.sides, &crossed));
+                for place in crossed {
+                    let side = outcome.sides[place];
+                    self.sides[place] = Some(side);
+                    if side == from[place] {
+                        self.returned.push((self.guard(place), side > 0.0));
+                    }
+                }
+                energy
+            }
+            Err(cause) => {
+                self.failure = Some(cause);
+                state.fill(f64::NAN);
+                None
+            }
+        }
+    }
+
+    /// Changes the rates of a state at a time at which inputs jump, for constant momenta. Returns the
+    /// energies if the rates change.
+    pub fn apply_input_jump(
+        &mut self,
+        (t, state): (f64, &mut [f64]),
+        [inputs_before, inputs]: [&[f64]; 2],
+    ) -> Option<CornerEnergy> {
+        if inputs_before == inputs {
+            return None;
+        }
+        let values = self.functions((t, state), inputs);
+        let known: Vec<f64> = self
+            .sides
+            .iter()
+            .zip(&values)
+            .map(|(side, value)| side.or(side_of(*value)).unwrap_or(0.0))
+            .collect();
+        let to: Vec<f64> = values
+            .iter()
+            .zip(&known)
+            .map(|(value, side)| side_of(*value).unwrap_or(*side))
+            .collect();
+        let mut near = self.point((t, state), inputs_before, &known);
+        let before = near.balance()?.values;
+        let mut far = self.point((t, state), inputs, &to);
+        let Some(balance) = far.balance() else {
+            self.failure = Some(singular(t));
+            state.fill(f64::NAN);
+            return None;
+        };
+        let momenta = DVector::from_column_slice(&before.momenta);
+        if balance.values.momenta == before.momenta
+            && balance.values.constraints == before.constraints
+        {
+            return None;
+        }
+        let (rates, _) = balance.rates_at(&momenta)?;
+        far.set_rates(&rates);
+        let after = far.values()?.energy;
+        state.copy_from_slice(&far.state);
+        Some(CornerEnergy {
+            before: before.energy,
+            work: after - before.energy,
+        })
+    }
+
+    /// Returns rates and sides after the surfaces `crossed`, in every order.
+    fn find_outcome(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        (from, to, crossed): (&[f64], &[f64], &[usize]),
+    ) -> Result<Outcome, String> {
+        if crossed.len() > MAX_COINCIDENT {
+            return Err(format!(
+                "{} surfaces at which the energies jump meet",
+                crossed.len()
+            ));
+        }
+        let mut found: Option<Outcome> = None;
+        for order in permutations(crossed) {
+            let mut point = self.point((t, state), inputs, from);
+            for place in order {
+                pass(&mut point, place, to[place]).ok_or_else(|| singular(t))?;
+            }
+            let first_side = point.inputs.len() - from.len();
+            let outcome = Outcome {
+                sides: point.inputs[first_side..].to_vec(),
+                state: point.state,
+            };
+            match &found {
+                Some(known) if !known.agrees(&outcome) => {
+                    return Err(self.format_meeting(t, crossed));
+                }
+                Some(_) => {}
+                None => found = Some(outcome),
+            }
+        }
+        found.ok_or_else(|| singular(t))
+    }
+
+    /// Returns the energies at a corner. The work is what the corner conditions give: the change of T + V
+    /// minus that of the Hamiltonian, and that of the Hamiltonian at surfaces that move with time.
+    fn energies(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+        (from, crossed): (&[f64], &[usize]),
+        outcome: &Outcome,
+    ) -> Option<CornerEnergy> {
+        let near = self.point(at, inputs, from).values()?;
+        let far = self
+            .point((at.0, &outcome.state), inputs, &outcome.sides)
+            .values()?;
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let speed = |values: &CornerValues, state: &[f64]| -> Vec<f64> {
+            let rates = &state[degrees..2 * degrees];
+            let surfaces = crossed.iter().map(|place| &values.surfaces[*place]);
+            let rows = surfaces.chain(&values.constraints);
+            rows.map(|(rate, row)| rate - dot(row, rates)).collect()
+        };
+        let moves = speed(&near, at.1)
+            .iter()
+            .chain(&speed(&far, &outcome.state))
+            .any(|own| own.abs() > 0.0);
+        let change = far.energy - near.energy;
+        let work = match moves {
+            true => change,
+            false => change - (far.hamiltonian - near.hamiltonian),
+        };
+        Some(CornerEnergy {
+            before: near.energy,
+            work,
+        })
+    }
+
+    /// Moves a state just beyond surfaces to the near side of those from which the motion returns.
+    fn return_to_sides(
+        &mut self,
+        (t, state): (f64, &mut [f64]),
+        inputs: &[f64],
+        (sides, crossed): (&[f64], &[usize]),
+    ) {
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        for place in crossed {
+            let direction = 2.0 * sides[*place] - 1.0;
+            let value = self.functions((t, state), inputs)[*place];
+            if direction * value > 0.0 {
+                continue;
+            }
+            let mut point = self.point((t, state), inputs, sides);
+            let Some(balance) = point.balance() else {
+                return;
+            };
+            let row = DVector::from_column_slice(&balance.values.surfaces[*place].1);
+            let Some(column) = balance.column(&row) else {
+                return;
+            };
+            let terms = row
+                .iter()
+                .zip(&*state)
+                .map(|(slope, entry)| (slope * entry).abs());
+            let mut distance = (2.0 * value.abs())
+                .max(RETURN_FRACTION * terms.sum::<f64>())
+                .max(f64::MIN_POSITIVE);
+            let start = state[..degrees].to_vec();
+            for _ in 0..RETURN_ATTEMPTS {
+                let moved = direction * distance / row.dot(&column);
+                for (entry, (start, column)) in
+                    state.iter_mut().zip(start.iter().zip(column.iter()))
+                {
+                    *entry = start + column * moved;
+                }
+                if direction * self.functions((t, state), inputs)[*place] > 0.0 {
+                    break;
+                }
+                distance *= 2.0;
+            }
+        }
+    }
+
+    fn point(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        sides: &[f64],
+    ) -> SidedPoint<'_> {
+        SidedPoint {
+            evaluator: &mut self.evaluator,
+            t,
+            state: state.to_vec(),
+            inputs: [inputs, sides].concat(),
+        }
+    }
+
+    /// Returns the functions of the surfaces.
+    fn functions(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+        let inputs = [inputs, &vec![0.0; self.sides.len()]].concat();
+        let inputs = &inputs[..];
+        self.evaluator
+            .guards(Point { t, state, inputs }, &mut self.guards);
+        (0..self.sides.len())
+            .map(|place| self.guards[self.guard(place)])
+            .collect()
+    }
+
+    /// Returns the index of a surface among all guard values.
+    fn guard(&self, place: usize) -> usize {
+        let corners = self.evaluator.program().outputs.corners.as_ref();
+        corners.map_or(0, |corners| corners.surfaces[place].place)
+    }
+
+    fn format_meeting(&self, t: f64, crossed: &[usize]) -> String {
+        let program = self.evaluator.program();
+        let mut formulas = Vec::new();
+        for guard in &program.guards {
+            let count = program.value(guard.value).extent.length();
+            formulas.extend(std::iter::repeat_n(&guard.formula, count));
+        }
+        let names: Vec<String> = crossed
+            .iter()
+            .map(|place| format!("`{}`", formulas[self.guard(*place)]))
+            .collect();
+        format!(
+            "at t = {t:?} s the motion meets at one instant the surfaces where {} are zero and the energies \
+             jump, and the motion beyond depends on which of them is first: move one of them apart",
+            names.join(" and ")
+        )
+    }
+}
+
+impl Outcome {
+    fn agrees(&self, other: &Self) -> bool {
+        let size = self
+            .state
+            .iter()
+            .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        let mut entries = self.state.iter().zip(&other.state);
+        let is_near = entries.all(|(a, b)| (a - b).abs() <= ORDER_AGREEMENT * size);
+        is_near && self.sides == other.sides
+    }
+}
+
+fn side_of(value: f64) -> Option<f64> {
+    if value > 0.0 {
+        Some(1.0)
+    } else if value < 0.0 {
+        Some(0.0)
+    } else {
+        None
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn singular(t: f64) -> String {
+    format!(
+        "at t = {t:?} s the energies jump, and beyond a coordinate has no inertia or the constraints do not \
+         determine the rates: give every coordinate inertia on both sides"
+    )
+}
+
+/// Returns all orders of some places.
+fn permutations(places: &[usize]) -> Vec<Vec<usize>> {
+    if places.len() <= 1 {
+        return vec![places.to_vec()];
+    }
+    let mut all = Vec::new();
+    for (index, first) in places.iter().enumerate() {
+        let mut rest = places.to_vec();
+        rest.remove(index);
+        all.extend(
+            permutations(&rest)
+                .into_iter()
+                .map(|order| [vec![*first], order].concat()),
+        );
+    }
+    all
+}
