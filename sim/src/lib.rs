@@ -6,6 +6,7 @@
 //! | [`piecewise_linear`] | propagates piecewise-linear models exactly from event to event |
 //! | [`exponential`] | integrates nearly piecewise-linear models with tangent vectors |
 //! | [`sliding_modes`] | finds the surfaces that hold a motion |
+//! | [`friction_discs`] | decides on rest and direction under friction against the direction of sliding |
 //! | [`variational`] | measures the growth of a tangent vector |
 //! | [`inputs`] | inputs over time |
 //! | [`cubic_spline`] | prescribed motion through samples |
@@ -78,6 +79,7 @@
 mod balancing;
 pub mod cubic_spline;
 pub mod exponential;
+pub mod friction_discs;
 pub mod inputs;
 pub mod ode;
 pub mod piecewise_linear;

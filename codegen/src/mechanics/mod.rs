@@ -15,6 +15,7 @@ pub mod affine;
 pub mod coefficients;
 pub(crate) mod constraints;
 pub mod corners;
+mod discs;
 pub mod equations;
 pub mod fields;
 mod forces;

@@ -7,17 +7,22 @@
 //! the observables follow from the side, a number from 0 to 1. A surface can hold the motion if g' depends on
 //! its side: a velocity's surface can, a position's cannot. The simulator decides which surfaces hold, and
 //! when they release.
+//!
+//! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see [`discs`](super::discs). Each of
+//! its components has a side, which is 0 to 1 for -1 to 1, and the component of v as its function.
 
 use std::collections::HashMap;
 
 use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Function;
 
+use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::can_be_constant;
+use crate::mechanics::guard::Guard;
 use crate::mechanics::outputs::{SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
-use crate::mechanics::sides::Sides;
+use crate::mechanics::sides::{Sides, sign};
 use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
@@ -25,6 +30,7 @@ use crate::symbolic::substitute::substitute;
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
 pub fn can_hold_motion(equations: &Equations) -> bool {
     !guards_with_sides(equations).is_empty()
+        || divides_by_speed(&equations.graph, &roots(equations))
 }
 
 /// Makes the sides of surfaces that can hold the motion inputs, after those of the model, in the order of the
@@ -41,17 +47,30 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
     })
     .known;
     replace(equations, &mut known);
-    let leaves: Vec<NodeId> = (0..sliding.len())
+    let mut functions: Vec<SideFunction> = sliding
+        .iter()
+        .map(|(guard, place)| SideFunction {
+            value: equations.guards[*guard].value,
+            place: *place,
+            is_odd: matches!(
+                equations.guards[*guard].function,
+                Function::Sign | Function::Abs
+            ),
+            disc: None,
+        })
+        .collect();
+    add_unit_vectors(equations, &mut functions);
+    let leaves: Vec<NodeId> = (0..functions.len())
         .map(|side| equations.graph.intern(leaf(side)))
         .collect();
-    let rates: Vec<NodeId> = sliding
+    let rates: Vec<NodeId> = functions
         .iter()
-        .map(|(guard, _)| guard_rate(equations, equations.guards[*guard].value))
+        .map(|function| guard_rate(equations, function.value))
         .collect();
     let graph = &mut equations.graph;
     let accelerations = &equations.accelerations.rows;
-    let mut found = Vec::with_capacity(sliding.len());
-    for (side, (guard, place)) in sliding.iter().enumerate() {
+    let mut found = Vec::with_capacity(functions.len());
+    for (side, function) in functions.iter().enumerate() {
         let own = leaves[side];
         let by = |graph: &mut Graph, nodes: &[NodeId]| -> Vec<NodeId> {
             nodes
@@ -60,11 +79,9 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
                 .collect()
         };
         found.push(SlidingSurface {
-            guard: *place,
-            is_odd: matches!(
-                equations.guards[*guard].function,
-                Function::Sign | Function::Abs
-            ),
+            guard: function.place,
+            disc: function.disc,
+            is_odd: function.is_odd,
             is_linear: true,
             rate: rates[side],
             by_sides: leaves
@@ -89,6 +106,58 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
         surface.is_linear = !parts.iter().any(|part| leaves.contains(part));
     }
     found
+}
+
+/// Function with a side.
+struct SideFunction {
+    value: NodeId,
+    /// Index among all guard values.
+    place: usize,
+    is_odd: bool,
+    /// Index of the disc of which the function is a component.
+    disc: Option<usize>,
+}
+
+/// Replaces unit vectors of velocities by inputs, after those of `functions`, and adds the components of the
+/// velocities to the functions and to the guards.
+fn add_unit_vectors(equations: &mut Equations, functions: &mut Vec<SideFunction>) {
+    let lengths = equations.guards.iter().map(|guard| {
+        let graph = &equations.graph;
+        graph.length(graph.shape(guard.value))
+    });
+    let mut place = lengths.sum();
+    let mut count = 0;
+    let nodes = roots(equations);
+    for disc in find_discs(&mut equations.graph, &nodes) {
+        let first = equations.inputs + functions.len();
+        let graph = &mut equations.graph;
+        let unit: Vec<NodeId> = (0..disc.components.len())
+            .map(|component| {
+                let side = graph.intern(Operation::Input(InputId::new(first + component)));
+                sign(graph, side)
+            })
+            .collect();
+        let nodes = roots(equations);
+        let mut known = HashMap::new();
+        if !disc.replace_unit_vector(&mut equations.graph, &nodes, &unit, &mut known) {
+            continue;
+        }
+        replace(equations, &mut known);
+        for value in disc.components {
+            equations.guards.push(Guard {
+                value,
+                function: Function::Sign,
+            });
+            functions.push(SideFunction {
+                value,
+                place,
+                is_odd: true,
+                disc: Some(count),
+            });
+            place += 1;
+        }
+        count += 1;
+    }
 }
 
 /// Returns the guards that depend on rates or on first-order states and cannot be constant in a regime,

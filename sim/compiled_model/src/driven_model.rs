@@ -217,7 +217,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             formula,
             is_speed: false,
         });
-        own.chain(impacts).collect()
+        let sliding = self.sliding.iter();
+        let discs = sliding.flat_map(|sliding| sliding.borrow().disc_formulas());
+        let discs = discs.map(|formula| Surface {
+            formula,
+            is_speed: true,
+        });
+        own.chain(impacts).chain(discs).collect()
     }
 
     /// Evaluates the switching functions at zero rates, with coordinates of this size.
@@ -285,7 +291,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     fn guard_count(&self) -> usize {
         let contacts = self.contacts.as_ref();
         let contacts = contacts.map_or(0, |contacts| contacts.borrow().names.len());
-        self.evaluator().guard_count() + contacts
+        let sliding = self.sliding.as_ref();
+        let discs = sliding.map_or(0, |sliding| sliding.borrow().disc_count());
+        self.evaluator().guard_count() + contacts + discs
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {

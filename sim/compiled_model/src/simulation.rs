@@ -231,6 +231,14 @@ impl Instance<'_> {
                     .to_owned(),
             ));
         }
+        let sided = self.sided_model()?;
+        if sided.is_some_and(|sided| sided.has_discs()) && settings.method == Method::Adams {
+            return Err(Error::Request(
+                "the solver adams uses the preceding steps, which a stop under friction along v/norm(v) \
+                 invalidates: use --solver rk or radau"
+                    .to_owned(),
+            ));
+        }
         // Before the evaluator, whose pivots give a less specific error for dependent constraints.
         let (initial, moved) =
             self.find_consistent_start(request.initial, request.time_span(), request.inputs)?;

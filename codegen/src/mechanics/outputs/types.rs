@@ -53,6 +53,9 @@ impl<N, R> Default for Outputs<N, R> {
 pub struct SlidingSurface<N, R> {
     /// Index of its function g among all guard values.
     pub guard: usize,
+    /// Index of the velocity v of which the function is a component, if the side replaces a component of
+    /// v/norm(v).
+    pub disc: Option<usize>,
     /// True if the switching function is the mean of both sides at g = 0, as sign(0) is.
     pub is_odd: bool,
     /// True if the rates are of first degree in the sides.

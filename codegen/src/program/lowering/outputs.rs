@@ -99,6 +99,7 @@ impl Lowering<'_> {
         let mut values = |nodes: &[NodeId]| nodes.iter().map(|id| self.value(*id)).collect();
         SlidingSurface {
             guard: surface.guard,
+            disc: surface.disc,
             is_odd: surface.is_odd,
             is_linear: surface.is_linear,
             by_sides: values(&surface.by_sides),

@@ -7,8 +7,10 @@
 //! This module follows the surfaces along a motion. A surface holds the motion from its arrival
 //! until the force reaches the limit of the surface. At the release, the switching function and
 //! its rate are zero up to rounding, which must not determine the side; so the surface is
-//! displaced by that rounding until the motion has left it.
+//! displaced by that rounding until the motion has left it. `discs` does the same for friction in
+//! several directions.
 
+mod discs;
 mod observed_motion;
 mod sided_model;
 
@@ -17,8 +19,11 @@ pub use observed_motion::StickingMotion;
 pub use sided_model::SidedModel;
 
 use eomgen_codegen::program::evaluator::Enclosure;
+use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::ode::difference_step;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
+
+use discs::{Disc, DiscState, norm, unit_vector};
 use sided_model::CORRECTION_COUNT;
 
 /// Largest distance of a state from a surface that holds it, relative to the largest value of the
@@ -36,11 +41,18 @@ const NEAR_MOVE_FACTOR: f64 = 4.0;
 /// Limit of that distance, relative to the largest value of the function.
 const MAX_NEAR_FRACTION: f64 = 1e-9;
 
+/// Largest velocity that turns by more than 90 degrees within a step and counts as zero, relative to the
+/// largest velocity. Friction that can hold such a motion stops it at once.
+const MAX_SLOW_FRACTION: f64 = 1e-8;
+
 /// Arrival on a surface on which the motion already is.
 const ARRIVAL_AT_REST: Arrival = Arrival {
     side: 1.0,
     exceeds_limit: false,
 };
+
+/// Surfaces on which a motion is with their arrivals, and discs with theirs.
+type Reached<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
 
 /// State of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +86,8 @@ impl SurfaceState {
 pub(crate) struct SurfaceStates {
     sided: SidedModel,
     places: Vec<SurfaceState>,
+    /// Frictions against the direction of sliding.
+    discs: Vec<Disc>,
     /// True if the rates had no jump on a surface at the last arrival; then the sign of its
     /// function determines the side.
     is_jumpless: Vec<bool>,
@@ -93,7 +107,8 @@ impl SurfaceStates {
         Self {
             places: vec![SurfaceState::Free; count],
             is_jumpless: vec![false; count],
-            sizes: vec![0.0; count],
+            discs: sided.discs().iter().cloned().map(Disc::new).collect(),
+            sizes: vec![0.0; sided.side_count()],
             begin: None,
             kept: None,
             found_at: None,
@@ -109,12 +124,25 @@ impl SurfaceStates {
 
     /// Returns true if the signs of the functions do not determine the rates.
     pub fn is_active(&self) -> bool {
-        self.kept.is_some() || !self.is_free()
+        self.kept.is_some() || !self.discs.is_empty() || !self.is_free()
     }
 
     /// Returns true if the motion is on no surface and has left all surfaces.
     pub fn is_free(&self) -> bool {
         self.places.iter().all(|place| *place == SurfaceState::Free)
+            && self
+                .discs
+                .iter()
+                .all(|disc| disc.state == DiscState::Sliding)
+    }
+
+    /// Returns the formulas of the speeds of the discs, whose guards follow those of the model.
+    pub fn disc_formulas(&self) -> Vec<String> {
+        self.sided.disc_formulas()
+    }
+
+    pub fn disc_count(&self) -> usize {
+        self.discs.len()
     }
 
     /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
@@ -150,13 +178,14 @@ impl SurfaceStates {
         (inputs, typical_sizes): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        let (sides, held) = (
-            self.current_sides((t, state), inputs),
-            self.holding_surfaces(),
-        );
+        let (mut sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
         self.found_at = None;
         let count = state.len();
         let mut rates = |state: &[f64], out: &mut [f64]| {
+            if !self.discs.iter().any(Disc::is_leaving) {
+                sides.truncate(self.places.len());
+                self.append_disc_sides((t, state), inputs, &mut sides);
+            }
             self.sided
                 .find_holding_sides((t, state), inputs, &sides, &held);
             self.sided.write_rates((t, state), inputs, out);
@@ -182,6 +211,7 @@ impl SurfaceStates {
         if self.begin.is_none() {
             self.start_motion(at, inputs);
         }
+        self.write_disc_guards(at, inputs, out);
         if self.is_free() {
             return;
         }
@@ -211,6 +241,27 @@ impl SurfaceStates {
                     *slot = slot.add_enclosure(Enclosure::constant(side * moved));
                 }
             }
+        }
+        if let Some(discs) = out.get_mut(self.sided.guard_count()..) {
+            discs.fill(Enclosure::UNKNOWN);
+        }
+    }
+
+    /// Writes the guards of discs. While a disc holds, its guard becomes negative if its force
+    /// reaches the limit.
+    fn write_disc_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        if self.discs.is_empty() {
+            return;
+        }
+        self.find_holding_sides(at, inputs);
+        let sides = self.sided.sides().to_vec();
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let slots = &mut out[self.sided.guard_count()..];
+        for (slot, disc) in slots.iter_mut().zip(&self.discs) {
+            *slot = match disc.is_holding() {
+                true => 1.0 - norm(&signs(&sides[disc.rows.clone()])),
+                false => disc.guard(&functions),
+            };
         }
     }
 
@@ -250,10 +301,15 @@ impl SurfaceStates {
                 }));
             }
         }
+        let discs = self.disc_arrivals((t, state), inputs, (&near, &beyond));
+        is_new |= discs
+            .iter()
+            .any(|(disc, arrival)| arrival.exceeds_limit || !self.discs[*disc].is_holding());
         if !is_new && overcome.iter().all(Option::is_none) {
             return;
         }
-        self.decide_states((t, state), inputs, (&touching, &arrivals), &came_from);
+        let reached = (&touching[..], &arrivals[..], &discs[..]);
+        self.decide_states((t, state), inputs, reached, &came_from);
         self.correct_onto_surfaces((t, state), inputs, true);
     }
 
@@ -275,6 +331,70 @@ impl SurfaceStates {
         self.found_at = None;
     }
 
+    /// Returns the discs that hold the motion, and those whose velocity came to zero between two
+    /// values of the functions. A velocity that passed zero at a distance has turned; it gets a new
+    /// reference.
+    fn disc_arrivals(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        (near, beyond): (&[f64], &[f64]),
+    ) -> Vec<(usize, DiscArrival)> {
+        let mut found = self.held_discs((t, state), inputs);
+        let roundings = self.sided.function_roundings((t, state), inputs);
+        for (index, disc) in self.discs.iter_mut().enumerate() {
+            if disc.is_holding() {
+                continue;
+            }
+            let velocity = disc.velocity(beyond);
+            let moved = velocity.iter().zip(disc.velocity(near));
+            let moved: Vec<f64> = moved.map(|(to, from)| to - from).collect();
+            let size = norm(disc.velocity(&self.sizes));
+            let most = MAX_NEAR_FRACTION * size;
+            let has_passed = disc.guard(beyond) < 0.0;
+            let reach = match has_passed {
+                true => MAX_SLOW_FRACTION * size,
+                false => most.min(NEAR_MOVE_FACTOR * norm(&moved)),
+            };
+            if norm(velocity) <= reach + norm(disc.velocity(&roundings)) {
+                found.push((
+                    index,
+                    DiscArrival {
+                        rows: disc.rows.clone(),
+                        along: disc.along.clone(),
+                        exceeds_limit: false,
+                    },
+                ));
+            } else if has_passed {
+                disc.state = DiscState::Sliding;
+                disc.follow(beyond);
+                self.found_at = None;
+            }
+        }
+        found
+    }
+
+    /// Returns the discs that hold the motion; their force may exceed its limit.
+    fn held_discs(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<(usize, DiscArrival)> {
+        if !self.discs.iter().any(Disc::is_holding) {
+            return Vec::new();
+        }
+        self.find_holding_sides(at, inputs);
+        let sides = self.sided.sides();
+        let holding = self.discs.iter().enumerate();
+        let holding = holding.filter(|(_, disc)| disc.is_holding());
+        let arrivals = holding.map(|(index, disc)| {
+            let needed = signs(&sides[disc.rows.clone()]);
+            let arrival = DiscArrival {
+                rows: disc.rows.clone(),
+                along: unit_vector(&needed, Some(&disc.along)),
+                exceeds_limit: norm(&needed) > 1.0,
+            };
+            (index, arrival)
+        });
+        arrivals.collect()
+    }
+
     /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
     /// If a function is exactly zero, its fixed side counts.
     fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {
@@ -286,7 +406,8 @@ impl SurfaceStates {
                 _ => (value + moved).signum(),
             }
         };
-        near.iter().enumerate().map(side).collect()
+        let surfaces = near.iter().take(self.places.len());
+        surfaces.enumerate().map(side).collect()
     }
 
     /// Corrects a state that drifted from the surfaces that hold it; returns the number of
@@ -317,6 +438,14 @@ impl SurfaceStates {
                     moved.zip(allowed).map(|(a, b)| a > b).collect()
                 }
             };
+            for (index, disc) in self.discs.iter_mut().enumerate() {
+                if disc.is_holding() && disc.rows.clone().any(|row| jumps[row]) {
+                    disc.state = DiscState::Sliding;
+                    self.found_at = None;
+                    let guard = self.sided.guard_count() + index;
+                    self.changes.push((guard, true));
+                }
+            }
             for (surface, place) in self.places.iter_mut().enumerate() {
                 let value = functions[surface];
                 let has_left = match *place {
@@ -334,19 +463,29 @@ impl SurfaceStates {
             }
             for _ in 0..=self.places.len() {
                 let overcome = self.find_overcome(at, inputs);
-                if overcome.iter().all(Option::is_none) {
+                let discs = self.held_discs(at, inputs);
+                let exceeds = discs.iter().any(|(_, arrival)| arrival.exceeds_limit);
+                if !exceeds && overcome.iter().all(Option::is_none) {
                     break;
                 }
                 let on = |surface: &usize| self.places[*surface].is_on();
                 let touching: Vec<usize> = (0..self.places.len()).filter(on).collect();
                 let arrival = |surface: &usize| overcome[*surface].unwrap_or(ARRIVAL_AT_REST);
                 let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
-                self.decide_states(at, inputs, (&touching, &arrivals), &functions);
+                let reached = (&touching[..], &arrivals[..], &discs[..]);
+                self.decide_states(at, inputs, reached, &functions);
             }
         }
         let functions = self.sided.evaluate_functions(at, inputs);
+        for disc in &mut self.discs {
+            disc.follow(&functions);
+            self.found_at = None;
+        }
         for (size, value) in self.sizes.iter_mut().zip(&functions) {
             *size = size.max(value.abs());
+        }
+        for disc in &mut self.discs {
+            disc.floor = MAX_DRIFT_FRACTION * norm(disc.velocity(&self.sizes));
         }
         std::mem::take(&mut self.changes)
     }
@@ -356,12 +495,25 @@ impl SurfaceStates {
         self.begin = Some(at.0);
         let functions = self.sided.evaluate_functions(at, inputs);
         let roundings = self.sided.function_roundings(at, inputs);
-        let touching: Vec<usize> = (0..functions.len())
+        let touching: Vec<usize> = (0..self.places.len())
             .filter(|surface| functions[*surface].abs() <= roundings[*surface])
             .collect();
-        if !touching.is_empty() {
+        let mut discs = Vec::new();
+        for (index, disc) in self.discs.iter_mut().enumerate() {
+            disc.follow(&functions);
+            if norm(disc.velocity(&functions)) <= norm(disc.velocity(&roundings)) {
+                let arrival = DiscArrival {
+                    rows: disc.rows.clone(),
+                    along: disc.along.clone(),
+                    exceeds_limit: false,
+                };
+                discs.push((index, arrival));
+            }
+        }
+        if !touching.is_empty() || !discs.is_empty() {
             let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
-            self.decide_states(at, inputs, (&touching, &arrivals), &functions);
+            let reached = (&touching[..], &arrivals[..], &discs[..]);
+            self.decide_states(at, inputs, reached, &functions);
         }
         self.changes.clear();
     }
@@ -381,24 +533,32 @@ impl SurfaceStates {
         .collect()
     }
 
-    /// Decides the states of the surfaces `touching`, on which the motion is. It came from the
-    /// sides with these signs of the functions.
+    /// Decides the states of the surfaces `touching` and of discs, on which the motion is. It came
+    /// from the sides with these signs of the functions.
     fn decide_states(
         &mut self,
         at: (f64, &[f64]),
         inputs: &[f64],
-        (touching, arrivals): (&[usize], &[Arrival]),
+        (touching, arrivals, discs): Reached<'_>,
         came_from: &[f64],
     ) {
         self.found_at = None;
         let sides = self.current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
-        let asked = (&touching[..], &arrivals[..]);
-        let Some(verdicts) = self.sided.decide(at, inputs, asked, &sides) else {
-            // The sign of the function decides, and the solver reports chattering.
+        let arrived: Vec<DiscArrival> = discs.iter().map(|(_, arrival)| arrival.clone()).collect();
+        let asked = (&touching[..], &arrivals[..], &arrived[..]);
+        let Some((verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
+            // The functions decide, and the solver reports chattering.
             for surface in touching {
                 self.places[surface] = SurfaceState::Free;
+            }
+            for (index, arrival) in discs {
+                let disc = &mut self.discs[*index];
+                disc.state = DiscState::Sliding;
+                disc.along.clone_from(&arrival.along);
+                let guard = self.sided.guard_count() + index;
+                self.changes.push((guard, true));
             }
             return;
         };
@@ -408,6 +568,16 @@ impl SurfaceStates {
         for (surface, rounding) in roundings.iter_mut().enumerate() {
             // A rate of rounding, accumulated over time.
             *rounding += MAX_FORCE_DRIFT_FRACTION * self.sided.own_force_rate(surface) * passed;
+        }
+        for ((index, _), verdict) in discs.iter().zip(&vectors) {
+            let disc = &mut self.discs[*index];
+            let was_holding = disc.is_holding();
+            let rounding = norm(disc.velocity(&roundings));
+            disc.enter(verdict, at.0, &functions, rounding);
+            if disc.is_holding() != was_holding {
+                let guard = self.sided.guard_count() + index;
+                self.changes.push((guard, was_holding));
+            }
         }
         for (surface, verdict) in touching.iter().zip(verdicts) {
             let old = self.places[*surface];
@@ -505,12 +675,44 @@ impl SurfaceStates {
                     .side_at_value(surface, functions[surface] + moved),
             );
         }
+        self.append_disc_sides(at, inputs, &mut sides);
         sides
     }
 
-    fn holding_surfaces(&self) -> Vec<usize> {
+    /// Appends the sides of the components of discs at a point.
+    fn append_disc_sides(&mut self, at: (f64, &[f64]), inputs: &[f64], sides: &mut Vec<f64>) {
+        let functions = match self.discs.iter().all(Disc::is_holding) {
+            true => Vec::new(),
+            false => self.sided.evaluate_functions(at, inputs),
+        };
+        for disc in &self.discs {
+            disc.write_sides(&functions, self.kept.is_some(), sides);
+        }
+    }
+
+    /// Returns the surfaces that hold, and the rows of the discs that hold.
+    fn holding_rows(&self) -> Vec<usize> {
         let holds = |surface: &usize| matches!(self.places[*surface], SurfaceState::Holding { .. });
-        (0..self.places.len()).filter(holds).collect()
+        let discs = self.discs.iter().filter(|disc| disc.is_holding());
+        let surfaces = (0..self.places.len()).filter(holds);
+        surfaces
+            .chain(discs.flat_map(|disc| disc.rows.clone()))
+            .collect()
+    }
+
+    /// Returns the time since which the surface or the disc of a row holds, s.
+    fn held_since(&self, row: usize) -> Option<f64> {
+        if let Some(place) = self.places.get(row) {
+            return match place {
+                SurfaceState::Holding { since, .. } => Some(*since),
+                _ => None,
+            };
+        }
+        let disc = self.discs.iter().find(|disc| disc.rows.contains(&row))?;
+        match disc.state {
+            DiscState::Holding { since } => Some(since),
+            _ => None,
+        }
     }
 
     /// Computes the sides that hold the motion at a point.
@@ -521,10 +723,7 @@ impl SurfaceStates {
         {
             return;
         }
-        let (sides, held) = (
-            self.current_sides((t, state), inputs),
-            self.holding_surfaces(),
-        );
+        let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
         self.sided
             .find_holding_sides((t, state), inputs, &sides, &held);
         match &mut self.found_at {
@@ -543,13 +742,13 @@ impl SurfaceStates {
         inputs: &[f64],
         always: bool,
     ) -> u64 {
-        let held = self.holding_surfaces();
+        let held = self.holding_rows();
         if held.is_empty() {
             return 0;
         }
         let values = self.sided.evaluate_functions((t, state), inputs);
         let has_strayed = |surface: &usize| {
-            let SurfaceState::Holding { since, .. } = self.places[*surface] else {
+            let Some(since) = self.held_since(*surface) else {
                 return false;
             };
             let by_force = self.sided.own_force_rate(*surface) * (t - since).abs();
@@ -568,4 +767,9 @@ impl SurfaceStates {
         }
         CORRECTION_COUNT as u64
     }
+}
+
+/// Returns the components -1 to 1 of these sides.
+fn signs(sides: &[f64]) -> Vec<f64> {
+    sides.iter().map(|side| 2.0 * side - 1.0).collect()
 }

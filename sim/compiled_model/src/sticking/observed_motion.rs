@@ -1,12 +1,16 @@
 //! Observables and rates of a motion with sticking. During sticking the friction is the force that
 //! holds, not that of sign(0) = 0.
 
+use std::ops::Range;
+
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 use eomgen_sim::sliding_modes::Arrival;
 
 use super::SidedModel;
+use super::discs::{norm, unit_vector, write_unit_vector};
 
 /// Largest distance of a state on a surface, relative to the largest value of the function in the
 /// motion.
@@ -60,7 +64,7 @@ impl StickingMotion {
         (times, states): (&[f64], &[Vec<f64>]),
         inputs: &HeldInputs,
     ) -> Self {
-        let mut sizes = vec![0.0_f64; sided.surface_count()];
+        let mut sizes = vec![0.0_f64; sided.side_count()];
         for (t, state) in times.iter().zip(states) {
             let functions = sided.evaluate_functions((*t, state), &inputs.evaluate(*t));
             for (size, value) in sizes.iter_mut().zip(functions) {
@@ -121,17 +125,33 @@ fn set_holding_sides(
     (reach, duration): (&[f64], f64),
 ) -> bool {
     let functions = sided.evaluate_functions(at, inputs);
-    let mut sides: Vec<f64> = (0..functions.len())
+    let mut sides: Vec<f64> = (0..sided.surface_count())
         .map(|surface| sided.side_at_value(surface, functions[surface]))
         .collect();
+    for rows in sided.discs() {
+        write_unit_vector(&functions[rows.clone()], None, &mut sides);
+    }
     sided.set_sides(at, inputs, &sides);
-    let touching: Vec<usize> = (0..functions.len())
-        .filter(|surface| {
-            let by_force = MAX_FORCE_DISTANCE_FRACTION * sided.own_force_rate(*surface) * duration;
-            functions[*surface].abs() <= reach[*surface] + by_force
+    let reach: Vec<f64> = (0..functions.len())
+        .map(|row| {
+            let by_force = MAX_FORCE_DISTANCE_FRACTION * sided.own_force_rate(row) * duration;
+            reach[row] + by_force
         })
         .collect();
-    if touching.is_empty() {
+    let touching: Vec<usize> = (0..sided.surface_count())
+        .filter(|surface| functions[*surface].abs() <= reach[*surface])
+        .collect();
+    let is_near =
+        |rows: &&Range<usize>| norm(&functions[(*rows).clone()]) <= norm(&reach[(*rows).clone()]);
+    let discs = sided.discs().iter().filter(is_near);
+    let discs: Vec<DiscArrival> = discs
+        .map(|rows| DiscArrival {
+            rows: rows.clone(),
+            along: unit_vector(&functions[rows.clone()], None),
+            exceeds_limit: false,
+        })
+        .collect();
+    if touching.is_empty() && discs.is_empty() {
         return false;
     }
     let arrival = |surface: &usize| Arrival {
@@ -139,11 +159,18 @@ fn set_holding_sides(
         exceeds_limit: false,
     };
     let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
-    let Some(verdicts) = sided.decide(at, inputs, (&touching, &arrivals), &sides) else {
+    let Some((verdicts, vectors)) =
+        sided.decide(at, inputs, (&touching, &arrivals, &discs), &sides)
+    else {
         return false;
     };
     for (surface, verdict) in touching.iter().zip(verdicts) {
         sides[*surface] = 0.5 + 0.5 * verdict.sign();
+    }
+    for (disc, verdict) in discs.iter().zip(vectors) {
+        for (row, s) in disc.rows.clone().zip(verdict.vector()) {
+            sides[row] = 0.5 + 0.5 * s;
+        }
     }
     sided.find_holding_sides(at, inputs, &sides, &[]);
     true

@@ -1,7 +1,10 @@
 //! A model with given sides of its surfaces: rates, observables and the sides that hold.
 
+use std::ops::Range;
+
 use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
-use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
+use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict, decide_with_discs};
+use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, solve_least_squares};
 use nalgebra::{DMatrix, DVector};
 
 /// Maximum number of Newton iterations if the rates are not linear in the sides.
@@ -29,8 +32,10 @@ pub(super) type TimeAndState<'p> = (f64, &'p [f64]);
 pub struct SidedModel {
     evaluator: Evaluator,
     model_input_count: usize,
-    /// Inputs of the model, then the sides.
+    /// Inputs of the model, then the sides: those of surfaces, then those of the components of discs.
     inputs: Vec<f64>,
+    /// Rows of the components of each disc among the sides.
+    discs: Vec<Range<usize>>,
     at: Vec<SlidingValues>,
     guards: Vec<f64>,
     is_linear: bool,
@@ -41,7 +46,15 @@ impl SidedModel {
     pub(crate) fn new(evaluator: Evaluator) -> Self {
         let program = evaluator.program();
         let sliding = &program.outputs.sliding;
+        let disc_count = sliding.iter().filter_map(|row| row.disc).max();
+        let discs = (0..disc_count.map_or(0, |last| last + 1)).map(|disc| {
+            let is_own = |row: &usize| sliding[*row].disc == Some(disc);
+            let mut own = (0..sliding.len()).filter(is_own);
+            let first = own.next().unwrap_or(0);
+            first..first + 1 + own.count()
+        });
         Self {
+            discs: discs.collect(),
             model_input_count: program.inputs.len() - sliding.len(),
             inputs: vec![0.5; program.inputs.len()],
             at: Vec::new(),
@@ -51,8 +64,39 @@ impl SidedModel {
         }
     }
 
-    pub(super) fn surface_count(&self) -> usize {
+    /// Returns the number of functions with a side: surfaces and components of discs.
+    pub(super) fn side_count(&self) -> usize {
         self.inputs.len() - self.model_input_count
+    }
+
+    pub(super) fn surface_count(&self) -> usize {
+        self.side_count() - self.discs.iter().map(Range::len).sum::<usize>()
+    }
+
+    /// Returns true if a friction acts against the direction of sliding, as v/norm(v).
+    pub(crate) fn has_discs(&self) -> bool {
+        !self.discs.is_empty()
+    }
+
+    pub(super) fn discs(&self) -> &[Range<usize>] {
+        &self.discs
+    }
+
+    /// Returns the number of guards of the model; those of the components of discs follow.
+    pub(super) fn guard_count(&self) -> usize {
+        self.guards.len() + self.surface_count() - self.side_count()
+    }
+
+    /// Returns the formula of the speed of each disc.
+    pub(super) fn disc_formulas(&self) -> Vec<String> {
+        let program = self.evaluator.program();
+        let first = program.guards.len() + self.surface_count() - self.side_count();
+        let component = |row: usize| &*program.guards[first + row - self.surface_count()].formula;
+        let formula = |rows: &Range<usize>| {
+            let components: Vec<&str> = rows.clone().map(component).collect();
+            format!("norm([{}])", components.join(", "))
+        };
+        self.discs.iter().map(formula).collect()
     }
 
     pub(super) fn guard_index(&self, surface: usize) -> usize {
@@ -163,30 +207,42 @@ impl SidedModel {
         self.evaluator.observables(Point { t, state, inputs }, out);
     }
 
-    /// Decides the effect of the surfaces `touching` on a motion that is on them, with these sides
-    /// of all others.
+    /// Decides the effect of the surfaces `touching` and of discs on a motion that is on them, with these sides
+    /// of all others. The rows of an arrival at a disc are among all sides.
     pub(super) fn decide(
         &mut self,
         at: TimeAndState<'_>,
         inputs: &[f64],
-        (touching, arrivals): (&[usize], &[Arrival]),
+        (touching, arrivals, discs): (&[usize], &[Arrival], &[DiscArrival]),
         sides: &[f64],
-    ) -> Option<Vec<Verdict>> {
+    ) -> Option<(Vec<Verdict>, Vec<DiscVerdict>)> {
         self.inputs[..self.model_input_count].copy_from_slice(inputs);
         self.inputs[self.model_input_count..].copy_from_slice(sides);
-        let mut s = DVector::zeros(touching.len());
+        let mut rows = touching.to_vec();
+        let mut packed = Vec::with_capacity(discs.len());
+        for disc in discs {
+            packed.push(DiscArrival {
+                rows: rows.len()..rows.len() + disc.rows.len(),
+                ..disc.clone()
+            });
+            rows.extend(disc.rows.clone());
+        }
+        let mut s = DVector::zeros(rows.len());
         for iteration in 0..self.iterations() {
-            for (surface, s) in touching.iter().zip(&s) {
-                self.inputs[self.model_input_count + surface] = 0.5 + 0.5 * s;
+            for (row, s) in rows.iter().zip(&s) {
+                self.inputs[self.model_input_count + row] = 0.5 + 0.5 * s;
             }
             self.evaluate(at);
-            let w = self.matrix(touching) * 0.5;
+            let w = self.matrix(&rows) * 0.5;
             let rates = Rates {
-                c: self.surface_values(touching, |surface| surface.rate) - &w * &s,
+                c: self.surface_values(&rows, |surface| surface.rate) - &w * &s,
                 w,
             };
-            let found = decide(&rates, arrivals)?;
-            let next = DVector::from_iterator(touching.len(), found.iter().map(|v| v.sign()));
+            let found = decide_with_discs(&rates, arrivals, &packed)?;
+            let scalars = found.0.iter().map(|verdict| verdict.sign());
+            let vectors = found.1.iter().flat_map(DiscVerdict::vector);
+            let next: Vec<f64> = scalars.chain(vectors.copied()).collect();
+            let next = DVector::from_vec(next);
             let is_last = self.is_linear || (&next - &s).amax() <= MAX_SETTLED_CHANGE;
             if is_last || iteration + 1 == ITERATIONS {
                 return is_last.then_some(found);

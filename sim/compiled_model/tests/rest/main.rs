@@ -2,6 +2,7 @@
 //! regimes and events; its friction impulses stay within their bounds and bring the speeds as near
 //! to zero as possible), with closed forms, and with the exact solver if it supports the motion.
 
+mod discs;
 mod domain;
 mod rows;
 mod seldom;

@@ -1,0 +1,144 @@
+//! Friction against the direction of sliding, with the unit vector v/norm(v) of a sliding velocity v.
+//!
+//! During sliding the direction at the last step is kept as a reference: a motion that stops goes through
+//! v = 0 along it, so v times the reference is the switching function. Beyond zero the trial states of a step
+//! use the mirrored velocity, with which the unit vector of a straight motion is constant and the rates are
+//! smooth. A velocity that only turns passes the surface as well and gets a new reference.
+
+use std::ops::Range;
+
+use eomgen_sim::friction_discs::DiscVerdict;
+
+/// State of a disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum DiscState {
+    /// The velocity determines the unit vector.
+    Sliding,
+    /// The disc holds the motion since this time, s.
+    Holding { since: f64 },
+    /// The motion begins to slide in a constant direction, because its velocity is still within
+    /// rounding; the switching function is displaced by `moved`.
+    Leaving { moved: f64 },
+}
+
+/// Disc of friction along a motion.
+#[derive(Clone, Debug)]
+pub(super) struct Disc {
+    /// Rows of the components of v among the functions with sides.
+    pub rows: Range<usize>,
+    pub state: DiscState,
+    /// Unit vector of the direction of the motion at the last step.
+    pub along: Vec<f64>,
+    /// Velocity that counts as zero. Near zero the rounding of v turns it away from the reference.
+    pub floor: f64,
+}
+
+impl Disc {
+    pub fn new(rows: Range<usize>) -> Self {
+        let mut along = vec![0.0; rows.len()];
+        along[0] = 1.0;
+        Self {
+            rows,
+            state: DiscState::Sliding,
+            along,
+            floor: 0.0,
+        }
+    }
+
+    pub fn is_holding(&self) -> bool {
+        matches!(self.state, DiscState::Holding { .. })
+    }
+
+    pub fn is_leaving(&self) -> bool {
+        matches!(self.state, DiscState::Leaving { .. })
+    }
+
+    /// Returns true if the motion begins to slide and rounding still determines its direction.
+    fn is_within_rounding(&self, functions: &[f64]) -> bool {
+        let speed = norm(self.velocity(functions));
+        matches!(self.state, DiscState::Leaving { moved } if speed <= 2.0 * moved.max(self.floor))
+    }
+
+    /// Returns v, given the functions of all rows.
+    pub fn velocity<'f>(&self, functions: &'f [f64]) -> &'f [f64] {
+        &functions[self.rows.clone()]
+    }
+
+    fn displacement(&self) -> f64 {
+        match self.state {
+            DiscState::Leaving { moved } => moved,
+            _ => -self.floor,
+        }
+    }
+
+    /// Returns the switching function of a disc that does not hold.
+    pub fn guard(&self, functions: &[f64]) -> f64 {
+        dot(self.velocity(functions), &self.along) + self.displacement()
+    }
+
+    /// Appends the sides of the components; 0.5 if the disc holds. With fixed sides the unit vector
+    /// continues smoothly beyond zero.
+    pub fn write_sides(&self, functions: &[f64], is_fixed: bool, sides: &mut Vec<f64>) {
+        if self.is_holding() {
+            return sides.extend(self.rows.clone().map(|_| 0.5));
+        }
+        if self.is_within_rounding(functions) {
+            return sides.extend(self.along.iter().map(|s| 0.5 + 0.5 * s));
+        }
+        let mut velocity = self.velocity(functions).to_vec();
+        let ahead = dot(&velocity, &self.along);
+        if is_fixed && ahead < 0.0 {
+            for (v, along) in velocity.iter_mut().zip(&self.along) {
+                *v -= 2.0 * ahead * along;
+            }
+        }
+        write_unit_vector(&velocity, Some(&self.along), sides);
+    }
+
+    /// Keeps the direction of the motion, and lets a motion slide that has left zero.
+    pub fn follow(&mut self, functions: &[f64]) {
+        if self.is_leaving() && !self.is_within_rounding(functions) {
+            self.state = DiscState::Sliding;
+        }
+        if self.state == DiscState::Sliding {
+            self.along = unit_vector(self.velocity(functions), Some(&self.along));
+        }
+    }
+
+    /// Enters the state of a verdict at time `t`, at a velocity with this rounding.
+    pub fn enter(&mut self, verdict: &DiscVerdict, t: f64, functions: &[f64], rounding: f64) {
+        self.state = match (verdict, self.state) {
+            (DiscVerdict::Holds(_), DiscState::Holding { since }) => DiscState::Holding { since },
+            (DiscVerdict::Holds(_), _) => DiscState::Holding { since: t },
+            (DiscVerdict::Slides(along), _) => {
+                self.along.clone_from(along);
+                DiscState::Leaving {
+                    moved: rounding.max(2.0 * norm(self.velocity(functions))),
+                }
+            }
+        };
+    }
+}
+
+/// Appends the sides 0 to 1 of the components of v/norm(v).
+pub(super) fn write_unit_vector(v: &[f64], at_zero: Option<&[f64]>, sides: &mut Vec<f64>) {
+    sides.extend(unit_vector(v, at_zero).iter().map(|s| 0.5 + 0.5 * s));
+}
+
+/// Returns v/norm(v), or `at_zero` for v = 0.
+pub(super) fn unit_vector(v: &[f64], at_zero: Option<&[f64]>) -> Vec<f64> {
+    let length = norm(v);
+    match at_zero {
+        _ if length > 0.0 => v.iter().map(|v| v / length).collect(),
+        Some(at_zero) => at_zero.to_vec(),
+        None => vec![0.0; v.len()],
+    }
+}
+
+pub(super) fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
