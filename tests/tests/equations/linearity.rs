@@ -21,6 +21,9 @@ fn kind(model: &Model) -> String {
         Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
         Linearity::Constrained => "with constraints".to_owned(),
         Linearity::Impacts => "with impacts".to_owned(),
+        Linearity::Corners(node) => {
+            format!("corner at {}", full_formula(&equations.graph, model, node))
+        }
         Linearity::Nonlinear(node) => full_formula(&equations.graph, model, node).to_string(),
     }
 }
@@ -35,6 +38,16 @@ fn with_force(force: &str) -> String {
          [potential]\nspring = \"1/2*k*x^2\"\n\
          [forces]\nextra = {{ on = \"x\", value = \"{force}\" }}\n"
     )
+}
+
+#[test]
+fn jump_of_energy_is_a_corner() {
+    let text = with_force("F").replace("1/2*k*x^2", "1/2*k*x^2 + k*above(x)*x_0^2");
+    let text = text.replace(
+        "[coordinates]",
+        "x_0 = { value = 1, unit = \"m\" }\n[coordinates]",
+    );
+    assert_eq!(kind_of(&text), "corner at x");
 }
 
 #[test]
