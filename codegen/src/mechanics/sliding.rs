@@ -8,7 +8,7 @@
 //! its side: a velocity's surface can, a position's cannot. The simulator decides which surfaces hold, and
 //! when they release.
 //!
-//! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see [`discs`](super::discs). Each of
+//! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see the module `discs`. Each of
 //! its components has a side, which is 0 to 1 for -1 to 1, and the component of v as its function.
 
 use std::collections::HashMap;

@@ -199,11 +199,6 @@ impl Propagator {
         self.states
     }
 
-    /// Returns the number of regimes entered up to now.
-    pub fn regime_count(&self) -> usize {
-        self.regimes.len()
-    }
-
     /// Starts a motion from a state at a time (s).
     ///
     /// # Errors
