@@ -11,7 +11,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use eomgen_model_spec::source::Source;
 
 use crate::error::SimulationError;
-use crate::ids::ParameterId;
+use crate::ids::{ChannelId, ParameterId};
 use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
@@ -207,6 +207,12 @@ impl EstimationModel {
         if let Some(parameter) = self.find_parameter(parameter) {
             values[parameter.index()] = value;
         }
+    }
+
+    /// Returns the index of a measured channel.
+    pub fn find_channel(&self, name: &str) -> Option<ChannelId> {
+        let index = self.channels.iter().position(|channel| channel == name)?;
+        Some(ChannelId::new(index))
     }
 
     /// Returns the number of degrees of freedom. The state begins with this number of coordinates
