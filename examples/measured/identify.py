@@ -54,16 +54,17 @@ def fail(message):
 
 
 try:
-    import absl.logging
     import mujoco
     import numpy as np
     from mujoco import sysid
+
+    import absl.logging
 
     sysid.optimize  # the toolbox imports nothing, without an error, if a package that it needs is missing
 except (ImportError, AttributeError) as error:
     fail(f'MuJoCo with its toolbox sysid is missing ({error}). Install it: pip install "mujoco[sysid]"')
 
-program = os.environ.get("EOMGEN_PROGRAM") or shutil.which("eomgen")
+program = shutil.which(os.environ.get("EOMGEN_PROGRAM") or "eomgen")
 if program is None:
     fail("the program eomgen is missing. Install it (cargo install --path cli) or name it in EOMGEN_PROGRAM")
 
