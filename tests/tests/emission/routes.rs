@@ -166,6 +166,7 @@ fn pages_show_the_code_of_the_examples() {
         "with_build_script/src/lib.rs",
         "with_command_line/controller.rs",
         "with_library/main.rs",
+        "recipes/family_of_orders.rs",
     ]
     .iter()
     .map(|file| std::fs::read_to_string(project().join("examples").join(file)).expect("a file"))
