@@ -45,17 +45,29 @@ struct Task {
 }
 
 /// Searches for the first crossing in a step of `length` s whose interior is `piece`, given the
-/// `sides` of the guards to examine (-1 or 1; others are 0) and the functions at both ends. Returns the
-/// part of the step at which the motion is beyond a surface. Guards are added to `undecided` if the
+/// `sides` of the guards to examine (-1 or 1; others are 0), the bounds of the functions over the step,
+/// and the functions at both ends. Returns the part of the step at which the motion is beyond a
+/// surface. Guards are added to `undecided` if the
 /// motion does not confirm a crossing of the interior, or if their bounds are too wide.
 pub fn find_crossing(
     (piece, length): (Piece, f64),
-    sides: &[f64],
+    (sides, mut bounds): (&[f64], Vec<Enclosure>),
     (start, end): (Vec<f64>, Vec<f64>),
     functions: &mut impl Functions,
     undecided: &mut Vec<usize>,
 ) -> Option<f64> {
-    let mut bounds = vec![Enclosure::UNKNOWN; sides.len()];
+    let least = |guard: usize, bounds: &[Enclosure], (start, end): (&[f64], &[f64]), duration| {
+        let side = sides[guard];
+        let bound = bounds[guard].multiply(Enclosure::constant(side));
+        lower_bound(bound, (side * start[guard], side * end[guard]), duration)
+    };
+    let guards = (0..sides.len()).filter(|guard| sides[*guard] != 0.0);
+    let guards: Vec<usize> = guards
+        .filter(|guard| least(*guard, &bounds, (&start, &end), length) < 0.0)
+        .collect();
+    if guards.is_empty() {
+        return None;
+    }
     functions.bound(&piece.start(), &mut bounds);
     let ends = start.iter().zip(&end).zip(&bounds);
     let negligible: Vec<f64> = ends
@@ -64,12 +76,11 @@ pub fn find_crossing(
             ROUNDING * a.abs().max(b.abs()) + rounding
         })
         .collect();
-    let guards = (0..sides.len()).filter(|guard| sides[*guard] != 0.0);
     let mut tasks = vec![Task {
         piece,
         start,
         end,
-        guards: guards.collect(),
+        guards,
     }];
     let mut examined = 0;
     while let Some(mut task) = tasks.pop() {
@@ -80,24 +91,21 @@ pub fn find_crossing(
             return None;
         }
         functions.bound(&task.piece, &mut bounds);
-        for (bound, side) in bounds.iter_mut().zip(sides) {
-            *bound = bound.multiply(Enclosure::constant(*side));
-        }
         let width = task.piece.to - task.piece.from;
+        let ends = (&task.start[..], &task.end[..]);
         task.guards.retain(|guard| {
-            if undecided.contains(guard) {
-                return false;
-            }
-            let side = sides[*guard];
-            let ends = (side * task.start[*guard], side * task.end[*guard]);
-            lower_bound(bounds[*guard], ends, width * length) < -negligible[*guard]
+            !undecided.contains(guard)
+                && least(*guard, &bounds, ends, width * length) < -negligible[*guard]
         });
         if task.guards.is_empty() {
             continue;
         }
         let is_end_beyond = |guard: &usize| sides[*guard] * task.end[*guard] < -negligible[*guard];
         let mut guards = task.guards.iter();
-        let falls = |guard: &usize| bounds[*guard].rate().high < 0.0;
+        let falls = |guard: &usize| match sides[*guard] > 0.0 {
+            true => bounds[*guard].rate().high < 0.0,
+            false => bounds[*guard].rate().low > 0.0,
+        };
         if width <= 2.0_f64.powi(-MAX_HALVINGS) || guards.all(falls) {
             let part = task.piece.to;
             for guard in task.guards.iter().copied().filter(is_end_beyond) {
@@ -211,7 +219,10 @@ mod tests {
             let values = (disc.evaluate(0.0, &ends.0), disc.evaluate(1.0, &ends.1));
             let piece = piece.expect("a polynomial");
             let mut undecided = Vec::new();
-            let found = find_crossing((piece, 1.0), &[1.0], values, &mut disc, &mut undecided);
+            let mut bounds = vec![Enclosure::UNKNOWN];
+            disc.bound(&piece, &mut bounds);
+            let guards = (&[1.0][..], bounds);
+            let found = find_crossing((piece, 1.0), guards, values, &mut disc, &mut undecided);
             assert!(undecided.is_empty(), "{throw}");
             match found {
                 Some(part) => {

@@ -66,7 +66,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let ends = (step.evaluate(0.0, &start.y), step.evaluate(1.0, &end.y));
         let mut undecided = Vec::new();
         let interior = (piece, end.t - start.t);
-        let found = find_crossing(interior, &bounded, ends, &mut step, &mut undecided);
+        let guards = (&bounded[..], bounds);
+        let found = find_crossing(interior, guards, ends, &mut step, &mut undecided);
         self.trajectory.statistics.trial_steps += step.trials;
         if let Some(part) = found {
             self.stepper.take_back();
