@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
+use crate::sliding_modes::{Arrival, RATE_ROUNDING, Rates, Verdict, decide, solve_least_squares};
 
 const MAX_SWEEPS: usize = 300;
 
@@ -24,9 +24,6 @@ const CONVERGED_CHANGE: f64 = 1e-14;
 
 /// Largest residual of a solution.
 const MAX_RESIDUAL: f64 = 1e-9;
-
-/// Rates below this fraction of their terms count as rounding.
-const RATE_ROUNDING: f64 = 1e-10;
 
 /// Bisections for the rate of a disc that slides; more than the bits of a number.
 const BISECTIONS: usize = 200;

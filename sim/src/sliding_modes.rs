@@ -10,7 +10,7 @@ use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
 /// Rates below this fraction of their terms count as rounding.
-const RATE_ROUNDING: f64 = 1e-10;
+pub(crate) const RATE_ROUNDING: f64 = 1e-10;
 
 /// Singular values below this fraction of the largest belong to dependent surfaces.
 pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;

@@ -4,26 +4,21 @@
 use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
 use nalgebra::{SMatrix, SVector};
 
+use super::continuous_extension::PARTS;
+
 /// Control points of a state; the interior has the degree of the continuous extension of
 /// `dormand_prince`.
 const POINTS: usize = DEGREE + 1;
 
-/// Parts of a step at which its interior is interpolated: the inner ones are Chebyshev points.
-const INNER_PARTS: [f64; POINTS - 2] = [
-    0.017_037_086_855_465_856,
-    0.146_446_609_406_726_24,
-    0.370_590_477_448_739_6,
-    0.629_409_522_551_260_4,
-    0.853_553_390_593_273_8,
-    0.982_962_913_144_534_1,
-];
+/// Inner control points.
+const INNER: usize = PARTS.len();
 
 type Controls = [f64; POINTS];
 
 /// Conversion from values to control points.
 pub struct BernsteinBasis {
-    /// From the values at [`INNER_PARTS`], relative to the chord, to the inner control points.
-    inner: SMatrix<f64, { POINTS - 2 }, { POINTS - 2 }>,
+    /// From the values at [`PARTS`], relative to the chord, to the inner control points.
+    inner: SMatrix<f64, INNER, INNER>,
 }
 
 /// Part of a step: control points of each state between two parts of the step.
@@ -38,9 +33,8 @@ pub struct Piece {
 
 impl BernsteinBasis {
     pub fn new() -> Self {
-        let basis = SMatrix::<f64, { POINTS - 2 }, { POINTS - 2 }>::from_fn(|row, column| {
-            bernstein(column + 1, INNER_PARTS[row])
-        });
+        let basis =
+            SMatrix::<f64, INNER, INNER>::from_fn(|row, column| bernstein(column + 1, PARTS[row]));
         // Different points determine the polynomial: there is an inverse.
         let inner = basis.try_inverse();
         Self {
@@ -55,8 +49,8 @@ impl BernsteinBasis {
         (start, end): (&[f64], &[f64]),
         mut interpolate: impl FnMut(f64) -> Option<Vec<f64>>,
     ) -> Option<Piece> {
-        let mut values = vec![SVector::<f64, { POINTS - 2 }>::zeros(); start.len()];
-        for (place, part) in INNER_PARTS.into_iter().enumerate() {
+        let mut values = vec![SVector::<f64, INNER>::zeros(); start.len()];
+        for (place, part) in PARTS.into_iter().enumerate() {
             let state = interpolate(part)?;
             let entries = values.iter_mut().zip(state).zip(start.iter().zip(end));
             for ((values, entry), (a, b)) in entries {

@@ -9,8 +9,8 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-/// Where in the step the crate's interpolation is asked: Chebyshev's points of the interval.
-const PARTS: [f64; 6] = [
+/// Parts of a step at which its interior is interpolated: the Chebyshev points of the interval.
+pub const PARTS: [f64; 6] = [
     0.017_037_086_855_465_856,
     0.146_446_609_406_726_24,
     0.370_590_477_448_739_6,
