@@ -125,7 +125,7 @@ fn every_lane_equals_scalar_steps() {
     }
 }
 
-/// Program under callgrind, in a process of its own.
+/// Runs the steps that the environment variable names; [`instructions`] counts them under callgrind.
 #[test]
 fn counted_steps() {
     match std::env::var(COUNTED).as_deref() {

@@ -96,7 +96,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Enables corners of the motion, where the energies jump.
+    /// Enables the corner conditions at surfaces where the energies jump.
     pub(crate) fn with_corners(mut self, corners: Option<Corners>) -> Self {
         self.corners = corners.map(RefCell::new);
         self

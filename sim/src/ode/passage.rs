@@ -175,7 +175,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         !self.crossed_guards(point).is_empty()
     }
 
-    /// Returns the surfaces of the present regime beyond which a point lies.
+    /// Returns the surfaces of the present regime that a point is beyond.
     fn crossed_guards(&self, point: &Point) -> Vec<usize> {
         let guards = self.watched.evaluate_guards(point.t, &point.y);
         let values = guards.into_iter().enumerate();

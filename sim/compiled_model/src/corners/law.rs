@@ -108,7 +108,7 @@ impl Balance {
 /// Result of an arrival at a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passage {
-    /// The motion goes on beyond the surface.
+    /// The motion continues beyond the surface.
     Transmitted,
     /// The motion returns: its energy does not suffice, or its rate leads back already.
     Returned,

@@ -95,7 +95,7 @@ impl Disc {
         write_unit_vector(&velocity, Some(&self.along), sides);
     }
 
-    /// Keeps the direction of the motion, and lets a motion slide that has left zero.
+    /// Updates the direction of sliding. A released disc slides once its velocity exceeds rounding.
     pub fn follow(&mut self, functions: &[f64]) {
         if self.is_leaving() && !self.is_within_rounding(functions) {
             self.state = DiscState::Sliding;
