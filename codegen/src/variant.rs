@@ -12,7 +12,7 @@ use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
-use crate::mechanics::sliding::add_side_inputs;
+use crate::mechanics::sliding::{SideInputs, add_side_inputs, can_hold_motion};
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
 use crate::program::evaluator::{Evaluator, Point};
@@ -126,29 +126,43 @@ fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(
     inertia::check(model, orders, equations, &mass)
 }
 
-/// Derives the program in which the sides of surfaces that can hold the motion are additional inputs, after
-/// those of the model; see [`sliding`](crate::mechanics::sliding). Returns None if there is no such surface.
+/// Lowers `equations` of a model with the sides of switching surfaces as inputs, after those of the model; see
+/// [`sliding`](crate::mechanics::sliding). Without `may_hold` no surface holds the motion. Returns `None` if there are no
+/// surfaces.
 ///
 /// # Errors
-/// Expressions that cannot be derived.
-pub fn derive_sliding(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
-    let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
+/// Parameter values that are not admissible.
+pub fn lower_with_sides(
+    model: &Model,
+    equations: &Equations,
+    may_hold: bool,
+) -> Result<Option<Program>, Diagnostics> {
     let values = model
         .parameter_values()
-        .map_err(|error| found(error.diagnostic()))?;
-    let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-    let sliding = add_side_inputs(&mut equations);
-    if sliding.is_empty() {
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
+    let with_sides = |may_hold: bool| {
+        let mut equations = equations.clone();
+        let inputs = add_side_inputs(&mut equations, may_hold)?;
+        Some((equations, inputs))
+    };
+    let holds = may_hold && can_hold_motion(equations);
+    let found = holds.then(|| with_sides(true)).flatten();
+    let Some((equations, SideInputs { others, sliding })) = found.or_else(|| with_sides(false))
+    else {
+        return Ok(None);
+    };
+    let count = others.len() + sliding.len();
+    if count == 0 {
         return Ok(None);
     }
-    let sides = sliding.len();
     let outputs = Outputs {
         sliding,
+        sides: others,
         ..Outputs::default()
     };
     let mut program = lower_with_outputs(model, &equations, &values, &outputs);
     program.inputs.extend(side_inputs(
-        sides,
+        count,
         "0 to 1; between them while the surface holds the motion",
     ));
     Ok(Some(program))

@@ -16,12 +16,17 @@
 //! A mass on a spring with play, solved by the general and by the exact solver:
 //!
 //! ```
+//! use std::cell::RefCell;
+//!
 //! use eomgen_sim::inputs::HeldInputs;
 //! use eomgen_sim::ode::{self, Settings, System};
 //! use eomgen_sim::piecewise_linear::PiecewiseLinear;
 //! use eomgen_model_spec::source::Source;
 //!
-//! struct Mass;
+//! #[derive(Default)]
+//! struct Mass {
+//!     sides: RefCell<Option<Vec<f64>>>,
+//! }
 //!
 //! impl System for Mass {
 //!     fn state_count(&self) -> usize {
@@ -29,7 +34,16 @@
 //!     }
 //!
 //!     fn rates(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-//!         let stretched = y[0] - y[0].clamp(-0.1, 0.1);
+//!         let mut sides = vec![0.0; 2];
+//!         self.guards(0.0, y, &mut sides);
+//!         // With fixed sides the rates continue smoothly over a surface.
+//!         let fixed = self.sides.borrow();
+//!         let sides = fixed.as_ref().unwrap_or(&sides);
+//!         let stretched = match (sides[0] < 0.0, sides[1] > 0.0) {
+//!             (true, _) => y[0] + 0.1,
+//!             (_, true) => y[0] - 0.1,
+//!             _ => 0.0,
+//!         };
 //!         (out[0], out[1]) = (y[1], -25.0 * stretched);
 //!     }
 //!
@@ -40,11 +54,15 @@
 //!     fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
 //!         (out[0], out[1]) = (y[0] + 0.1, y[0] - 0.1);
 //!     }
+//!
+//!     fn fix_sides(&self, sides: Option<&[f64]>) {
+//!         *self.sides.borrow_mut() = sides.map(<[f64]>::to_vec);
+//!     }
 //! }
 //!
 //! let (initial, span, samples) = ([0.3, 0.0], (0.0, 2.0), [1.0, 2.0]);
 //! let settings = Settings::default();
-//! let located = ode::simulate(&Mass, &initial, span, &samples, &settings, &mut |_| {})?;
+//! let located = ode::simulate(&Mass::default(), &initial, span, &samples, &settings, &mut |_| {})?;
 //!
 //! let text = r#"
 //! [model]

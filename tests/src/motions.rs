@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::fmt::Write;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::DrivenModel;
+use eomgen_compiled_model::{CompiledModel, DrivenModel, Orders, SidedModel};
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -173,7 +173,21 @@ impl TestMotion {
     pub fn driven(&self) -> DrivenModel<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
         assert!(evaluator.pivots_are_positive());
-        DrivenModel::new(RefCell::new(evaluator), &self.inputs)
+        DrivenModel::new(RefCell::new(evaluator), &self.inputs).with_sides(self.sided_model())
+    }
+
+    /// Returns the model with the sides of its surfaces at the declared parameters.
+    fn sided_model(&self) -> Option<SidedModel> {
+        let orders = Orders::Uniform(self.order);
+        let compiled = CompiledModel::derive(self.model.clone(), orders).expect("the equations");
+        let values = self.model.parameter_values().expect("values");
+        let place = |name: &String| self.model.parameters.iter().position(|p| p.name == *name);
+        let names = compiled.parameter_names();
+        let values: Vec<f64> = names
+            .iter()
+            .map(|name| values[place(name).expect("a parameter")])
+            .collect();
+        compiled.sided_model(&values).expect("sides")
     }
 
     /// Simulates with the Runge-Kutta method of the general solver.

@@ -23,6 +23,7 @@ use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId, Shape};
 
 /// Equations of motion of one model.
+#[derive(Clone)]
 pub struct Equations {
     /// Name of the model.
     pub name: String,

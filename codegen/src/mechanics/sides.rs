@@ -22,35 +22,30 @@ impl Sides {
     /// Replaces the switching functions in `roots` by polynomials in sides. `side` returns the leaf for the
     /// side of the one of `guards` with a given index, if it has one.
     pub fn replace_all(
-        (graph, guards): (&mut Graph, &[Guard]),
+        given: (&mut Graph, &[Guard]),
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
     ) -> Self {
-        Self::replace((graph, guards), roots, side, &|_| true)
+        Self::replace(given, roots, &|guard, _| side(guard))
     }
 
     /// Replaces only functions that jump. A continuous function has one value at its surface; off the
     /// surface, a wrong side can move the argument of another function out of its domain, for example in
     /// `sqrt(abs(p))`.
     pub fn replace_jumps(
-        (graph, guards): (&mut Graph, &[Guard]),
+        given: (&mut Graph, &[Guard]),
         roots: &[NodeId],
         side: &dyn Fn(usize) -> Option<Operation>,
     ) -> Self {
-        let jumps = |function| {
-            !matches!(
-                function,
-                Function::Abs | Function::Max | Function::Min | Function::Deadzone
-            )
-        };
-        Self::replace((graph, guards), roots, side, &jumps)
+        Self::replace(given, roots, &|guard, jumps| side(guard).filter(|_| jumps))
     }
 
-    fn replace(
+    /// Replaces functions for which `side` returns a leaf, given the index of the guard and true if the function
+    /// jumps there.
+    pub fn replace(
         (graph, guards): (&mut Graph, &[Guard]),
         roots: &[NodeId],
-        side: &dyn Fn(usize) -> Option<Operation>,
-        has_side: &dyn Fn(Function) -> bool,
+        side: &dyn Fn(usize, bool) -> Option<Operation>,
     ) -> Self {
         let values: Vec<NodeId> = guards.iter().map(|guard| guard.value).collect();
         let mut sides = Self {
@@ -59,14 +54,16 @@ impl Sides {
         };
         // Operands precede their uses, so inner switching functions are already replaced.
         for id in graph.reachable(roots) {
-            let is_call_without =
-                matches!(graph.operation(id), Operation::Call(called, _) if !has_side(*called));
-            if is_call_without || graph.dependence(id).is_parameter_only() {
+            if graph.dependence(id).is_parameter_only() {
                 continue;
             }
+            let jumps = match graph.operation(id) {
+                Operation::Call(function, _) => jumps(*function),
+                _ => true,
+            };
             let parameter = |graph: &mut Graph, surface: NodeId| {
                 let index = values.iter().position(|value| *value == surface)?;
-                side(index).map(|leaf| graph.intern(leaf))
+                side(index, jumps).map(|leaf| graph.intern(leaf))
             };
             if let Some(replacement) = sides.replacement(graph, id, &parameter) {
                 sides.known.insert(id, replacement);
@@ -166,6 +163,14 @@ impl Sides {
     fn replace_in(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         substitute(graph, id, &|_, _| None, &mut self.known)
     }
+}
+
+/// Returns true for a function whose value jumps at its surface.
+fn jumps(function: Function) -> bool {
+    !matches!(
+        function,
+        Function::Abs | Function::Max | Function::Min | Function::Deadzone
+    )
 }
 
 fn opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {

@@ -10,8 +10,13 @@
 //!
 //! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see the module `discs`. Each of
 //! its components has a side, which is 0 to 1 for -1 to 1, and the component of v as its function.
+//!
+//! The sides of all other surfaces are inputs, too. With constant sides the rates are smooth across the surfaces, so
+//! that a step may cross one before the crossing is located. Continuous functions of a surface that can hold the motion
+//! keep their value: its state deviates from the surface by rounding, to either side.
 
-use std::collections::HashMap;
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 
 use eomgen_model_spec::ids::InputId;
 use eomgen_model_spec::model::Function;
@@ -20,7 +25,7 @@ use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::can_be_constant;
 use crate::mechanics::guard::Guard;
-use crate::mechanics::outputs::{SlidingSurface, guard_rate};
+use crate::mechanics::outputs::{Side, SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sides::{Sides, sign};
 use crate::symbolic::differentiate::derive_by_scalar;
@@ -28,40 +33,77 @@ use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
 
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
-pub fn can_hold_motion(equations: &Equations) -> bool {
+pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
     !guards_with_sides(equations).is_empty()
         || divides_by_speed(&equations.graph, &roots(equations))
 }
 
-/// Makes the sides of surfaces that can hold the motion inputs, after those of the model, in the order of the
-/// surfaces. Returns an empty list if there is none; the equations are then unusable.
-pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<NodeId, RowNodes>> {
-    let sliding = guards_with_sides(equations);
-    let first = equations.inputs;
-    let leaf = |side: usize| Operation::Input(InputId::new(first + side));
+/// Surfaces whose sides are inputs.
+pub(crate) struct SideInputs {
+    /// Surfaces that cannot hold the motion; their sides come first.
+    pub others: Vec<Side>,
+    /// Surfaces that can hold the motion.
+    pub sliding: Vec<SlidingSurface<NodeId, RowNodes>>,
+}
+
+/// Makes the sides of surfaces inputs, after those of the model: first the surfaces that cannot hold the motion, then
+/// those that can, which are none if not `may_hold`. Returns `None` if no surface that can hold the motion is found
+/// though it `may_hold`; the equations are then unusable.
+pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Option<SideInputs> {
+    let mut sliding = match may_hold {
+        true => guards_with_sides(equations),
+        false => Vec::new(),
+    };
+    if !sliding.is_empty() {
+        let jumping = jumping_guards(equations);
+        sliding.retain(|(guard, _)| jumping.contains(guard));
+    }
+    let all = scalar_guards(equations);
+    let is_sliding = |guard: usize| sliding.iter().any(|(own, _)| *own == guard);
+    let others: Vec<(usize, usize)> = (all.into_iter())
+        .filter(|(guard, _)| !is_sliding(*guard))
+        .collect();
+    let first = equations.inputs + others.len();
+    let leaf = |side: usize| Operation::Input(InputId::new(side));
     let roots = roots(equations);
+    let place =
+        |list: &[(usize, usize)], guard: usize| list.iter().position(|(own, _)| *own == guard);
+    let inputs = equations.inputs;
     let given = (&mut equations.graph, &equations.guards[..]);
-    let mut known = Sides::replace_jumps(given, &roots, &|guard| {
-        let mut places = sliding.iter();
-        places.position(|(own, _)| *own == guard).map(leaf)
+    let mut known = Sides::replace(given, &roots, &|guard, jumps| match (
+        place(&sliding, guard),
+        place(&others, guard),
+    ) {
+        (Some(side), _) => jumps.then(|| leaf(first + side)),
+        (None, Some(side)) => Some(leaf(inputs + side)),
+        (None, None) => None,
     })
     .known;
     replace(equations, &mut known);
+    let is_odd = |function: Function| matches!(function, Function::Sign | Function::Abs);
+    let others = others.into_iter().map(|(guard, place)| Side {
+        guard: place,
+        is_odd: is_odd(equations.guards[guard].function),
+    });
+    let others: Vec<Side> = others.collect();
+    if !may_hold {
+        return Some(SideInputs {
+            others,
+            sliding: Vec::new(),
+        });
+    }
     let mut functions: Vec<SideFunction> = sliding
         .iter()
         .map(|(guard, place)| SideFunction {
             value: equations.guards[*guard].value,
             place: *place,
-            is_odd: matches!(
-                equations.guards[*guard].function,
-                Function::Sign | Function::Abs
-            ),
+            is_odd: is_odd(equations.guards[*guard].function),
             disc: None,
         })
         .collect();
-    add_unit_vectors(equations, &mut functions);
+    add_unit_vectors(equations, first, &mut functions);
     let leaves: Vec<NodeId> = (0..functions.len())
-        .map(|side| equations.graph.intern(leaf(side)))
+        .map(|side| equations.graph.intern(leaf(first + side)))
         .collect();
     let rates: Vec<NodeId> = functions
         .iter()
@@ -99,13 +141,16 @@ pub(crate) fn add_side_inputs(equations: &mut Equations) -> Vec<SlidingSurface<N
         !graph.is_zero(surface.by_sides[side])
     };
     if !found.iter().enumerate().any(feels) {
-        return Vec::new();
+        return None;
     }
     for surface in &mut found {
         let parts = graph.reachable(&surface.by_sides);
         surface.is_linear = !parts.iter().any(|part| leaves.contains(part));
     }
-    found
+    Some(SideInputs {
+        others,
+        sliding: found,
+    })
 }
 
 /// Function with a side.
@@ -120,7 +165,11 @@ struct SideFunction {
 
 /// Replaces unit vectors of velocities by inputs, after those of `functions`, and adds the components of the
 /// velocities to the functions and to the guards.
-fn add_unit_vectors(equations: &mut Equations, functions: &mut Vec<SideFunction>) {
+fn add_unit_vectors(
+    equations: &mut Equations,
+    first_side: usize,
+    functions: &mut Vec<SideFunction>,
+) {
     let lengths = equations.guards.iter().map(|guard| {
         let graph = &equations.graph;
         graph.length(graph.shape(guard.value))
@@ -129,7 +178,7 @@ fn add_unit_vectors(equations: &mut Equations, functions: &mut Vec<SideFunction>
     let mut count = 0;
     let nodes = roots(equations);
     for disc in find_discs(&mut equations.graph, &nodes) {
-        let first = equations.inputs + functions.len();
+        let first = first_side + functions.len();
         let graph = &mut equations.graph;
         let unit: Vec<NodeId> = (0..disc.components.len())
             .map(|component| {
@@ -160,33 +209,55 @@ fn add_unit_vectors(equations: &mut Equations, functions: &mut Vec<SideFunction>
     }
 }
 
-/// Returns the guards that depend on rates or on first-order states and cannot be constant in a regime,
-/// each with its index among all guard values.
+/// Returns the guards that depend on rates or on first-order states, each with its index among all guard values.
 fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let moves = Dependence::RATE.join(Dependence::STATE);
+    let mut found = scalar_guards(equations);
+    found.retain(|(index, _)| {
+        let guard = &equations.guards[*index];
+        let is_single = matches!(
+            guard.function,
+            Function::Sign | Function::Abs | Function::Above | Function::Max | Function::Min
+        );
+        is_single && graph.dependence(guard.value).has(moves)
+    });
+    found
+}
+
+/// Returns the guards that are no vectors over modes and cannot be constant in a regime, each with its index among all
+/// guard values. A guard that is zero in a regime, such as max(x, 0), has no side there.
+fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
+    let graph = &equations.graph;
     let mut found = Vec::new();
     let mut place = 0;
     for (index, guard) in equations.guards.iter().enumerate() {
-        let is_single = match graph.shape(guard.value) {
-            Shape::Vector(space) => {
-                place += graph.size(space);
-                continue;
+        match graph.shape(guard.value) {
+            Shape::Vector(space) => place += graph.size(space),
+            _ => {
+                if !can_be_constant(graph, guard.value) {
+                    found.push((index, place));
+                }
+                place += 1;
             }
-            _ => matches!(
-                guard.function,
-                Function::Sign | Function::Abs | Function::Above | Function::Max | Function::Min
-            ),
-        };
-        if is_single
-            && graph.dependence(guard.value).has(moves)
-            && !can_be_constant(graph, guard.value)
-        {
-            found.push((index, place));
         }
-        place += 1;
     }
     found
+}
+
+/// Returns the guards at which a function jumps.
+fn jumping_guards(equations: &mut Equations) -> HashSet<usize> {
+    let found = RefCell::new(HashSet::new());
+    let roots = roots(equations);
+    let first = InputId::new(equations.inputs);
+    let given = (&mut equations.graph, &equations.guards[..]);
+    Sides::replace(given, &roots, &|guard, jumps| {
+        if jumps {
+            found.borrow_mut().insert(guard);
+        }
+        Some(Operation::Input(first))
+    });
+    found.into_inner()
 }
 
 /// Returns the nodes that are evaluated while a motion is held.

@@ -19,6 +19,7 @@ use crate::symbolic::orders::Orders;
 use crate::symbolic::switches::{FlatGuard, is_switch};
 use crate::symbolic::tables::{Table, TableKind};
 
+#[derive(Clone)]
 struct Node {
     operation: Operation,
     shape: Shape,
@@ -31,6 +32,7 @@ struct Node {
 }
 
 /// Graph of one variant: nodes, constant tables and sizes of the index spaces.
+#[derive(Clone)]
 pub struct Graph {
     nodes: Vec<Node>,
     known: NodeMap<Operation, NodeId>,

@@ -11,7 +11,7 @@ pub(crate) type Monomial = Vec<(NodeId, f64)>;
 /// Monomials with their orders in s: |monomial| <= C s^order.
 pub(crate) type Bounds = Arc<Vec<(Monomial, f64)>>;
 
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(crate) struct Orders {
     /// Bounds by the argument of a root; `None` if its zeros are unknown.
     pub bounds: HashMap<NodeId, Option<Bounds>>,

@@ -149,7 +149,7 @@ impl<'m> Simulation<'m> {
 
     /// Adds sticking surfaces for measured accelerations.
     pub(crate) fn measure_sticking(&mut self, sided: Option<SidedModel>) {
-        self.resting = sided;
+        self.resting = sided.filter(SidedModel::can_hold_motion);
     }
 
     /// Selects the motion of the records instead of a simulated one.
@@ -300,7 +300,7 @@ impl<'m> Simulation<'m> {
         };
         let driven = DrivenModel::new(&self.evaluator, inputs)
             .with_typical_sizes(self.typical_sizes)
-            .with_sliding(self.sided.take());
+            .with_sides(self.sided.take());
         let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
         self.sided = driven.into_sided_model();
         found

@@ -66,7 +66,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Returns energy and power, with the forces during sticking and those of contacts at rest.
     fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
-        match self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
+        // The forces of closed contacts are those of the side of the state.
+        let has_fixed_sides = self.is_sticking_active() && !self.has_closed_contacts();
+        match self.sliding.as_ref().filter(|_| has_fixed_sides) {
             Some(sliding) => {
                 let inputs = &self.inputs.borrow().evaluate(t);
                 let mut sliding = sliding.borrow_mut();
@@ -102,10 +104,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    /// Enables sticking on switching surfaces, as under dry friction, at the same parameters. The
-    /// system keeps the state of sticking, so use it for one motion only.
-    pub fn with_sliding(mut self, sided: Option<SidedModel>) -> Self {
+    /// Sets the model with the sides of switching surfaces, at the same parameters: rates continue smoothly over
+    /// surfaces, and these hold the motion, as under dry friction. The system keeps their state, so use it for one
+    /// motion only.
+    pub fn with_sides(mut self, sided: Option<SidedModel>) -> Self {
         self.sliding = sided.map(|sided| RefCell::new(SurfaceStates::new(sided)));
+        self
+    }
+
+    /// Lets the motion cross the surfaces that could hold it.
+    pub(crate) fn without_holding(mut self) -> Self {
+        if let Some(sliding) = &mut self.sliding {
+            sliding.get_mut().disable_holding();
+        }
         self
     }
 
@@ -247,16 +258,23 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        if let Some(sliding) = self.sliding.as_ref().filter(|_| self.is_sticking_active()) {
-            let inputs = &self.inputs.borrow().evaluate(t);
-            return sliding.borrow_mut().write_rates((t, y), inputs, out);
+        let inputs = &self.inputs.borrow().evaluate(t);
+        let point = Point {
+            t,
+            state: y,
+            inputs,
+        };
+        // The forces of closed contacts are those of the side of the state.
+        let has_fixed_sides = self.is_sticking_active() && !self.has_closed_contacts();
+        match self.sliding.as_ref().filter(|_| has_fixed_sides) {
+            Some(sliding) => sliding.borrow_mut().write_rates((t, y), inputs, out),
+            None => self.evaluator().rates(point, out),
         }
-        self.evaluate_at(t, y, |evaluator, point| {
-            evaluator.rates(point, out);
-            if let Some(contacts) = &self.contacts {
-                contacts.borrow_mut().add_to_rates(evaluator, point, out);
-            }
-        });
+        if let Some(contacts) = &self.contacts {
+            contacts
+                .borrow_mut()
+                .add_to_rates(&mut self.evaluator(), point, out);
+        }
     }
 
     fn typical_sizes(&self) -> Vec<f64> {

@@ -52,7 +52,7 @@ impl Instance<'_> {
         Ok(driven
             .with_impacts(impacts)
             .with_corners(self.corners()?)
-            .with_sliding(self.sided_model()?))
+            .with_sides(self.sided_model()?))
     }
 
     /// Returns the projection onto the constraints; `None` without constraints.

@@ -6,10 +6,9 @@ use std::sync::{Arc, OnceLock};
 use eomgen_codegen::independence::rows::constraint_program;
 use eomgen_codegen::mechanics::corners::has_jumping_momenta;
 use eomgen_codegen::mechanics::equations::Equations;
-use eomgen_codegen::mechanics::sliding::can_hold_motion;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::{Variant, derive_corners, derive_sliding};
+use eomgen_codegen::variant::{Variant, derive_corners, lower_with_sides};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -250,17 +249,15 @@ impl CompiledModel {
     }
 
     /// Returns the model in which the sides of switching surfaces are inputs, at these values of
-    /// the independent parameters, SI. `None` if no surface can hold a motion, or if the model has
-    /// impacts.
+    /// the independent parameters, SI. `None` if there are no surfaces. With impacts no surface holds the
+    /// motion.
     ///
     /// # Errors
-    /// Terms that cannot be derived.
+    /// Parameter values that are not admissible.
     pub fn sided_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
         let made = self.sided.get_or_init(|| {
-            if !can_hold_motion(&self.equations) || !self.model.impacts.is_empty() {
-                return Ok(None);
-            }
-            let program = derive_sliding(&self.model, &self.orders)?;
+            let may_hold = self.model.impacts.is_empty();
+            let program = lower_with_sides(&self.model, &self.equations, may_hold)?;
             Ok(program.map(|program| {
                 let code = eomgen_jit::code(&program);
                 (program, code)

@@ -247,7 +247,7 @@ impl Instance<'_> {
         if settings.method == Method::Adams {
             // The Adams method uses the preceding steps, so it cannot continue from sticking; it
             // reports the time of sticking instead.
-            system = system.with_sliding(None);
+            system = system.without_holding();
         }
         let solver = match settings.method {
             Method::DormandPrince853 => Solver::Rk,

@@ -9,10 +9,8 @@
 //!
 //! The formulas of a step are in `history`.
 
-use differential_equations::ode::ODE;
-
 use super::attempt::{Attempt, Errors};
-use super::dormand_prince::{make_step, make_steps_within};
+use super::dormand_prince::make_steps_within;
 use super::error::SolveError;
 use super::history::{History, MAX_ORDER};
 use super::magnitudes::Magnitudes;
@@ -62,6 +60,8 @@ pub struct Adams {
     before: Stand,
     /// The step from `before` to `now`, if this method made it.
     last: Option<Attempt>,
+    /// The last trial.
+    tried: Option<Attempt>,
     /// The length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
@@ -77,6 +77,7 @@ impl Stepper for Adams {
             before: Stand::new(start.clone()),
             now: Stand::new(start),
             last: None,
+            tried: None,
             step,
             magnitudes,
             refusals: 0,
@@ -131,9 +132,6 @@ impl Stepper for Adams {
             length,
         };
         let attempt = self.now.attempt(watched, length);
-        if watched.crossed_guard().is_some() {
-            return Ok(outcome);
-        }
         let errors = attempt.estimate_errors(&self.now.history, &self.magnitudes);
         outcome.is_accepted = errors.same_order <= 1.0;
         if !outcome.is_accepted {
@@ -163,14 +161,30 @@ impl Stepper for Adams {
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
-    ) -> Option<Point> {
+    ) -> Option<(Point, Vec<f64>)> {
         self.begin(watched).ok()?;
-        let end = self.now.attempt(watched, length).end;
-        watched.check_sides(end.t, &end.y);
-        end.y.iter().all(|y| y.is_finite()).then_some(end)
+        let attempt = self.now.attempt(watched, length);
+        let end = attempt.end.clone();
+        if end.y.iter().any(|y| !y.is_finite()) {
+            return None;
+        }
+        let mut rates = vec![0.0; end.y.len()];
+        watched.rates(end.t, &end.y, &mut rates);
+        self.tried = Some(attempt);
+        Some((end, rates))
     }
 
-    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
+    fn end_trial(&mut self, point: Point) {
+        let step = self.step;
+        self.restart(point, step);
+        self.last = self.tried.take();
+    }
+
+    fn interpolated<S: System + ?Sized>(
+        &mut self,
+        _watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
         let Stand { point, history, .. } = &self.before;
         let last = self.last.as_ref()?;
         let weights = history.weights(t - point.t);
@@ -188,21 +202,12 @@ impl Stepper for Adams {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        if let Some(state) = self.interpolated(t) {
+        if let Some(state) = self.interpolated(watched, t) {
             return Some(state);
         }
         // The driver stepped over a surface; what is remembered says nothing of that.
         let start = &self.before.point;
         Some(make_steps_within(watched, start, t - start.t, &self.magnitudes)?.y)
-    }
-
-    fn single_step<S: System + ?Sized>(
-        &self,
-        watched: &WatchedSystem<'_, S>,
-        start: &Point,
-        length: f64,
-    ) -> Option<Point> {
-        make_step(watched, start, length)
     }
 }
 
@@ -218,7 +223,7 @@ impl Adams {
         let here = &self.now.point;
         let Point { t, y } = here;
         let mut rates = vec![0.0; y.len()];
-        watched.diff(*t, y, &mut rates);
+        watched.rates(*t, y, &mut rates);
         let norm = self.magnitudes.norm(rates.iter().copied(), y);
         if !norm.is_finite() {
             return Err(rejection_error(watched, here, self.step));
@@ -259,7 +264,7 @@ impl Adams {
     ) {
         let end = &attempt.end;
         let mut rates = vec![0.0; end.y.len()];
-        watched.diff(end.t, &end.y, &mut rates);
+        watched.rates(end.t, &end.y, &mut rates);
         std::mem::swap(&mut self.now, &mut self.before);
         let Attempt { weights, order, .. } = &attempt;
         let (now, before) = (&mut self.now, &self.before);

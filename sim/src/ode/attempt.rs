@@ -2,8 +2,6 @@
 //! correction, and what the errors of this and of lower orders are. What follows from
 //! the errors is decided in `adams`.
 
-use differential_equations::ode::ODE;
-
 use super::history::{History, Weights};
 use super::magnitudes::Magnitudes;
 use super::stepper::Point;
@@ -47,7 +45,7 @@ impl Attempt {
         history.predict(&weights, order, &mut y);
         let t = start.t + length;
         let mut surprise = vec![0.0; y.len()];
-        watched.diff(t, &y, &mut surprise);
+        watched.rates(t, &y, &mut surprise);
         history.write_prediction_difference(&weights, order, &mut surprise);
         let factor = length * weights.g(order);
         for (y, surprise) in y.iter_mut().zip(&surprise) {

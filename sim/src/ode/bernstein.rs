@@ -4,10 +4,17 @@
 use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
 use nalgebra::{SMatrix, SVector};
 
-use super::continuous_extension::PARTS;
+/// Parts of a step at which its interior is interpolated: the Chebyshev points of the interval.
+const PARTS: [f64; 6] = [
+    0.017_037_086_855_465_856,
+    0.146_446_609_406_726_24,
+    0.370_590_477_448_739_6,
+    0.629_409_522_551_260_4,
+    0.853_553_390_593_273_8,
+    0.982_962_913_144_534_1,
+];
 
-/// Control points of a state; the interior has the degree of the continuous extension of
-/// `dormand_prince`.
+/// Control points of a state; the interior has the degree of that of `dormand_prince`.
 const POINTS: usize = DEGREE + 1;
 
 /// Inner control points.

@@ -124,22 +124,20 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// The stages of a step from `start` with these `factors`, starting from the polynomial of the
-    /// step before if there is one. If Newton's method does not converge, the error holds its last two
-    /// iterates: across a surface it may jump to and fro.
+    /// Solves the stages of a step from `start` with these `factors`, beginning with the polynomial of the
+    /// step `before`; `None` if Newton's method does not converge.
     pub fn solve<S: System + ?Sized>(
         watched: &WatchedSystem<'_, S>,
         start: &Point,
         factors: &Factors,
         before: Option<&Self>,
         magnitudes: &Magnitudes,
-    ) -> Result<Self, Box<[Self; 2]>> {
+    ) -> Option<Self> {
         let (length, states) = (factors.length, start.y.len());
         let mut z = match before {
             Some(before) => nodes().map(|node| before.beyond(node * length)),
             None => [(); 3].map(|()| DVector::zeros(states)),
         };
-        let mut z_before = z.clone();
         let mut w = transformed(&T_INVERSE, &z);
         let tolerance = magnitudes.tolerance();
         let enough = STAGES.min(tolerance.sqrt());
@@ -161,7 +159,7 @@ impl Stages {
             for (w, change) in w.iter_mut().zip(&change) {
                 *w += change;
             }
-            z_before = std::mem::replace(&mut z, transformed(&T, &w));
+            z = transformed(&T, &w);
             let is_first = iterations == 1;
             if !is_first {
                 contraction = size / last_change;
@@ -174,7 +172,7 @@ impl Stages {
             // What is left after a first change is not known.
             let left = contraction / (1.0 - contraction) * size;
             if is_small || (!is_first && left <= enough) {
-                return Ok(Self {
+                return Some(Self {
                     z,
                     length,
                     iterations,
@@ -187,20 +185,7 @@ impl Stages {
             }
             last_change = size;
         }
-        Err(Box::new([z_before, z].map(|z| Self {
-            z,
-            length,
-            iterations: MAX_ITERATIONS,
-            contraction,
-        })))
-    }
-
-    /// Notices if a stage lies beyond a surface.
-    pub fn check_sides<S: System + ?Sized>(&self, watched: &WatchedSystem<'_, S>, start: &Point) {
-        for (node, z) in nodes().into_iter().zip(&self.z) {
-            let y: Vec<f64> = start.y.iter().zip(z).map(|(y, z)| y + z).collect();
-            watched.check_sides(start.t + node * self.length, &y);
-        }
+        None
     }
 
     /// The state at the end of the step.

@@ -1,42 +1,48 @@
 //! The Dormand-Prince method of order 8 (Hairer, Norsett and Wanner, "Solving Ordinary
 //! Differential Equations I", section II.5), with and without control of the error.
 
-use differential_equations::error::Error;
-use differential_equations::interpolate::Interpolation;
-use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
-use differential_equations::ode::OrdinaryNumericalMethod;
-use differential_equations::status::Status;
-use differential_equations::tolerance::Tolerance;
-
-use super::continuous_extension::{ContinuousExtension, Interior};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::stepper::{Outcome, Point, Stepper, rejection_error, split_step};
+use super::slopes::{Interior, Slopes};
+use super::stepper::{Outcome, Point, Stepper, split_step};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, Vec<f64>, 8, 12, 16>;
+/// The step that the error estimate proposes is shortened by this.
+const SAFETY: f64 = 0.9;
+
+/// Smallest and largest factor from a step to the next.
+const FACTORS: (f64, f64) = (0.333, 6.0);
+
+/// Order of the error of a step.
+const ORDER: f64 = 8.0;
 
 /// Steps of the method.
 pub struct DormandPrince853 {
-    method: Method,
-    /// Where the last step began.
+    slopes: Slopes,
+    /// Start of the last step.
     last: Point,
-    /// Where the next step begins.
+    /// Start of the next step.
     here: Point,
-    /// The length of the next step, s.
+    /// Length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
-    /// The method stands at `here`.
-    ready: bool,
-    /// The next step is no continuation of the method's last one: it would refuse one that is much
-    /// shorter.
-    anew: bool,
-    /// The method's last step is that from `last` to `here`.
-    made_last: bool,
-    extension: ContinuousExtension,
-    /// The last step's interior, once a state in it was asked for.
+    known: Known,
+    /// True if the last trial was rejected; the next step does not grow.
+    is_rejected: bool,
     interior: Option<Interior>,
+}
+
+/// Slopes that are known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Nothing,
+    /// The slope at `here`, as that of a start.
+    Start,
+    /// The slopes of the step from `last` to `here`.
+    Step,
+    /// The same, but the rates may jump at `here`.
+    StepBeforeJump,
 }
 
 impl Stepper for DormandPrince853 {
@@ -44,15 +50,13 @@ impl Stepper for DormandPrince853 {
 
     fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self {
         Self {
-            method: Method::dop853(),
-            magnitudes,
+            slopes: Slopes::new(start.y.len()),
             last: start.clone(),
             here: start,
             step,
-            ready: false,
-            anew: true,
-            made_last: false,
-            extension: ContinuousExtension::new(),
+            magnitudes,
+            known: Known::Nothing,
+            is_rejected: false,
             interior: None,
         }
     }
@@ -70,16 +74,14 @@ impl Stepper for DormandPrince853 {
     }
 
     fn set_step(&mut self, step: f64) {
-        // What the method knows of its last step stays until the next one begins.
         self.step = step;
-        self.ready = false;
-        self.anew = true;
     }
 
     fn restart(&mut self, point: Point, step: f64) {
         self.last = std::mem::replace(&mut self.here, point);
-        self.set_step(step);
-        self.made_last = false;
+        self.step = step;
+        self.known = Known::Nothing;
+        self.interior = None;
     }
 
     fn magnitudes(&self) -> &Magnitudes {
@@ -91,7 +93,6 @@ impl Stepper for DormandPrince853 {
         if is_projected {
             self.magnitudes.include_rounding_of_others();
         }
-        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
     }
 
     fn advance<S: System + ?Sized>(
@@ -102,76 +103,97 @@ impl Stepper for DormandPrince853 {
         let limit = until - self.here.t;
         let is_cut = limit <= self.step;
         let length = if is_cut { limit } else { self.step };
-        self.interior = None;
-        if !self.ready {
-            self.begin(watched, length)?;
-        }
-        self.method.set_h(length);
-        match self.method.step(watched) {
-            Ok(_) => {}
-            Err(Error::Stiffness { .. }) => {
-                // Short steps are this solver's answer to stiffness; begin the count anew.
-                self.ready = false;
-                return Ok(Outcome {
-                    is_accepted: false,
-                    length,
-                });
-            }
-            Err(_) => return Err(rejection_error(watched, &self.here, length)),
-        }
-        if matches!(self.method.status(), Status::RejectedStep) {
-            self.step = self.method.h().min(0.9 * length);
-            return Ok(Outcome {
-                is_accepted: false,
-                length,
-            });
-        }
-        // A step cut short says nothing against the longer one.
-        self.step = if is_cut {
-            self.method.h().max(self.step)
-        } else {
-            self.method.h()
-        };
-        std::mem::swap(&mut self.last, &mut self.here);
-        self.here.y.clone_from(self.method.y());
-        self.here.t = if is_cut { until } else { self.method.t() };
-        self.ready = !is_cut;
-        self.made_last = true;
-        Ok(Outcome {
-            is_accepted: true,
+        let mut outcome = Outcome {
+            is_accepted: false,
             length,
-        })
+        };
+        self.begin(watched);
+        let mut end = Point {
+            t: if is_cut { until } else { self.here.t + length },
+            y: std::mem::take(&mut self.last.y),
+        };
+        let is_finite = self
+            .slopes
+            .make_step(watched, &self.here, length, &mut end.y);
+        let error = match is_finite {
+            true => self.slopes.error(&self.magnitudes, length, &end.y),
+            false => f64::NAN,
+        };
+        let factor = SAFETY * error.powf(-1.0 / ORDER);
+        if error.is_nan() || error > 1.0 {
+            // The largest reduction also if the error is not a number.
+            self.step = length * factor.max(FACTORS.0).min(SAFETY);
+            self.is_rejected = true;
+            self.last.y = end.y;
+            return Ok(outcome);
+        }
+        let most = if std::mem::take(&mut self.is_rejected) {
+            1.0
+        } else {
+            FACTORS.1
+        };
+        let next = length * factor.clamp(FACTORS.0, most);
+        // A step cut short says nothing against the longer one.
+        self.step = if is_cut { next.max(self.step) } else { next };
+        self.slopes.end(watched, &end);
+        self.last = std::mem::replace(&mut self.here, end);
+        self.known = match is_cut {
+            true => Known::StepBeforeJump,
+            false => Known::Step,
+        };
+        outcome.is_accepted = true;
+        Ok(outcome)
     }
 
     fn take_back(&mut self) {
         std::mem::swap(&mut self.last, &mut self.here);
-        self.ready = false;
-        self.made_last = false;
+        self.interior = None;
+        self.known = match self.known {
+            Known::Step | Known::StepBeforeJump => Known::Start,
+            Known::Nothing | Known::Start => Known::Nothing,
+        };
     }
 
     fn trial<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
-    ) -> Option<Point> {
-        make_step(watched, &self.here, length)
-    }
-
-    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
-        if !self.made_last {
+    ) -> Option<(Point, Vec<f64>)> {
+        self.begin(watched);
+        let mut y = Vec::new();
+        if !self.slopes.make_step(watched, &self.here, length, &mut y) {
             return None;
         }
-        let (begin, end) = (self.method.t_prev(), self.method.t());
-        let part = ((t - begin) / (end - begin)).clamp(0.0, 1.0);
-        let step = (&self.last.y[..], &self.here.y[..]);
-        if self.interior.is_none() {
-            let method = &mut self.method;
-            let swapped = |part: f64| method.interpolate(begin + part * (end - begin)).ok();
-            self.interior = self.extension.find_interior(step, swapped);
+        let t = self.here.t + length;
+        let end = Point { t, y };
+        self.slopes.end(watched, &end);
+        Some((end, self.slopes.end_rates().to_vec()))
+    }
+
+    fn end_trial(&mut self, point: Point) {
+        self.last = std::mem::replace(&mut self.here, point);
+        self.known = Known::StepBeforeJump;
+        self.interior = None;
+    }
+
+    fn interpolated<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
+        if !matches!(self.known, Known::Step | Known::StepBeforeJump) {
+            return None;
         }
-        self.interior
-            .as_ref()
-            .map(|interior| interior.interpolate(part, step))
+        let (begin, end) = (self.last.t, self.here.t);
+        let ends = (&self.last, &self.here);
+        let interior = match self.interior.take() {
+            Some(interior) => interior,
+            None => self.slopes.find_interior(watched, end - begin, ends),
+        };
+        let part = ((t - begin) / (end - begin)).clamp(0.0, 1.0);
+        let state = interior.interpolate(part, &self.last.y);
+        self.interior = Some(interior);
+        Some(state)
     }
 
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
@@ -179,7 +201,7 @@ impl Stepper for DormandPrince853 {
         let Some(middle) = make_step(watched, &self.last, half) else {
             return false;
         };
-        let Some(told) = self.interpolated(begin + half) else {
+        let Some(told) = self.interpolated(watched, begin + half) else {
             return false;
         };
         let errors = told.iter().zip(&middle.y).map(|(told, y)| told - y);
@@ -191,63 +213,42 @@ impl Stepper for DormandPrince853 {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        // The extension is of order 7; a step from the same start is of 8, and notices what
-        // its stages run into.
+        // The extension is of order 7; a step from the same start is of order 8.
         Some(make_steps_within(watched, &self.last, t - self.last.t, &self.magnitudes)?.y)
-    }
-
-    fn single_step<S: System + ?Sized>(
-        &self,
-        watched: &WatchedSystem<'_, S>,
-        start: &Point,
-        length: f64,
-    ) -> Option<Point> {
-        make_step(watched, start, length)
     }
 }
 
 impl DormandPrince853 {
-    /// Initialises the method at the start.
-    fn begin<S: System + ?Sized>(
-        &mut self,
-        watched: &WatchedSystem<'_, S>,
-        length: f64,
-    ) -> Result<(), SolveError> {
-        self.made_last = false;
-        if self.anew {
-            let tolerance = self.magnitudes.tolerance();
-            self.method = Method::dop853().rtol(tolerance).max_steps(usize::MAX);
-            self.method.atol = Tolerance::Vector(self.magnitudes.floors());
-            self.anew = false;
+    /// Prepares the slope at the start of a step.
+    fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
+        match self.known {
+            Known::Start => {}
+            Known::Step => self.slopes.follow(),
+            Known::Nothing | Known::StepBeforeJump => self.slopes.begin(watched, &self.here),
         }
-        self.method.h0 = length;
-        self.method
-            .init(
-                watched,
-                self.here.t,
-                horizon(&self.here, length),
-                &self.here.y,
-            )
-            .map_err(|_| rejection_error(watched, &self.here, length))?;
-        self.ready = true;
-        Ok(())
+        self.known = Known::Start;
+        self.interior = None;
     }
 }
 
-/// The state one step of exactly `length` s after `start`, whatever its error; `None` if the step
-/// overflows or leaves the domain of the rates.
+/// Returns the state after one step of exactly `length` s from `start`, whatever its error; `None` if a stage is not
+/// finite.
 pub fn make_step<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
 ) -> Option<Point> {
-    /// Refuses nothing finite. A large number in its place does not: relative to it the
-    /// square of an error can be subnormal, and the method divides by that.
-    const ANY: f64 = f64::INFINITY;
-    step_with(watched, start, length, Method::dop853().rtol(0.0).atol(ANY))
+    let mut slopes = Slopes::new(start.y.len());
+    slopes.begin(watched, start);
+    let mut y = Vec::new();
+    let is_finite = slopes.make_step(watched, start, length, &mut y);
+    is_finite.then_some(Point {
+        t: start.t + length,
+        y,
+    })
 }
 
-/// The state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
+/// Returns the state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
 /// none are short enough.
 pub fn make_steps_within<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
@@ -255,39 +256,16 @@ pub fn make_steps_within<S: System + ?Sized>(
     length: f64,
     magnitudes: &Magnitudes,
 ) -> Option<Point> {
-    let step = |start: &Point, length: f64, end: f64| {
-        let method = Method::dop853().rtol(magnitudes.tolerance());
-        let method = method.atol(Tolerance::Vector(magnitudes.floors()));
-        let y = step_with(watched, start, length, method)?.y;
-        Some(Point { t: end, y })
+    let mut slopes = Slopes::new(start.y.len());
+    let step = |start: &Point, length: f64, t: f64| {
+        slopes.begin(watched, start);
+        let mut y = Vec::new();
+        let is_finite = slopes.make_step(watched, start, length, &mut y);
+        let is_met = is_finite && slopes.error(magnitudes, length, &y) <= 1.0;
+        is_met.then_some(Point { t, y })
     };
-    split_step(start, length, step, || false)
+    split_step(start, length, step)
 }
-
-/// One step of `length` s by a new `method`; `None` if it refuses.
-fn step_with<S: System + ?Sized>(
-    watched: &WatchedSystem<'_, S>,
-    start: &Point,
-    length: f64,
-    method: Method,
-) -> Option<Point> {
-    let mut method = method.h0(length);
-    let end = horizon(start, length);
-    method.init(watched, start.t, end, &start.y).ok()?;
-    method.step(watched).ok()?;
-    let is_made = !matches!(method.status(), Status::RejectedStep);
-    let y = method.y();
-    (is_made && y.iter().all(|y| y.is_finite())).then(|| Point {
-        t: method.t(),
-        y: y.clone(),
-    })
-}
-
-/// An end of the integration beyond a step of `length`, which the method wants to know.
-fn horizon(start: &Point, length: f64) -> f64 {
-    start.t + 2.0 * length.max(f64::EPSILON * start.t.abs())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -337,12 +315,12 @@ mod tests {
                 length,
                 Magnitudes::new(&start.y, &[1.0], 1e-1),
             );
-            assert!(stepper.interpolated(0.0).is_none());
+            assert!(stepper.interpolated(&watched, 0.0).is_none());
             let outcome = stepper.advance(&watched, 10.0).expect("a step");
             assert!(outcome.is_accepted && outcome.length == length);
             let errors = (0..=20).map(|part| {
                 let t = 0.05 * f64::from(part) * length;
-                (stepper.interpolated(t).expect("a state")[0] - t.sin().exp()).abs()
+                (stepper.interpolated(&watched, t).expect("a state")[0] - t.sin().exp()).abs()
             });
             errors.fold(0.0, f64::max)
         };

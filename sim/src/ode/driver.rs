@@ -7,6 +7,7 @@ use super::approach::Approach;
 use super::bernstein::BernsteinBasis;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
+use super::event_search::Crossing;
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
@@ -120,8 +121,8 @@ pub(super) enum Accepted {
     Continues,
     /// It was taken back and is to be made shorter.
     Shortened,
-    /// It was taken back: so far from its start (s) the motion is beyond a surface.
-    SurfacePassed(f64),
+    /// It crosses surfaces.
+    Crossed(Crossing),
 }
 
 /// A simulation under way.
@@ -168,20 +169,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let mut shortened = 0;
         loop {
             self.limit_step();
-            self.check_step_size()?;
-            let outcome = self.make_controlled_step(until)?;
-            if self.watched.crossed_guard().is_some() {
-                // Also when the error refused the step: it is the surface that makes it
-                // large, and ever shorter steps would creep towards it.
-                if outcome.is_accepted {
-                    self.stepper.take_back();
-                }
-                return self.cross(outcome.length);
+            if self.step_is_too_short() {
+                return self.cross_at_once();
             }
+            let outcome = self.make_controlled_step(until)?;
             if outcome.is_accepted {
                 match self.look_at(outcome.length, shortened < MOST_SHORTENED) {
                     Accepted::Shortened => shortened += 1,
-                    Accepted::SurfacePassed(length) => return self.cross(length),
+                    Accepted::Crossed(crossing) => return self.cross(&crossing, outcome.length),
                     Accepted::Continues => return self.accept(begin),
                 }
             }
@@ -206,7 +201,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         );
         let (stepper, watched) = (&mut self.stepper, self.watched);
         let mut inside = |t, interior| match interior {
-            Interior::Interpolated => stepper.interpolated(t),
+            Interior::Interpolated => stepper.interpolated(watched, t),
             Interior::Recomputed => stepper.inside(watched, t),
         };
         watched.observe_step(&start, &end, &mut inside);
@@ -217,6 +212,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.check_steps()?;
         self.watched.forget_trials();
         let mut outcome = self.stepper.advance(self.watched, until)?;
+        if !outcome.is_accepted && self.watched.release_sides() {
+            // Beyond a surface the rates of the near side may have no value.
+            self.watched.forget_trials();
+            self.stepper.set_step(outcome.length);
+            outcome = self.stepper.advance(self.watched, until)?;
+            if !outcome.is_accepted {
+                self.watched.fix_sides(true);
+            }
+        }
         if outcome.is_accepted && self.watched.non_finite_state().is_some() {
             // It ends where the rates have no value: no motion gets there.
             self.refuse(outcome.length);
@@ -252,7 +256,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// The state at `t` (s), which lies inside the last step, interpolated if the interior `is_told`. Where
     /// a surface was stepped over nothing is interpolated.
     fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
-        if is_told && let Some(state) = self.stepper.interpolated(t) {
+        if is_told && let Some(state) = self.stepper.interpolated(self.watched, t) {
             return Ok(state);
         }
         self.check_steps()?;

@@ -30,10 +30,17 @@ pub trait Functions {
 
     /// Writes the bounds of the switching functions over a piece of the step.
     fn bound(&mut self, piece: &Piece, out: &mut [Enclosure]);
+}
 
-    /// Returns true if the motion at this part of the step, computed with the accuracy of the step,
-    /// is beyond the surface by more than `negligible`.
-    fn is_beyond(&mut self, part: f64, guard: usize, negligible: f64) -> bool;
+/// Crossing of surfaces inside a step.
+#[derive(Debug, PartialEq)]
+pub struct Crossing {
+    /// Part of the step at which the motion is on the near side.
+    pub near: f64,
+    /// Part of the step at which it is beyond.
+    pub beyond: f64,
+    /// Functions of these surfaces.
+    pub guards: Vec<usize>,
 }
 
 /// Piece to be examined, with the functions at its ends and those that may be negative in it.
@@ -46,16 +53,14 @@ struct Task {
 
 /// Searches for the first crossing in a step of `length` s whose interior is `piece`, given the
 /// `sides` of the guards to examine (-1 or 1; others are 0), the bounds of the functions over the step,
-/// and the functions at both ends. Returns the part of the step at which the motion is beyond a
-/// surface. Guards are added to `undecided` if the
-/// motion does not confirm a crossing of the interior, or if their bounds are too wide.
+/// and the functions at both ends. Guards are added to `undecided` if their bounds are too wide.
 pub fn find_crossing(
     (piece, length): (Piece, f64),
     (sides, mut bounds): (&[f64], Vec<Enclosure>),
     (start, end): (Vec<f64>, Vec<f64>),
     functions: &mut impl Functions,
     undecided: &mut Vec<usize>,
-) -> Option<f64> {
+) -> Option<Crossing> {
     let least = |guard: usize, bounds: &[Enclosure], (start, end): (&[f64], &[f64]), duration| {
         let side = sides[guard];
         let bound = bounds[guard].multiply(Enclosure::constant(side));
@@ -93,10 +98,8 @@ pub fn find_crossing(
         functions.bound(&task.piece, &mut bounds);
         let width = task.piece.to - task.piece.from;
         let ends = (&task.start[..], &task.end[..]);
-        task.guards.retain(|guard| {
-            !undecided.contains(guard)
-                && least(*guard, &bounds, ends, width * length) < -negligible[*guard]
-        });
+        task.guards
+            .retain(|guard| least(*guard, &bounds, ends, width * length) < -negligible[*guard]);
         if task.guards.is_empty() {
             continue;
         }
@@ -107,14 +110,15 @@ pub fn find_crossing(
             false => bounds[*guard].rate().low > 0.0,
         };
         if width <= 2.0_f64.powi(-MAX_HALVINGS) || guards.all(falls) {
-            let part = task.piece.to;
-            for guard in task.guards.iter().copied().filter(is_end_beyond) {
-                if functions.is_beyond(part, guard, negligible[guard]) {
-                    return Some(part);
-                }
-                undecided.push(guard);
+            task.guards.retain(is_end_beyond);
+            if task.guards.is_empty() {
+                continue;
             }
-            continue;
+            return Some(Crossing {
+                near: task.piece.from,
+                beyond: task.piece.to,
+                guards: task.guards,
+            });
         }
         let [first, second] = task.piece.halves();
         let middle = functions.evaluate(first.to, &first.end_state());
@@ -185,10 +189,6 @@ mod tests {
             let value = distance.subtract(radius);
             out[0] = Enclosure::from_bounds(value, rate.multiply(distance.reciprocal()));
         }
-
-        fn is_beyond(&mut self, _: f64, _: usize, _: f64) -> bool {
-            true
-        }
     }
 
     #[test]
@@ -225,9 +225,9 @@ mod tests {
             let found = find_crossing((piece, 1.0), guards, values, &mut disc, &mut undecided);
             assert!(undecided.is_empty(), "{throw}");
             match found {
-                Some(part) => {
-                    let point = path(part);
-                    assert!(point[0].hypot(point[1]) < radius, "{throw}: {part}");
+                Some(crossing) => {
+                    let point = path(crossing.beyond);
+                    assert!(point[0].hypot(point[1]) < radius, "{throw}: {crossing:?}");
                 }
                 None => assert!(least > 0.0, "{throw}: {least:e}"),
             }

@@ -4,10 +4,10 @@ use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::bernstein::Piece;
 use super::driver::{Accepted, Driver, SHORTENED};
-use super::event_search::{Functions, find_crossing};
+use super::event_search::{Crossing, Functions, find_crossing};
 use super::grazing::find_passed_surface;
 use super::resolution::PARTS;
-use super::stepper::{Point, Stepper};
+use super::stepper::Stepper;
 use super::system::System;
 use super::watch::WatchedSystem;
 
@@ -20,7 +20,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let found = self.find_crossing_inside(length, may_shorten);
         match found {
             Accepted::Continues => {}
-            Accepted::Shortened | Accepted::SurfacePassed(_) => return found,
+            Accepted::Shortened | Accepted::Crossed(_) => return found,
         }
         if !self.project() && may_shorten {
             self.refuse(length);
@@ -40,8 +40,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if is_short || !self.watched.has_guards() {
             return Accepted::Continues;
         }
-        let stepper = &mut self.stepper;
-        let interpolate = |part: f64| stepper.interpolated(start.t + part * (end.t - start.t));
+        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let interpolate =
+            |part: f64| stepper.interpolated(watched, start.t + part * (end.t - start.t));
         let Some(piece) = self.basis.fit((&start.y, &end.y), interpolate) else {
             return Accepted::Continues;
         };
@@ -49,10 +50,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let mut bounded = sampled.clone();
         let mut step = Step {
             watched: self.watched,
-            stepper: &mut self.stepper,
             times: (start.t, end.t),
             state: Vec::new(),
-            trials: 0,
         };
         let mut bounds = vec![Enclosure::UNKNOWN; bounded.len()];
         step.bound(&piece, &mut bounds);
@@ -68,10 +67,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let interior = (piece, end.t - start.t);
         let guards = (&bounded[..], bounds);
         let found = find_crossing(interior, guards, ends, &mut step, &mut undecided);
-        self.trajectory.statistics.trial_steps += step.trials;
-        if let Some(part) = found {
-            self.stepper.take_back();
-            return Accepted::SurfacePassed(part * length);
+        if let Some(crossing) = found {
+            return Accepted::Crossed(crossing);
         }
         for guard in undecided {
             sampled[guard] = bounded[guard];
@@ -87,14 +84,20 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let Some(values) = self.sample_guards() else {
             return Accepted::Continues;
         };
+        if let Some(crossing) = find_sign_change(&values, sides) {
+            return Accepted::Crossed(crossing);
+        }
         if may_shorten && self.shorten_unresolved(&values, sides, length) {
             return Accepted::Shortened;
         }
         let trials = &mut self.trajectory.statistics.trial_steps;
         let step = (self.watched, &mut self.stepper);
-        if let Some(length) = find_passed_surface(step, sides, &values, trials) {
-            self.stepper.take_back();
-            return Accepted::SurfacePassed(length);
+        if let Some((guard, passed)) = find_passed_surface(step, sides, &values, trials) {
+            return Accepted::Crossed(Crossing {
+                near: 0.0,
+                beyond: passed / length,
+                guards: vec![guard],
+            });
         }
         self.resolution.settle(&values);
         Accepted::Continues
@@ -113,7 +116,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let state = match part {
                 0.0 => start.y.clone(),
                 1.0 => end.y.clone(),
-                _ => self.stepper.interpolated(t)?,
+                _ => self.stepper.interpolated(self.watched, t)?,
             };
             *values = self.watched.evaluate_guards_before(t, &state);
         }
@@ -144,17 +147,30 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 }
 
+/// Returns the first sign change among samples of the functions whose `sides` are not 0.
+fn find_sign_change(values: &[Vec<f64>; 5], sides: &[f64]) -> Option<Crossing> {
+    let beyond = |place: usize| {
+        let guards = 0..sides.len();
+        let beyond = guards.filter(|guard| sides[*guard] * values[place][*guard] < 0.0);
+        beyond.collect::<Vec<usize>>()
+    };
+    let place = (1..PARTS.len()).find(|place| !beyond(*place).is_empty())?;
+    Some(Crossing {
+        near: PARTS[place - 1],
+        beyond: PARTS[place],
+        guards: beyond(place),
+    })
+}
+
 /// The last step, whose interior is searched.
-struct Step<'a, S: System + ?Sized, M: Stepper> {
+struct Step<'a, S: System + ?Sized> {
     watched: &'a WatchedSystem<'a, S>,
-    stepper: &'a mut M,
     /// Begin and end, s.
     times: (f64, f64),
     state: Vec<Enclosure>,
-    trials: u64,
 }
 
-impl<S: System + ?Sized, M: Stepper> Step<'_, S, M> {
+impl<S: System + ?Sized> Step<'_, S> {
     fn time(&self, part: f64) -> f64 {
         match part {
             1.0 => self.times.1,
@@ -163,7 +179,7 @@ impl<S: System + ?Sized, M: Stepper> Step<'_, S, M> {
     }
 }
 
-impl<S: System + ?Sized, M: Stepper> Functions for Step<'_, S, M> {
+impl<S: System + ?Sized> Functions for Step<'_, S> {
     fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64> {
         self.watched.evaluate_guards_before(self.time(part), y)
     }
@@ -172,18 +188,5 @@ impl<S: System + ?Sized, M: Stepper> Functions for Step<'_, S, M> {
         piece.bound(self.times.1 - self.times.0, &mut self.state);
         let times = (self.time(piece.from), self.time(piece.to));
         self.watched.bound_guards(times, &self.state, out);
-    }
-
-    fn is_beyond(&mut self, part: f64, guard: usize, negligible: f64) -> bool {
-        self.trials += 1;
-        self.watched.forget_trials();
-        let t = self.time(part);
-        let Some(y) = self.stepper.inside(self.watched, t) else {
-            return true;
-        };
-        let point = Point { t, y };
-        let value = self.watched.evaluate_guards_before(point.t, &point.y)[guard];
-        // Beyond a surface the rates may have returned the motion already.
-        self.watched.side(guard) * value < -negligible || self.watched.crossed_guard().is_some()
     }
 }

@@ -35,7 +35,7 @@ struct Sample {
     value: f64,
 }
 
-/// Returns how far from its start (s) the last, accepted step of a stepper was beyond a surface that it
+/// Returns a function and how far from its start (s) the last, accepted step of a stepper was beyond its surface, which it
 /// neither began nor ended beyond; `None` if it was not. `sides` are 0 for functions to ignore, and
 /// `values` those of the functions at [`PARTS`] of the step. `trials` counts the states that the stepper
 /// computes. A state inside that overflows or leaves the domain of the rates counts as one beyond.
@@ -44,7 +44,7 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     sides: &[f64],
     values: &[Vec<f64>; 5],
     trials: &mut u64,
-) -> Option<f64> {
+) -> Option<(usize, f64)> {
     let (begin, end) = (stepper.step_start().t, stepper.current_point().t);
     let mut after = |length: f64| {
         *trials += 1;
@@ -71,35 +71,7 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     search(watched, end - begin, sides, samples, &mut after)
 }
 
-/// The same for one step of a method from `start` to `end`, whatever its error.
-pub fn find_leapt_surface<S: System + ?Sized, M: Stepper>(
-    watched: &WatchedSystem<'_, S>,
-    stepper: &M,
-    (start, end): (&Point, &Point),
-    trials: &mut u64,
-) -> Option<f64> {
-    let mut after = |length: f64| {
-        *trials += 1;
-        stepper.single_step(watched, start, length)
-    };
-    let length = end.t - start.t;
-    let Some(middle) = after(0.5 * length) else {
-        return Some(0.5 * length);
-    };
-    let points = [start, &middle, end];
-    let values = points.map(|point| watched.evaluate_guards(point.t, &point.y));
-    let samples = |guard: usize, side: f64| {
-        let parts = [0.0, 0.5, 1.0];
-        let samples = [0, 1, 2].map(|place| Sample {
-            at: parts[place],
-            value: side * values[place][guard],
-        });
-        (samples, 0.0)
-    };
-    search(watched, length, &watched.sides(), samples, &mut after)
-}
-
-/// Returns how far from its start (s) a motion in a step of `length` s is beyond a surface, given the `samples` of
+/// Returns a function and how far from its start (s) a motion in a step of `length` s is beyond its surface, given the `samples` of
 /// each function on its side and the error of their parabola; `after` computes the point so far from the start.
 fn search<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
@@ -107,7 +79,7 @@ fn search<S: System + ?Sized>(
     sides: &[f64],
     samples: impl Fn(usize, f64) -> ([Sample; 3], f64),
     after: &mut impl FnMut(f64) -> Option<Point>,
-) -> Option<f64> {
+) -> Option<(usize, f64)> {
     for (guard, side) in sides.iter().copied().enumerate() {
         if side == 0.0 {
             continue;
@@ -122,13 +94,10 @@ fn search<S: System + ?Sized>(
             watched.forget_trials();
             let point = after(at * length)?;
             let value = side * watched.evaluate_guards(point.t, &point.y)[guard];
-            // A trial state beyond a surface counts too: rates from there may have thrown the
-            // motion back already.
-            let is_beyond = value < -negligible || watched.crossed_guard().is_some();
-            (!is_beyond).then_some(value)
+            (value >= -negligible).then_some(value)
         };
         if let Some(at) = beyond(samples, doubt, &mut look) {
-            return Some(at * length);
+            return Some((guard, at * length));
         }
     }
     None

@@ -3,7 +3,7 @@
 use super::approach::Approach;
 use super::driver::Driver;
 use super::error::SolveError;
-use super::stepper::{Point, Stepper, rejection_error};
+use super::stepper::{Point, Stepper};
 use super::stiffness::Progress;
 use super::system::System;
 
@@ -23,24 +23,9 @@ const MOST_CROSSED: usize = 32;
 const SMALLEST_TIME: f64 = 1e-6;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Returns true if the next step would still move the time; if not, what the last trial ran
-    /// into says why.
-    pub(super) fn check_step_size(&self) -> Result<(), SolveError> {
-        let (t, step) = (self.stepper.current_point().t, self.stepper.step());
-        if step > self.shortest_step() {
-            return Ok(());
-        }
-        Err(
-            match (
-                self.watched.indefinite_coordinate(),
-                self.watched.crossed_guard(),
-            ) {
-                (None, Some(guard)) if self.watched.non_finite_state().is_none() => {
-                    SolveError::Sticking { t, guard }
-                }
-                _ => rejection_error(self.watched, self.stepper.current_point(), step),
-            },
-        )
+    /// Returns true if the next step would not move the time.
+    pub(super) fn step_is_too_short(&self) -> bool {
+        self.stepper.step() <= self.shortest_step()
     }
 
     /// The shortest step that moves the time, s.
@@ -57,6 +42,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         let first = self.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
+            if self.recent.iter().all(|(_, other)| *other == guard) {
+                return Err(SolveError::Sticking { t: first, guard });
+            }
             let guard = self.rarest();
             return Err(SolveError::TooManySwitches { t, guard, rate });
         }

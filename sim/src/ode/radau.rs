@@ -48,6 +48,8 @@ pub struct Radau {
     factors: Option<Factors>,
     /// Those of the last step, if it led here.
     stages: Option<Stages>,
+    /// Stages of the last trial.
+    tried: Option<Stages>,
     accepted: Option<Accepted>,
     /// The last try was refused.
     is_refused: bool,
@@ -68,6 +70,7 @@ impl Stepper for Radau {
             jacobian: None,
             factors: None,
             stages: None,
+            tried: None,
             accepted: None,
             is_refused: false,
             is_starting: true,
@@ -136,17 +139,12 @@ impl Stepper for Radau {
             length,
         };
         let stages = match solved {
-            Ok(stages) => stages,
-            Err(iterates) => {
-                // A surface may be what makes it hard.
-                for stages in iterates.iter() {
-                    stages.check_sides(watched, &self.here);
-                }
+            Some(stages) => stages,
+            None => {
                 self.refuse(0.5 * length);
                 return Ok(outcome(false));
             }
         };
-        stages.check_sides(watched, &self.here);
         let rates = self.rates.take();
         let rates = rates.unwrap_or_else(|| rates_at(watched, &self.here));
         let is_doubted = self.is_refused || self.accepted.is_none();
@@ -193,11 +191,33 @@ impl Stepper for Radau {
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
-    ) -> Option<Point> {
-        self.single_step(watched, &self.here, length)
+    ) -> Option<(Point, Vec<f64>)> {
+        let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
+        let factors = Factors::new(jacobian, length);
+        self.tried = Stages::solve(watched, &self.here, &factors, None, &self.magnitudes);
+        let end = match &self.tried {
+            Some(stages) => Point {
+                t: self.here.t + length,
+                y: stages.end_state(&self.here.y),
+            },
+            None => self.step_from(watched, &self.here, length)?,
+        };
+        let rates = rates_at(watched, &end);
+        Some((end, rates))
     }
 
-    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
+    fn end_trial(&mut self, point: Point) {
+        let tried = self.tried.take();
+        let step = self.step;
+        self.restart(point, step);
+        self.stages = tried;
+    }
+
+    fn interpolated<S: System + ?Sized>(
+        &mut self,
+        _watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>> {
         let stages = self.stages.as_ref()?;
         Some(stages.interpolate(&self.last.y, t - self.last.t))
     }
@@ -207,35 +227,34 @@ impl Stepper for Radau {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>> {
-        if let Some(state) = self.interpolated(t) {
+        if let Some(state) = self.interpolated(watched, t) {
             return Some(state);
         }
         let after = t - self.last.t;
-        Some(self.single_step(watched, &self.last, after)?.y)
+        Some(self.step_from(watched, &self.last, after)?.y)
     }
+}
 
-    fn single_step<S: System + ?Sized>(
+impl Radau {
+    /// Returns the point after a step of exactly `length` s from `start`, whatever its error, in parts if Newton's
+    /// method does not converge; `None` if parts get too short.
+    fn step_from<S: System + ?Sized>(
         &self,
         watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
     ) -> Option<Point> {
         let mut magnitudes = self.magnitudes.reset_copy();
-        // In parts where Newton's method does not converge.
         let step = |point: &Point, length: f64, t: f64| {
             magnitudes.raise(&point.y);
             let factors = Factors::new(&jacobian(watched, point), length);
-            let stages = Stages::solve(watched, point, &factors, None, &magnitudes).ok()?;
-            stages.check_sides(watched, point);
+            let stages = Stages::solve(watched, point, &factors, None, &magnitudes)?;
             let y = stages.end_state(&point.y);
             Some(Point { t, y })
         };
-        // Values behind a surface are of no use to a trial.
-        split_step(start, length, step, || watched.crossed_guard().is_some())
+        split_step(start, length, step)
     }
-}
 
-impl Radau {
     /// Forgets all that holds only where the last step led.
     fn forget(&mut self) {
         self.rates = None;

@@ -69,17 +69,24 @@ pub trait Stepper: Sized {
     /// Undoes the last step, which was accepted; the length of the next one is open.
     fn take_back(&mut self);
 
-    /// The point that a step of exactly `length` s leads to, whatever its error; `None` if the step
-    /// overflows or leaves the domain of the rates.
+    /// Makes a step of exactly `length` s from here, whatever its error, and returns its end and the rates there;
+    /// `None` if the step overflows or leaves the domain of the rates. The method stays here.
     fn trial<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
-    ) -> Option<Point>;
+    ) -> Option<(Point, Vec<f64>)>;
 
-    /// The state at time `t` (s) inside the last step by interpolation, without an evaluation; `None` if this
-    /// method made none to here.
-    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>>;
+    /// Goes to a point that differs from the end of the last trial by a small part of its length.
+    fn end_trial(&mut self, point: Point);
+
+    /// Returns the state at time `t` (s) inside the last step by interpolation; `None` if this method made no step
+    /// to here.
+    fn interpolated<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        t: f64,
+    ) -> Option<Vec<f64>>;
 
     /// Returns true if interpolation inside the last step is as accurate as the step: one that
     /// stability keeps short ends where it should, and may swing in between.
@@ -95,28 +102,15 @@ pub trait Stepper: Sized {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>>;
-
-    /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
-    /// without relying on where the steps before led; what has to be solved for is as accurate as in
-    /// those. Where that is hard, it may end earlier, beyond a switching surface. `None` as for
-    /// [`Stepper::trial`].
-    fn single_step<S: System + ?Sized>(
-        &self,
-        watched: &WatchedSystem<'_, S>,
-        start: &Point,
-        length: f64,
-    ) -> Option<Point>;
 }
 
 /// A step of `length` s from `start` in parts: `step` makes the part of a length from a point that ends
-/// at a time, and returns nothing where it must be shorter. Parts are halves of halves, so that they
-/// add up exactly. The step ends early after a part of which `is_enough` is true; `None` if
-/// parts get too short.
+/// at a time, and returns `None` if it must be shorter. Parts are halves of halves, so that they
+/// add up exactly. Returns `None` if parts get too short.
 pub fn split_step(
     start: &Point,
     length: f64,
     mut step: impl FnMut(&Point, f64, f64) -> Option<Point>,
-    is_enough: impl Fn() -> bool,
 ) -> Option<Point> {
     let mut point = start.clone();
     let (mut part, mut done, mut refused) = (1.0, 0.0, 0);
@@ -128,9 +122,6 @@ pub fn split_step(
         if let Some(next) = step(&point, part * length, t) {
             point = next;
             done += part;
-            if refused > 0 && is_enough() {
-                break;
-            }
             if done % (2.0 * part) == 0.0 {
                 part *= 2.0;
             }

@@ -1,10 +1,8 @@
-//! The right-hand side under watch: counts evaluations and notices when a trial state
-//! lies on another side of a switching surface than the step's start, or when a rate is
-//! not finite.
+//! The system during a simulation: sides of its switching surfaces, number of evaluations, and rates
+//! that are not finite.
 
 use std::cell::{Cell, RefCell};
 
-use differential_equations::ode::ODE;
 use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::point::Point;
@@ -18,8 +16,6 @@ pub type Regime = Vec<f64>;
 pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
     regime: RefCell<Regime>,
-    guards: RefCell<Vec<f64>>,
-    crossed: Cell<Option<usize>>,
     horizon: Cell<f64>,
     not_finite: Cell<Option<usize>>,
     indefinite: Cell<Option<usize>>,
@@ -32,8 +28,6 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         let watched = Self {
             system,
             regime: RefCell::new(vec![0.0; system.guard_count()]),
-            guards: RefCell::new(vec![0.0; system.guard_count()]),
-            crossed: Cell::new(None),
             horizon: Cell::new(f64::INFINITY),
             not_finite: Cell::new(None),
             indefinite: Cell::new(None),
@@ -45,7 +39,6 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Forgets what earlier trials ran into.
     pub fn forget_trials(&self) {
-        self.crossed.set(None);
         self.not_finite.set(None);
     }
 
@@ -59,11 +52,6 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     fn seen(&self, t: f64) -> f64 {
         let horizon = self.horizon.get();
         if t < horizon { t } else { horizon.next_down() }
-    }
-
-    /// The switching function whose side a trial since [`WatchedSystem::forget_trials`] left.
-    pub fn crossed_guard(&self) -> Option<usize> {
-        self.crossed.get()
     }
 
     /// The state variable whose rate was not finite in a trial since the reset.
@@ -114,22 +102,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.jacobian(self.seen(t), y, out);
     }
 
-    /// Notices if a trial state lies on another side of a surface, without its rates.
-    pub fn check_sides(&self, t: f64, y: &[f64]) {
-        let mut guards = self.guards.borrow_mut();
-        if guards.is_empty() || self.crossed.get().is_some() {
-            return;
-        }
-        self.system.guards(t, y, &mut guards);
-        let regime = self.regime.borrow();
-        let mut sides = guards.iter().zip(regime.iter());
-        self.crossed
-            .set(sides.position(|(guard, side)| side * guard < 0.0));
-    }
-
     /// Returns true if there are switching surfaces at all.
     pub fn has_guards(&self) -> bool {
-        !self.guards.borrow().is_empty()
+        !self.regime.borrow().is_empty()
     }
 
     /// The side of the surface `guard` in the present regime: -1, 1, or 0 where it is not known.
@@ -182,6 +157,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.evaluate_guards(self.seen(t), y)
     }
 
+    /// Returns the lowest of the switching functions `guards`, each positive on the side of the present regime.
+    pub fn lowest_guard(&self, guards: &[usize], t: f64, y: &[f64]) -> f64 {
+        let values = self.evaluate_guards_before(t, y);
+        let regime = self.regime.borrow();
+        let values = guards.iter().map(|guard| regime[*guard] * values[*guard]);
+        values.fold(f64::INFINITY, f64::min)
+    }
+
     /// Returns true if switching function `guard` with value `value` is beyond its surface.
     pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
         self.side(guard) * value < 0.0
@@ -228,6 +211,16 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.fix_sides(keep.then_some(regime.as_slice()));
     }
 
+    /// Evaluates rates on the side of each state, if those of the present regime were not finite in a trial. Returns
+    /// true if it does.
+    pub fn release_sides(&self) -> bool {
+        let releases = self.has_guards() && self.not_finite.get().is_some();
+        if releases {
+            self.fix_sides(false);
+        }
+        releases
+    }
+
     /// The switching functions whose surfaces have caught the motion or let it go; see
     /// [`System::update_sticking`].
     pub fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
@@ -268,12 +261,5 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Returns true if the switching function `guard` is positive in the present regime.
     pub fn is_positive(&self, guard: usize) -> bool {
         self.side(guard) > 0.0
-    }
-}
-
-impl<S: System + ?Sized> ODE<f64, Vec<f64>> for WatchedSystem<'_, S> {
-    fn diff(&self, t: f64, y: &Vec<f64>, out: &mut Vec<f64>) {
-        self.rates(t, y, out);
-        self.check_sides(t, y);
     }
 }

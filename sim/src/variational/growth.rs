@@ -222,6 +222,8 @@ impl<'a, S: System + ?Sized> MotionWithTangent<'a, S> {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
 
     /// Oscillator x'' = -x - c x' + cos(1.3 t), with a damper and a force step for x > 0.2.
@@ -229,6 +231,17 @@ mod tests {
         c: f64,
         damper: f64,
         force: f64,
+        /// Fixed side of the surface, or 0.
+        side: Cell<f64>,
+    }
+
+    impl Struck {
+        fn is_struck(&self, y: &[f64]) -> bool {
+            match self.side.get() {
+                0.0 => y[0] > 0.2,
+                side => side > 0.0,
+            }
+        }
     }
 
     impl System for Struck {
@@ -237,7 +250,7 @@ mod tests {
         }
 
         fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-            let struck = if y[0] > 0.2 {
+            let struck = if self.is_struck(y) {
                 self.force + self.damper * y[1]
             } else {
                 0.0
@@ -246,7 +259,7 @@ mod tests {
         }
 
         fn jacobian(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-            let damper = if y[0] > 0.2 { self.damper } else { 0.0 };
+            let damper = if self.is_struck(y) { self.damper } else { 0.0 };
             out.copy_from_slice(&[0.0, 1.0, -1.0, -self.c - damper]);
         }
 
@@ -256,6 +269,10 @@ mod tests {
 
         fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
             out[0] = y[0] - 0.2;
+        }
+
+        fn fix_sides(&self, sides: Option<&[f64]>) {
+            self.side.set(sides.map_or(0.0, |sides| sides[0]));
         }
     }
 
@@ -267,6 +284,7 @@ mod tests {
             c: 0.3,
             damper: 0.0,
             force: 0.0,
+            side: Cell::new(0.0),
         };
         let period = std::f64::consts::TAU / (1.0_f64 - 0.15 * 0.15).sqrt();
         let stretches = MeasurementTimes {
@@ -290,6 +308,7 @@ mod tests {
                 c: 0.1,
                 damper,
                 force,
+                side: Cell::new(0.0),
             };
             let stretches = MeasurementTimes {
                 transient: 0.0,

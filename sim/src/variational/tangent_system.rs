@@ -26,6 +26,8 @@ pub struct TangentSystem<'s, S: System + ?Sized> {
     system: &'s S,
     sizes: Vec<f64>,
     jacobian: RefCell<Vec<f64>>,
+    /// Fixed sides of the switching functions.
+    sides: RefCell<Option<Vec<f64>>>,
     /// Time at which the motion crossed several surfaces at once, s.
     together: Cell<Option<f64>>,
 }
@@ -39,6 +41,7 @@ impl<'s, S: System + ?Sized> TangentSystem<'s, S> {
             system,
             sizes,
             jacobian: RefCell::new(vec![0.0; states * states]),
+            sides: RefCell::new(None),
             together: Cell::new(None),
         }
     }
@@ -49,6 +52,7 @@ impl<'s, S: System + ?Sized> TangentSystem<'s, S> {
         self.together.get()
     }
 
+    /// Returns the rates on the side of the state.
     fn evaluate_rates(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
@@ -101,6 +105,11 @@ impl<S: System + ?Sized> System for TangentSystem<'_, S> {
         self.system.next_breakpoint(t)
     }
 
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        self.sides.replace(sides.map(<[f64]>::to_vec));
+        self.system.fix_sides(sides);
+    }
+
     fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
         let states = self.system.state_count();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
@@ -109,10 +118,12 @@ impl<S: System + ?Sized> System for TangentSystem<'_, S> {
         let mirrored = start.iter().zip(&*y).map(|(start, end)| 2.0 * start - end);
         let near: Vec<f64> = mirrored.collect();
         let near = (2.0 * before - t, &*near);
+        self.system.fix_sides(None);
         let (from, to) = (
             self.evaluate_rates(near.0, near.1),
             self.evaluate_rates(t, y),
         );
+        self.system.fix_sides(self.sides.borrow().as_deref());
         let jump = |index: usize| to[index] - from[index];
         let is_kink = (0..states).all(|index| {
             jump(index).abs() <= MAX_KINK_JUMP_FRACTION * from[index].abs().max(to[index].abs())

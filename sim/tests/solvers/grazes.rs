@@ -3,12 +3,14 @@
 
 use std::f64::consts::PI;
 
+use super::systems::FixedSides;
 use eomgen_sim::ode::{Method, Settings, System, Trajectory, simulate};
 
 /// x'' = -x - k max(x - wall, 0).
 struct Oscillator {
     wall: f64,
     stiffness: f64,
+    sides: FixedSides,
 }
 
 impl System for Oscillator {
@@ -17,7 +19,10 @@ impl System for Oscillator {
     }
 
     fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
-        let depth = (y[0] - self.wall).max(0.0);
+        let depth = match self.sides.side(0, y[0] - self.wall) {
+            1.0 => y[0] - self.wall,
+            _ => 0.0,
+        };
         out.copy_from_slice(&[y[1], -y[0] - self.stiffness * depth]);
     }
 
@@ -27,6 +32,10 @@ impl System for Oscillator {
 
     fn guards(&self, _: f64, y: &[f64], out: &mut [f64]) {
         out[0] = y[0] - self.wall;
+    }
+
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        self.sides.fix(sides);
     }
 }
 
@@ -45,7 +54,11 @@ fn swing(method: Method, tolerance: f64, wall: f64, stiffness: f64, until: f64) 
         method,
         ..Settings::with_tolerance(tolerance)
     };
-    let system = Oscillator { wall, stiffness };
+    let system = Oscillator {
+        wall,
+        stiffness,
+        sides: FixedSides::default(),
+    };
     let span = (0.0, until);
     simulate(&system, &[0.0, 1.0], span, &[], &settings, &mut |_| {}).expect("a motion")
 }
@@ -120,7 +133,8 @@ fn swing_short_of_wall_has_no_contact() {
 }
 
 /// x'' = 500, minus v beyond a wall far from the origin.
-struct FarWall;
+#[derive(Default)]
+struct FarWall(FixedSides);
 
 impl FarWall {
     const PLACE: f64 = 4.117_640_416_056_029;
@@ -132,10 +146,9 @@ impl System for FarWall {
     }
 
     fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
-        let drag = if y[0] > Self::PLACE {
-            100.0 * y[1]
-        } else {
-            0.0
+        let drag = match self.0.side(0, y[0] - Self::PLACE) {
+            1.0 => 100.0 * y[1],
+            _ => 0.0,
         };
         out.copy_from_slice(&[y[1], 500.0 - drag]);
     }
@@ -146,6 +159,10 @@ impl System for FarWall {
 
     fn guards(&self, _: f64, y: &[f64], out: &mut [f64]) {
         out[0] = y[0] - Self::PLACE;
+    }
+
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        self.0.fix(sides);
     }
 }
 
@@ -163,7 +180,14 @@ fn wall_is_crossed_if_motion_is_below_rounding_of_position() {
             ..Settings::with_tolerance(1e-12)
         };
         let initial = [FarWall::PLACE - distance, 2e-7];
-        let motion = simulate(&FarWall, &initial, (0.0, 1e-3), &[], &settings, &mut |_| {});
+        let motion = simulate(
+            &FarWall::default(),
+            &initial,
+            (0.0, 1e-3),
+            &[],
+            &settings,
+            &mut |_| {},
+        );
         let motion = motion.unwrap_or_else(|error| panic!("{method:?} {distance}: {error}"));
         // Beyond the wall v = 5 (1 - exp(-100 t)).
         let before = (2.0 * distance / 500.0_f64).sqrt();

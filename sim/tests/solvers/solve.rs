@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::systems::{Functions, dead_zone, dry_friction, smooth};
+use super::systems::{FixedSides, Functions, dead_zone, dry_friction, smooth};
 use eomgen_sim::ode::{
     Method, Names, Settings, SolveError, Surface, System, Trajectory, simulate, simulate_into,
 };
@@ -441,7 +441,7 @@ fn indefinite_mass_matrix_error_names_coordinate() {
 }
 
 #[test]
-fn rows_between_steps_meet_tolerance_without_evaluations() {
+fn rows_between_steps_meet_tolerance_with_three_evaluations_per_step() {
     let system = smooth(2, |t, y, out| {
         out.copy_from_slice(&[y[0] * t.cos(), -y[0] * t.sin()]);
     });
@@ -455,7 +455,13 @@ fn rows_between_steps_meet_tolerance_without_evaluations() {
             found.expect("a trajectory")
         };
         let (with, without) = (at(&rows), at(&[]));
-        assert_eq!(with.statistics, without.statistics);
+        let (work, steps) = (with.statistics, without.statistics);
+        let interiors = work.evaluations - steps.evaluations;
+        assert!(interiors <= 3 * steps.steps, "{work:?} for {steps:?}");
+        assert_eq!(
+            (work.steps, work.rejected_steps),
+            (steps.steps, steps.rejected_steps)
+        );
         assert_eq!(with.final_state, without.final_state);
         let errors = with.times.iter().zip(&with.states);
         let errors = errors.map(|(t, state)| (state[0] - t.sin().exp()).abs());
@@ -487,7 +493,8 @@ fn swinging(c: f64, k: f64) -> impl System {
         guard_count: 1,
         guards: |y: &[f64], out: &mut [f64]| out[0] = 100.0 + y[0],
         states: 2,
-        rates: move |_, y: &[f64], out: &mut [f64]| {
+        sides: FixedSides::default(),
+        rates: move |_, y: &[f64], _: &[f64], out: &mut [f64]| {
             out.copy_from_slice(&[y[1], -c * y[1] - k * y[0]]);
         },
         breakpoints: Vec::new(),

@@ -3,7 +3,7 @@
 #[allow(dead_code)]
 use std::f64::consts::PI;
 
-use super::systems::dead_zone;
+use super::systems::{FixedSides, dead_zone};
 use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate, simulate_into};
 
 /// A system of closures, with its Jacobian.
@@ -11,8 +11,6 @@ struct Stiff<R, J> {
     states: usize,
     rates: R,
     jacobian: J,
-    /// Value of the first state on a switching surface.
-    surface: Option<f64>,
     breakpoints: Vec<f64>,
 }
 
@@ -29,16 +27,6 @@ impl<R: Fn(f64, &[f64], &mut [f64]), J: Fn(f64, &[f64], &mut [f64])> System for 
         (self.jacobian)(t, y, out);
     }
 
-    fn guard_count(&self) -> usize {
-        usize::from(self.surface.is_some())
-    }
-
-    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-        if let Some(surface) = self.surface {
-            out[0] = y[0] - surface;
-        }
-    }
-
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
         self.breakpoints.iter().copied().find(|next| *next > t)
     }
@@ -53,7 +41,6 @@ where
         states,
         rates,
         jacobian,
-        surface: None,
         breakpoints: Vec::new(),
     }
 }
@@ -272,23 +259,53 @@ fn loudspeaker_with_small_inductance_matches_matrix_exponential() {
 }
 
 /// x'' = -g, and below 0 a spring (1/s^2) and a damper (1/s).
+struct Fall {
+    spring: f64,
+    damper: f64,
+    sides: FixedSides,
+}
+
+impl Fall {
+    /// Returns 1 in contact, else 0.
+    fn contact(&self, y: &[f64]) -> f64 {
+        f64::from(u8::from(self.sides.side(0, y[0]) < 0.0))
+    }
+}
+
+impl System for Fall {
+    fn state_count(&self) -> usize {
+        2
+    }
+
+    fn rates(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        let force = self.contact(y) * (self.spring * y[0] + self.damper * y[1]);
+        out.copy_from_slice(&[y[1], -9.81 - force]);
+    }
+
+    fn jacobian(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        let contact = self.contact(y);
+        let (spring, damper) = (contact * self.spring, contact * self.damper);
+        out.copy_from_slice(&[0.0, 1.0, -spring, -damper]);
+    }
+
+    fn guard_count(&self) -> usize {
+        1
+    }
+
+    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        out[0] = y[0];
+    }
+
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        self.sides.fix(sides);
+    }
+}
+
 fn falls_on(spring: f64, damper: f64) -> impl System {
-    Stiff {
-        surface: Some(0.0),
-        ..stiff(
-            2,
-            move |_: f64, y: &[f64], out: &mut [f64]| {
-                out[0] = y[1];
-                out[1] = -9.81;
-                if y[0] < 0.0 {
-                    out[1] -= spring * y[0] + damper * y[1];
-                }
-            },
-            move |_, y: &[f64], out: &mut [f64]| {
-                let contact = f64::from(u8::from(y[0] < 0.0));
-                out.copy_from_slice(&[0.0, 1.0, -contact * spring, -contact * damper]);
-            },
-        )
+    Fall {
+        spring,
+        damper,
+        sides: FixedSides::default(),
     }
 }
 

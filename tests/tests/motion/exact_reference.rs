@@ -6,16 +6,12 @@
 //! several runs with different steps, hence different roundings. The exact solver must stay within
 //! ten times that.
 
-use std::cell::RefCell;
-
-use eomgen_codegen::program::evaluator::Evaluator;
-use eomgen_codegen::program::lowering::lower;
-use eomgen_compiled_model::DrivenModel;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Settings, Trajectory, simulate};
+use eomgen_sim::ode::Trajectory;
 use eomgen_sim::piecewise_linear::PiecewiseLinear;
 use eomgen_tests::models::load;
+use eomgen_tests::motions::TestMotion;
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::double_double::DoubleDouble;
 use eomgen_tests::taylor::run::{MAX_STEP_S, Run};
@@ -247,23 +243,10 @@ fn model(case: Case) -> Model {
 fn assert_general_solver_matches(order: usize, b: f64) {
     let reference = Reference::new(order, b, 0.02);
     let model = model(reference.case);
-    let orders = vec![order; model.fields.len()];
-    let equations = eomgen_codegen::mechanics::equations::derive(&model, &orders)
-        .expect("the model can be derived");
-    let parameters = model
-        .parameter_values()
-        .expect("the parameters have values");
-    let evaluator = Evaluator::new(lower(&model, &equations, &parameters));
-    let system = DrivenModel::new(RefCell::new(evaluator), HeldInputs::zero(0));
-    let trajectory = simulate(
-        &system,
-        &vec![0.0; 2 * (3 + order)],
-        (0.0, 0.02),
-        &reference.times,
-        &Settings::with_tolerance(1e-12),
-        &mut |_| {},
-    )
-    .expect("a trajectory");
+    let subject = TestMotion::new(model, order);
+    let trajectory = subject
+        .simulate_generally((0.0, 0.02), &reference.times, 1e-12)
+        .expect("a trajectory");
     let displacements = trajectory.states.iter().map(|state| &state[..3 + order]);
     let [.., worst] = reference.growth(displacements);
     println!("S = {order}, b = {b:e} m: {worst}");

@@ -21,5 +21,5 @@ pub use output::{Output, UnknownOutput};
 pub use regimes::{Decision, SURFACES_OF_A_REGIME, Switch};
 pub use types::{
     BlockPlace, Corners, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs,
-    Products, RateRow, SlidingSurface,
+    Products, RateRow, Side, SlidingSurface,
 };

@@ -27,6 +27,8 @@ pub struct Outputs<N, R> {
     pub regimes: Option<Vec<Switch<N>>>,
     /// Surfaces that can hold the motion, if their sides are inputs.
     pub sliding: Vec<SlidingSurface<N, R>>,
+    /// Other surfaces whose sides are inputs, before those of `sliding`.
+    pub sides: Vec<Side>,
     /// Momenta and energy at corners of the motion, if the sides of their surfaces are inputs.
     pub corners: Option<Corners<N, R>>,
 }
@@ -43,6 +45,7 @@ impl<N, R> Default for Outputs<N, R> {
             gradient_derivative: None,
             regimes: None,
             sliding: Vec::new(),
+            sides: Vec::new(),
             corners: None,
         }
     }
@@ -68,6 +71,15 @@ pub struct SlidingSurface<N, R> {
     pub column: R,
     /// Derivatives of the first-order rates by the surface's own side.
     pub first_order: Vec<N>,
+}
+
+/// Surface whose side is an input: 1 if its function is positive, else 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// Index of its function among all guard values.
+    pub guard: usize,
+    /// True if the switching function is the mean of both sides on the surface, as sign(0) is.
+    pub is_odd: bool,
 }
 
 /// Quantities that determine the rates beyond a corner, with nodes or values `N` and rows `R` of them. The

@@ -67,6 +67,7 @@ impl Lowering<'_> {
                     .collect()
             }),
             sliding: outputs.sliding.iter().map(|s| self.sliding(s)).collect(),
+            sides: outputs.sides.clone(),
             corners: outputs
                 .corners
                 .as_ref()

@@ -66,12 +66,15 @@ impl Contacts {
         let rounding = distance_rounding(before, degrees, t);
         // What touches without a speed, as a body that falls together with the one below it, is hit
         // by the jump of the other.
+        let hits: Vec<usize> = (0..count).filter(|place| is_hit(place, self)).collect();
+        let collapsing = self.find_collapse(t, &hits, shortest);
         let touching: Vec<usize> = (0..count)
             .filter(|place| {
                 let impact = &self.at[*place];
                 let within = rounding.max(-impact.rate * shortest);
                 self.closed.contains(place)
-                    || is_hit(place, self)
+                    || hits.contains(place)
+                    || collapsing.contains(place)
                     || impact.distance + self.offsets[*place] <= within
             })
             .collect();
@@ -81,17 +84,14 @@ impl Contacts {
             let to = to + self.offsets[*place];
             (t - t_before) * (to / (to - from)).clamp(0.0, 1.0)
         };
-        let hits = touching.iter().filter(|place| is_hit(place, self));
-        let ago = hits.map(ago).fold(0.0, f64::max);
+        let ago = hits.iter().map(ago).fold(0.0, f64::max);
         if self.needs_no_impulse(&touching, ago) {
             // What leaves slowly went below zero by rounding.
             self.offset_distances(&touching, rounding);
             return;
         }
-        let jumped = match self.is_endless(t, shortest) {
-            false => self.apply_impulses(own, (t, inputs), state, touching, ago),
-            true => Err(Overlap::Endless),
-        };
+        self.has_restitution = collapsing.is_empty();
+        let jumped = self.apply_impulses(own, (t, inputs), state, touching, ago);
         let (touching, still) = match jumped {
             Ok(jumped) => jumped,
             Err(cause) => {
@@ -140,6 +140,7 @@ impl Contacts {
         match self.closed.contains(&place) {
             true => rate,
             // What already leaves must not be pulled back.
+            false if !self.has_restitution => rate,
             false => rate + self.at[place].restitution.min(most) * rate.min(0.0),
         }
     }
@@ -240,14 +241,23 @@ impl Contacts {
         }
     }
 
-    /// Returns true if impacts follow each other faster than the shortest flights, s.
-    fn is_endless(&mut self, t: f64, shortest: f64) -> bool {
-        let first = match self.recent.len() < MAX_CONSECUTIVE_IMPACTS {
-            true => None,
-            false => self.recent.pop_front(),
-        };
-        self.recent.push_back(t);
-        first.is_some_and(|first| t - first < MAX_CONSECUTIVE_IMPACTS as f64 * shortest)
+    /// Records the `hits` of an impact and returns the contacts that hit each other without end in a finite time, if
+    /// impacts follow each other faster than the `shortest` flights (s). In the limit they move on together (inelastic
+    /// collapse; S. McNamara and W. R. Young, Phys. Fluids A 4, 1992).
+    fn find_collapse(&mut self, t: f64, hits: &[usize], shortest: f64) -> Vec<usize> {
+        if self.recent.len() == MAX_CONSECUTIVE_IMPACTS {
+            self.recent.pop_front();
+        }
+        self.recent.push_back((t, hits.to_vec()));
+        let is_endless = self.recent.len() == MAX_CONSECUTIVE_IMPACTS
+            && t - self.recent[0].0 < MAX_CONSECUTIVE_IMPACTS as f64 * shortest;
+        if !is_endless {
+            return Vec::new();
+        }
+        let mut places: Vec<usize> = self.recent.drain(..).flat_map(|(_, hits)| hits).collect();
+        places.sort_unstable();
+        places.dedup();
+        places
     }
 
     /// Closes those that touch and would not fly in earnest, or that move on together as bodies do

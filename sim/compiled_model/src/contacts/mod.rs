@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-11;
 /// Rounding of a distance, beside the largest coordinate and how far that has come.
 const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// So many impacts within the shortest flights for each of them have no end.
+/// Number of impacts that have no end, if the time between them is below that of the shortest flights.
 const MAX_CONSECUTIVE_IMPACTS: usize = 256;
 
 /// Corrections of a state with closed contacts; each squares the residual.
@@ -51,7 +51,9 @@ pub(crate) struct Contacts {
     /// The largest that any coordinate has been.
     size: f64,
     /// When the last impacts were, s.
-    recent: VecDeque<f64>,
+    recent: VecDeque<(f64, Vec<usize>)>,
+    /// False for an impact that ends infinitely many.
+    has_restitution: bool,
     /// The work of contacts that move in the last impact, J.
     impact_work: f64,
     /// The impact at which the motion ended, and why.
@@ -65,8 +67,6 @@ enum Overlap {
     Penetrated,
     /// No impulses keep all bodies apart that touch.
     NoImpulse,
-    /// Hits follow each other faster than the shortest flights.
-    Endless,
 }
 
 impl Contacts {
@@ -81,6 +81,7 @@ impl Contacts {
             at: Vec::new(),
             size: 0.0,
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
+            has_restitution: true,
             impact_work: 0.0,
             overlap: None,
         }
@@ -150,10 +151,6 @@ impl Contacts {
             Overlap::NoImpulse => format!(
                 "no impulses separate the bodies at the impact `{name}`, because of other impacts or \
                  constraints. Use a stiff spring instead of one of them"
-            ),
-            Overlap::Endless => format!(
-                "impacts at `{name}` follow each other without end ({MAX_CONSECUTIVE_IMPACTS} within the shortest \
-                 flights). Lower its restitution, or use a stiff spring instead of the impact"
             ),
         })
     }

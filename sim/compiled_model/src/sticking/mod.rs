@@ -82,9 +82,20 @@ impl SurfaceState {
     }
 }
 
+/// Points at which the sides of the model are right.
+enum KnownSides {
+    Nothing,
+    /// At this time (s) and state.
+    At(f64, Vec<f64>),
+    /// Everywhere: no surface holds the motion, and all sides are fixed.
+    Everywhere,
+}
+
 /// States of all surfaces along a motion.
 pub(crate) struct SurfaceStates {
     sided: SidedModel,
+    /// False if no surface holds the motion.
+    may_hold: bool,
     places: Vec<SurfaceState>,
     /// Frictions against the direction of sliding.
     discs: Vec<Disc>,
@@ -95,8 +106,7 @@ pub(crate) struct SurfaceStates {
     begin: Option<f64>,
     /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     kept: Option<Vec<f64>>,
-    /// Point at which the sides that hold were last computed.
-    found_at: Option<(f64, Vec<f64>)>,
+    known: KnownSides,
     /// Surfaces that began or ceased to hold, not yet reported.
     changes: Vec<(usize, bool)>,
 }
@@ -105,16 +115,22 @@ impl SurfaceStates {
     pub fn new(sided: SidedModel) -> Self {
         let count = sided.surface_count();
         Self {
+            may_hold: sided.can_hold_motion(),
             places: vec![SurfaceState::Free; count],
             is_jumpless: vec![false; count],
             discs: sided.discs().iter().cloned().map(Disc::new).collect(),
             sizes: vec![0.0; sided.side_count()],
             begin: None,
             kept: None,
-            found_at: None,
+            known: KnownSides::Nothing,
             changes: Vec::new(),
             sided,
         }
+    }
+
+    /// Lets the motion cross all surfaces.
+    pub fn disable_holding(&mut self) {
+        self.may_hold = false;
     }
 
     /// Returns the model with sides, for use with another motion.
@@ -148,7 +164,8 @@ impl SurfaceStates {
     /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
     /// without a jump are not fixed, because their rates beyond the surface may lead away from it.
     pub fn fix_sides(&mut self, sides: Option<&[f64]>) {
-        self.found_at = None;
+        self.known = KnownSides::Nothing;
+        self.sided.fix_other_sides(sides);
         self.kept = sides.map(|sides| {
             let kept = |surface: usize| match self.is_jumpless[surface] {
                 true => 0.0,
@@ -179,7 +196,7 @@ impl SurfaceStates {
         out: &mut [f64],
     ) {
         let (mut sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
-        self.found_at = None;
+        self.known = KnownSides::Nothing;
         let count = state.len();
         let mut rates = |state: &[f64], out: &mut [f64]| {
             if !self.discs.iter().any(Disc::is_leaving) {
@@ -208,6 +225,9 @@ impl SurfaceStates {
     /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
     /// a limit.
     pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        if !self.may_hold {
+            return;
+        }
         if self.begin.is_none() {
             self.start_motion(at, inputs);
         }
@@ -274,6 +294,23 @@ impl SurfaceStates {
         t: f64,
         state: &mut [f64],
     ) {
+        if !self.may_hold {
+            return;
+        }
+        let fixed = self.sided.release_other_sides();
+        self.reach_surfaces(inputs, (t_before, before), t, state);
+        self.sided.restore_other_sides(fixed);
+        self.known = KnownSides::Nothing;
+    }
+
+    /// Decides like [`SurfaceStates::apply_crossing`], with the sides of other surfaces at the state.
+    fn reach_surfaces(
+        &mut self,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
         let near = self.sided.evaluate_functions((t_before, before), inputs);
         let beyond = self.sided.evaluate_functions((t, state), inputs);
         let roundings = self.sided.function_roundings((t, state), inputs);
@@ -328,7 +365,7 @@ impl SurfaceStates {
                 *place = SurfaceState::Free;
             }
         }
-        self.found_at = None;
+        self.known = KnownSides::Nothing;
     }
 
     /// Returns the discs that hold the motion, and those whose velocity came to zero between two
@@ -368,7 +405,7 @@ impl SurfaceStates {
             } else if has_passed {
                 disc.state = DiscState::Sliding;
                 disc.follow(beyond);
-                self.found_at = None;
+                self.known = KnownSides::Nothing;
             }
         }
         found
@@ -424,6 +461,11 @@ impl SurfaceStates {
         at: (f64, &[f64]),
         (earlier, inputs): (&[f64], &[f64]),
     ) -> Vec<(usize, bool)> {
+        if !self.may_hold {
+            return Vec::new();
+        }
+        self.sided.fix_other_sides(None);
+        self.known = KnownSides::Nothing;
         if self.begin.is_some() && !self.is_free() {
             let functions = self.sided.evaluate_functions(at, inputs);
             let jumps: Vec<bool> = match earlier == inputs {
@@ -441,7 +483,7 @@ impl SurfaceStates {
             for (index, disc) in self.discs.iter_mut().enumerate() {
                 if disc.is_holding() && disc.rows.clone().any(|row| jumps[row]) {
                     disc.state = DiscState::Sliding;
-                    self.found_at = None;
+                    self.known = KnownSides::Nothing;
                     let guard = self.sided.guard_count() + index;
                     self.changes.push((guard, true));
                 }
@@ -458,7 +500,7 @@ impl SurfaceStates {
                             .push((self.sided.guard_index(surface), value > 0.0));
                     }
                     *place = SurfaceState::Free;
-                    self.found_at = None;
+                    self.known = KnownSides::Nothing;
                 }
             }
             for _ in 0..=self.places.len() {
@@ -479,7 +521,7 @@ impl SurfaceStates {
         let functions = self.sided.evaluate_functions(at, inputs);
         for disc in &mut self.discs {
             disc.follow(&functions);
-            self.found_at = None;
+            self.known = KnownSides::Nothing;
         }
         for (size, value) in self.sizes.iter_mut().zip(&functions) {
             *size = size.max(value.abs());
@@ -542,7 +584,7 @@ impl SurfaceStates {
         (touching, arrivals, discs): Reached<'_>,
         came_from: &[f64],
     ) {
-        self.found_at = None;
+        self.known = KnownSides::Nothing;
         let sides = self.current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
@@ -717,22 +759,38 @@ impl SurfaceStates {
 
     /// Computes the sides that hold the motion at a point.
     fn find_holding_sides(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
-        if let Some((known, at)) = &self.found_at
-            && *known == t
-            && at == state
-        {
-            return;
+        match &self.known {
+            KnownSides::Everywhere => {
+                self.sided.set_model_inputs(inputs);
+                return;
+            }
+            KnownSides::At(known, at) if *known == t && at == state => return,
+            KnownSides::At(..) | KnownSides::Nothing => {}
         }
         let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
         self.sided
             .find_holding_sides((t, state), inputs, &sides, &held);
-        match &mut self.found_at {
-            Some((known, at)) => {
+        if self.are_sides_fixed() {
+            self.known = KnownSides::Everywhere;
+            return;
+        }
+        match &mut self.known {
+            KnownSides::At(known, at) => {
                 *known = t;
                 at.copy_from_slice(state);
             }
-            none => *none = Some((t, state.to_vec())),
+            known => *known = KnownSides::At(t, state.to_vec()),
         }
+    }
+
+    /// Returns true if no side depends on the state.
+    fn are_sides_fixed(&self) -> bool {
+        let is_fixed = |side: &f64| *side != 0.0;
+        let kept = self.kept.as_ref();
+        self.discs.is_empty()
+            && self.places.iter().all(|place| *place == SurfaceState::Free)
+            && kept.is_some_and(|kept| kept.iter().all(is_fixed))
+            && self.sided.are_other_sides_fixed()
     }
 
     /// Corrects a state onto the surfaces that hold it, if it has drifted or `always`.
@@ -760,7 +818,7 @@ impl SurfaceStates {
             return 0;
         }
         self.find_holding_sides((t, state), inputs);
-        self.found_at = None;
+        self.known = KnownSides::Nothing;
         for _ in 0..CORRECTION_COUNT {
             let values = self.sided.evaluate_functions((t, state), inputs);
             self.sided.move_onto_surfaces(t, state, (&held, &values));

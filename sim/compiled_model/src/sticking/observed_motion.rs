@@ -36,7 +36,9 @@ impl ObservedMotion {
         let motion = (&trajectory.times[..], &trajectory.states[..]);
         Self {
             own,
-            rest: sided.map(|sided| StickingMotion::new(sided, motion, inputs)),
+            rest: sided
+                .filter(SidedModel::can_hold_motion)
+                .map(|sided| StickingMotion::new(sided, motion, inputs)),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use eomgen_codegen::mechanics::outputs::Side;
 use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
 use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict, decide_with_discs};
 use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, solve_least_squares};
@@ -27,13 +28,19 @@ const MIN_JUMP_FRACTION: f64 = 0.5;
 
 pub(super) type TimeAndState<'p> = (f64, &'p [f64]);
 
-/// A model whose inputs include the sides of the surfaces that can hold a motion, at one set of
-/// parameters; see [`DrivenModel::with_sliding`](crate::DrivenModel::with_sliding).
+/// A model whose inputs include the sides of switching surfaces, at one set of parameters; see
+/// [`DrivenModel::with_sides`](crate::DrivenModel::with_sides). The sides of surfaces that can hold a motion are set,
+/// the others are fixed or follow from the state.
 pub struct SidedModel {
     evaluator: Evaluator,
     model_input_count: usize,
-    /// Inputs of the model, then the sides: those of surfaces, then those of the components of discs.
+    /// Index of the first side that is set among the inputs.
+    first_side: usize,
+    /// Inputs of the model, then the sides: those of surfaces that cannot hold a motion, those that can, and those
+    /// of the components of discs.
     inputs: Vec<f64>,
+    /// Surfaces that cannot hold a motion; true if the side is fixed.
+    others: Vec<(Side, bool)>,
     /// Rows of the components of each disc among the sides.
     discs: Vec<Range<usize>>,
     at: Vec<SlidingValues>,
@@ -53,9 +60,13 @@ impl SidedModel {
             let first = own.next().unwrap_or(0);
             first..first + 1 + own.count()
         });
+        let others = program.outputs.sides.iter().map(|side| (*side, false));
+        let first_side = program.inputs.len() - sliding.len();
         Self {
             discs: discs.collect(),
-            model_input_count: program.inputs.len() - sliding.len(),
+            model_input_count: first_side - others.len(),
+            first_side,
+            others: others.collect(),
             inputs: vec![0.5; program.inputs.len()],
             at: Vec::new(),
             guards: vec![0.0; evaluator.guard_count()],
@@ -66,7 +77,65 @@ impl SidedModel {
 
     /// Returns the number of functions with a side: surfaces and components of discs.
     pub(super) fn side_count(&self) -> usize {
-        self.inputs.len() - self.model_input_count
+        self.inputs.len() - self.first_side
+    }
+
+    /// Returns true if there are surfaces that can hold a motion.
+    pub fn can_hold_motion(&self) -> bool {
+        self.side_count() > 0
+    }
+
+    /// Fixes the sides of surfaces that cannot hold a motion, given those of all guards, -1, 1, or 0 (unknown). With `None`
+    /// they follow from the state.
+    pub(super) fn fix_other_sides(&mut self, sides: Option<&[f64]>) {
+        for (other, (surface, is_fixed)) in self.others.iter_mut().enumerate() {
+            let side = sides.map_or(0.0, |sides| sides[surface.guard]);
+            *is_fixed = side != 0.0;
+            self.inputs[self.model_input_count + other] = 0.5 + 0.5 * side;
+        }
+    }
+
+    /// Lets the sides of surfaces that cannot hold a motion follow from the state, and returns them as they were.
+    pub(super) fn release_other_sides(&mut self) -> Vec<(bool, f64)> {
+        let first = self.model_input_count;
+        let others = self.others.iter_mut().zip(&self.inputs[first..]);
+        let released = others.map(|((_, is_fixed), side)| (std::mem::take(is_fixed), *side));
+        released.collect()
+    }
+
+    /// Restores sides that were released.
+    pub(super) fn restore_other_sides(&mut self, sides: Vec<(bool, f64)>) {
+        for (other, (is_fixed, side)) in sides.into_iter().enumerate() {
+            self.others[other].1 = is_fixed;
+            self.inputs[self.model_input_count + other] = side;
+        }
+    }
+
+    /// Sets the inputs of the model; all sides remain.
+    pub(super) fn set_model_inputs(&mut self, inputs: &[f64]) {
+        self.inputs[..self.model_input_count].copy_from_slice(inputs);
+    }
+
+    /// Returns true if no side follows from the state.
+    pub(super) fn are_other_sides_fixed(&self) -> bool {
+        self.others.iter().all(|(_, is_fixed)| *is_fixed)
+    }
+
+    /// Sets the inputs of the model at a point, and the sides that follow from the state.
+    fn set_inputs(&mut self, (t, state): TimeAndState<'_>, inputs: &[f64]) {
+        self.inputs[..self.model_input_count].copy_from_slice(inputs);
+        if self.are_other_sides_fixed() {
+            return;
+        }
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.evaluator.guards(point, &mut self.guards);
+        for (other, (surface, is_fixed)) in self.others.iter().enumerate() {
+            if !is_fixed {
+                let value = self.guards[surface.guard];
+                self.inputs[self.model_input_count + other] = side_of(value, surface.is_odd);
+            }
+        }
     }
 
     pub(super) fn surface_count(&self) -> usize {
@@ -145,11 +214,7 @@ impl SidedModel {
     /// Returns the side, 0 to 1, of a surface whose function has this value.
     pub(super) fn side_at_value(&self, surface: usize, value: f64) -> f64 {
         let is_odd = self.evaluator.program().outputs.sliding[surface].is_odd;
-        match value {
-            value if value > 0.0 => 1.0,
-            0.0 if is_odd => 0.5,
-            _ => 0.0,
-        }
+        side_of(value, is_odd)
     }
 
     /// Sets the sides, and computes those of `held` surfaces so that these hold.
@@ -160,8 +225,8 @@ impl SidedModel {
         sides: &[f64],
         held: &[usize],
     ) {
-        self.inputs[..self.model_input_count].copy_from_slice(inputs);
-        self.inputs[self.model_input_count..].copy_from_slice(sides);
+        self.set_inputs(at, inputs);
+        self.inputs[self.first_side..].copy_from_slice(sides);
         for _ in 0..self.iterations() {
             if held.is_empty() {
                 return;
@@ -170,7 +235,7 @@ impl SidedModel {
             let right = self.surface_values(held, |surface| -surface.rate);
             let change = solve_least_squares(self.matrix(held), right);
             for (surface, change) in held.iter().zip(&change) {
-                self.inputs[self.model_input_count + surface] += change;
+                self.inputs[self.first_side + surface] += change;
             }
             if change.amax() <= MAX_SETTLED_CHANGE {
                 return;
@@ -180,13 +245,13 @@ impl SidedModel {
 
     /// Sets the sides and evaluates the effects of the surfaces at a point.
     pub(super) fn set_sides(&mut self, at: TimeAndState<'_>, inputs: &[f64], sides: &[f64]) {
-        self.inputs[..self.model_input_count].copy_from_slice(inputs);
-        self.inputs[self.model_input_count..].copy_from_slice(sides);
+        self.set_inputs(at, inputs);
+        self.inputs[self.first_side..].copy_from_slice(sides);
         self.evaluate(at);
     }
 
     pub(super) fn sides(&self) -> &[f64] {
-        &self.inputs[self.model_input_count..]
+        &self.inputs[self.first_side..]
     }
 
     /// Writes the rates with these sides.
@@ -196,7 +261,7 @@ impl SidedModel {
         inputs: &[f64],
         out: &mut [f64],
     ) {
-        self.inputs[..self.model_input_count].copy_from_slice(inputs);
+        self.set_inputs((t, state), inputs);
         let inputs = &self.inputs;
         self.evaluator.rates(Point { t, state, inputs }, out);
     }
@@ -216,8 +281,8 @@ impl SidedModel {
         (touching, arrivals, discs): (&[usize], &[Arrival], &[DiscArrival]),
         sides: &[f64],
     ) -> Option<(Vec<Verdict>, Vec<DiscVerdict>)> {
-        self.inputs[..self.model_input_count].copy_from_slice(inputs);
-        self.inputs[self.model_input_count..].copy_from_slice(sides);
+        self.set_inputs(at, inputs);
+        self.inputs[self.first_side..].copy_from_slice(sides);
         let mut rows = touching.to_vec();
         let mut packed = Vec::with_capacity(discs.len());
         for disc in discs {
@@ -230,7 +295,7 @@ impl SidedModel {
         let mut s = DVector::zeros(rows.len());
         for iteration in 0..self.iterations() {
             for (row, s) in rows.iter().zip(&s) {
-                self.inputs[self.model_input_count + row] = 0.5 + 0.5 * s;
+                self.inputs[self.first_side + row] = 0.5 + 0.5 * s;
             }
             self.evaluate(at);
             let w = self.matrix(&rows) * 0.5;
@@ -325,5 +390,14 @@ impl SidedModel {
             surfaces.len(),
             surfaces.iter().map(|surface| of(&self.at[*surface])),
         )
+    }
+}
+
+/// Returns the side, 0 to 1, of a surface whose function has this value.
+fn side_of(value: f64, is_odd: bool) -> f64 {
+    match value {
+        value if value > 0.0 => 1.0,
+        0.0 if is_odd => 0.5,
+        _ => 0.0,
     }
 }

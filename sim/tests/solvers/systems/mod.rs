@@ -1,11 +1,34 @@
 //! Small systems with known solutions, for the tests of the solvers.
 
+use std::cell::RefCell;
+
 use eomgen_sim::ode::System;
 
-/// A system of closures.
+/// Fixed sides of switching functions.
+#[derive(Default)]
+pub struct FixedSides(RefCell<Option<Vec<f64>>>);
+
+impl FixedSides {
+    pub fn fix(&self, sides: Option<&[f64]>) {
+        *self.0.borrow_mut() = sides.map(<[f64]>::to_vec);
+    }
+
+    /// Returns the side of a function with this value: the fixed one, if it is known.
+    pub fn side(&self, guard: usize, value: f64) -> f64 {
+        let fixed = self.0.borrow().as_ref().map_or(0.0, |sides| sides[guard]);
+        match (fixed, value) {
+            (0.0, 0.0) => 0.0,
+            (0.0, value) => value.signum(),
+            (fixed, _) => fixed,
+        }
+    }
+}
+
+/// A system of closures; the rates take the sides of the guards.
 pub struct Functions<R, G> {
     pub states: usize,
     pub rates: R,
+    pub sides: FixedSides,
     pub guard_count: usize,
     pub guards: G,
     pub breakpoints: Vec<f64>,
@@ -13,7 +36,7 @@ pub struct Functions<R, G> {
 
 impl<R, G> System for Functions<R, G>
 where
-    R: Fn(f64, &[f64], &mut [f64]),
+    R: Fn(f64, &[f64], &[f64], &mut [f64]),
     G: Fn(&[f64], &mut [f64]),
 {
     fn state_count(&self) -> usize {
@@ -21,7 +44,16 @@ where
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        (self.rates)(t, y, out);
+        let mut sides = vec![0.0; self.guard_count];
+        (self.guards)(y, &mut sides);
+        for (guard, side) in sides.iter_mut().enumerate() {
+            *side = self.sides.side(guard, *side);
+        }
+        (self.rates)(t, y, &sides, out);
+    }
+
+    fn fix_sides(&self, sides: Option<&[f64]>) {
+        self.sides.fix(sides);
     }
 
     fn guard_count(&self) -> usize {
@@ -41,10 +73,11 @@ where
 pub fn smooth<R: Fn(f64, &[f64], &mut [f64])>(
     states: usize,
     rates: R,
-) -> Functions<R, impl Fn(&[f64], &mut [f64])> {
+) -> Functions<impl Fn(f64, &[f64], &[f64], &mut [f64]), impl Fn(&[f64], &mut [f64])> {
     Functions {
         states,
-        rates,
+        rates: move |t, y: &[f64], _: &[f64], out: &mut [f64]| rates(t, y, out),
+        sides: FixedSides::default(),
         guard_count: 0,
         guards: |_: &[f64], _: &mut [f64]| {},
         breakpoints: Vec::new(),
@@ -55,13 +88,12 @@ pub fn smooth<R: Fn(f64, &[f64], &mut [f64])>(
 pub fn dead_zone(b: f64, frequency: f64) -> impl System {
     Functions {
         states: 2,
-        rates: move |_, y: &[f64], out: &mut [f64]| {
-            let beyond = if y[0] > b {
-                y[0] - b
-            } else if y[0] < -b {
-                y[0] + b
-            } else {
-                0.0
+        sides: FixedSides::default(),
+        rates: move |_, y: &[f64], sides: &[f64], out: &mut [f64]| {
+            let beyond = match (sides[0] > 0.0, sides[1] < 0.0) {
+                (true, _) => y[0] - b,
+                (_, true) => y[0] + b,
+                _ => 0.0,
             };
             out.copy_from_slice(&[y[1], -frequency * frequency * beyond]);
         },
@@ -75,15 +107,9 @@ pub fn dead_zone(b: f64, frequency: f64) -> impl System {
 pub fn dry_friction(friction: f64) -> impl System {
     Functions {
         states: 2,
-        rates: move |_, y: &[f64], out: &mut [f64]| {
-            let sign = if y[1] > 0.0 {
-                1.0
-            } else if y[1] < 0.0 {
-                -1.0
-            } else {
-                0.0
-            };
-            out.copy_from_slice(&[y[1], -y[0] - friction * sign]);
+        sides: FixedSides::default(),
+        rates: move |_, y: &[f64], sides: &[f64], out: &mut [f64]| {
+            out.copy_from_slice(&[y[1], -y[0] - friction * sides[0]]);
         },
         guard_count: 1,
         guards: |y: &[f64], out: &mut [f64]| out[0] = y[1],

@@ -1,0 +1,220 @@
+//! The location of an event: the root of a switching function on the interior of a step, then steps from its
+//! start that end at the surface.
+
+use super::driver::Driver;
+use super::error::SolveError;
+use super::event_search::Crossing;
+use super::stepper::{Point, Stepper};
+use super::system::System;
+
+/// Iterations of the search on the interior; bisection alone needs 52.
+const MAX_ITERATIONS: u32 = 60;
+
+/// Steps to a surface; Newton's method needs one or two.
+const MAX_STEPS: u32 = 60;
+
+/// Longest extrapolation along the rates to a surface, as a part of a step. Its error is of second order.
+const MAX_EXTRAPOLATION: f64 = 1e-8;
+
+/// Shortest distance in time of the points on both sides of a surface, as a part of a step.
+const MIN_DISTANCE: f64 = 1e-14;
+
+/// The same in shortest steps.
+const MIN_SHORTEST_STEPS: f64 = 2.0;
+
+/// Distance, in shortest steps, at which a surface is crossed without a step that meets the tolerance.
+const MAX_ROUNDINGS: f64 = 64.0;
+
+/// Growth of this distance until a point is beyond the surface.
+const GROWTH: f64 = 4.0;
+
+/// Part of a step for the slope of a switching function.
+const SLOPE_PART: f64 = 1e-5;
+
+/// Result of a location.
+pub(super) enum Located {
+    /// Points on the near side of a surface, if it is not the start of the step, and just beyond it.
+    Crossed(Option<Point>, Point),
+    /// The motion touches the surface here, and is not beyond it.
+    Touched(Point),
+    /// No step leads to the surface.
+    Failed,
+}
+
+impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
+    /// Returns the time (s) after the start of the last step at which a function of `crossing` is zero on the
+    /// interior of the step.
+    pub(super) fn find_interior_root(&mut self, crossing: &Crossing) -> f64 {
+        let (begin, end) = (self.stepper.step_start().t, self.stepper.current_point().t);
+        let length = end - begin;
+        let mut near = (crossing.near * length, 0.0);
+        let mut beyond = (crossing.beyond * length, 0.0);
+        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let mut value = |after: f64| {
+            let y = match after {
+                after if after <= 0.0 => stepper.step_start().y.clone(),
+                after if after >= length => stepper.current_point().y.clone(),
+                after => stepper.interpolated(watched, begin + after)?,
+            };
+            Some(watched.lowest_guard(&crossing.guards, begin + after, &y))
+        };
+        near.1 = value(near.0).unwrap_or(0.0);
+        beyond.1 = value(beyond.0).unwrap_or(-1.0);
+        if near.1 < 0.0 {
+            // It may be beyond the surface by less than rounding in the step.
+            beyond = near;
+            near = (0.0, value(0.0).unwrap_or(0.0));
+        }
+        if near.1 <= 0.0 {
+            return near.0;
+        }
+        // The Illinois method (Dowell and Jarratt, BIT 11, 1971).
+        for _ in 0..MAX_ITERATIONS {
+            let secant = beyond.0 - beyond.1 * (beyond.0 - near.0) / (beyond.1 - near.1);
+            let middle = 0.5 * (near.0 + beyond.0);
+            let is_inside = near.0 < secant && secant < beyond.0;
+            let after = if is_inside { secant } else { middle };
+            if after <= near.0 || after >= beyond.0 {
+                break;
+            }
+            let Some(found) = value(after) else {
+                return after;
+            };
+            if found == 0.0 {
+                return after;
+            }
+            if found > 0.0 {
+                near = (after, found);
+                beyond.1 *= 0.5;
+            } else {
+                beyond = (after, found);
+                near.1 *= 0.5;
+            }
+        }
+        near.0
+    }
+
+    /// Locates the surfaces of `crossing` in a step of `length` s that begins here, from a first `guess` (s after the
+    /// start).
+    pub(super) fn locate(
+        &mut self,
+        crossing: &Crossing,
+        guess: f64,
+        length: f64,
+    ) -> Result<Located, SolveError> {
+        let (mut near, mut beyond) = (crossing.near * length, crossing.beyond * length);
+        if guess < near {
+            (near, beyond) = (0.0, near);
+        }
+        let mut after = guess;
+        for _ in 0..MAX_STEPS {
+            self.check_steps()?;
+            self.trajectory.statistics.trial_steps += 1;
+            self.watched.forget_trials();
+            let line = match after > self.shortest_step() {
+                true => (self.stepper.trial(self.watched, after))
+                    .map(|(point, rates)| Line { point, rates }),
+                false => Some(self.line_here()),
+            };
+            let Some(line) = line else {
+                return Ok(Located::Failed);
+            };
+            let value = line.lowest(self, &crossing.guards, 0.0);
+            let part = SLOPE_PART * if after > 0.0 { after } else { length };
+            let rise = line.lowest(self, &crossing.guards, part)
+                - line.lowest(self, &crossing.guards, -part);
+            let slope = rise / (2.0 * part);
+            match value >= 0.0 {
+                true => near = near.max(after),
+                false => beyond = beyond.min(after),
+            }
+            let newton = -value / slope;
+            let longest = MAX_EXTRAPOLATION * after;
+            let is_near = slope < 0.0 && newton.abs() <= longest.max(MIN_DISTANCE * length);
+            if is_near || beyond - near <= longest {
+                let offset = if is_near { newton } else { 0.0 };
+                return Ok(self.cross_on(line, (offset, after, length), &crossing.guards));
+            }
+            let next = after + newton;
+            after = match slope < 0.0 && near < next && next < beyond {
+                true => next,
+                false => 0.5 * (near + beyond),
+            };
+        }
+        Ok(Located::Failed)
+    }
+
+    fn line_here(&self) -> Line {
+        let point = self.stepper.current_point().clone();
+        let mut rates = vec![0.0; point.y.len()];
+        self.watched.rates(point.t, &point.y, &mut rates);
+        Line { point, rates }
+    }
+
+    /// Returns the first point along the rates here that is beyond a surface, at most [`MAX_ROUNDINGS`] shortest
+    /// steps ahead.
+    pub(super) fn find_point_beyond(&self) -> Option<Point> {
+        let line = self.line_here();
+        let guards: Vec<usize> = (0..self.watched.sides().len()).collect();
+        let shortest = self.shortest_step();
+        let mut distance = MIN_SHORTEST_STEPS * shortest;
+        while distance <= MAX_ROUNDINGS * shortest {
+            let beyond = line.at(distance);
+            if self.watched.lowest_guard(&guards, beyond.t, &beyond.y) < 0.0 {
+                return Some(beyond);
+            }
+            distance *= GROWTH;
+        }
+        None
+    }
+
+    /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, which is
+    /// `after` (s) in a step of `length` s.
+    fn cross_on(
+        &self,
+        line: Line,
+        (offset, after, length): (f64, f64, f64),
+        guards: &[usize],
+    ) -> Located {
+        let start = self.stepper.current_point();
+        let mut distance = (MIN_DISTANCE * after).max(MIN_SHORTEST_STEPS * self.shortest_step());
+        let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
+        while distance <= longest {
+            let beyond = line.at(offset + distance);
+            if self.watched.lowest_guard(guards, beyond.t, &beyond.y) < 0.0 && beyond.t > start.t {
+                let near = Some(line.at(offset - distance));
+                return Located::Crossed(near.filter(|near| near.t > start.t), beyond);
+            }
+            distance *= GROWTH;
+        }
+        Located::Touched(line.point)
+    }
+}
+
+/// Line through a point of the motion along its rates.
+struct Line {
+    point: Point,
+    rates: Vec<f64>,
+}
+
+impl Line {
+    /// Returns the point at an `offset` in s.
+    fn at(&self, offset: f64) -> Point {
+        let entries = self.point.y.iter().zip(&self.rates);
+        Point {
+            t: self.point.t + offset,
+            y: entries.map(|(y, rate)| y + offset * rate).collect(),
+        }
+    }
+
+    /// Returns the lowest of `guards` at an `offset` in s, each positive on its near side.
+    fn lowest<S: System + ?Sized, M: Stepper>(
+        &self,
+        driver: &Driver<'_, S, M>,
+        guards: &[usize],
+        offset: f64,
+    ) -> f64 {
+        let point = self.at(offset);
+        driver.watched.lowest_guard(guards, point.t, &point.y)
+    }
+}

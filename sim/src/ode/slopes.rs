@@ -1,0 +1,163 @@
+//! Slopes of a step of the method in `tableau`, its error and its interior.
+
+use super::magnitudes::Magnitudes;
+use super::point::Point;
+use super::system::System;
+use super::tableau::{END, ERROR_3, ERROR_5, EXTENSION, INCREMENTS, PARTS, SLOPES, STAGES, Terms};
+use super::watch::WatchedSystem;
+
+/// Weight of the error estimate of order 3 in that of the step.
+const WEIGHT_OF_ORDER_3: f64 = 0.1;
+
+/// Rates of a step at its nodes, with reused memory.
+pub struct Slopes {
+    rates: [Vec<f64>; SLOPES],
+    trial: Vec<f64>,
+    sums: [Vec<f64>; 2],
+}
+
+impl Slopes {
+    /// Allocates memory for a number of states.
+    pub fn new(states: usize) -> Self {
+        let zeros = || vec![0.0; states];
+        Self {
+            rates: std::array::from_fn(|_| zeros()),
+            trial: zeros(),
+            sums: [zeros(), zeros()],
+        }
+    }
+
+    /// Evaluates the slope at the start of a step.
+    pub fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>, start: &Point) {
+        watched.rates(start.t, &start.y, &mut self.rates[0]);
+    }
+
+    /// Takes the slope at the end of the last step as that at the start of the next.
+    pub fn follow(&mut self) {
+        self.rates.swap(0, END);
+    }
+
+    /// Makes a step of `length` s from `start`, whose slope is known, and writes its end state to `end`. Returns false
+    /// if a state or a rate is not finite.
+    pub fn make_step<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        start: &Point,
+        length: f64,
+        end: &mut Vec<f64>,
+    ) -> bool {
+        for stage in 1..STAGES {
+            self.evaluate(watched, start, length, stage);
+            if !is_finite(&self.rates[stage]) {
+                return false;
+            }
+        }
+        self.write_state(start, length, END);
+        end.clone_from(&self.trial);
+        is_finite(end)
+    }
+
+    /// Evaluates the slope at the end of a step.
+    pub fn end<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>, end: &Point) {
+        watched.rates(end.t, &end.y, &mut self.rates[END]);
+    }
+
+    /// Returns the slope at the end of a step.
+    pub fn end_rates(&self) -> &[f64] {
+        &self.rates[END]
+    }
+
+    /// Returns the error of a step of `length` s to the state `end`, relative to what is allowed there.
+    pub fn error(&mut self, magnitudes: &Magnitudes, length: f64, end: &[f64]) -> f64 {
+        let [order_5, order_3] = &mut self.sums;
+        combine(&self.rates, ERROR_5, order_5);
+        combine(&self.rates, ERROR_3, order_3);
+        let fifth = magnitudes.norm(order_5.iter().copied(), end);
+        let third = WEIGHT_OF_ORDER_3 * magnitudes.norm(order_3.iter().copied(), end);
+        let size = fifth.hypot(third);
+        match size > 0.0 {
+            true => length * fifth * (fifth / size),
+            false => size,
+        }
+    }
+
+    /// Returns the interior of the last step of `length` s from `start` to `end`, whose slope is known.
+    pub fn find_interior<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        length: f64,
+        (start, end): (&Point, &Point),
+    ) -> Interior {
+        for stage in END + 1..SLOPES {
+            self.evaluate(watched, start, length, stage);
+        }
+        let states = start.y.len();
+        let mut coefficients: [Vec<f64>; 7] = std::array::from_fn(|_| vec![0.0; states]);
+        for place in 0..states {
+            let moved = end.y[place] - start.y[place];
+            let [first, last] = [0, END].map(|slope: usize| length * self.rates[slope][place]);
+            coefficients[0][place] = moved;
+            coefficients[1][place] = first - moved;
+            coefficients[2][place] = 2.0 * moved - (first + last);
+        }
+        for (terms, out) in EXTENSION.into_iter().zip(&mut coefficients[3..]) {
+            combine(&self.rates, terms, out);
+            out.iter_mut().for_each(|entry| *entry *= length);
+        }
+        Interior { coefficients }
+    }
+
+    fn evaluate<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        start: &Point,
+        length: f64,
+        stage: usize,
+    ) {
+        self.write_state(start, length, stage);
+        let t = start.t + PARTS[stage] * length;
+        watched.rates(t, &self.trial, &mut self.rates[stage]);
+    }
+
+    /// Writes the state at a node to `trial`.
+    fn write_state(&mut self, start: &Point, length: f64, stage: usize) {
+        combine(&self.rates, INCREMENTS[stage], &mut self.trial);
+        for (entry, start) in self.trial.iter_mut().zip(&start.y) {
+            *entry = start + length * *entry;
+        }
+    }
+}
+
+/// Interior of a step: coefficients of its polynomial.
+pub struct Interior {
+    coefficients: [Vec<f64>; 7],
+}
+
+impl Interior {
+    /// Returns the state at a `part` of the step from `start`.
+    pub fn interpolate(&self, part: f64, start: &[f64]) -> Vec<f64> {
+        let rest = 1.0 - part;
+        let entry = |(place, start): (usize, &f64)| {
+            let mut value = 0.0;
+            for (power, coefficients) in self.coefficients.iter().enumerate().rev() {
+                let factor = if power % 2 == 0 { part } else { rest };
+                value = factor * (value + coefficients[place]);
+            }
+            start + value
+        };
+        start.iter().enumerate().map(entry).collect()
+    }
+}
+
+/// Writes a combination of slopes to `out`.
+fn combine(rates: &[Vec<f64>; SLOPES], terms: Terms, out: &mut [f64]) {
+    out.fill(0.0);
+    for (slope, coefficient) in terms {
+        let entries = out.iter_mut().zip(&rates[*slope]);
+        entries.for_each(|(out, rate)| *out += coefficient * rate);
+    }
+}
+
+fn is_finite(values: &[f64]) -> bool {
+    values.iter().all(|value| value.is_finite())
+}
