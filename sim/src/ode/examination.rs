@@ -67,15 +67,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let interior = (piece, end.t - start.t);
         let guards = (&bounded[..], bounds);
         let found = find_crossing(interior, guards, ends, &mut step, &mut undecided);
-        if let Some(crossing) = found {
-            return Accepted::Crossed(crossing);
-        }
         for guard in undecided {
             sampled[guard] = bounded[guard];
         }
-        match sampled.iter().any(|side| *side != 0.0) {
+        let by_samples = match sampled.iter().any(|side| *side != 0.0) {
             true => self.find_sampled_crossing(&sampled, length, may_shorten),
             false => Accepted::Continues,
+        };
+        match (found, by_samples) {
+            (_, Accepted::Shortened) => Accepted::Shortened,
+            (Some(bounded), Accepted::Crossed(sampled)) => {
+                let roots = [&bounded, &sampled].map(|crossing| self.find_interior_root(crossing));
+                Accepted::Crossed(if roots[1] < roots[0] { sampled } else { bounded })
+            }
+            (Some(crossing), Accepted::Continues) => Accepted::Crossed(crossing),
+            (None, found) => found,
         }
     }
 
@@ -84,11 +90,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let Some(values) = self.sample_guards() else {
             return Accepted::Continues;
         };
-        if let Some(crossing) = find_sign_change(&values, sides) {
-            return Accepted::Crossed(crossing);
-        }
         if may_shorten && self.shorten_unresolved(&values, sides, length) {
             return Accepted::Shortened;
+        }
+        if let Some(crossing) = find_sign_change(&values, sides) {
+            return Accepted::Crossed(crossing);
         }
         let trials = &mut self.trajectory.statistics.trial_steps;
         let step = (self.watched, &mut self.stepper);

@@ -17,7 +17,7 @@ const MAX_STEPS: u32 = 60;
 const MAX_EXTRAPOLATION: f64 = 1e-8;
 
 /// Shortest distance in time of the points on both sides of a surface, as a part of a step.
-const MIN_DISTANCE: f64 = 1e-14;
+const MIN_DISTANCE: f64 = 1e-13;
 
 /// The same in shortest steps.
 const MIN_SHORTEST_STEPS: f64 = 2.0;
@@ -133,7 +133,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let is_near = slope < 0.0 && newton.abs() <= longest.max(MIN_DISTANCE * length);
             if is_near || beyond - near <= longest {
                 let offset = if is_near { newton } else { 0.0 };
-                return Ok(self.cross_on(line, (offset, after, length), &crossing.guards));
+                return Ok(self.cross_on(line, (offset, length), &crossing.guards));
             }
             let next = after + newton;
             after = match slope < 0.0 && near < next && next < beyond {
@@ -168,16 +168,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         None
     }
 
-    /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, which is
-    /// `after` (s) in a step of `length` s.
+    /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
+    /// of `length` s.
     fn cross_on(
         &self,
         line: Line,
-        (offset, after, length): (f64, f64, f64),
+        (offset, length): (f64, f64),
         guards: &[usize],
     ) -> Located {
         let start = self.stepper.current_point();
-        let mut distance = (MIN_DISTANCE * after).max(MIN_SHORTEST_STEPS * self.shortest_step());
+        let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * self.shortest_step());
         let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
         while distance <= longest {
             let beyond = line.at(offset + distance);

@@ -87,6 +87,14 @@ impl Magnitudes {
         })
     }
 
+    /// Returns the largest of `errors` relative to what is allowed at `y`; NaN if one is.
+    pub fn largest(&self, errors: &[f64], y: &[f64]) -> f64 {
+        let allowed = self.largest.iter().zip(y);
+        let allowed = allowed.map(|(largest, y)| self.tolerance * (largest + y.abs()));
+        let relative = errors.iter().zip(allowed).map(|(error, allowed)| (error / allowed).abs());
+        relative.fold(0.0, |most, error| if error <= most { most } else { error })
+    }
+
     /// Returns the root mean square of `errors` relative to what is allowed at `y`: at most 1 is small enough.
     pub fn norm(&self, errors: impl Iterator<Item = f64>, y: &[f64]) -> f64 {
         let allowed = self.largest.iter().zip(y);

@@ -72,8 +72,8 @@ impl Slopes {
         let [order_5, order_3] = &mut self.sums;
         combine(&self.rates, ERROR_5, order_5);
         combine(&self.rates, ERROR_3, order_3);
-        let fifth = magnitudes.norm(order_5.iter().copied(), end);
-        let third = WEIGHT_OF_ORDER_3 * magnitudes.norm(order_3.iter().copied(), end);
+        let fifth = magnitudes.largest(order_5, end);
+        let third = WEIGHT_OF_ORDER_3 * magnitudes.largest(order_3, end);
         let size = fifth.hypot(third);
         match size > 0.0 {
             true => length * fifth * (fifth / size),
