@@ -4,7 +4,7 @@
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
-use eomgen_compiled_model::{CompiledModel, Error, Orders};
+use eomgen_compiled_model::{CompiledModel, Error, Orders, SidedModel};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
@@ -378,6 +378,11 @@ impl EstimationModel {
     /// Creates an evaluator of the equations at these parameter values.
     pub(crate) fn create_evaluator(&self, values: &[f64]) -> Evaluator {
         self.compiled.evaluator(values)
+    }
+
+    /// Returns the model with the sides of its switching surfaces, if it has any.
+    pub(crate) fn create_sided_model(&self, values: &[f64]) -> Result<Option<SidedModel>, Error> {
+        self.compiled.sided_model(values)
     }
 
     /// Returns the measured outputs as linear functions of the state, if they are linear.

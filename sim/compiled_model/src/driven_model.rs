@@ -113,7 +113,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Lets the motion cross the surfaces that could hold it.
-    pub(crate) fn without_holding(mut self) -> Self {
+    pub fn without_holding(mut self) -> Self {
         if let Some(sliding) = &mut self.sliding {
             sliding.get_mut().disable_holding();
         }
@@ -285,22 +285,26 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let is_on = |sliding: &&RefCell<SurfaceStates>| !RefCell::borrow(sliding).is_free();
-        if let Some(sliding) = self.sliding.as_ref().filter(is_on) {
-            let inputs = &self.inputs.borrow().evaluate(t);
-            let given = (&inputs[..], &self.typical_sizes()[..]);
-            return sliding.borrow_mut().write_jacobian((t, y), given, out);
+        let inputs = &self.inputs.borrow().evaluate(t);
+        let mut has_own_sides = true;
+        if let Some(sliding) = &self.sliding {
+            let mut sliding = sliding.borrow_mut();
+            if !sliding.is_free() {
+                let given = (&inputs[..], &self.typical_sizes()[..]);
+                return sliding.write_jacobian((t, y), given, out);
+            }
+            has_own_sides = sliding.has_own_sides((t, y), inputs);
         }
         match &self.jacobians {
-            Some(jacobians) if !self.has_closed_contacts() => {
-                let mut jacobians = jacobians.borrow_mut();
-                let inputs = &self.inputs.borrow().evaluate(t);
+            Some(jacobians) if has_own_sides && !self.has_closed_contacts() => {
                 let point = Point {
                     t,
                     state: y,
                     inputs,
                 };
-                jacobians.evaluate(Jacobian::RatesByState, point, out);
+                jacobians
+                    .borrow_mut()
+                    .evaluate(Jacobian::RatesByState, point, out);
             }
             _ => jacobian_by_differences(self, t, y, out),
         }
@@ -345,6 +349,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(sliding) = &self.sliding {
             sliding.borrow().bound_guards(out);
         }
+    }
+
+    fn is_singular(&self, guard: usize) -> bool {
+        let sliding = self.sliding.as_ref().map(RefCell::borrow);
+        sliding.is_some_and(|sliding| sliding.is_singular(guard))
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

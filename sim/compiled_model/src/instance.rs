@@ -171,7 +171,7 @@ impl<'m> Instance<'m> {
     ///
     /// # Errors
     /// Terms that cannot be derived.
-    pub(crate) fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
+    pub fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
         self.model.sided_model(&self.parameters)
     }
 

@@ -37,8 +37,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.stepper.current_point().clone(),
         );
         let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
-        if is_short || !self.watched.has_guards() {
+        if !self.watched.has_guards() {
             return Accepted::Continues;
+        }
+        if is_short {
+            return self.find_change_over_step();
         }
         let (stepper, watched) = (&mut self.stepper, self.watched);
         let interpolate =
@@ -78,10 +81,31 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             (_, Accepted::Shortened) => Accepted::Shortened,
             (Some(bounded), Accepted::Crossed(sampled)) => {
                 let roots = [&bounded, &sampled].map(|crossing| self.find_interior_root(crossing));
-                Accepted::Crossed(if roots[1] < roots[0] { sampled } else { bounded })
+                Accepted::Crossed(if roots[1] < roots[0] {
+                    sampled
+                } else {
+                    bounded
+                })
             }
             (Some(crossing), Accepted::Continues) => Accepted::Crossed(crossing),
             (None, found) => found,
+        }
+    }
+
+    /// Finds the surfaces between the ends of the last step.
+    fn find_change_over_step(&self) -> Accepted {
+        let end = self.stepper.current_point();
+        let values = self.watched.evaluate_guards_before(end.t, &end.y);
+        let guards =
+            (0..values.len()).filter(|guard| self.watched.is_beyond(*guard, values[*guard]));
+        let guards: Vec<usize> = guards.collect();
+        match guards.is_empty() {
+            true => Accepted::Continues,
+            false => Accepted::Crossed(Crossing {
+                near: 0.0,
+                beyond: 1.0,
+                guards,
+            }),
         }
     }
 

@@ -28,6 +28,9 @@ const MAX_ROUNDINGS: f64 = 64.0;
 /// Growth of this distance until a point is beyond the surface.
 const GROWTH: f64 = 4.0;
 
+/// Part of the way that a step goes to a surface at which the rates are singular.
+const APPROACH: f64 = 0.999;
+
 /// Part of a step for the slope of a switching function.
 const SLOPE_PART: f64 = 1e-5;
 
@@ -35,7 +38,7 @@ const SLOPE_PART: f64 = 1e-5;
 pub(super) enum Located {
     /// Points on the near side of a surface, if it is not the start of the step, and just beyond it.
     Crossed(Option<Point>, Point),
-    /// The motion touches the surface here, and is not beyond it.
+    /// The step ends here, before the surface or on it.
     Touched(Point),
     /// No step leads to the surface.
     Failed,
@@ -106,6 +109,13 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if guess < near {
             (near, beyond) = (0.0, near);
         }
+        let is_singular = crossing
+            .guards
+            .iter()
+            .any(|guard| self.watched.is_singular(*guard));
+        if is_singular && guess > MAX_ROUNDINGS * self.shortest_step() {
+            return Ok(self.approach(&crossing.guards, guess));
+        }
         let mut after = guess;
         for _ in 0..MAX_STEPS {
             self.check_steps()?;
@@ -170,24 +180,36 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
     /// of `length` s.
-    fn cross_on(
-        &self,
-        line: Line,
-        (offset, length): (f64, f64),
-        guards: &[usize],
-    ) -> Located {
-        let start = self.stepper.current_point();
-        let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * self.shortest_step());
+    fn cross_on(&self, line: Line, (offset, length): (f64, f64), guards: &[usize]) -> Located {
+        let begin = self.stepper.current_point().t;
+        let shortest = self.shortest_step();
+        let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * shortest);
         let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
+        let lowest = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
+        let mut found = Located::Touched(line.point.clone());
         while distance <= longest {
-            let beyond = line.at(offset + distance);
-            if self.watched.lowest_guard(guards, beyond.t, &beyond.y) < 0.0 && beyond.t > start.t {
-                let near = Some(line.at(offset - distance));
-                return Located::Crossed(near.filter(|near| near.t > start.t), beyond);
+            let (near, beyond) = (line.at(offset - distance), line.at(offset + distance));
+            if lowest(&beyond) < 0.0 && beyond.t > begin {
+                // Rounding may move the near side by more than the distance.
+                let is_near = near.t <= begin || lowest(&near) >= 0.0;
+                found = Located::Crossed(Some(near).filter(|near| near.t > begin), beyond);
+                if is_near {
+                    break;
+                }
             }
             distance *= GROWTH;
         }
-        Located::Touched(line.point)
+        found
+    }
+
+    /// Goes to a point before a surface, `after` (s) from here, at which the rates are singular.
+    fn approach(&mut self, guards: &[usize], after: f64) -> Located {
+        self.trajectory.statistics.trial_steps += 1;
+        let trial = self.stepper.trial(self.watched, APPROACH * after);
+        let near =
+            trial.filter(|(point, _)| self.watched.lowest_guard(guards, point.t, &point.y) >= 0.0);
+        self.stepper.set_step(2.0 * (1.0 - APPROACH) * after);
+        near.map_or(Located::Failed, |(point, _)| Located::Touched(point))
     }
 }
 

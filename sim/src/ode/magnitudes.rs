@@ -91,7 +91,10 @@ impl Magnitudes {
     pub fn largest(&self, errors: &[f64], y: &[f64]) -> f64 {
         let allowed = self.largest.iter().zip(y);
         let allowed = allowed.map(|(largest, y)| self.tolerance * (largest + y.abs()));
-        let relative = errors.iter().zip(allowed).map(|(error, allowed)| (error / allowed).abs());
+        let relative = errors
+            .iter()
+            .zip(allowed)
+            .map(|(error, allowed)| (error / allowed).abs());
         relative.fold(0.0, |most, error| if error <= most { most } else { error })
     }
 

@@ -60,6 +60,12 @@ pub trait System {
         out.fill(Enclosure::UNKNOWN);
     }
 
+    /// Returns true if the derivatives of the rates grow without bound towards the surface of a switching function, as
+    /// those of v/norm(v). Steps approach such a surface.
+    fn is_singular(&self, _guard: usize) -> bool {
+        false
+    }
+
     /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
     /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
     /// the system does not check.
@@ -88,9 +94,10 @@ pub trait System {
         false
     }
 
-    /// Fixes the sides of surfaces that may hold a motion, so that the rates continue smoothly
-    /// across them: -1, 1, or 0 (unknown) per switching function. `None` restores the rates of the
-    /// side on which the state is. A system may ignore it.
+    /// Fixes the sides of the surfaces, -1, 1, or 0 (unknown) per switching function, so that the rates continue
+    /// smoothly across them: a step may pass a surface before the crossing is located. `None` restores the
+    /// rates of the side on which the state is. If a system with switching functions ignores it, steps near surfaces are
+    /// short and only as accurate as the tolerance.
     fn fix_sides(&self, _sides: Option<&[f64]>) {}
 
     /// Updates sticking at `t` and `y`, where inputs may jump. Returns the switching functions
@@ -137,6 +144,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn bound_guards(&self, t: (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
         (**self).bound_guards(t, state, out);
+    }
+
+    fn is_singular(&self, guard: usize) -> bool {
+        (**self).is_singular(guard)
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

@@ -165,6 +165,11 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         values.fold(f64::INFINITY, f64::min)
     }
 
+    /// Returns true if the rates are singular at a surface; see [`System::is_singular`].
+    pub fn is_singular(&self, guard: usize) -> bool {
+        self.system.is_singular(guard)
+    }
+
     /// Returns true if switching function `guard` with value `value` is beyond its surface.
     pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
         self.side(guard) * value < 0.0

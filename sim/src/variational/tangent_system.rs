@@ -96,6 +96,10 @@ impl<S: System + ?Sized> System for TangentSystem<'_, S> {
         self.system.bound_guards(t, &state[..states], out);
     }
 
+    fn is_singular(&self, guard: usize) -> bool {
+        self.system.is_singular(guard)
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         self.system
             .find_indefinite_coordinate(t, &y[..self.system.state_count()])

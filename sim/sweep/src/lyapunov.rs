@@ -164,6 +164,8 @@ fn variational_growth(
     );
     let system = DrivenModel::new(&evaluator, &inputs)
         .with_typical_sizes(instance.model().typical_sizes())
+        .with_sides(instance.sided_model()?)
+        .without_holding()
         .with_jacobian(instance.jacobian_evaluator()?);
     let (felt, settings) = (
         instance.influential_states()?,

@@ -97,7 +97,10 @@ fn seen(
     };
     let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
     let span = (*times.first()?, *times.last()?);
-    let driven = DrivenModel::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
+    let driven = DrivenModel::new(&evaluator, inputs)
+        .with_typical_sizes(model.typical_sizes())
+        .with_sides(model.create_sided_model(&model.values).ok()?)
+        .without_holding();
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
     let mut quantities = Vec::new();
     let mut buffers = model.measured.create_buffers();

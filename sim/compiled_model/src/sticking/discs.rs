@@ -1,13 +1,17 @@
 //! Friction against the direction of sliding, with the unit vector v/norm(v) of a sliding velocity v.
 //!
 //! During sliding the direction at the last step is kept as a reference: a motion that stops goes through
-//! v = 0 along it, so v times the reference is the switching function. Beyond zero the trial states of a step
+//! v = 0 along it, so v times the reference is the switching function. Beyond zero the stages of a step
 //! use the mirrored velocity, with which the unit vector of a straight motion is constant and the rates are
-//! smooth. A velocity that only turns passes the surface as well and gets a new reference.
+//! smooth; near zero they use a small velocity along the reference. A velocity that only turns passes the surface as well and gets a new reference.
 
 use std::ops::Range;
 
 use eomgen_sim::friction_discs::DiscVerdict;
+
+/// Smallest velocity along the reference in the unit vector of a step, in floors: rounding of a smaller one would
+/// turn the unit vector.
+const SLOW_FLOORS: f64 = 1e4;
 
 /// State of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +35,8 @@ pub(super) struct Disc {
     pub along: Vec<f64>,
     /// Velocity that counts as zero. Near zero the rounding of v turns it away from the reference.
     pub floor: f64,
+    /// Speed at the last step.
+    speed: f64,
 }
 
 impl Disc {
@@ -42,6 +48,7 @@ impl Disc {
             state: DiscState::Sliding,
             along,
             floor: 0.0,
+            speed: 0.0,
         }
     }
 
@@ -51,6 +58,15 @@ impl Disc {
 
     pub fn is_leaving(&self) -> bool {
         matches!(self.state, DiscState::Leaving { .. })
+    }
+
+    /// Returns true if the unit vector turns faster and faster on the way to zero.
+    pub fn is_singular(&self) -> bool {
+        !self.is_holding() && self.speed > self.slow_speed()
+    }
+
+    fn slow_speed(&self) -> f64 {
+        SLOW_FLOORS * self.floor
     }
 
     /// Returns true if the motion begins to slide and rounding still determines its direction.
@@ -87,9 +103,10 @@ impl Disc {
         }
         let mut velocity = self.velocity(functions).to_vec();
         let ahead = dot(&velocity, &self.along);
-        if is_fixed && ahead < 0.0 {
+        let even = ahead.abs().max(self.slow_speed());
+        if is_fixed && ahead < even {
             for (v, along) in velocity.iter_mut().zip(&self.along) {
-                *v -= 2.0 * ahead * along;
+                *v += (even - ahead) * along;
             }
         }
         write_unit_vector(&velocity, Some(&self.along), sides);
@@ -97,6 +114,7 @@ impl Disc {
 
     /// Updates the direction of sliding. A released disc slides once its velocity exceeds rounding.
     pub fn follow(&mut self, functions: &[f64]) {
+        self.speed = norm(self.velocity(functions));
         if self.is_leaving() && !self.is_within_rounding(functions) {
             self.state = DiscState::Sliding;
         }

@@ -157,6 +157,13 @@ impl SurfaceStates {
         self.sided.disc_formulas()
     }
 
+    /// Returns true if the derivatives of the rates grow without bound towards the surface of a guard.
+    pub fn is_singular(&self, guard: usize) -> bool {
+        let disc = guard.checked_sub(self.sided.guard_count());
+        let disc = disc.and_then(|disc| self.discs.get(disc));
+        disc.is_some_and(Disc::is_singular)
+    }
+
     pub fn disc_count(&self) -> usize {
         self.discs.len()
     }
@@ -173,6 +180,12 @@ impl SurfaceStates {
             };
             (0..self.places.len()).map(kept).collect()
         });
+    }
+
+    /// Returns true if no surface holds the motion and the sides at a point are the fixed ones.
+    pub fn has_own_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> bool {
+        let kept = self.kept.clone().unwrap_or_default();
+        self.is_free() && self.sided.has_own_sides(at, inputs, &kept)
     }
 
     /// Writes the rates, if this is active.

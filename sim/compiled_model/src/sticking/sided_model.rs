@@ -121,6 +121,31 @@ impl SidedModel {
         self.others.iter().all(|(_, is_fixed)| *is_fixed)
     }
 
+    /// Returns true if all sides at a point are those with these `kept` sides (-1, 1, or 0 if unknown) and the fixed ones.
+    pub(super) fn has_own_sides(
+        &mut self,
+        (t, state): TimeAndState<'_>,
+        inputs: &[f64],
+        kept: &[f64],
+    ) -> bool {
+        self.set_inputs((t, state), inputs);
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.evaluator.guards(point, &mut self.guards);
+        let sliding = self.evaluator.program().outputs.sliding.iter();
+        let sliding = sliding
+            .zip(kept)
+            .map(|(surface, side)| (surface.guard, *side));
+        let others = self
+            .others
+            .iter()
+            .zip(&self.inputs[self.model_input_count..]);
+        let others = others.filter(|((_, is_fixed), _)| *is_fixed);
+        let others = others.map(|((surface, _), side)| (surface.guard, 2.0 * side - 1.0));
+        let mut all = others.chain(sliding);
+        all.all(|(guard, side)| side * self.guards[guard] >= 0.0)
+    }
+
     /// Sets the inputs of the model at a point, and the sides that follow from the state.
     fn set_inputs(&mut self, (t, state): TimeAndState<'_>, inputs: &[f64]) {
         self.inputs[..self.model_input_count].copy_from_slice(inputs);

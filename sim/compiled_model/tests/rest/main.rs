@@ -157,8 +157,9 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
                 (last[0] - stop).abs() < 1e-7,
                 "{solver} {level} {speed}: {last:?} {stop}"
             );
+            // A state drifts from its surface by at most 1e-12 of the largest speed.
             assert!(
-                last[1].abs() < 1e-14 && switches.len() == turns.len(),
+                last[1].abs() < 1e-12 * speed.abs() && switches.len() == turns.len(),
                 "{solver} {level} {speed}"
             );
         }

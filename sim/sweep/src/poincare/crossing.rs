@@ -287,6 +287,10 @@ impl<S: System> System for SectionSystem<'_, S> {
         }
     }
 
+    fn is_singular(&self, guard: usize) -> bool {
+        self.system.is_singular(guard)
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         self.system.find_indefinite_coordinate(t, y)
     }
