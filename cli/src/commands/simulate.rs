@@ -5,6 +5,7 @@ use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
 use crate::audit::AuditResult;
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::history;
@@ -118,5 +119,9 @@ fn summary(
         return format!("{document:#}\n");
     }
     let how = describe_work(motion);
-    format!("{file}: {rows} rows, {switches} switches, {how}\n")
+    format!(
+        "{file}: {}, {}, {how}\n",
+        count(rows, "row"),
+        count(switches, "switch")
+    )
 }
