@@ -36,6 +36,7 @@ mod sample_statistics;
 mod samples;
 mod settings;
 mod significant;
+mod step_inputs;
 mod sweep_files;
 mod sweep_job;
 mod table;

@@ -217,6 +217,41 @@ fn equilibria_match_closed_form() {
 }
 
 #[test]
+fn inputs_with_steps_are_simulated_exactly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = write_model(folder.path(), OSCILLATOR);
+    let out = folder.path().join("stepped.csv").display().to_string();
+    let simulate = |input: &str| {
+        let arguments = ["simulate", &model, "--until", "3", "--interval", "0.01"];
+        let more = ["--input", input, "--out", &out, "--json"];
+        let summary = run_json(&[&arguments[..], &more].concat());
+        (
+            summary["solver"].as_str().expect("a name").to_owned(),
+            columns(Path::new(&out), &["t", "x"]),
+        )
+    };
+    let omega = 5.0_f64;
+    for (input, end) in [
+        ("u=10*above(t - 0.5)", f64::INFINITY),
+        ("u=10*(above(t - 0.5) - above(2*t - 4))", 2.0),
+    ] {
+        let (solver, rows) = simulate(input);
+        assert_eq!(solver, "exact", "{input}");
+        for row in rows {
+            let response = |from: f64| match row[0] > from {
+                true => 0.2 * (1.0 - (omega * (row[0] - from)).cos()),
+                false => 0.0,
+            };
+            let right = response(0.5) - response(end);
+            assert!((row[1] - right).abs() < 1e-13, "{input} {row:?} {right}");
+        }
+    }
+    for input in ["u=10*above(t - 0.5)*t", "u=10*above(sin(3*t))"] {
+        assert_eq!(simulate(input).0, "rk", "{input}");
+    }
+}
+
+#[test]
 fn equilibrium_is_printed_as_a_table_with_units() {
     let spec = shipped("pendulum");
     let output = run(&["trim", &spec, "--table"]);
