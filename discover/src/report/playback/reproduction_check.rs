@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::DrivenModel;
-use eomgen_sim::ode::{Names, Settings, UnsupportedSticking, simulate};
+use eomgen_sim::ode::{Names, Settings, SolveError, Surface, UnsupportedSticking, simulate};
 
 use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
@@ -83,6 +83,24 @@ pub(super) fn check_reproduces_fit(
 const CURE: &str =
     "`eomgen simulate extended.toml --record DATASET.toml` computes it with the other solvers";
 
+/// Returns the reason why explicit steps fail, with the names of states and switching surfaces.
+fn explain(error: &SolveError, states: &[String], surfaces: &[Surface]) -> String {
+    if let SolveError::Sticking { t, guard } | SolveError::TooManySwitches { t, guard, .. } = error
+        && let Some(surface) = surfaces.get(*guard)
+    {
+        return format!(
+            "from t = {t:.6} s the motion stays where `{}` is zero, as at rest under dry friction, which these \
+             steps do not follow",
+            surface.formula
+        );
+    }
+    error.format_named(&Names {
+        states,
+        surfaces,
+        unsupported_sticking: UnsupportedSticking::Formula,
+    })
+}
+
 /// Returns the sensor values of a window and the number of steps, or the reason why explicit steps cannot
 /// simulate it.
 fn seen(
@@ -110,11 +128,7 @@ fn seen(
     let driven = DrivenModel::new(&evaluator, inputs).with_typical_sizes(model.typical_sizes());
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {});
     let trajectory = trajectory.map_err(|error| {
-        let reason = error.format_named(&Names {
-            states: &model.program().state_names(),
-            surfaces: &driven.surfaces(),
-            unsupported_sticking: UnsupportedSticking::Formula,
-        });
+        let reason = explain(&error, &model.program().state_names(), &driven.surfaces());
         format!(
             "explicit steps, which a page takes, fail in the window of the test record from {:.6} s to {:.6} s: \
              {reason}; {CURE}",
@@ -141,4 +155,25 @@ fn seen(
         shooting.apply_sensors(&output_times, &sensors, &quantities),
         work,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_at_rest_is_the_reason_of_a_failed_simulation() {
+        let surfaces = [Surface {
+            formula: "dot(x)".to_owned(),
+            is_speed: true,
+        }];
+        let error = SolveError::Sticking { t: 0.25, guard: 0 };
+        let reason = explain(&error, &["x".to_owned()], &surfaces);
+        assert!(
+            reason.starts_with("from t = 0.250000 s the motion stays where `dot(x)` is zero"),
+            "{reason}"
+        );
+        let unknown = SolveError::NotFinite { t: 0.5, state: 0 };
+        assert!(explain(&unknown, &["x".to_owned()], &surfaces).contains("x"));
+    }
 }
