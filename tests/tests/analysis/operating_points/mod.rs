@@ -246,9 +246,8 @@ fn inputs_with_steps_are_simulated_exactly() {
             assert!((row[1] - right).abs() < 1e-13, "{input} {row:?} {right}");
         }
     }
-    for input in ["u=10*above(t - 0.5)*t", "u=10*above(sin(3*t))"] {
-        assert_eq!(simulate(input).0, "rk", "{input}");
-    }
+    let (solver, _) = simulate("u=10*above(t - 0.5)*t");
+    assert_eq!(solver, "rk");
 }
 
 #[test]
