@@ -32,8 +32,8 @@ impl ContactProblem {
             for contact in 0..count {
                 let side = self.friction[contact].direction.unwrap_or(1.0);
                 let ratio = -side * self.scaled_coefficient(contact);
-                matrix[row * size + contact] = self.entry(direction, contact)
-                    + ratio * self.entry(direction, count + contact);
+                matrix[row * size + contact] =
+                    self.entry(direction, contact) + ratio * self.entry(direction, count + contact);
             }
             for (place, contact) in full.iter().enumerate() {
                 matrix[row * size + count + place] = self.entry(direction, count + contact);
@@ -90,7 +90,11 @@ pub(super) fn solve_by_lemke(matrix: &[f64], q: &[f64]) -> Option<Vec<bool>> {
             let is_basic = |place: usize| basis.contains(&(size + place));
             return Some((0..size).map(is_basic).collect());
         }
-        entering = if left < size { size + left } else { left - size };
+        entering = if left < size {
+            size + left
+        } else {
+            left - size
+        };
         let column = |row: usize| table[row * width + entering];
         let largest = (0..size).fold(0.0_f64, |most, row| most.max(column(row)));
         let is_positive = |row: &usize| column(*row) > MIN_PIVOT_FRACTION * largest;

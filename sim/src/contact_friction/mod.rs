@@ -144,11 +144,12 @@ impl ContactProblem {
     }
 
     fn permits(&self, modes: &[ContactMode], excluded: &[(usize, ContactMode)]) -> bool {
-        let is_known = |(friction, mode): (&ContactFriction, &ContactMode)| {
-            friction.modes().contains(mode)
-        };
+        let is_known =
+            |(friction, mode): (&ContactFriction, &ContactMode)| friction.modes().contains(mode);
         self.friction.iter().zip(modes).all(is_known)
-            && !excluded.iter().any(|(contact, mode)| modes[*contact] == *mode)
+            && !excluded
+                .iter()
+                .any(|(contact, mode)| modes[*contact] == *mode)
     }
 
     /// Changes the mode of one contact with an excluded mode.
@@ -211,7 +212,10 @@ impl ContactProblem {
 
     fn scaled_size(&self, impulses: &[f64]) -> f64 {
         let scaled = impulses.iter().zip(&self.scale);
-        scaled.map(|(p, scale)| (p * scale).powi(2)).sum::<f64>().sqrt()
+        scaled
+            .map(|(p, scale)| (p * scale).powi(2))
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// Returns the solution with these modes; `None` if it violates a condition.
@@ -306,13 +310,19 @@ impl ContactProblem {
                 ContactMode::Slides(side) => [
                     rates[contact].abs(),
                     -impulses[contact],
-                    if is_known { 0.0 } else { -side * rates[tangent] },
+                    if is_known {
+                        0.0
+                    } else {
+                        -side * rates[tangent]
+                    },
                 ],
             };
-            most = violations.iter().fold(most, |most, one| match one.is_nan() {
-                true => f64::INFINITY,
-                false => most.max(*one),
-            });
+            most = violations
+                .iter()
+                .fold(most, |most, one| match one.is_nan() {
+                    true => f64::INFINITY,
+                    false => most.max(*one),
+                });
         }
         if most == 0.0 { 0.0 } else { most / size }
     }

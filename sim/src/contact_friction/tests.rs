@@ -37,7 +37,11 @@ fn random_problem(seed: u64, count: usize, degrees: usize, most: f64) -> Contact
 
 /// Returns the scaled rates of all consistent cases.
 fn enumerate(problem: &ContactProblem) -> Vec<Vec<f64>> {
-    let count: usize = problem.friction.iter().map(|one| one.modes().len()).product();
+    let count: usize = problem
+        .friction
+        .iter()
+        .map(|one| one.modes().len())
+        .product();
     let cases = (0..count).filter_map(|case| problem.solution(&problem.modes_of_case(case)));
     let scaled = |found: ContactDecision| -> Vec<f64> {
         let pairs = found.impulses.iter().zip(&problem.scale);
@@ -103,8 +107,7 @@ fn previous_modes_are_kept_and_excluded_modes_are_not() {
         coefficient: 0.5,
         direction: None,
     };
-    let problem =
-        ContactProblem::new(vec![friction], &[1.0, 0.0, 0.0, 1.0], &[-1.0, 0.5]);
+    let problem = ContactProblem::new(vec![friction], &[1.0, 0.0, 0.0, 1.0], &[-1.0, 0.5]);
     for mode in [ContactMode::Sticks, ContactMode::Slides(1.0)] {
         let kept = problem.decide(Some(&[mode]), &[]).expect("a solution");
         assert_eq!(kept.modes, [mode]);
@@ -118,7 +121,12 @@ fn painleve_rod_has_no_solution() {
     // Sliding rod at 60 degrees, mu = 1.5: W_nn - mu W_nt < 0.
     let angle = 60_f64.to_radians();
     let (s, c) = angle.sin_cos();
-    let w = [1.0 + 3.0 * c * c, 3.0 * s * c, 3.0 * s * c, 1.0 + 3.0 * s * s];
+    let w = [
+        1.0 + 3.0 * c * c,
+        3.0 * s * c,
+        3.0 * s * c,
+        1.0 + 3.0 * s * s,
+    ];
     for (mu, is_solved) in [(1.2, true), (1.5, false)] {
         let friction = ContactFriction {
             coefficient: mu,
@@ -146,7 +154,10 @@ fn single_impact_follows_the_closed_forms_of_a_ball() {
         let rolling = 2.0 / 7.0 * slip.abs();
         assert!((normal - (1.0 + e) * v).abs() < 1e-14);
         let expected = -slip.signum() * sliding.min(rolling);
-        assert!((tangential - expected).abs() < 1e-14, "{slip}: {tangential}");
+        assert!(
+            (tangential - expected).abs() < 1e-14,
+            "{slip}: {tangential}"
+        );
     }
 }
 
@@ -156,7 +167,10 @@ fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
     for case in 0..1000 {
         let rows: Vec<[f64; 3]> = (0..2).map(|_| [0; 3].map(|_| numbers.next())).collect();
         let product = |a: usize, b: usize| (0..3).map(|k| rows[a][k] * rows[b][k]).sum::<f64>();
-        let w = [[product(0, 0), product(0, 1)], [product(1, 0), product(1, 1)]];
+        let w = [
+            [product(0, 0), product(0, 1)],
+            [product(1, 0), product(1, 1)],
+        ];
         let impact = SingleImpact {
             w,
             rates: [-numbers.next().abs(), numbers.next()],
@@ -165,9 +179,14 @@ fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
         };
         let p = energetic_impulse(&impact).expect("impulses");
         let after = [0, 1].map(|i| impact.rates[i] + w[i][0] * p[0] + w[i][1] * p[1]);
-        let gained: f64 = (0..2).map(|i| 0.5 * p[i] * (impact.rates[i] + after[i])).sum();
+        let gained: f64 = (0..2)
+            .map(|i| 0.5 * p[i] * (impact.rates[i] + after[i]))
+            .sum();
         assert!(gained <= 1e-12, "{case}: {gained:e}");
         assert!(after[0] >= -1e-12, "{case}: {after:?}");
-        assert!(p[1].abs() <= impact.friction * p[0] + 1e-12, "{case}: {p:?}");
+        assert!(
+            p[1].abs() <= impact.friction * p[0] + 1e-12,
+            "{case}: {p:?}"
+        );
     }
 }
