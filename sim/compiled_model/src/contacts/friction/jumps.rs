@@ -116,7 +116,8 @@ impl Contacts {
             })
         };
         let plastic = with(0.0)?;
-        let restitutions = touching.iter().map(|place| self.at[*place].restitution);
+        let open = touching.iter().filter(|place| !self.closed.contains(place));
+        let restitutions = open.map(|place| self.at[*place].restitution);
         let largest = restitutions.fold(0.0, f64::max);
         if largest == 0.0 {
             return Some(plastic);
