@@ -245,7 +245,7 @@ fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
     }
 }
 
-/// The derivative of a root beside a factor of its own is unbounded near 0, but the product has the derivative 0
+/// The derivative of a root times a factor that vanishes with it is unbounded near 0. The product has the derivative 0
 /// there: it is smaller than every linear function.
 #[test]
 fn root_times_smooth_factor_has_derivative_zero_at_zeros_of_both() {
