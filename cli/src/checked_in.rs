@@ -8,6 +8,7 @@ use eomgen_validate::model_certificate::{certify_source, unchecked_certificate};
 use serde_json::{Value, json};
 
 use crate::certification::document;
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::emission::source;
 use crate::error::{Error, Result, print_json, print_text, warn};
@@ -91,7 +92,11 @@ fn print_differences(files: usize, different: &[String], check: bool, json: bool
         return print_json(&document);
     }
     let verb = if check { "differ" } else { "written" };
-    print_text(&format!("{files} files, {} {verb}\n", different.len()))
+    print_text(&format!(
+        "{}, {} {verb}\n",
+        count(files, "file"),
+        different.len()
+    ))
 }
 
 fn certificate_file(variant: &CheckedInVariant) -> String {

@@ -8,6 +8,7 @@ use eomgen_codegen::wasm;
 use eomgen_model_spec::model::Model;
 
 use crate::arguments::{Extra, Generate, Target};
+use crate::count::count;
 use crate::error::{Error, Result};
 use crate::fmu::{self, Version};
 
@@ -121,7 +122,7 @@ pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
 pub fn size(target: Target, contents: &[u8]) -> String {
     match target {
         Target::Fmu2 | Target::Fmu3 => format!("{} bytes", contents.len()),
-        _ => format!("{} lines", contents.iter().filter(|b| **b == b'\n').count()),
+        _ => count(contents.iter().filter(|b| **b == b'\n').count(), "line"),
     }
 }
 

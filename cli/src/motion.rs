@@ -2,6 +2,7 @@
 
 use eomgen_compiled_model::{InitialChange, Instance, Motion, Request, Solver, SolverChoice};
 
+use crate::count::count;
 use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -66,8 +67,11 @@ impl std::fmt::Display for Rounded {
 pub fn describe_work(motion: &Motion) -> String {
     let work = motion.trajectory.statistics;
     match motion.solver {
-        Solver::Exact => format!("{} exact steps", work.steps),
-        _ => format!("{} evaluations of the right-hand side", work.evaluations),
+        Solver::Exact => count(work.steps, "exact step"),
+        _ => format!(
+            "{} of the right-hand side",
+            count(work.evaluations, "evaluation")
+        ),
     }
 }
 

@@ -209,3 +209,11 @@ pub fn shape_names(compiled: &CompiledModel) -> Vec<String> {
     names.drain(degrees..2 * degrees);
     names
 }
+
+/// Returns the units of the amplitudes of a mode shape.
+pub fn shape_units(compiled: &CompiledModel) -> Vec<String> {
+    let degrees = compiled.program().degrees_of_freedom();
+    let mut units = compiled.state_units();
+    units.drain(degrees..2 * degrees);
+    units
+}

@@ -6,6 +6,7 @@ use eomgen_plot::distribution::{Distribution, distribution};
 use eomgen_sweep::{Column, Job, Samples, Table};
 use serde_json::{Map, Value, json};
 
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::warn;
 use crate::figures::DisplayUnit;
@@ -168,8 +169,10 @@ impl Statistics {
         marks.sort_by(|a, b| a.value.total_cmp(&b.value));
         let svg = distribution(&Distribution {
             title: format!(
-                "{}: {}, {} samples",
-                self.model, measured.column.about, summary.count
+                "{}: {}, {}",
+                self.model,
+                measured.column.about,
+                count(summary.count, "sample")
             ),
             quantity: quantity.clone(),
             unit: shown.unit,

@@ -95,9 +95,35 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
     }
     let steps = (whole / step * (1.0 + 1e-12)).floor();
     check_size(steps.min(MAX_VALUES * 2.0) as usize, 1)?;
+    let decimals = decimals(start).max(decimals(step));
     Ok((0..=steps as usize)
-        .map(|row| (start + row as f64 * step).min(end))
+        .map(|row| round_to_decimals(start + row as f64 * step, decimals).min(end))
         .collect())
+}
+
+/// Returns the number of decimals of the shortest notation of a number.
+fn decimals(number: f64) -> i32 {
+    let text = number.to_string();
+    text.split_once('.').map_or(0, |(_, decimals)| {
+        i32::try_from(decimals.len()).unwrap_or(i32::MAX)
+    })
+}
+
+/// Most decimals of times that are rounded; more are rounding errors.
+const MAX_DECIMALS: i32 = 15;
+
+/// Returns the double nearest to a time with this number of decimals, so that 7 times 0.05 s is 0.35 s.
+fn round_to_decimals(t: f64, decimals: i32) -> f64 {
+    if decimals > MAX_DECIMALS {
+        return t;
+    }
+    let scale = 10f64.powi(decimals);
+    let whole = (t * scale).round();
+    // Larger integers are not exact.
+    match whole.abs() < 2f64.powi(53) {
+        true => whole / scale,
+        false => t,
+    }
 }
 
 /// Rejects a table that does not fit into memory.
@@ -109,4 +135,28 @@ pub fn check_size(rows: usize, columns: usize) -> Result {
     Err(Error::input(format!(
         "too many rows: the limit is {MAX_VALUES:e} values (rows times columns); give a longer --interval"
     )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_the_decimals_of_the_interval() {
+        let times = even_times((0.0, 2.0), Some(0.05)).ok().expect("times");
+        assert_eq!(times[7], 0.35);
+        assert_eq!(times[40], 2.0);
+        let times = even_times((0.1, 1.1), None).ok().expect("times");
+        assert_eq!(times[2], 0.102);
+        let longest = times.iter().map(|t| decimals(*t)).max();
+        assert_eq!(longest, Some(3));
+    }
+
+    #[test]
+    fn times_of_other_intervals_are_not_rounded() {
+        let step = 1.0 / 3.0;
+        let times = even_times((0.0, 2.0), Some(step)).ok().expect("times");
+        assert_eq!(times[4], 4.0 * step);
+        assert_eq!(times.len(), 7);
+    }
 }

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use eomgen_sweep::{Folder, Job, Table, merge};
 use serde_json::{Value, json};
 
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::figures::draw;
 use crate::output::write_file;
 use crate::parquet_file::encode;
 use crate::sample_statistics::{Statistics, statistics};
+use crate::significant::significant;
 
 pub struct FinalFiles {
     files: Vec<PathBuf>,
@@ -18,7 +20,12 @@ pub struct FinalFiles {
     /// Number of points without a result, by measure.
     failed: Vec<(String, usize)>,
     statistics: Option<Statistics>,
+    /// Values of all points, if they are few.
+    values: String,
 }
+
+/// Maximum number of points whose values are printed.
+const MAX_PRINTED_POINTS: usize = 24;
 
 /// Writes the final files.
 ///
@@ -32,6 +39,7 @@ pub fn finish(folder: &Folder) -> Result<FinalFiles> {
         points: job.points().count(),
         failed: failures(job, &table),
         statistics: statistics(job, &table),
+        values: print_values(&table),
     };
     if let Some(statistics) = &finished.statistics {
         for (name, svg) in statistics.figures() {
@@ -60,7 +68,44 @@ pub fn finish(folder: &Folder) -> Result<FinalFiles> {
     let path = folder.path().join("sweep.parquet");
     write_file(&path, &bytes)?;
     finished.files.push(path);
+    let columns: Vec<_> = (table.names.iter().cloned().zip(table.columns)).collect();
+    let path = folder.path().join("sweep.csv");
+    write_file(
+        &path,
+        &crate::table::Table::from_columns(&columns).encode(&path)?,
+    )?;
+    finished.files.push(path);
     Ok(finished)
+}
+
+/// Returns an aligned table of the values of all points, without the columns of status; empty if there
+/// are many points.
+fn print_values(table: &Table) -> String {
+    let points = table.columns.first().map_or(0, Vec::len);
+    if points > MAX_PRINTED_POINTS {
+        return String::new();
+    }
+    let columns = table.names.iter().zip(&table.columns);
+    let columns = columns.filter(|(name, _)| !name.ends_with("_status"));
+    let columns: Vec<Vec<String>> = columns
+        .map(|(name, values)| {
+            let values = values.iter().map(|value| significant(*value));
+            std::iter::once(name.clone()).chain(values).collect()
+        })
+        .collect();
+    let widths = columns.iter().map(|column| {
+        let lengths = column.iter().map(|cell| cell.len());
+        lengths.max().unwrap_or(0)
+    });
+    let widths: Vec<usize> = widths.collect();
+    let line = |row: usize| {
+        let cells = columns.iter().zip(&widths);
+        let cells: Vec<String> = cells
+            .map(|(column, width)| format!("{:<width$}", column[row]))
+            .collect();
+        format!("{}\n", cells.join("  ").trim_end())
+    };
+    (0..=points).map(line).collect()
 }
 
 /// Counts the points without a result, for each measure.
@@ -92,11 +137,13 @@ impl FinalFiles {
     }
 
     pub fn text(&self) -> String {
-        let mut text = format!("{} points\n", self.points);
+        let mut text = format!("{}\n", count(self.points, "point"));
+        text += &self.values;
         for (measure, failed) in &self.failed {
             if *failed > 0 {
                 text += &format!(
-                    "{measure}: {failed} points without a number; the column {measure}_status has the reason\n"
+                    "{measure}: {} without a number; the column {measure}_status has the reason\n",
+                    count(*failed, "point")
                 );
             }
         }

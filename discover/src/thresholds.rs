@@ -536,6 +536,13 @@ pub const BOUND_FRACTION: f64 = 0.99;
 /// Minimum ratio of the smallest to the largest delay of channels with a common delay.
 pub const MIN_DELAY_RATIO: f64 = 0.9;
 
+/// Lead of a channel, in sample intervals, that held inputs explain: half an interval, with its
+/// uncertainty.
+pub const HALF_INTERVAL_LEAD: std::ops::Range<f64> = 0.35..0.65;
+
+/// Minimum fraction of samples at which an input changes, of an input that changes continuously.
+pub const MIN_CHANGING_FRACTION: f64 = 0.5;
+
 /// Minimum change of an estimate, in its standard deviations, that is written back if no effect was
 /// found. With an effect, all estimates are written because they were estimated together.
 pub const MIN_WRITTEN_CHANGE_IN_SD: f64 = 0.5;

@@ -202,6 +202,10 @@ pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for impact in &model.impacts {
         see(&impact.when);
         see(&impact.restitution);
+        if let Some(friction) = &impact.friction {
+            see(&friction.coefficient);
+            see(&friction.slip);
+        }
     }
     for observable in &model.observables {
         see(&observable.value);

@@ -4,9 +4,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
-    RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawFrame,
-    RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
-    RawUncertainty,
+    RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawContactFriction, RawCoordinate,
+    RawField, RawFrame, RawImpact, RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor,
+    RawState, RawTerm, RawUncertainty,
 };
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, StringValue, unknown_key_error};
@@ -17,6 +17,8 @@ const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
 const CONSTRAINT_EXAMPLE: &str = "{ zero = \"x^2 + y^2 - l^2\" }";
+const SLIP_HELP: &str =
+    "give the tangential velocity of the contact: slip = \"dot(x) - r*dot(phi)\"";
 const IMPACT_EXAMPLE: &str = "{ when = \"y\", restitution = 0.8 }";
 const FRAME_EXAMPLE: &str = "{ in = \"link_1\", rotation = \"rotation_z(q_2)\" }";
 const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
@@ -166,21 +168,69 @@ pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Raw
     })
 }
 
-/// Reads an entry of `[impacts]` and its restitution.
-pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
+pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawImpact> {
     let record = entry.record(&keys::IMPACT, IMPACT_EXAMPLE, found)?;
     let help = "give the distance that crosses zero at the impact: when = \"y\"";
     let when = record.require("when", help, found).map(Entry::quantity);
     let help = "give the coefficient of restitution, from 0 to 1: restitution = 0.8";
     let restitution = record.require("restitution", help, found);
     let restitution = restitution.map(Entry::quantity);
-    let term = RawTerm {
+    let friction = read_contact_friction(&record, found);
+    let distance = RawTerm {
         name: entry.name.clone(),
         value: found.push_error(when?)?,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     };
-    Some((term, found.push_error(restitution?)?))
+    Some(RawImpact {
+        distance,
+        restitution: found.push_error(restitution?)?,
+        friction: friction?,
+    })
+}
+
+/// Reads `friction` and `slip` of an impact, which need each other. Returns `None` after an error.
+fn read_contact_friction(
+    record: &Record<'_>,
+    found: &mut Diagnostics,
+) -> Option<Option<RawContactFriction>> {
+    let name = quote(&record.owner().text);
+    let (friction, slip) = match (record.get("friction"), record.get("slip")) {
+        (None, None) => return Some(None),
+        (Some(friction), Some(slip)) => (friction, slip),
+        (Some(friction), None) => {
+            found.push(
+                Diagnostic::error(format!("{name} has `friction`, but no `slip`"))
+                    .with_span(friction.name.span, "`slip` is missing")
+                    .with_help(SLIP_HELP),
+            );
+            return None;
+        }
+        (None, Some(slip)) => {
+            found.push(
+                Diagnostic::error(format!("{name} has `slip`, but no `friction`"))
+                    .with_span(slip.name.span, "`friction` is missing")
+                    .with_help("give the coefficient of friction: friction = \"mu\""),
+            );
+            return None;
+        }
+    };
+    let coefficient = found.push_error(friction.quantity());
+    let given = found.push_error(slip.scalar_or_vector())?;
+    if matches!(given, Quantity::Vector(..)) {
+        found.push(
+            Diagnostic::error(format!("the slip of {name} has several components"))
+                .with_span(slip.span(), "expected one expression")
+                .with_help(
+                    "contact friction acts along one direction; friction in two directions is not supported",
+                ),
+        );
+        return None;
+    }
+    Some(Some(RawContactFriction {
+        coefficient: coefficient?,
+        slip: given,
+    }))
 }
 
 pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {

@@ -414,6 +414,8 @@ pub struct Impact {
     pub when: Expr,
     /// Coefficient of restitution, from 0 to 1 (parameters only).
     pub restitution: Expr,
+    /// Coulomb friction; `None` for a smooth contact.
+    pub friction: Option<ContactFriction>,
     /// Unit of the distance, inferred.
     pub unit: Unit,
     /// Description.
@@ -422,6 +424,15 @@ pub struct Impact {
     pub origin: String,
     /// Position of the name in the text.
     pub span: Span,
+}
+
+/// Coulomb friction of a contact along one direction. With friction, restitution is energetic (Stronge).
+#[derive(Clone, Debug)]
+pub struct ContactFriction {
+    /// Coefficient, at least 0 (parameters only).
+    pub coefficient: Expr,
+    /// Tangential velocity of the contact, linear in the rates.
+    pub slip: Expr,
 }
 
 /// Reported quantity.

@@ -305,6 +305,36 @@ impl Checker<'_, '_> {
                         .with_help(help),
                 );
             }
+            if let Some(friction) = &impact.friction {
+                self.slip(&impact.name, &friction.slip);
+            }
+        }
+    }
+
+    /// Checks the slip of a contact with friction.
+    fn slip(&mut self, impact: &str, slip: &Expr) {
+        let motion = self.motion(slip);
+        let problem = if let Some(place) = motion.state {
+            let help = "a slip contains only coordinates, their rates, prescribed motion and t";
+            Some((place, "this is a state", help))
+        } else if let Some((_, place)) = motion.input.filter(|(given, _)| *given < 1) {
+            let help = "its rate must be given: declare the input with rates = 2";
+            Some((place, "this input has no given rate", help))
+        } else if let Some(place) = motion.switch {
+            let help = "give the velocity with its sign: friction acts against it";
+            Some((place, "this switches", help))
+        } else if motion.rates.is_empty() {
+            let help = "give a velocity, for example dot(x) - r*dot(phi)";
+            Some((slip.span, "this contains no rate of a coordinate", help))
+        } else {
+            None
+        };
+        if let Some((place, why, help)) = problem {
+            self.found.push(
+                Diagnostic::error(format!("the slip of `{impact}` is not valid"))
+                    .with_span(place, why)
+                    .with_help(help),
+            );
         }
     }
 

@@ -211,7 +211,7 @@ impl Names {
             .chain(&document.potential)
             .chain(&document.dissipation);
         let terms = terms.chain(&document.constraints);
-        let terms = terms.chain(document.impacts.iter().map(|(term, _)| term));
+        let terms = terms.chain(document.impacts.iter().map(|impact| &impact.distance));
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.push_error(check_word(&term.name));
         }

@@ -28,8 +28,7 @@ pub struct Document {
     /// Each force with the quantity it acts on.
     pub forces: Vec<(RawTerm, Quantity)>,
     pub constraints: Vec<RawTerm>,
-    /// Each impact with its restitution.
-    pub impacts: Vec<(RawTerm, Quantity)>,
+    pub impacts: Vec<RawImpact>,
     /// Each observable with its declared unit.
     pub observables: Vec<(RawTerm, Option<StringValue>)>,
     pub coefficients: Vec<RawCoefficient>,
@@ -199,6 +198,21 @@ pub struct RawTerm {
     pub doc: String,
     /// `source`
     pub origin: String,
+}
+
+/// Unilateral contact: its distance with name and origin.
+#[derive(Debug)]
+pub struct RawImpact {
+    pub distance: RawTerm,
+    pub restitution: Quantity,
+    pub friction: Option<RawContactFriction>,
+}
+
+#[derive(Debug)]
+pub struct RawContactFriction {
+    pub coefficient: Quantity,
+    /// Tangential velocity of the contact.
+    pub slip: Quantity,
 }
 
 #[derive(Debug)]

@@ -218,7 +218,8 @@ impl Units<'_, '_> {
         units
     }
 
-    /// Returns the unit of every distance, and checks that restitutions are dimensionless.
+    /// Returns the unit of every distance. Checks that restitutions and coefficients of friction are
+    /// dimensionless, and that slips are in the unit of the distance per second.
     fn impacts(&mut self) -> Vec<Unit> {
         let mut units = Vec::with_capacity(self.model.impacts.len());
         for impact in &self.model.impacts {
@@ -226,6 +227,16 @@ impl Units<'_, '_> {
             self.expect_quantity(&impact.restitution, Dimension::DIMENSIONLESS, &subject);
             let inferred = self.known.infer(&impact.when);
             let inferred = self.found.push_error(inferred).flatten();
+            if let Some(friction) = &impact.friction {
+                let subject = format!("the friction of `{}`", impact.name);
+                self.expect_quantity(&friction.coefficient, Dimension::DIMENSIONLESS, &subject);
+                let speed = inferred.and_then(|distance| distance.divide(Dimension::TIME));
+                if let Some(speed) = speed {
+                    let subject = format!("the slip of `{}`", impact.name);
+                    let because = format!("expected {}", UnitPhrase(speed));
+                    self.expect(&friction.slip, speed, &subject, &because);
+                }
+            }
             units.push(Unit::coherent(inferred.unwrap_or(Dimension::DIMENSIONLESS)));
         }
         units

@@ -323,7 +323,7 @@ impl Model {
                 check_range(&input.name, range, &values)?;
             }
         }
-        self.check_restitutions(&values)?;
+        self.check_contact_laws(&values)?;
         for field in &self.fields {
             let (from, to) = (evaluate(&field.from, &values), evaluate(&field.to, &values));
             let length = to - from;
@@ -343,7 +343,7 @@ impl Model {
 }
 
 impl Model {
-    fn check_restitutions(&self, parameters: &[f64]) -> Result<(), ModelError> {
+    fn check_contact_laws(&self, parameters: &[f64]) -> Result<(), ModelError> {
         for impact in &self.impacts {
             let value = evaluate(&impact.restitution, parameters);
             if !(0.0..=1.0).contains(&value) {
@@ -351,6 +351,16 @@ impl Model {
                 return Err(ModelError::new(message)
                     .at(impact.restitution.span)
                     .help("give a restitution from 0 (plastic) to 1 (elastic)"));
+            }
+            let Some(friction) = &impact.friction else {
+                continue;
+            };
+            let value = evaluate(&friction.coefficient, parameters);
+            if !(value.is_finite() && value >= 0.0) {
+                let message = format!("the friction of `{}` is {value}", impact.name);
+                return Err(ModelError::new(message)
+                    .at(friction.coefficient.span)
+                    .help("give a coefficient of friction of at least 0"));
             }
         }
         Ok(())

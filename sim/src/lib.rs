@@ -7,6 +7,7 @@
 //! | [`exponential`] | integrates nearly piecewise-linear models with tangent vectors |
 //! | [`sliding_modes`] | finds the surfaces that hold a motion |
 //! | [`friction_discs`] | decides on rest and direction under friction against the direction of sliding |
+//! | [`contact_friction`] | decides the modes of contacts with friction, and computes impacts |
 //! | [`variational`] | measures the growth of a tangent vector |
 //! | [`inputs`] | inputs over time |
 //! | [`cubic_spline`] | prescribed motion through samples |
@@ -95,6 +96,7 @@
 //! ```
 
 mod balancing;
+pub mod contact_friction;
 pub mod cubic_spline;
 pub mod exponential;
 pub mod friction_discs;

@@ -100,6 +100,9 @@ pub struct Trim {
     /// Repeatable.
     #[arg(long, value_name = "NAME=VALUE")]
     pub fix: Vec<String>,
+    /// Print a table with units instead of JSON.
+    #[arg(long, conflicts_with = "json")]
+    pub table: bool,
     #[command(flatten)]
     pub output: Json,
 }

@@ -3,6 +3,7 @@
 use eomgen_compiled_model::CompiledModel;
 
 use crate::arguments::Linearise;
+use crate::count::count;
 use crate::error::{Result, print_bytes};
 use crate::linearisation::{arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
@@ -41,10 +42,10 @@ pub fn run(options: &Linearise) -> Result {
 fn summary(options: &Linearise, compiled: &CompiledModel) -> String {
     let file = options.out.as_ref().map(|out| out.display().to_string());
     format!(
-        "{}: {} states, {} inputs, {} outputs\n",
+        "{}: {}, {}, {}\n",
         file.unwrap_or_default(),
-        compiled.program().states(),
-        compiled.model().inputs.len(),
-        compiled.program().observables.len()
+        count(compiled.program().states(), "state"),
+        count(compiled.model().inputs.len(), "input"),
+        count(compiled.program().observables.len(), "output")
     )
 }

@@ -1,5 +1,7 @@
 //! `eomgen modes`: natural frequencies, damping ratios and mode shapes at a state.
 
+use std::cmp::Ordering;
+
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_compiled_model::CompiledModel;
@@ -8,7 +10,9 @@ use serde_json::{Value, json};
 use crate::arguments::Modes;
 use crate::error::{Error, Result, print_json, print_text};
 use crate::mode_figure::figure;
-use crate::operating_point::{head, is_equilibrium, model, point, shape_names, values_by_name};
+use crate::operating_point::{
+    head, is_equilibrium, model, point, shape_names, shape_units, values_by_name,
+};
 use crate::output::Destination;
 use crate::regime::{Side, regime, summary};
 
@@ -40,6 +44,8 @@ pub fn run(options: &Modes) -> Result {
     document.insert("at".to_owned(), values_by_name(&compiled, &at));
     document.insert("equilibrium".to_owned(), json!(is_equilibrium));
     document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
+    let units = json!({ "coordinates": shape_units(&compiled) });
+    document.insert("units".to_owned(), units);
     let regime = regime.iter().map(Side::json);
     document.insert("regime".to_owned(), regime.collect());
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
@@ -72,18 +78,24 @@ const LISTED: usize = 3;
 /// Smallest listed amplitude; smaller ones would be printed as 0.
 const MIN_AMPLITUDE: f64 = 5e-5;
 
+/// Largest amplitude that is printed without an exponent.
+const MAX_PLAIN_AMPLITUDE: f64 = 1e5;
+
 fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
-    let names = shape_names(compiled);
+    let (names, units) = (shape_names(compiled), shape_units(compiled));
     for mode in modes {
-        let mut parts: Vec<_> = names.iter().zip(&mode.shape).collect();
-        parts.sort_by(|a, b| b.1.norm().total_cmp(&a.1.norm()));
-        let parts = parts
-            .iter()
-            .take(LISTED)
-            .filter(|(_, value)| value.norm() >= MIN_AMPLITUDE);
-        let parts: Vec<String> = parts
-            .map(|(name, value)| part(name, value.re, value.im))
+        let sizes: Vec<f64> = mode.shape.iter().map(|value| value.norm()).collect();
+        let parts: Vec<String> = largest(&units, &sizes)
+            .into_iter()
+            .map(|place| {
+                let value = mode.shape[place];
+                part(
+                    &names[place],
+                    (value.re, value.im),
+                    unit_shown(&units, place),
+                )
+            })
             .collect();
         // Rounded as printed; adding 0.0 removes the sign of -0.
         let damping = (mode.damping() * 1e6).round() / 1e6 + 0.0;
@@ -101,15 +113,54 @@ fn frequency_in_words(frequency: f64) -> String {
     }
 }
 
-/// Formats an amplitude, with its phase unless it is in phase or antiphase with the largest.
-fn part(name: &str, real: f64, imaginary: f64) -> String {
+/// Returns the places of the largest amplitudes of a shape, largest first. Amplitudes in different units
+/// are compared relative to the largest one in their unit; one of each unit is listed.
+fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
+    let in_unit = |unit: &String| {
+        let alike = units.iter().zip(sizes).filter(|(own, _)| *own == unit);
+        alike.fold(0.0, |most: f64, (_, size)| most.max(*size))
+    };
+    let relative: Vec<(f64, f64)> = (units.iter().zip(sizes))
+        .map(|(unit, size)| (size / in_unit(unit).max(f64::MIN_POSITIVE), *size))
+        .collect();
+    let moves = |place: &usize| sizes[*place] >= MIN_AMPLITUDE;
+    let mut places: Vec<usize> = (0..relative.len()).filter(moves).collect();
+    places.sort_by(|a, b| {
+        relative[*b]
+            .partial_cmp(&relative[*a])
+            .unwrap_or(Ordering::Equal)
+    });
+    let mut kinds: Vec<&String> = units.iter().collect();
+    kinds.sort();
+    kinds.dedup();
+    places.truncate(LISTED.max(kinds.len()));
+    places
+}
+
+/// Returns the unit of an amplitude if the amplitudes of the machine have several units.
+fn unit_shown(units: &[String], place: usize) -> Option<&str> {
+    let is_mixed = units.iter().any(|unit| *unit != units[0]);
+    is_mixed.then(|| match &units[place][..] {
+        "" => "1",
+        unit => unit,
+    })
+}
+
+/// Formats an amplitude with its unit, and with its phase unless it is in phase or antiphase with the
+/// coordinate that is 1.
+fn part(name: &str, (real, imaginary): (f64, f64), unit: Option<&str>) -> String {
     let (size, phase) = (
         real.hypot(imaginary),
         imaginary.atan2(real).to_degrees().round(),
     );
+    let size = match size < MAX_PLAIN_AMPLITUDE {
+        true => format!("{size:.4}"),
+        false => format!("{size:.4e}"),
+    };
+    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
     match phase {
-        phase if phase.abs() >= 180.0 => format!("{name} -{size:.4}"),
-        0.0 => format!("{name} {size:.4}"),
-        phase => format!("{name} {size:.4} at {phase} deg"),
+        phase if phase.abs() >= 180.0 => format!("{name} -{size}{unit}"),
+        0.0 => format!("{name} {size}{unit}"),
+        phase => format!("{name} {size}{unit} at {phase} deg"),
     }
 }

@@ -1,10 +1,13 @@
 //! `eomgen simulate`: a trajectory as CSV or Parquet.
 
-use eomgen_compiled_model::{DEFAULT_TOLERANCE, Motion, Request};
+use eomgen_compiled_model::{CompiledModel, DEFAULT_TOLERANCE, Motion, Request};
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
 use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
 use crate::audit::AuditResult;
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::history;
@@ -15,6 +18,7 @@ use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
 use crate::settings::{with_inputs, with_settings};
+use crate::step_inputs::{hold, step_inputs};
 use crate::table::Table;
 
 pub fn run(options: &Simulate) -> Result {
@@ -24,11 +28,7 @@ pub fn run(options: &Simulate) -> Result {
         .as_deref()
         .map(|plot| Destination::for_figure(plot, Some(&options.out), options.output.json));
     let figure = figure.transpose()?;
-    let model = with_inputs(load(&options.model.spec)?.model, &options.input)?;
-    let model = with_settings(model, &options.parameters.set)?;
-    let orders = orders(&model, options.model.order.text())?;
-    let compiled = derive(model, &orders)?;
-    let inputs = inputs(options, compiled.model())?;
+    let (compiled, inputs) = driven_model(options)?;
     let times = times(options, &inputs)?;
     if options.integration.solver == Solver::Exact && options.integration.tolerance.is_some() {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
@@ -70,6 +70,33 @@ pub fn run(options: &Simulate) -> Result {
         None if !is_finite || (options.strict && audited.has_failed()) => Err(Error::Failed),
         None => Ok(()),
     }
+}
+
+/// Returns the model and its inputs. Inputs with steps are held between these if the exact solver applies then;
+/// other inputs of `--input` become definitions.
+fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
+    let declared = load(&options.model.spec)?.model;
+    let settings = &options.parameters.set;
+    let derive_with_orders = |model: Model| {
+        let model = with_settings(model, settings)?;
+        let orders = orders(&model, options.model.order.text())?;
+        derive(model, &orders)
+    };
+    let may_hold = options.record.is_none()
+        && matches!(options.integration.solver, Solver::Auto | Solver::Exact);
+    let steps = match may_hold {
+        true => step_inputs(&declared, &options.input, settings)?,
+        false => None,
+    };
+    if let Some(held) = steps.and_then(|steps| hold(&steps)) {
+        let compiled = derive_with_orders(declared.clone())?;
+        if compiled.piecewise_linear().is_ok() {
+            return Ok((compiled, held));
+        }
+    }
+    let compiled = derive_with_orders(with_inputs(declared, &options.input)?)?;
+    let inputs = inputs(options, compiled.model())?;
+    Ok((compiled, inputs))
 }
 
 /// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite; observables
@@ -118,5 +145,9 @@ fn summary(
         return format!("{document:#}\n");
     }
     let how = describe_work(motion);
-    format!("{file}: {rows} rows, {switches} switches, {how}\n")
+    format!(
+        "{file}: {}, {}, {how}\n",
+        count(rows, "row"),
+        count(switches, "switch")
+    )
 }

@@ -4,6 +4,7 @@ use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::engines::{self, Submission};
 use crate::error::{Result, print_json, print_text};
@@ -43,8 +44,9 @@ pub fn run(options: &Sweep) -> Result {
     drop(bar);
     let counts = json!({ "schema": SCHEMA, "computed": done.computed_points, "resumed": done.complete_points });
     let summary = format!(
-        "{} points computed, {} resumed\n",
-        done.computed_points, done.complete_points
+        "{} computed, {} resumed\n",
+        count(done.computed_points, "point"),
+        done.complete_points
     );
     if !shard.is_whole() {
         let document = json!({ "shard": shard.to_string() });

@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::arguments::Tour;
+use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_bytes, print_text};
 use crate::tour::{self, TourResult};
@@ -35,5 +36,9 @@ fn summary(json: bool, result: &TourResult) -> String {
         return format!("{document:#}\n");
     }
     let verdict = if passed { "passed" } else { "FAILED" };
-    format!("{checks} checks {verdict}, {switches} switches simulated\nopen {page}\n")
+    format!(
+        "{} {verdict}, {} simulated\nopen {page}\n",
+        count(checks, "check"),
+        count(switches, "switch")
+    )
 }

@@ -4,9 +4,10 @@ use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest, Stab
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
-use crate::error::{Result, print_json};
+use crate::error::{Result, print_json, print_text};
 use crate::operating_point::{equilibrium, head, inputs, model, values, values_by_name};
 use crate::settings::as_borrowed;
+use crate::significant::significant;
 
 pub fn run(options: &Trim) -> Result {
     let compiled = model(
@@ -23,7 +24,39 @@ pub fn run(options: &Trim) -> Result {
     };
     let found = equilibrium(&run, request)?;
     let stability = run.classify_stability(&found.point)?;
-    print_json(&document(&compiled, &found, stability))
+    match options.table {
+        true => print_text(&table(&compiled, &found, stability)),
+        false => print_json(&document(&compiled, &found, stability)),
+    }
+}
+
+/// Returns the coordinates, the rates of a steady motion, the first-order states and the inputs, each
+/// with its unit, and the stability.
+fn table(compiled: &CompiledModel, found: &Equilibrium, stability: Stability) -> String {
+    let degrees = compiled.program().degrees_of_freedom();
+    let states = compiled.state_names().into_iter();
+    let states = states
+        .zip(compiled.state_units())
+        .zip(&found.point.state)
+        .enumerate();
+    let states = states.filter(|(place, ((name, _), _))| {
+        !(degrees..2 * degrees).contains(place) || found.nonzero_rates.contains(name)
+    });
+    let states = states.map(|(_, ((name, unit), value))| (name, unit, *value));
+    let (names, units) = inputs(compiled);
+    let inputs = names.into_iter().zip(units).zip(&found.point.inputs);
+    let inputs = inputs.map(|((name, unit), value)| (name.to_owned(), unit, *value));
+    let rows: Vec<(String, String, f64)> = states.chain(inputs).collect();
+    let widest = rows.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (name, unit, value) in rows {
+        let solved = match found.unknowns.contains(&name) {
+            true => "",
+            false => "   (fixed)",
+        };
+        text += &format!("{name:<widest$}   {} {unit}{solved}\n", significant(value));
+    }
+    text + &format!("{stability}\n")
 }
 
 fn document(compiled: &CompiledModel, found: &Equilibrium, stability: Stability) -> Value {

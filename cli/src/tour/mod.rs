@@ -19,6 +19,7 @@ use eomgen_validate::certificate::{Certificate, Check};
 use eomgen_validate::meaning::describe;
 use eomgen_validate::model_certificate::certify_model;
 
+use crate::count::count;
 use crate::emission::source;
 use crate::error::{Error, Result};
 use crate::model::derive;
@@ -231,8 +232,8 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let summary = format!(
         "From rest over {UNTIL} s at order {ORDER}, with the paper's values and assumed values for undisclosed ones: \
-         {} switches between contact and separation of the teeth, {}.",
-        motion.trajectory.switches.len(),
+         {} between contact and separation of the teeth, {}.",
+        count(motion.trajectory.switches.len(), "switch"),
         describe_work(motion)
     );
     let found = rediscovery.sentence();

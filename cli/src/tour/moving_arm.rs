@@ -52,9 +52,24 @@ sun = ["origin", "sun"]
 planet = ["planet", "tooth"]
 "#;
 
+/// Declarations of the backlashes, for readable numbers on sliders.
+const UNITS: [(&str, &str); 2] = [
+    (
+        "b_sp = { value = 25e-6, unit = \"m\",",
+        "b_sp = { value = 25, unit = \"um\",",
+    ),
+    (
+        "b_pr = { value = 25e-6, unit = \"m\",",
+        "b_pr = { value = 25, unit = \"um\",",
+    ),
+];
+
 /// Returns the text of the specification.
 pub fn specification() -> String {
     let arm = models::PLANETARY_ARM.text.to_owned();
+    let arm = UNITS.iter().fold(arm, |text, (declared, shown)| {
+        text.replacen(declared, shown, 1)
+    });
     let with_entries = ENTRIES.iter().fold(arm, |text, (section, entries)| {
         text.replacen(section, &format!("{section}{entries}"), 1)
     });

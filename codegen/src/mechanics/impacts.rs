@@ -5,6 +5,9 @@
 //! chapter 5). A force at a closed contact acts alike: a = a_0 + D lambda. The columns D are solved for like
 //! the accelerations, so that a field costs O(S); with constraints an impulse acts along them. The simulator
 //! finds the times and the results of impacts.
+//!
+//! A tangential impulse of a contact with the slip s(q, q', t), linear in the rates, acts alike with A =
+//! ds/dq'.
 
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{self, Model};
@@ -15,7 +18,7 @@ use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::solve;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
-use crate::symbolic::graph::{Graph, NodeId, Space};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Space};
 
 /// Impact, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
@@ -30,7 +33,25 @@ pub struct Impact<N, R> {
     pub restitution: N,
     /// Column D: change of the rates by a unit impulse.
     pub column: R,
-    /// A D of all impacts: changes of g' by a unit impulse at each of them.
+    /// A D of all impacts: changes of g' by a unit impulse at each of them, then by a unit tangential impulse
+    /// at each with friction.
+    pub delassus: Vec<N>,
+    /// Friction, if the contact has any.
+    pub friction: Option<Friction<N, R>>,
+}
+
+/// Friction of a contact, with nodes or values `N` and rows `R` of them.
+#[derive(Clone, Debug)]
+pub struct Friction<N, R> {
+    /// Coefficient.
+    pub coefficient: N,
+    /// Tangential velocity of the contact.
+    pub slip: N,
+    /// Rate of the slip if no contact is closed.
+    pub acceleration: N,
+    /// Change of the rates by a unit tangential impulse.
+    pub column: R,
+    /// Changes of the slip by a unit impulse at each impact, normal, then tangential.
     pub delassus: Vec<N>,
 }
 
@@ -69,18 +90,68 @@ pub(crate) fn impacts(
             restitution,
             column: solved.rows,
             delassus: Vec::new(),
+            friction: None,
         });
         gradients.push(gradient);
     }
-    let columns: Vec<RowNodes> = found.iter().map(|impact| impact.column.clone()).collect();
-    for (impact, gradient) in found.iter_mut().zip(&gradients) {
+    let mut tangents = Vec::new();
+    for (impact, own) in model.impacts.iter().zip(&mut found) {
+        let Some(friction) = &impact.friction else {
+            continue;
+        };
+        let coefficient = translator.node(&friction.coefficient)?;
+        let slip = translator.node(&friction.slip)?;
         let graph = &mut translator.graph;
-        let entries = columns.iter();
-        impact.delassus = entries
-            .map(|column| product(graph, gradient, column))
-            .collect();
+        let gradient = variables.gradient(graph, slip, GradientBy::Rates);
+        let moves = |entry: &NodeId| graph.dependence(*entry).has(Dependence::RATE);
+        if gradient.nodes().iter().any(moves) {
+            return Err(nonlinear_slip_error(impact, friction));
+        }
+        let of_rates = along_motion(graph, slip);
+        let of_accelerations = product(graph, &gradient, accelerations);
+        let (solved, _) = solve(graph, mass, &gradient, &along_constraints);
+        own.friction = Some(Friction {
+            coefficient,
+            slip,
+            acceleration: graph.add(of_rates, of_accelerations),
+            column: solved.rows,
+            delassus: Vec::new(),
+        });
+        tangents.push(gradient);
+    }
+    let normal = found.iter().map(|impact| impact.column.clone());
+    let tangential = found.iter().filter_map(|impact| impact.friction.as_ref());
+    let tangential = tangential.map(|friction| friction.column.clone());
+    let columns: Vec<RowNodes> = normal.chain(tangential).collect();
+    let graph = &mut translator.graph;
+    let mut changes = |gradient: &RowNodes| -> Vec<NodeId> {
+        let products = columns
+            .iter()
+            .map(|column| product(graph, gradient, column));
+        products.collect()
+    };
+    for (impact, gradient) in found.iter_mut().zip(&gradients) {
+        impact.delassus = changes(gradient);
+    }
+    let frictions = found
+        .iter_mut()
+        .filter_map(|impact| impact.friction.as_mut());
+    for (friction, gradient) in frictions.zip(&tangents) {
+        friction.delassus = changes(gradient);
     }
     Ok(found)
+}
+
+/// Returns the error for a slip that is not linear in the rates.
+pub(crate) fn nonlinear_slip_error(
+    impact: &model::Impact,
+    friction: &model::ContactFriction,
+) -> DeriveError {
+    DeriveError {
+        span: friction.slip.span,
+        message: format!("the slip of `{}` is not linear in the rates", impact.name),
+        help: Some("give a velocity with a sign, for example dot(x) - r*dot(phi)".into()),
+    }
 }
 
 /// Returns the error for a distance that no coordinate changes.

@@ -9,7 +9,7 @@ use crate::mechanics::coefficients::row_of;
 use crate::mechanics::constraints::nonlinear_error;
 use crate::mechanics::equations::{derived_parameters, sum_terms};
 use crate::mechanics::forces::translate_force;
-use crate::mechanics::impacts::immovable_distance_error;
+use crate::mechanics::impacts::{immovable_distance_error, nonlinear_slip_error};
 use crate::mechanics::jumps::{Energies, find_jumps};
 use crate::mechanics::lagrange::{GradientBy, nonzero_gradient};
 use crate::mechanics::translate::{Derived, Translator, along_motion};
@@ -122,7 +122,8 @@ fn translate_coefficients(translator: &mut Translator) -> Derived<()> {
 /// Translates impacts without the changes of rates that they cause.
 ///
 /// # Errors
-/// Expressions that cannot be derived, and a distance that no coordinate changes.
+/// Expressions that cannot be derived, a distance that no coordinate changes, and a slip that is not linear in
+/// the rates.
 pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
     let model = translator.model;
     for impact in &model.impacts {
@@ -133,6 +134,16 @@ pub(crate) fn translate_impacts(translator: &mut Translator) -> Derived<()> {
         let is_rigid = model.fields.is_empty();
         if is_rigid && nonzero_gradient(graph, distance, &GradientBy::Coordinates).is_empty() {
             return Err(immovable_distance_error(impact));
+        }
+        if let Some(friction) = &impact.friction {
+            translator.node(&friction.coefficient)?;
+            let slip = translator.node(&friction.slip)?;
+            let graph = &mut translator.graph;
+            let derivatives = nonzero_gradient(graph, slip, &GradientBy::Rates);
+            let moves = |entry: &(usize, NodeId)| graph.dependence(entry.1).has(Dependence::RATE);
+            if derivatives.iter().any(moves) {
+                return Err(nonlinear_slip_error(impact, friction));
+            }
         }
     }
     Ok(())

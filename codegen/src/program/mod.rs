@@ -18,7 +18,7 @@ mod operation_count;
 mod types;
 mod value;
 
-pub use crate::mechanics::impacts::Impact;
+pub use crate::mechanics::impacts::{Friction, Impact};
 pub use crate::mechanics::outputs::{
     BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
     Outputs, Products, SURFACES_OF_A_REGIME, Switch,

@@ -177,7 +177,8 @@ impl Graph {
         }
     }
 
-    fn is_continuous(&mut self, id: NodeId) -> bool {
+    /// Returns true if a node is a continuous function of continuous operands.
+    pub(super) fn is_continuous(&mut self, id: NodeId) -> bool {
         if let Some(&known) = self.orders_at_zeros.continuous.get(&id) {
             return known;
         }

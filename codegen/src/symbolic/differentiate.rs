@@ -176,7 +176,7 @@ impl<'a> Direction<'a> {
                 for (operand, partial) in partials {
                     let inner = self.derivative(graph, operand);
                     if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.derivative_term(partial, inner)));
+                        terms.push((1.0, graph.chain_rule_term(operand, partial, inner)));
                     }
                 }
                 graph.combine(&terms)

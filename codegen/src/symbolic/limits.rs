@@ -22,15 +22,35 @@ impl Graph {
     /// Returns `partial` times `inner`, a term of a derivative: 0 on the flat side of a switch, and equal to
     /// its limit at the zero of a root in it.
     pub(crate) fn derivative_term(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
+        self.guarded_term(None, partial, inner)
+    }
+
+    /// Returns the derivative `partial` by an operand times `inner`, the derivative of the operand, as
+    /// [`Graph::derivative_term`]. It is also 0 at [zeros of a smooth factor](super::vanishing_products).
+    pub(crate) fn chain_rule_term(
+        &mut self,
+        operand: NodeId,
+        partial: NodeId,
+        inner: NodeId,
+    ) -> NodeId {
+        self.guarded_term(Some(operand), partial, inner)
+    }
+
+    fn guarded_term(&mut self, operand: Option<NodeId>, partial: NodeId, inner: NodeId) -> NodeId {
         let mut guards = Vec::new();
         let partial = self.without_flat_guards(partial, &mut guards);
         let inner = self.without_flat_guards(inner, &mut guards);
-        let term = self.term_with_limits(partial, inner);
+        let term = self.term_with_limits(operand, partial, inner);
         let guards = guards.into_iter().rev();
         guards.fold(term, |term, guard| self.guard_flat(guard, term))
     }
 
-    fn term_with_limits(&mut self, partial: NodeId, inner: NodeId) -> NodeId {
+    fn term_with_limits(
+        &mut self,
+        operand: Option<NodeId>,
+        partial: NodeId,
+        inner: NodeId,
+    ) -> NodeId {
         let mut term = self.multiply(partial, inner);
         if !self.has_reciprocal_root(term) {
             return term;
@@ -42,7 +62,10 @@ impl Graph {
             }
         }
         let arguments = self.reciprocal_arguments(term);
-        match self.cofactor(&arguments, term) {
+        let cofactor = self
+            .cofactor(&arguments, term)
+            .or_else(|| self.vanishing_factor(operand?, partial));
+        match cofactor {
             Some(cofactor) if self.as_constant(cofactor).is_none() => {
                 let square = self.integer_power(cofactor, 2);
                 let guarded = |term, argument: &NodeId| guard(self, term, *argument, Some(square));

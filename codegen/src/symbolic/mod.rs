@@ -2,8 +2,8 @@
 //!
 //! - Nodes: `graph` and `node_map` store them, `operation` and `arguments` define them, `simplify` applies
 //!   algebraic laws in their constructors, `tables` and `table_text` hold constants of a basis.
-//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors` and
-//!   `orders` handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
+//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors`,
+//!   `vanishing_products` and `orders` handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
 //! - Transformations: `substitute`, `expand`, `factor`, `trigonometry` and `association` (multiplication
 //!   order), with `degree` and `operation_count` to compare forms.
 //! - `formula` prints nodes.
@@ -32,3 +32,4 @@ pub(crate) mod switches;
 pub(crate) mod table_text;
 pub mod tables;
 pub(crate) mod trigonometry;
+mod vanishing_products;

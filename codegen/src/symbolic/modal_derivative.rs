@@ -69,7 +69,7 @@ impl ModalDerivative {
                 for (operand, partial) in partials {
                     let inner = self.gradient(graph, operand);
                     if !graph.is_zero(inner) {
-                        terms.push((1.0, graph.derivative_term(partial, inner)));
+                        terms.push((1.0, graph.chain_rule_term(operand, partial, inner)));
                     }
                 }
                 graph.combine(&terms)

@@ -21,6 +21,8 @@ pub(crate) struct Orders {
     pub cofactors: HashMap<(Arc<Vec<NodeId>>, NodeId), Option<NodeId>>,
     /// True for nodes that are continuous functions.
     pub continuous: HashMap<NodeId, bool>,
+    /// True for nodes that are Lipschitz continuous near their finite values.
+    pub lipschitz: HashMap<NodeId, bool>,
     /// Arguments of the roots whose reciprocals a node contains.
     pub arguments: HashMap<NodeId, Arc<Vec<NodeId>>>,
 }

@@ -183,7 +183,9 @@ fn derivatives_without_a_limit_are_not_finite() {
         "norm(plane)*(z - l)/(l*s)",
         "norm(plane)*exp(z/l)/s",
         "norm(plane)*dot(z)/(s*norm(v))",
-        "sqrt(norm(plane)/s)*dot(z)/s",
+        "sqrt(norm(plane)/s)*sign(z)*dot(z)/s",
+        "sqrt(norm(plane)/s)*sqrt(abs(dot(z))/s)",
+        "cos(sqrt(norm(v)/s))",
         "sqrt(max(x/l, 0))",
     ] {
         let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians]);
@@ -239,6 +241,47 @@ fn root_times_other_factor_has_a_limit_only_at_zeros_of_that_factor() {
         assert!(
             (found[first] - expected).abs() < 1e-6,
             "{force}: {found:?} {expected}"
+        );
+    }
+}
+
+/// The derivative of a root times a factor that vanishes with it is unbounded near 0. The product has the derivative 0
+/// there: it is smaller than every linear function.
+#[test]
+fn root_times_smooth_factor_has_derivative_zero_at_zeros_of_both() {
+    let at = |z: f64, z_rate: f64| [0.0, 0.0, z, 0.0, 0.0, z_rate];
+    for (force, zero, none) in [
+        ("sqrt(norm(plane)/s)*dot(z)/s", at(0.7, 0.0), at(0.7, 1.0)),
+        ("(norm(plane)/s)^0.3*sin(z/l)", at(0.0, 0.3), at(1.0, 0.3)),
+        ("sqrt(abs(dot(x))/s)*dot(z)/s", at(0.7, 0.0), at(0.7, 1.0)),
+        ("sqrt(max(x/l, 0))*z/l", at(0.0, 1.0), at(1.0, 1.0)),
+        ("sqrt(norm(plane)/s)*norm(v)/s", at(1.0, 0.0), at(1.0, 2.0)),
+        (
+            "sqrt(norm(plane)/s)*dot(z)*z/(l*s)",
+            at(0.0, 2.0),
+            at(1.0, 2.0),
+        ),
+        (
+            "sqrt(sqrt(norm(plane)/s))*abs(z)*exp(z/l)/l",
+            at(0.0, 1.0),
+            at(1.0, 1.0),
+        ),
+        (
+            "sqrt(norm(plane)/s)*sqrt(abs(z)/l)*dot(z)/s",
+            at(1.0, 0.0),
+            at(1.0, 2.0),
+        ),
+    ] {
+        let mut evaluator = evaluator(&pushed(force), &[Output::Jacobians]);
+        let found = jacobian(&mut evaluator, &zero);
+        assert!(
+            found[3..].iter().all(|entry| entry.is_finite()),
+            "{force}: {found:?}"
+        );
+        let found = jacobian(&mut evaluator, &none);
+        assert!(
+            found.iter().any(|entry| !entry.is_finite()),
+            "{force}: {found:?}"
         );
     }
 }

@@ -37,7 +37,10 @@ pub(crate) fn draw_force_section(force: &ResidualForce, after: Option<&ResidualF
     html! {
         (table(&headings, &rows))
         p.note {
-            "Force in this equation, with error bars of one standard deviation. "
+            "Force in this equation, with error bars of one standard deviation"
+            @if after.is_some() { ", before and after the found effects are added" }
+            ". A line connects the values along a rate, a time or a frequency; crosses are "
+            "single values. "
             "Parts that the records do not show are omitted."
         }
         (responsive_figure("Estimated from all training records together.", |width| {

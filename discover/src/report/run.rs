@@ -25,6 +25,7 @@ use crate::report::discovery::{
     list_rejected, list_sensors, list_steps, summarise_effects,
 };
 use crate::report::experiment::draw_experiments;
+use crate::report::held_input::note_held_input;
 use crate::report::location::describe_location;
 use crate::report::motion_noise::note_motion_noise;
 use crate::report::origin::{Origin, Specification};
@@ -84,6 +85,7 @@ pub fn compare(
     let mut notes = [dataset.notes.clone(), describe_bounds(&nuisances)].concat();
     notes.extend(note_input_delay(&dataset.inputs, fit.model.specification()));
     notes.extend(note_common_delay(&problem, &fit));
+    notes.extend(note_held_input(&problem, &fit));
     notes.extend(note_motion_noise(&problem, &fit));
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
@@ -206,6 +208,7 @@ pub fn discover_until(
     ));
     let late = note_common_delay(&problem, best);
     for note in (late.into_iter())
+        .chain(note_held_input(&problem, best))
         .chain(RemainingGap::from_channels(&gap, ModelStage::Extended).note_missing_in_training())
         .chain(note_motion_noise(&problem, best))
         .chain(note_wrong_units(&problem, &found))

@@ -105,7 +105,8 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
         Picture {
             title: name,
             axes: over(position, equation.unit),
-            is_line: true,
+            // A force that does not depend on the position scatters over it.
+            is_line: false,
             by_window: false,
             of: |force| &force.position,
         },

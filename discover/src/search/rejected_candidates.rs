@@ -90,7 +90,8 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
     let not_testable = response.unexplained_fraction <= thresholds::MIN_UNEXPLAINED_FRACTION;
     let text = if not_testable {
         format!(
-            "{:.1} % of its response can also be produced by initial states, refitted parameters and sensors",
+            "initial states, refitted parameters and sensors together can produce {:.1} % of its response; the rest \
+             is too small to test",
             100.0 * (1.0 - response.unexplained_fraction)
         )
     } else {
@@ -98,7 +99,7 @@ fn of_screening(tested: &TestedPool, id: ResponseId) -> Reason {
         let most = screening.responses.iter();
         let most = most.map(|other| other.cost_decrease).fold(0.0, f64::max);
         format!(
-            "its predicted reduction of the squared residual is {:.1} %, the best is {:.1} %",
+            "it would reduce the squared residual by {:.1} %, the best effect of the same round by {:.1} %",
             100.0 * response.cost_decrease / alone,
             100.0 * most / alone
         )

@@ -63,12 +63,19 @@ impl fmt::Display for Rejection {
                 "{name} is {off:.1} ± {sd:.1} standard deviations of its prior from the mean, {} are required",
                 thresholds::MAX_PRIOR_DEVIATION
             ),
-            Self::HeldOut(part) => write!(
-                f,
-                "the test records do not improve: the gap decreases by {:.1} %, {:.0} % are required",
-                100.0 * part,
-                100.0 * thresholds::MIN_HELD_OUT_REDUCTION
-            ),
+            Self::HeldOut(part) => {
+                let (verb, size) = match *part < 0.0 {
+                    true => ("grows", -part),
+                    false => ("falls", *part),
+                };
+                write!(
+                    f,
+                    "the test records do not improve enough: their residual {verb} by {:.1} %; it must fall by {:.0} % \
+                     or more",
+                    100.0 * size,
+                    100.0 * thresholds::MIN_HELD_OUT_REDUCTION
+                )
+            }
             Self::StandardErrors(errors) => write!(
                 f,
                 "the improvement of the test records may be chance: {errors:.1} standard errors, {} are required",
@@ -97,7 +104,8 @@ impl fmt::Display for Rejection {
             ),
             Self::Closure { train, test } => write!(
                 f,
-                "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are required",
+                "it closes {:.0} % of the gap of the training records and {:.0} % of that of the test records; {:.0} % \
+                 of both are required",
                 100.0 * train,
                 100.0 * test,
                 100.0 * thresholds::MIN_EXPRESSION_CLOSURE

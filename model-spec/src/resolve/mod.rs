@@ -11,16 +11,16 @@ use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
 use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
 use crate::model::{
-    Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Impact, Input,
-    MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor,
-    State, Term, Uncertainty,
+    Basis, Constraint, ContactFriction, Coordinate, Definition, Expr, ExprKind, Field, Force,
+    Impact, Input, MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL,
+    Range, Sensor, State, Term, Uncertainty,
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, cycle_error, sort_by_references};
 use crate::rate_order::{Expanded, rate_order};
 use crate::raw::{
-    Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
-    RawState, RawTerm, RawUncertainty,
+    Document, RawBasis, RawCoordinate, RawField, RawImpact, RawInput, RawParameter, RawRange,
+    RawSensor, RawState, RawTerm, RawUncertainty,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -483,11 +483,24 @@ impl Builder {
         })
     }
 
-    fn impact(&mut self, (raw, restitution): (RawTerm, Quantity)) -> Option<Impact> {
-        let restitution = self.expression(&restitution, Scope::Parameters);
+    fn impact(&mut self, impact: RawImpact) -> Option<Impact> {
+        let raw = impact.distance;
+        let restitution = self.expression(&impact.restitution, Scope::Parameters);
+        let friction = match impact.friction {
+            Some(friction) => {
+                let coefficient = self.expression(&friction.coefficient, Scope::Parameters);
+                let slip = self.expression(&friction.slip, Scope::Motion);
+                Some(ContactFriction {
+                    coefficient: coefficient?,
+                    slip: slip?,
+                })
+            }
+            None => None,
+        };
         Some(Impact {
             when: self.expression(&raw.value, Scope::Motion)?,
             restitution: restitution?,
+            friction,
             // `units_check` sets it.
             unit: Unit::coherent(Dimension::DIMENSIONLESS),
             name: raw.name.text,

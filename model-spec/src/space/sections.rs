@@ -36,12 +36,15 @@ fn quantities(document: &Document) -> impl Iterator<Item = &Quantity> {
         .chain(&document.potential)
         .chain(&document.dissipation);
     let terms = terms.chain(&document.constraints);
-    let terms = terms.chain(document.impacts.iter().map(|(term, _)| term));
+    let terms = terms.chain(document.impacts.iter().map(|impact| &impact.distance));
     let terms = terms.chain(document.observables.iter().map(|(term, _)| term));
     let forces = document.forces.iter();
     let forces = forces.flat_map(|(term, on)| [&term.value, on]);
     let rates = document.states.iter().map(|state| &state.rate);
-    terms.map(|term| &term.value).chain(forces).chain(rates)
+    let impacts = document.impacts.iter();
+    let slips = impacts.filter_map(|impact| Some(&impact.friction.as_ref()?.slip));
+    let values = terms.map(|term| &term.value);
+    values.chain(forces).chain(rates).chain(slips)
 }
 
 /// Replaces all vectors, frames and bodies; `None` if definitions cannot be sorted.

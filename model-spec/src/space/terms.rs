@@ -32,16 +32,23 @@ pub fn expand(document: &mut Document, space: &mut ExpansionState, found: &mut D
         let help = "give a scalar, for example a component, v.x";
         scalar(space, &owner, &mut state.rate, (&subject, help), found);
     }
-    for (impact, _) in &mut document.impacts {
-        let owner = Owner::new(&impact.name, &impact.doc);
+    for impact in &mut document.impacts {
+        let distance = &mut impact.distance;
+        let owner = Owner::new(&distance.name, &distance.doc);
         let help = "give a scalar, for example dot(n, r), or norm(r)";
-        scalar(
-            space,
-            &owner,
-            &mut impact.value,
-            ("this distance", help),
-            found,
-        );
+        let subject = ("this distance", help);
+        scalar(space, &owner, &mut distance.value, subject, found);
+        if let Some(friction) = &mut impact.friction {
+            let help =
+                "contact friction acts along one direction: give a component, for example v.x";
+            scalar(
+                space,
+                &owner,
+                &mut friction.slip,
+                ("this slip", help),
+                found,
+            );
+        }
     }
     let forces = std::mem::take(&mut document.forces);
     for force in forces {

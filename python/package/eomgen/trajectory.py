@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Callable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from .model import Model
 
 Array = NDArray[np.float64]
+
+# Most decimals of times that are rounded; more are rounding errors.
+MAX_DECIMALS = 15
 
 # Largest number of values in one motion, rows times columns: a few GB of memory.
 MAX_VALUES = 10**8
@@ -165,8 +169,25 @@ def sample_times(start: Any, until: Any, interval: Any, columns: int) -> Array:
             f"interval = {step}: too many samples: the limit is {MAX_VALUES:.0e} values (rows times columns); "
             "give a longer interval"
         )
-    times: Array = np.minimum(begin + np.arange(int(steps) + 1) * step, end)
-    return times
+    times = begin + np.arange(int(steps) + 1) * step
+    return _rounded(times, max(_decimals(begin), _decimals(step)), end)
+
+
+def _decimals(number: float) -> int:
+    """Returns the number of decimals of the shortest notation of a number."""
+    exponent = Decimal(repr(number)).normalize().as_tuple().exponent
+    return max(0, -int(exponent))
+
+
+def _rounded(times: Array, decimals: int, end: float) -> Array:
+    """Returns the doubles nearest to times with this number of decimals, so that 7 times 0.05 s is 0.35 s."""
+    if decimals <= MAX_DECIMALS:
+        scale = 10.0**decimals
+        whole = np.rint(times * scale)
+        # Larger integers are not exact.
+        times = np.where(np.abs(whole) < 2.0**53, whole / scale, times)
+    rounded: Array = np.minimum(times, end)
+    return rounded
 
 
 def break_times(given: Any) -> List[float]:

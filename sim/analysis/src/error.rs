@@ -36,6 +36,13 @@ pub enum AnalysisError {
         /// Decades between the smallest and the largest entry of the matrix.
         decades: u32,
     },
+    /// A connected part of a machine has too many states for its modes.
+    TooManyStates {
+        /// Number of states of the part.
+        states: usize,
+        /// Largest number.
+        limit: usize,
+    },
     /// Natural frequencies do not ascend.
     NotAscending {
         /// Index of a frequency that is not above the previous one.
@@ -75,6 +82,12 @@ impl fmt::Display for AnalysisError {
                 f,
                 "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; \
                  look for a stiffness or a mass in a wrong unit"
+            ),
+            Self::TooManyStates { states, limit } => write!(
+                f,
+                "a connected part of the machine has {states} states, more than the limit of {limit} for modes: their \
+                 work grows with the cube of this number; divide the machine, or lower the orders of its fields \
+                 (--order)"
             ),
             Self::NotAscending { index } => write!(
                 f,

@@ -21,6 +21,9 @@ use crate::pencil::Pencil;
 /// Relative difference of eigenvalues that share a space of shapes.
 const MAX_EQUAL_EIGENVALUE_DIFFERENCE: f64 = 1e-7;
 
+/// Largest number of states of a connected part. The work of the eigenvalues grows with its cube.
+pub const MAX_CONNECTED_STATES: usize = 1200;
+
 /// Natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NaturalMode {
@@ -56,7 +59,8 @@ impl NaturalMode {
 /// # Errors
 ///
 /// A matrix that is not square with at least two rows per degree of freedom, entries that are not
-/// finite, an eigenvalue iteration that does not converge.
+/// finite, a connected part of more than [`MAX_CONNECTED_STATES`], an eigenvalue iteration that does
+/// not converge.
 pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>, AnalysisError> {
     let states = matrix.len().isqrt().max(2 * degrees);
     if states * states != matrix.len() {
@@ -87,6 +91,11 @@ pub(crate) fn collect_modes(
     modes: impl Fn(&Part) -> Result<Vec<NaturalMode>, AnalysisError>,
 ) -> Result<Vec<NaturalMode>, AnalysisError> {
     let mut all = Vec::with_capacity(count);
+    let largest = parts.iter().map(|part| part.matrix.nrows()).max();
+    if let Some(states) = largest.filter(|states| *states > MAX_CONNECTED_STATES) {
+        let limit = MAX_CONNECTED_STATES;
+        return Err(AnalysisError::TooManyStates { states, limit });
+    }
     for part in &parts {
         for mode in modes(part)? {
             let mut shape = vec![Complex::from(0.0); count];
@@ -170,6 +179,31 @@ mod tests {
 
     fn close(found: f64, right: f64) -> bool {
         (found - right).abs() <= 1e-11 * right.abs().max(1e-3)
+    }
+
+    #[test]
+    fn connected_part_above_the_limit_is_rejected() {
+        let degrees = MAX_CONNECTED_STATES / 2 + 1;
+        let states = 2 * degrees;
+        let mut rows = vec![0.0; states * states];
+        for place in 0..degrees {
+            rows[place * states + degrees + place] = 1.0;
+            rows[(degrees + place) * states + place] = -2.0;
+        }
+        // Without springs between them, each mass is a part of its own.
+        assert_eq!(
+            natural_modes(&rows, degrees).map(|modes| modes.len()),
+            Ok(degrees)
+        );
+        for place in 1..degrees {
+            rows[(degrees + place) * states + place - 1] = 1.0;
+            rows[(degrees + place - 1) * states + place] = 1.0;
+        }
+        let limit = MAX_CONNECTED_STATES;
+        assert_eq!(
+            natural_modes(&rows, degrees),
+            Err(AnalysisError::TooManyStates { states, limit })
+        );
     }
 
     #[test]

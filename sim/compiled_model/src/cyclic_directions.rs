@@ -12,7 +12,6 @@ use eomgen_model_spec::dimension::Dimension;
 
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::jacobians::Jacobian;
 use crate::operating_point::OperatingPoint;
 
 /// Pivots below this fraction of the largest entry count as 0.
@@ -34,9 +33,7 @@ impl Instance<'_> {
         let degrees = self.model().program().degrees_of_freedom();
         let scales = self.natural_scales()?;
         let mut rates = self.accelerations(&mut self.interpreter()?, at);
-        let matrix = self
-            .interpreted_jacobians()?
-            .evaluate_dense(Jacobian::RatesByState, at.point());
+        let matrix = self.state_space_evaluator()?.evaluate(at.point())?.a;
         let states = at.state.len();
         let row = |row: usize| &matrix[(degrees + row) * states..][..states];
         let rows: Vec<Vec<f64>> = (0..rates.len())

@@ -94,7 +94,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 
     /// Enables the impacts of the program; `names` are their names, in its order.
     pub(crate) fn with_impacts(mut self, names: Vec<String>) -> Self {
-        self.contacts = (!names.is_empty()).then(|| RefCell::new(Contacts::new(names)));
+        let contacts = (!names.is_empty()).then(|| {
+            let evaluator = self.evaluator();
+            let impacts = evaluator.program().impacts.iter().enumerate();
+            let has_friction = impacts.filter(|(_, impact)| impact.friction.is_some());
+            Contacts::new(names).with_friction(has_friction.map(|(place, _)| place))
+        });
+        self.contacts = contacts.map(RefCell::new);
         self
     }
 
@@ -223,7 +229,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
                 is_speed: moves && here == there,
             });
         let contacts = self.contacts.iter();
-        let names = contacts.flat_map(|contacts| contacts.borrow().names.clone());
+        let names = contacts.flat_map(|contacts| contacts.borrow().guard_names());
         let impacts = names.map(|formula| Surface {
             formula,
             is_speed: false,
@@ -312,7 +318,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn guard_count(&self) -> usize {
         let contacts = self.contacts.as_ref();
-        let contacts = contacts.map_or(0, |contacts| contacts.borrow().names.len());
+        let contacts = contacts.map_or(0, |contacts| contacts.borrow().guard_count());
         let sliding = self.sliding.as_ref();
         let discs = sliding.map_or(0, |sliding| sliding.borrow().disc_count());
         self.evaluator().guard_count() + contacts + discs
@@ -457,6 +463,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             let mut corners = corners.borrow_mut();
             corners.update((t, y), &given.evaluate(t));
             changed = corners.take_returned();
+        }
+        if let Some(contacts) = &self.contacts {
+            let (mut contacts, inputs) = (contacts.borrow_mut(), &given.evaluate(t));
+            let (state, mut evaluator) = (y, self.evaluator());
+            let first = evaluator.guard_count();
+            let updated = contacts.update_friction(&mut evaluator, Point { t, state, inputs });
+            changed.extend(updated.into_iter().map(|guard| (first + guard, true)));
         }
         if let Some(sliding) = &self.sliding {
             let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));

@@ -9,6 +9,12 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
+/// Outputs with each entry of each Jacobian.
+pub(crate) const ENTRY_BY_ENTRY: [Output; 2] = [Output::Jacobians, Output::TimeDerivatives];
+
+/// Outputs with one derivative along a direction, whose parts all variables share.
+pub(crate) const ALONG_DIRECTION: [Output; 2] = [Output::Tangents, Output::TimeDerivatives];
+
 /// The program of a model with its Jacobians; its machine code is compiled at the first use.
 pub(crate) struct JacobianProgram {
     pub(crate) program: Program,
@@ -16,9 +22,12 @@ pub(crate) struct JacobianProgram {
 }
 
 impl JacobianProgram {
-    pub(crate) fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
-        let outputs = [Output::Jacobians, Output::TimeDerivatives];
-        let program = Variant::derive_for_report(model, orders, &outputs)?.program;
+    pub(crate) fn derive(
+        model: &Model,
+        orders: &[usize],
+        outputs: &[Output],
+    ) -> Result<Self, Diagnostics> {
+        let program = Variant::derive_for_report(model, orders, outputs)?.program;
         Ok(Self {
             program,
             code: OnceLock::new(),

@@ -17,7 +17,7 @@ use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::corners::Corners;
 use crate::error::Error;
-use crate::jacobian_program::JacobianProgram;
+use crate::jacobian_program::{ALONG_DIRECTION, ENTRY_BY_ENTRY, JacobianProgram};
 use crate::sticking::SidedModel;
 use crate::typical_sizes::compute_typical_sizes;
 
@@ -76,6 +76,7 @@ pub struct CompiledModel {
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
+    tangents: OnceLock<Result<JacobianProgram, Diagnostics>>,
     sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
     corners: OnceLock<Result<Option<Program>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
@@ -133,6 +134,7 @@ impl CompiledModel {
             code: OnceLock::new(),
             piecewise_linear: OnceLock::new(),
             differentiated: OnceLock::new(),
+            tangents: OnceLock::new(),
             corners: OnceLock::new(),
             sided: OnceLock::new(),
             constraints: OnceLock::new(),
@@ -244,8 +246,17 @@ impl CompiledModel {
     pub(crate) fn jacobian_program(&self) -> Result<&JacobianProgram, Error> {
         let made = self
             .differentiated
-            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders()));
+            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders(), &ENTRY_BY_ENTRY));
         made.as_ref().map_err(|found| found.clone().into())
+    }
+
+    /// Returns the program of the derivatives along a direction and by time.
+    pub(crate) fn tangent_program(&self) -> Result<&Program, Error> {
+        let made = self
+            .tangents
+            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders(), &ALONG_DIRECTION));
+        let made = made.as_ref().map(|made| &made.program);
+        made.map_err(|found| found.clone().into())
     }
 
     /// Returns the model in which the sides of switching surfaces are inputs, at these values of

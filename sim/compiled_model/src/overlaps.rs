@@ -92,7 +92,9 @@ impl Instance<'_> {
         let is_driven = |op: &Op| matches!(op, Op::Input(_));
         let mut impacts = program.impacts.iter();
         let place = impacts.position(|impact| {
-            let values = program.reachable(&[impact.distance]);
+            let slip = impact.friction.as_ref().map(|friction| friction.slip);
+            let values: Vec<_> = std::iter::once(impact.distance).chain(slip).collect();
+            let values = program.reachable(&values);
             values
                 .iter()
                 .any(|value| is_driven(&program.value(*value).op))

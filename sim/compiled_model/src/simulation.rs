@@ -309,7 +309,7 @@ impl Instance<'_> {
     fn auditor(&self, tolerance: Option<f64>) -> Auditor {
         let driven = self.input_driven_impact().map(|name| {
             format!(
-                "the distance of the impact `{name}` depends on inputs, so the contact jumps when they jump"
+                "the distance or slip of the impact `{name}` depends on inputs, so the contact jumps when they jump"
             )
         });
         Auditor::new(tolerance, self.model().typical_sizes(), driven)

@@ -3,7 +3,7 @@
 use super::axis::{Axis, Range, Scale, Tick, ticks};
 use super::error::{PlotError, is_drawable};
 use super::figure::{FigureWidth, Panel, Series, SeriesStyle};
-use super::lettering::{text_width, truncate_to_width, wrap_to_width};
+use super::lettering::{text_width, truncate_to_width, wrap_label, wrap_to_width};
 use super::quantity::Quantity;
 
 /// Widths of figures, in px.
@@ -18,6 +18,8 @@ pub(super) const LEGEND_ROW: f64 = 20.0;
 
 const TITLE_ROW: f64 = 24.0;
 const TICK_MARGIN_PX: f64 = 36.0;
+/// Distance of the lines of a label, in px.
+pub(super) const LABEL_ROW: f64 = 18.0;
 const LARGEST_REFERENCE_LABEL: f64 = 110.0;
 const LARGEST_LEGEND_LABEL: f64 = 260.0;
 /// Maximum characters for the curves of a figure, and for the four points of a pixel column.
@@ -122,10 +124,7 @@ impl Layout {
             SeriesStyle::Curve => range,
             SeriesStyle::Orbit | SeriesStyle::Points => range.pad(0.04),
         };
-        let edges = (
-            left_edge(&ordinates, format.margins.0),
-            right_edge(panels, format),
-        );
+        let edges = (left_edge(&ordinates, format), right_edge(panels, format));
         let axis = Axis {
             scale: abscissa.scale,
             range,
@@ -275,12 +274,17 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
     (range.widen_point(), quantity)
 }
 
-fn left_edge(ordinates: &[Ordinate], least: f64) -> f64 {
+fn left_edge(ordinates: &[Ordinate], format: Format) -> f64 {
     let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
     let widest = labels
         .map(|tick| text_width(&tick.label, TICK_SIZE))
         .fold(0.0, f64::max);
-    (TICK_MARGIN_PX + widest).max(least)
+    let lines = ordinates
+        .iter()
+        .map(|ordinate| wrap_label(&ordinate.quantity.label, LABEL_SIZE, format.frame).len())
+        .max();
+    let more = lines.map_or(0, |lines| lines.saturating_sub(1));
+    (TICK_MARGIN_PX + LABEL_ROW * more as f64 + widest).max(format.margins.0)
 }
 
 fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {

@@ -56,6 +56,18 @@ pub(super) fn wrap_to_width(text: &str, size: f64, available: f64) -> Vec<String
     lines
 }
 
+/// Splits the label of an axis into lines of at most `available` px: one, or the name and its unit. A
+/// longer line is truncated.
+pub(super) fn wrap_label(label: &str, size: f64, available: f64) -> Vec<String> {
+    let whole = truncate_to_width(label, size, available);
+    match label.rsplit_once(" [") {
+        Some((name, unit)) if whole != label => [name, &format!("[{unit}")]
+            .map(|line| truncate_to_width(line, size, available))
+            .to_vec(),
+        _ => vec![whole],
+    }
+}
+
 /// Returns the maximum width of a character in units of the usual width.
 fn relative_width(c: char) -> f64 {
     match c {
@@ -164,6 +176,14 @@ mod tests {
         assert!(wrap_to_width("", 16.0, 300.0).is_empty());
         let word = "x".repeat(100);
         assert!(wrap_to_width(&word, 16.0, 300.0)[0].ends_with('…'));
+    }
+
+    #[test]
+    fn unit_of_a_long_label_is_on_a_line_of_its_own() {
+        let label = "flow [10⁻⁶ m³/s]";
+        assert_eq!(wrap_label(label, 15.0, 300.0), [label]);
+        assert_eq!(wrap_label(label, 15.0, 140.0), ["flow", "[10⁻⁶ m³/s]"]);
+        assert!(wrap_label(&"x".repeat(40), 15.0, 140.0)[0].ends_with('…'));
     }
 
     #[test]

@@ -6,9 +6,10 @@ use super::decimate::{Point, polylines, separate_points, thin_orbit};
 use super::error::is_drawable;
 use super::figure::{Panel, Reference, Series, SeriesRole, SeriesStyle};
 use super::layout::{
-    LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
+    LABEL_ROW, LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE,
+    reference_label,
 };
-use super::lettering::{text_width, truncate_to_width};
+use super::lettering::{text_width, wrap_label};
 
 /// Okabe and Ito's colours for colour-blind readers, without the pale yellow.
 const COLOURS: [&str; 7] = [
@@ -252,14 +253,17 @@ fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Lay
             is_bold: false,
         });
     }
-    let label = Text {
-        text: &truncate_to_width(&place.quantity.label, LABEL_SIZE, bottom - top),
-        position: (19.0, (top + bottom) / 2.0),
-        size: LABEL_SIZE,
-        anchor: Anchor::Middle,
-        is_bold: false,
-    };
-    canvas.rotated_text(label, -90.0);
+    let lines = wrap_label(&place.quantity.label, LABEL_SIZE, bottom - top);
+    for (row, line) in lines.iter().enumerate() {
+        let label = Text {
+            text: line,
+            position: (19.0 + LABEL_ROW * row as f64, (top + bottom) / 2.0),
+            size: LABEL_SIZE,
+            anchor: Anchor::Middle,
+            is_bold: false,
+        };
+        canvas.rotated_text(label, -90.0);
+    }
     for (y, line) in &place.title {
         canvas.text(Text {
             text: line,

@@ -109,8 +109,12 @@ pub(crate) fn held_inputs_note(record: &Record) -> Option<String> {
     let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
     let count = record.input_columns.iter().filter(missing).count();
     (count > 0).then(|| {
+        let inputs = match count {
+            1 => "an input".to_owned(),
+            count => format!("{count} inputs"),
+        };
         format!(
-            "{}: samples of {count} inputs are missing; the last known value is held",
+            "{}: samples of {inputs} are missing; the last known value is held",
             record.name
         )
     })
@@ -298,7 +302,33 @@ fn is_shifted_copy(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> b
 
 #[cfg(test)]
 mod tests {
-    use super::is_shifted_copy;
+    use std::path::PathBuf;
+
+    use eomgen_sim::inputs::HeldInputs;
+
+    use super::{held_inputs_note, is_shifted_copy};
+    use crate::record::Record;
+
+    #[test]
+    fn inputs_with_missing_samples_are_counted() {
+        let note = |input_columns: &[Vec<f64>]| {
+            held_inputs_note(&Record {
+                name: "train[0]".to_owned(),
+                path: PathBuf::new(),
+                times: vec![0.0, 1.0],
+                inputs: HeldInputs::zero(input_columns.len()),
+                input_columns: input_columns.to_vec(),
+                channels: Vec::new(),
+                is_continued: false,
+            })
+        };
+        let (known, missing) = (vec![0.0, 1.0], vec![0.0, f64::NAN]);
+        assert_eq!(note(std::slice::from_ref(&known)), None);
+        let one = note(&[known, missing.clone()]).expect("a note");
+        assert!(one.contains("samples of an input are missing"), "{one}");
+        let two = note(&[missing.clone(), missing]).expect("a note");
+        assert!(two.contains("samples of 2 inputs are missing"), "{two}");
+    }
 
     #[test]
     fn shifted_and_negated_record_is_recognised() {

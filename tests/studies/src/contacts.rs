@@ -1,5 +1,5 @@
 //! Study `contacts`: stacks of two to five balls that fall on a floor and onto each other, and the
-//! box of `examples/impacts` dropped at random. Every motion must reach its end without overlaps
+//! boxes of `examples/impacts`, without and with friction, dropped at random. Every motion must reach its end without overlaps
 //! and without a rise of the energy, and the stacks must come to rest.
 
 use std::path::Path;
@@ -28,16 +28,20 @@ const MAX_REST_SPEED: f64 = 1e-9;
 /// # Errors
 /// Returns a report of all motions that stop early, gain energy, overlap or do not come to rest.
 pub fn run(sample: &Sample) -> Result<String, String> {
-    let file =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/impacts/dropped_box.toml");
-    let dropped = CompiledModel::load(file, Orders::Declared).map_err(|e| e.to_string())?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/impacts");
+    let load = |file| CompiledModel::load(folder.join(file), Orders::Declared);
+    let dropped = load("dropped_box.toml").map_err(|e| e.to_string())?;
+    let rough = load("box_with_friction.toml").map_err(|e| e.to_string())?;
     let mut failures = String::new();
     for index in 0..sample.count {
         let seed = sample.seed.wrapping_mul(1_000_003) + index as u64;
         let random = &mut Random::new(seed);
         for solver in [Solver::Rk, Solver::Radau] {
-            if let Err(problem) = drop_box(&dropped, &mut random.clone(), solver) {
-                failures += &format!("box {index} by {solver}: {problem}\n");
+            for model in [&dropped, &rough] {
+                if let Err(problem) = drop_box(model, &mut random.clone(), solver) {
+                    let name = &model.model().name;
+                    failures += &format!("{name} {index} by {solver}: {problem}\n");
+                }
             }
             let text = stack(&mut random.clone());
             if let Err(problem) = drop_stack(&text, solver) {
@@ -46,7 +50,7 @@ pub fn run(sample: &Sample) -> Result<String, String> {
         }
     }
     let summary = format!(
-        "contacts: {} boxes and as many stacks of seed {}, each by rk and radau",
+        "contacts: {} boxes, as many with friction and as many stacks of seed {}, each by rk and radau",
         sample.count, sample.seed
     );
     match failures.is_empty() {
@@ -62,8 +66,12 @@ fn between(random: &mut Random, low: f64, high: f64) -> f64 {
 fn drop_box(model: &CompiledModel, random: &mut Random, solver: Solver) -> Result<(), String> {
     let restitution = between(random, 0.0, 0.7);
     let half_width = between(random, 0.1, 0.4);
+    let mut settings = vec![("e", restitution), ("b", half_width)];
+    if model.model().name == "box_with_friction" {
+        settings.push(("mu", between(random, 0.0, 1.5)));
+    }
     let run = model
-        .with_parameters(&[("e", restitution), ("b", half_width)])
+        .with_parameters(&settings)
         .map_err(|e| e.to_string())?;
     let initial = [
         0.0,

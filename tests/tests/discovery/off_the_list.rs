@@ -17,6 +17,8 @@ struct Machine<'m> {
     uncertain: &'m str,
     /// Delay of the input, s.
     late: f64,
+    /// True if the machine receives the held samples of the input, false if a smooth input.
+    is_held: bool,
     input: fn(f64, f64) -> f64,
     acceleration: &'m dyn Fn(f64, f64, f64) -> f64,
 }
@@ -64,7 +66,11 @@ impl Machine<'_> {
             text += &format!("{t:.4},{u:.12},{seen:.12}\n");
             for part in 0..parts {
                 let acts = t + h * (f64::from(part) + 0.5) - self.late;
-                let u = (self.input)(SAMPLE * (acts / SAMPLE).floor(), turn);
+                let acts = match self.is_held {
+                    true => SAMPLE * (acts / SAMPLE).floor(),
+                    false => acts,
+                };
+                let u = (self.input)(acts, turn);
                 let middle = (x + 0.5 * h * v, v + 0.5 * h * (self.acceleration)(x, v, u));
                 x += h * middle.1;
                 v += h * (self.acceleration)(middle.0, middle.1, u);
@@ -115,6 +121,7 @@ fn oscillator<'m>(acceleration: &'m dyn Fn(f64, f64, f64) -> f64) -> Machine<'m>
         gain: 1.0,
         uncertain: "m = { relative = 0.01 }",
         late: 0.0,
+        is_held: true,
         input: |t, turn| {
             18.0 * (11.0 * t + turn).cos() - 9.0 * (23.0 * t * (1.0 + 0.2 * turn)).sin()
         },
@@ -239,6 +246,7 @@ fn unlisted_order_is_found_in_residual_force() {
         gain: 1.0,
         uncertain: "J = { relative = 0.01 }",
         late: 0.0,
+        is_held: true,
         input: |t, turn| 0.5 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (7.0 * x + 0.4).cos()) / 0.02,
     };
@@ -256,6 +264,7 @@ fn weight_on_rotating_shaft_is_equivalent_to_ripple_of_order_one() {
         gain: 1.0,
         uncertain: "J = { relative = 0.01 }",
         late: 0.0,
+        is_held: true,
         input: |t, turn| 1.2 * (2.1 * t + 0.7 * turn).cos() - 0.25 * (7.0 * t).sin(),
         acceleration: &|x, v, u| (u - 0.02 * v + 0.05 * (x + 0.4).cos()) / 0.02,
     };
@@ -279,6 +288,23 @@ fn common_sensor_delay_is_noted_as_delayed_input() {
     let notes = found["notes"].to_string();
     assert!(notes.contains("a delayed input"), "{notes}");
     assert!(notes.contains("[inputs.u]"), "{notes}");
+}
+
+/// Samples of a smooth input are late by half an interval on average if they are held.
+#[test]
+fn lead_by_half_an_interval_is_noted_as_held_input() {
+    let acceleration = |x: f64, v: f64, u: f64| u - 400.0 * x - 4.0 * v;
+    let notes = |is_held: bool| {
+        let machine = Machine {
+            is_held,
+            ..oscillator(&acceleration)
+        };
+        machine.answer()["notes"].to_string()
+    };
+    let smooth = notes(false);
+    assert!(smooth.contains("half the interval of 5.00 ms"), "{smooth}");
+    let held = notes(true);
+    assert!(!held.contains("half the interval"), "{held}");
 }
 
 /// A stop reached only in the held-out records.

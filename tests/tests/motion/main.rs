@@ -1,6 +1,7 @@
 //! Motions against closed forms, published figures, reference trajectories and other solvers.
 
 mod constraints;
+mod contact_friction;
 mod corners;
 mod drawn_motion;
 mod energy_audit;

@@ -86,6 +86,7 @@ features! {
         squeezing_mechanism: [0];
         bouncing_ball: [0];
         dropped_box: [0];
+        box_with_friction: [0];
         beam_stop: [0, 1, 4];
         rheonomic: [0, 1, 4];
         mass_of_time: [0];

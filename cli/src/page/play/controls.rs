@@ -12,8 +12,15 @@ const CHANGE_FRACTION: f64 = 0.2;
 const PERIOD_S: (f64, f64, f64) = (2.0, 0.1, 10.0);
 const RISE_S: (f64, f64, f64) = (0.5, 0.05, 5.0);
 
-pub(super) fn panel(quantities: &Quantities<'_>) -> Markup {
-    let inputs: Vec<Markup> = quantities.inputs.iter().map(signal).collect();
+/// Change of an input that starts as a sine, as a fraction of half its range.
+const FIRST_CHANGE_FRACTION: f64 = 0.5;
+
+/// Returns the controls. If `is_driven`, the first input starts as a sine.
+pub(super) fn panel(quantities: &Quantities<'_>, is_driven: bool) -> Markup {
+    let inputs = quantities.inputs.iter().enumerate();
+    let inputs: Vec<Markup> = inputs
+        .map(|(place, input)| signal(input, is_driven && place == 0))
+        .collect();
     html! {
         section.panel.controls aria-label="Controls" {
             (group("Inputs", &inputs))
@@ -40,8 +47,9 @@ fn group(heading: &str, controls: &[Markup]) -> Markup {
     }
 }
 
-/// Returns the controls of an input: its value, and the form of its course with the numbers of that form.
-fn signal(signal: &Signal<'_>) -> Markup {
+/// Returns the controls of an input: its value, and the form of its course with the numbers of that form. If
+/// `is_sine`, the course starts as a sine.
+fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
     let Signal { value, rates } = signal;
     let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
     let half = 0.5 * (value.high - value.low);
@@ -55,7 +63,11 @@ fn signal(signal: &Signal<'_>) -> Markup {
         low,
         high,
     };
-    let change = extra("change", &value.unit, (CHANGE_FRACTION * half, -half, half));
+    let change = match is_sine {
+        true => FIRST_CHANGE_FRACTION * half,
+        false => CHANGE_FRACTION * half,
+    };
+    let change = extra("change", &value.unit, (change, -half, half));
     let form = format!("form-{}", value.place);
     html! {
         div data-signal data-place=(value.place) data-rates=(rates.join(" ")) {
@@ -63,15 +75,15 @@ fn signal(signal: &Signal<'_>) -> Markup {
             div.form {
                 label for=(form) { "course" }
                 select id=(form) {
-                    option value="constant" selected { "constant" }
-                    option value="sine" { "sine" }
+                    option value="constant" selected[!is_sine] { "constant" }
+                    option value="sine" selected[is_sine] { "sine" }
                     option value="step" { "step after 1 s" }
                 }
             }
-            div data-forms="sine step" hidden {
+            div data-forms="sine step" hidden[!is_sine] {
                 (change.labelled_control("change", &html! { "amplitude or height" }))
             }
-            div data-forms="sine" hidden {
+            div data-forms="sine" hidden[!is_sine] {
                 (extra("period", "s", PERIOD_S).labelled_control("period", &html! { "period" }))
             }
             div data-forms="step" hidden {

@@ -69,7 +69,13 @@ fn field(shapes: &FieldShapes<'_>) -> Value {
 fn drawing(drawing: &Drawing) -> Value {
     let points = drawing.points.iter();
     let points: Vec<Value> = points
-        .map(|point| json!({ "x": ordinate(point.x), "y": ordinate(point.y) }))
+        .map(|point| {
+            json!({
+                "symbol": name_letters(&point.name),
+                "x": ordinate(point.x),
+                "y": ordinate(point.y),
+            })
+        })
         .collect();
     let lines = drawing.lines.iter();
     let lines: Vec<Vec<usize>> = lines

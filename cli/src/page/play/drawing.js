@@ -4,6 +4,10 @@
 /** Length of a trail, in frames. */
 const TRAIL = 400;
 
+/** Space of a name in the drawing, px. */
+const NAME_WIDTH = 70;
+const NAME_HEIGHT = 18;
+
 /** Points and lines in a plane. */
 class Plane {
   constructor(model) {
@@ -73,6 +77,25 @@ class Plane {
       context.fillStyle = fixed ? colour.soft : colour.marks[(index - 1) % colour.marks.length];
       context.fill();
     }
+    this.name(context, { width, onto, colour });
+  }
+
+  /** Writes the names of the points at the ends of lines next to them, unless they are fixed or a name is there. */
+  name(context, { width, onto, colour }) {
+    const ends = new Set(this.drawing.lines.flatMap((line) => [line[0], line.at(-1)]));
+    const written = [];
+    context.fillStyle = colour.ink;
+    for (const [index, { symbol, x: across, y: up }] of this.drawing.points.entries()) {
+      if (!ends.has(index) || (across.number !== undefined && up.number !== undefined)) continue;
+      const [x, y] = onto(this.places[index]);
+      const isNear = ([otherX, otherY]) => Math.abs(x - otherX) < NAME_WIDTH && Math.abs(y - otherY) < NAME_HEIGHT;
+      if (!Number.isFinite(x) || !Number.isFinite(y) || written.some(isNear)) continue;
+      written.push([x, y]);
+      const isAtEdge = x > width - NAME_WIDTH;
+      context.textAlign = isAtEdge ? "right" : "left";
+      writeSymbol(context, symbol, "", [isAtEdge ? x - 11 : x + 11, y - 9], NAME_WIDTH);
+    }
+    context.textAlign = "left";
   }
 
   /** Draws grid lines at round distances. Returns the distance. */

@@ -1,12 +1,14 @@
 //! Interactive page of a model: sliders, an animated drawing, curves, and the equations. The page is self-contained and
 //! computes with the emitted WebAssembly module.
 //!
-//! `quantities` selects the sliders and their ranges, `controls` renders them, `data` is the input of the script. The
+//! `quantities` selects the sliders and their ranges, `controls` renders them, `first_motion` decides whether an input
+//! starts as a sine, `data` is the input of the script. The
 //! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (inputs over
 //! time), `constraints.js` (initial states) and `controls.js`.
 
 mod controls;
 mod data;
+mod first_motion;
 mod quantities;
 
 use eomgen_codegen::report::Report;
@@ -82,14 +84,22 @@ impl InteractivePart {
         speed: f64,
     ) -> Result<Self> {
         let module = module(compiled.program())?;
+        let is_at_rest = first_motion::is_at_rest(compiled, initial)?;
         let body = html! {
-            noscript { p { "Without JavaScript nothing moves on this page." } }
+            noscript {
+                p {
+                    "Without JavaScript nothing moves on this page. The controls show the values of the specification, "
+                    "and the equations are below. "
+                    code { "eomgen simulate --plot" } " draws the motion as a figure."
+                }
+            }
+            @if is_at_rest { (note_of_rest(quantities)) }
             div.instrument {
                 div.seen {
                     (drawing(&compiled.model().title, speed))
                     (curves(quantities))
                 }
-                (controls::panel(quantities))
+                (controls::panel(quantities, is_at_rest))
             }
         };
         Ok(Self {
@@ -143,6 +153,26 @@ pub fn interactive_page(compiled: &CompiledModel, initial: &[f64]) -> Result<Str
         }
     };
     Ok(part.document(&model.title, &body))
+}
+
+/// Returns a note on the first motion of a machine that stays at rest without inputs.
+fn note_of_rest(quantities: &Quantities<'_>) -> Markup {
+    match quantities.inputs.first() {
+        Some(signal) => {
+            let symbol = formula(&Formula::Symbol(Symbol::from_state(&signal.value.name)));
+            html! {
+                p.note {
+                    "Without inputs this machine stays at rest. Its input " (symbol)
+                    " therefore starts as a sine; choose another course under Inputs."
+                }
+            }
+        }
+        None => html! {
+            p.note {
+                "This machine is at rest. To see it move, change a value under Initial state."
+            }
+        },
+    }
 }
 
 fn drawing(title: &str, speed: f64) -> Markup {

@@ -4,8 +4,8 @@
 use super::adjoint::{self, pair_weights};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
-    JacobianRows, by_parameters, by_time, by_variables, observable_rows, rate_rows,
-    single_row_jacobian,
+    JacobianRows, along_direction, by_parameters, by_time, by_variables, observable_rows,
+    rate_rows, single_row_jacobian,
 };
 use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
@@ -19,6 +19,9 @@ use crate::symbolic::differentiate::Direction;
 use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
+
+/// Name of the column of derivatives along a direction: rates without those of the coordinates, then observables.
+pub const TANGENTS: &str = "tangents";
 
 /// Derives the requested outputs.
 ///
@@ -37,6 +40,7 @@ pub fn derive_outputs(
         || has(Output::Products)
         || has(Output::Linearisation)
         || has(Output::TimeDerivatives)
+        || has(Output::Tangents)
         || has(Output::Hessians);
     if differentiated {
         let mut roots = equations.rate_nodes();
@@ -55,6 +59,11 @@ pub fn derive_outputs(
     result.guard_rates = has(Output::GuardRates).then(|| guard_rates(equations));
     if has(Output::Jacobians) || has(Output::Linearisation) {
         result.jacobians = jacobians(equations);
+    }
+    if has(Output::Tangents) {
+        result
+            .jacobians
+            .push(along_direction(equations, &direction_component, TANGENTS));
     }
     if has(Output::TimeDerivatives) {
         let rows = rate_rows(equations);
@@ -219,12 +228,8 @@ pub(crate) fn guard_rate(equations: &mut Equations, value: NodeId) -> NodeId {
 
 fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     let rows = equations.accelerations.rows.clone();
-    let tangent = |graph: &mut Graph, leaf: NodeId| match variable_of(graph, leaf) {
-        Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
-        None => graph.zero(),
-    };
     let graph = &mut equations.graph;
-    let mut direction = Direction::new(&tangent);
+    let mut direction = Direction::new(&direction_component);
     let forward = RowNodes {
         scalars: derivatives(graph, &mut direction, &rows.scalars),
         modal: derivatives(graph, &mut direction, &rows.modal),
@@ -280,6 +285,14 @@ fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId
         .iter()
         .map(|node| direction.derivative(graph, *node))
         .collect()
+}
+
+/// Returns the component of the direction for a leaf: 0 for time and parameters.
+fn direction_component(graph: &mut Graph, leaf: NodeId) -> NodeId {
+    match variable_of(graph, leaf) {
+        Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
+        None => graph.zero(),
+    }
 }
 
 fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {

@@ -4,7 +4,7 @@
 
 use super::types::{Jacobian, JacobianBlock};
 use crate::mechanics::equations::Equations;
-use crate::symbolic::differentiate::Direction;
+use crate::symbolic::differentiate::{Direction, Tangent};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::modal_derivative::ModalDerivative;
@@ -150,6 +150,27 @@ pub(crate) fn by_time(
     direction.seed(time, graph.one());
     let mut blocks = Blocks::new(graph, rows, true);
     blocks.push_along(&mut direction, 0);
+    blocks.jacobian(name, 1)
+}
+
+/// Derives the derivatives of rates and observables along a direction, in one column. The rates of coordinates are
+/// components of the direction and are left out.
+pub(super) fn along_direction(
+    equations: &mut Equations,
+    tangent: &Tangent<'_>,
+    name: &'static str,
+) -> Jacobian<NodeId> {
+    let mut rows = rate_rows(equations);
+    let observables = observable_rows(equations);
+    let first = rows.count;
+    rows.count += observables.count;
+    let shifted = observables.rows.into_iter().map(|row| EquationRow {
+        first: first + row.first,
+        ..row
+    });
+    rows.rows.extend(shifted);
+    let mut blocks = Blocks::new(&mut equations.graph, &rows, true);
+    blocks.push_along(&mut Direction::new(tangent), 0);
     blocks.jacobian(name, 1)
 }
 

@@ -15,8 +15,8 @@ mod output;
 mod regimes;
 mod types;
 
-pub use derive::derive_outputs;
 pub(crate) use derive::guard_rate;
+pub use derive::{TANGENTS, derive_outputs};
 pub use output::{Output, UnknownOutput};
 pub use regimes::{Decision, SURFACES_OF_A_REGIME, Switch};
 pub use types::{

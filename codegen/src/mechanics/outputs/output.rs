@@ -20,6 +20,9 @@ pub enum Output {
     /// Derivative of the rates by time. It has no name for requests: external interfaces add it to the
     /// Jacobians.
     TimeDerivatives,
+    /// Derivatives of rates and observables along a direction of state and inputs. It has no name for requests:
+    /// linearisations evaluate it along every variable.
+    Tangents,
     /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
     /// Includes the products.
     Hessians,
@@ -52,6 +55,7 @@ impl Output {
             Self::Linearisation => "linearisation",
             Self::Regimes => "regimes",
             Self::TimeDerivatives => "time_derivatives",
+            Self::Tangents => "tangents",
             Self::Hessians => "hessians",
             Self::Lanes => "lanes",
         }

@@ -117,6 +117,11 @@ fn impact_values(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     ];
     values.extend(&impact.delassus);
     values.extend(impact.column.all());
+    if let Some(friction) = &impact.friction {
+        values.extend([friction.coefficient, friction.slip, friction.acceleration]);
+        values.extend(&friction.delassus);
+        values.extend(friction.column.all());
+    }
     values
 }
 

@@ -15,7 +15,25 @@ pub struct ImpactValues {
     pub restitution: f64,
     /// Change of the rates by a unit impulse, one number for each degree of freedom.
     pub column: Vec<f64>,
-    /// Change of the distance's rate by a unit impulse at each of the impacts.
+    /// Change of the distance's rate by a unit impulse at each of the impacts, then by a unit tangential
+    /// impulse at each with friction.
+    pub delassus: Vec<f64>,
+    /// Friction, if the contact has any.
+    pub friction: Option<FrictionValues>,
+}
+
+/// Friction of a contact at a point in SI units; see [`Friction`](crate::mechanics::impacts::Friction).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionValues {
+    /// Coefficient.
+    pub coefficient: f64,
+    /// Tangential velocity.
+    pub slip: f64,
+    /// Rate of the slip if no contact is closed.
+    pub acceleration: f64,
+    /// Change of the rates by a unit tangential impulse.
+    pub column: Vec<f64>,
+    /// Change of the slip by a unit impulse at each of the impacts, normal, then tangential.
     pub delassus: Vec<f64>,
 }
 
@@ -48,6 +66,24 @@ impl Evaluator {
             self.copy_rows(
                 &impact.column.scalars,
                 &impact.column.modal,
+                &mut slot.column,
+            );
+            let Some(friction) = &impact.friction else {
+                slot.friction = None;
+                continue;
+            };
+            let slot = slot.friction.get_or_insert_default();
+            slot.coefficient = number(friction.coefficient);
+            slot.slip = number(friction.slip);
+            slot.acceleration = number(friction.acceleration);
+            slot.delassus.resize(friction.delassus.len(), 0.0);
+            for (entry, id) in slot.delassus.iter_mut().zip(&friction.delassus) {
+                *entry = number(*id);
+            }
+            slot.column.resize(degrees, 0.0);
+            self.copy_rows(
+                &friction.column.scalars,
+                &friction.column.modal,
                 &mut slot.column,
             );
         }

@@ -27,7 +27,7 @@ pub use code::{MachineCode, Stage};
 pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};
-pub use impacts::ImpactValues;
+pub use impacts::{FrictionValues, ImpactValues};
 pub use places::Places;
 pub use point::Point;
 pub use sliding::SlidingValues;

@@ -50,12 +50,25 @@ impl Evaluator {
 
     /// Computes the structural nonzeros of the Jacobian with index `place`.
     pub fn jacobian(&mut self, place: usize, point: Point<'_>, out: &mut [f64]) -> bool {
-        let Some(jacobian) = self.program.outputs.jacobians.get(place).cloned() else {
+        if place >= self.program.outputs.jacobians.len() {
             return false;
-        };
+        }
         self.compute(Stage::Jacobians, &point);
-        self.copy_entries(&jacobian, out);
+        self.copy_entries(&self.program.outputs.jacobians[place], out);
         true
+    }
+
+    /// Computes the structural nonzeros of the Jacobian with index `place`, whose column is the derivative along a
+    /// direction of state and inputs.
+    pub fn derivatives_along(
+        &mut self,
+        place: usize,
+        point: Point<'_>,
+        (state, inputs): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) -> bool {
+        self.set_argument(Argument::Direction, state, inputs);
+        self.jacobian(place, point, out)
     }
 
     /// Computes the product of the Jacobian of the rates with a direction of state and inputs, one number for

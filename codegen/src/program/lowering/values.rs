@@ -7,7 +7,7 @@ use std::hash::{Hash, Hasher};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{
-    Extent, Impact, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
+    Extent, Friction, Impact, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
 use crate::symbolic::association::Association;
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
@@ -109,6 +109,19 @@ impl<'g> Lowering<'g> {
             restitution: self.value(impact.restitution),
             column: self.rows(&impact.column),
             delassus: impact.delassus.iter().map(|id| self.value(*id)).collect(),
+            friction: impact.friction.as_ref().map(|one| self.friction(one)),
+        }
+    }
+
+    fn friction(&mut self, friction: &Friction<NodeId, RowNodes>) -> Friction<ValueId, RowValues> {
+        let delassus = friction.delassus.iter().map(|id| self.value(*id));
+        let delassus = delassus.collect();
+        Friction {
+            coefficient: self.value(friction.coefficient),
+            slip: self.value(friction.slip),
+            acceleration: self.value(friction.acceleration),
+            column: self.rows(&friction.column),
+            delassus,
         }
     }
 

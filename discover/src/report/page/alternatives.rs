@@ -96,7 +96,12 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     section(
         "Rejected effects",
         &html! {
-            p { (list.len()) " other effects and sites were tested." }
+            p {
+                @match list.len() {
+                    1 => { "One other effect was tested." }
+                    count => { (count) " other effects and sites were tested." }
+                }
+            }
             (folded(&groups, &["effect", "reason"], row))
         },
     )

@@ -18,6 +18,7 @@ use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::report::playback::controls::write_controls;
 use crate::report::playback::record_excerpt::RecordExcerpt;
+use crate::report::quantity::format_quantity;
 use crate::search::search_result::AcceptedEffect;
 
 /// What such a part needs besides the style of all that compute.
@@ -94,7 +95,8 @@ impl Playback {
 fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Markup) -> Markup {
     let seconds = stretch.times.last().zip(stretch.times.first());
     let seconds = seconds.map_or(0.0, |(last, first)| last - first);
-    let names = problem.dataset.channels.iter().map(|channel| &channel.name);
+    let channels = problem.dataset.channels.iter();
+    let rows = channels.zip(&stretch.rms_before_after);
     html! {
         p {
             "Move a slider: the extended model is simulated again for "
@@ -103,7 +105,12 @@ fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Mar
             " with the recorded inputs and the fitted initial state of each window. "
             "This page computes it with the equations of the extended specification."
         }
-        noscript { p { "Without JavaScript this page shows only the figures below." } }
+        noscript {
+            p {
+                "Without JavaScript the sliders do not act. They and the table show the found values; the figures \
+                 below show the motion."
+            }
+        }
         div.moved {
             (controls)
             table {
@@ -113,11 +120,11 @@ fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Mar
                     th scope="col" { span.key.now {} "now" }
                 } }
                 tbody {
-                    @for name in names {
+                    @for (channel, [before, after]) in rows {
                         tr {
-                            th scope="row" { code { (name) } }
-                            td.number data-left="before" {}
-                            td.number data-left="now" {}
+                            th scope="row" { code { (channel.name) } }
+                            td.number data-left="before" { (format_quantity(*before, 3, &channel.unit)) }
+                            td.number data-left="now" { (format_quantity(*after, 3, &channel.unit)) }
                         }
                     }
                 }

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::DrivenModel;
-use eomgen_sim::ode::{Settings, simulate};
+use eomgen_sim::ode::{Names, Settings, SolveError, Surface, UnsupportedSticking, simulate};
 
 use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
@@ -42,11 +42,13 @@ pub(super) fn check_reproduces_fit(
     let mut counts = vec![0.0; channels];
     let mut steps = 0;
     for piece in &stretch.windows {
-        let seen = seen(problem, best, model, stretch, piece);
-        let (seen, own) = seen.ok_or("the simulation with explicit steps fails")?;
+        let (seen, own) = seen(problem, best, model, stretch, piece)?;
         steps += own;
         if steps > MOST_STEPS {
-            return Err("the motion needs too many explicit steps".to_owned());
+            return Err(format!(
+                "the motion needs more than {MOST_STEPS} of the explicit steps that a page takes, because it is too \
+                 fast or too long; {CURE}"
+            ));
         }
         let measured = stretch.measured[piece.first_sample * channels..].iter();
         for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
@@ -77,14 +79,37 @@ pub(super) fn check_reproduces_fit(
     Ok(())
 }
 
-/// What the sensors show of a window, and how many steps it takes; none where it cannot be followed.
+/// The way to a simulation that a page cannot compute.
+const CURE: &str =
+    "`eomgen simulate extended.toml --record DATASET.toml` computes it with the other solvers";
+
+/// Returns the reason why explicit steps fail, with the names of states and switching surfaces.
+fn explain(error: &SolveError, states: &[String], surfaces: &[Surface]) -> String {
+    if let SolveError::Sticking { t, guard } | SolveError::TooManySwitches { t, guard, .. } = error
+        && let Some(surface) = surfaces.get(*guard)
+    {
+        return format!(
+            "from t = {t:.6} s the motion stays where `{}` is zero, as at rest under dry friction, which these \
+             steps do not follow",
+            surface.formula
+        );
+    }
+    error.format_named(&Names {
+        states,
+        surfaces,
+        unsupported_sticking: UnsupportedSticking::Formula,
+    })
+}
+
+/// Returns the sensor values of a window and the number of steps, or the reason why explicit steps cannot
+/// simulate it.
 fn seen(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
     stretch: &RecordExcerpt,
     piece: &ExcerptWindow,
-) -> Option<(Vec<f64>, u64)> {
+) -> Result<(Vec<f64>, u64), String> {
     let samples = &stretch.times[piece.first_sample..piece.first_sample + piece.samples];
     let output_times = problem.output_rate.times(samples);
     let times = &output_times.times;
@@ -96,12 +121,24 @@ fn seen(
         ..Settings::with_tolerance(TOLERANCE)
     };
     let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
-    let span = (*times.first()?, *times.last()?);
+    let (Some(&begin), Some(&end)) = (times.first(), times.last()) else {
+        return Err("the test record has an empty window".to_owned());
+    };
+    let span = (begin, end);
+    let sided = model.create_sided_model(&model.values);
     let driven = DrivenModel::new(&evaluator, inputs)
         .with_typical_sizes(model.typical_sizes())
-        .with_sides(model.create_sided_model(&model.values).ok()?)
+        .with_sides(sided.map_err(|error| error.to_string())?)
         .without_holding();
-    let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
+    let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {});
+    let trajectory = trajectory.map_err(|error| {
+        let reason = explain(&error, &model.program().state_names(), &driven.surfaces());
+        format!(
+            "explicit steps, which a page takes, fail in the window of the test record from {:.6} s to {:.6} s: \
+             {reason}; {CURE}",
+            begin, end
+        )
+    })?;
     let mut quantities = Vec::new();
     let mut buffers = model.measured.create_buffers();
     let mut evaluator = evaluator.borrow_mut();
@@ -118,8 +155,29 @@ fn seen(
     let shooting = best.training_shooting(problem);
     let sensors = shooting.sensor_values(&best.train.estimate.theta);
     let work = trajectory.statistics.steps + trajectory.statistics.rejected_steps;
-    Some((
+    Ok((
         shooting.apply_sensors(&output_times, &sensors, &quantities),
         work,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_at_rest_is_the_reason_of_a_failed_simulation() {
+        let surfaces = [Surface {
+            formula: "dot(x)".to_owned(),
+            is_speed: true,
+        }];
+        let error = SolveError::Sticking { t: 0.25, guard: 0 };
+        let reason = explain(&error, &["x".to_owned()], &surfaces);
+        assert!(
+            reason.starts_with("from t = 0.250000 s the motion stays where `dot(x)` is zero"),
+            "{reason}"
+        );
+        let unknown = SolveError::NotFinite { t: 0.5, state: 0 };
+        assert!(explain(&unknown, &["x".to_owned()], &surfaces).contains("x"));
+    }
 }

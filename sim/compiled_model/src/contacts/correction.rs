@@ -21,6 +21,10 @@ impl Contacts {
     ) -> u64 {
         let degrees = own.program().degrees_of_freedom();
         self.size = self.size.max(max_magnitude(&state[..degrees]));
+        if self.has_no_forces {
+            state.fill(f64::NAN);
+            return 1;
+        }
         // A step that was taken back may have ended below.
         self.overlap = None;
         let mut arrived = vec![0.0; self.names.len()];
@@ -36,8 +40,8 @@ impl Contacts {
             let (coordinates, rates) = state.split_at_mut(degrees);
             let corrections = self.solve_balance(&self.closed, |impact| impact.distance);
             self.add_impulses(&self.closed, &corrections, coordinates);
-            let corrections = self.solve_balance(&self.closed, |impact| impact.rate);
-            self.add_impulses(&self.closed, &corrections, rates);
+            let corrections = self.stopping();
+            self.add_forces(&self.closed, &corrections, rates);
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let is_left = |place: &&usize| {
@@ -47,8 +51,9 @@ impl Contacts {
         if let Some(place) = self.closed.iter().find(is_left) {
             return self.stop_overlapping(*place, state);
         }
-        let pulls = |(place, force): (&usize, f64)| force + self.allowances[*place] < 0.0;
-        if self.closed.iter().zip(self.forces()).any(pulls) {
+        // With friction an event opens contacts.
+        let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
+        if !self.has_friction() && self.closed.iter().zip(&self.forces().normal).any(pulls) {
             let touching = std::mem::take(&mut self.closed);
             self.close(&touching, distance_rounding(state, degrees, t));
         }

@@ -4,6 +4,7 @@ use eomgen_codegen::independence::vectors::{dot, max_magnitude};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
+use super::tangents::ContactForces;
 use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS, Overlap, distance_rounding};
 
 /// A flight that is this short beside the time since the start is rest.
@@ -16,21 +17,32 @@ const MAX_UNSOLVED_RATE_FRACTION: f64 = 1e-6;
 const MIN_FLIGHT_ROUNDINGS: f64 = 1000.0;
 
 /// An energy that impulses add is rounding where it is this small beside what they exchange.
-const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
+pub(super) const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
 
 /// Halvings in the search for a restitution that adds no energy.
-const RESTITUTION_HALVINGS: usize = 20;
+pub(super) const RESTITUTION_HALVINGS: usize = 20;
 
 /// Which flights after an impact are none.
-struct Flight {
+pub(super) struct Flight {
     /// Those that are this short, s.
-    shortest: f64,
+    pub shortest: f64,
     /// Those that are this low.
-    lowest: f64,
+    pub lowest: f64,
     /// Rates that are rounding.
-    rate_rounding: f64,
+    pub rate_rounding: f64,
     /// Accelerations that are rounding, without what contacts push.
-    acceleration_rounding: f64,
+    pub acceleration_rounding: f64,
+}
+
+impl Flight {
+    /// Returns true if a contact with this rate and acceleration does not fly, if accelerations up to `even`
+    /// are rounding.
+    pub fn is_none(&self, rate: f64, acceleration: f64, even: f64) -> bool {
+        let is_short = 2.0 * rate <= -acceleration * self.shortest;
+        let is_low = rate * rate <= -2.0 * acceleration * self.lowest;
+        let is_together = rate <= self.rate_rounding && acceleration <= even;
+        acceleration < 0.0 && (is_short || is_low) || is_together
+    }
 }
 
 impl Contacts {
@@ -53,6 +65,12 @@ impl Contacts {
             !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
         };
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
+            let rounding = distance_rounding(before, degrees, t);
+            let updated = self.update_modes(own, Point { t, state, inputs }, rounding);
+            if let Err(cause) = updated {
+                self.overlap = Some(cause);
+                state.fill(f64::NAN);
+            }
             return;
         };
         let point = Point {
@@ -107,7 +125,17 @@ impl Contacts {
             acceleration_rounding: DISTANCE_ROUNDING
                 * largest_acceleration(own, Point { t, state, inputs }),
         };
-        self.close_resting(&touching, &flight);
+        match self.has_friction() {
+            false => self.close_resting(&touching, &flight),
+            true => {
+                let point = Point { t, state, inputs };
+                if let Err(cause) = self.close_resting_with_friction(own, point, &touching, &flight)
+                {
+                    self.overlap = Some(cause);
+                    return state.fill(f64::NAN);
+                }
+            }
+        }
         self.stop_closed(own, (t, inputs), state);
     }
 
@@ -118,14 +146,14 @@ impl Contacts {
             return;
         }
         let degrees = own.program().degrees_of_freedom();
-        let drifts = self.distance_rates_at_rest(own, Point { t, state, inputs });
+        let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        if self.closed.iter().all(|place| drifts[*place] == 0.0) {
+        if self.closed.iter().all(|place| drifts.is_still(*place)) {
             return;
         }
-        let impulses = self.solve_balance(&self.closed, |impact| impact.rate);
-        self.add_impulses(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
-        self.impact_work -= work_against(&drifts, &self.closed, &impulses);
+        let impulses = self.stopping();
+        self.add_forces(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
+        self.impact_work -= drifts.work_against(&self.closed, &impulses);
     }
 
     /// Returns true if no contact that touches needs an impulse.
@@ -135,7 +163,7 @@ impl Contacts {
     }
 
     /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
-    fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
+    pub(super) fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
         let rate = self.hit_rate(place, ago);
         match self.closed.contains(&place) {
             true => rate,
@@ -146,7 +174,7 @@ impl Contacts {
     }
 
     /// The rate with which a contact hit so long `ago`, s.
-    fn hit_rate(&self, place: usize, ago: f64) -> f64 {
+    pub(super) fn hit_rate(&self, place: usize, ago: f64) -> f64 {
         let impact = &self.at[place];
         match self.closed.contains(&place) {
             true => impact.rate,
@@ -158,7 +186,7 @@ impl Contacts {
     /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
     /// is hit again; then none takes more restitution than the most that does not. With none it never
     /// does: twice the energy is -P W P then.
-    fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<Vec<f64>> {
+    fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
         let delassus = self.delassus(touching);
         let with = |most: f64| {
             let stopped = touching.iter();
@@ -180,9 +208,13 @@ impl Contacts {
             });
             sum > ENERGY_GAIN_ROUNDING * size
         };
+        let smooth = |normal: Vec<f64>| ContactForces {
+            normal,
+            tangential: Vec::new(),
+        };
         let impulses = with(1.0)?;
         if !adds_energy(&impulses) {
-            return Some(impulses);
+            return Some(smooth(impulses));
         }
         let (mut most, mut found) = (0.0, with(0.0)?);
         let mut part = 0.5;
@@ -193,7 +225,7 @@ impl Contacts {
             }
             part *= 0.5;
         }
-        Some(found)
+        Some(smooth(found))
     }
 
     /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
@@ -208,19 +240,20 @@ impl Contacts {
     ) -> Result<(Vec<usize>, f64), Overlap> {
         let degrees = own.program().degrees_of_freedom();
         let mut still = 0.0_f64;
-        let drifts = self.distance_rates_at_rest(own, Point { t, state, inputs });
+        let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         loop {
-            let impulses = self
-                .solve_impulses(&touching, ago)
-                .ok_or(Overlap::NoImpulse)?;
-            self.impact_work -= work_against(&drifts, &touching, &impulses);
+            let impulses = match self.has_friction() {
+                true => self.solve_friction_impulses(&touching, ago),
+                false => self.solve_impulses(&touching, ago),
+            };
+            let impulses = impulses.ok_or(Overlap::NoImpulse)?;
+            self.impact_work -= drifts.work_against(&touching, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let most = max_magnitude(&*rates) + self.largest_push(&touching, &impulses);
             still = still.max(DISTANCE_ROUNDING * most);
-            self.add_impulses(&touching, &impulses, rates);
-            let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
-            self.add_impulses(&touching, &moved, coordinates);
+            self.add_forces(&touching, &impulses, rates);
+            self.add_forces(&touching, &impulses.scaled(ago), coordinates);
             own.impacts(Point { t, state, inputs }, &mut self.at);
             // Where a distance was located to rounding, so that this does not add up.
             let mut below = touching.clone();
@@ -270,16 +303,12 @@ impl Contacts {
                 + DISTANCE_ROUNDING * self.largest_push(&self.closed, &forces);
             let rests = |place: &&usize| {
                 let impact = &self.at[**place];
-                let held = self.closed.iter().zip(&forces);
+                let held = self.closed.iter().zip(&forces.normal);
                 let pushed: f64 = held
                     .map(|(other, force)| impact.delassus[*other] * force)
                     .sum();
                 let acceleration = impact.acceleration + pushed;
-                let is_short = 2.0 * impact.rate <= -acceleration * flight.shortest;
-                let is_low = impact.rate * impact.rate <= -2.0 * acceleration * flight.lowest;
-                let is_together = impact.rate <= flight.rate_rounding && acceleration <= even;
-                !self.closed.contains(place)
-                    && (acceleration < 0.0 && (is_short || is_low) || is_together)
+                !self.closed.contains(place) && flight.is_none(impact.rate, acceleration, even)
             };
             let Some(next) = touching.iter().find(rests) else {
                 break;
@@ -296,12 +325,6 @@ fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
     let unsolved = MAX_UNSOLVED_RATE_FRACTION * max_magnitude(rates);
     let mut rows = delassus.iter().zip(rates);
     rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
-}
-
-/// The work (J) of impulses at these contacts against distances that change with the time.
-fn work_against(drifts: &[f64], places: &[usize], impulses: &[f64]) -> f64 {
-    let works = places.iter().zip(impulses);
-    works.map(|(place, impulse)| impulse * drifts[*place]).sum()
 }
 
 /// The largest acceleration of a coordinate, without what contacts push.

@@ -6,13 +6,15 @@
 //! g' after the impact is below -e g' before it, and an impulse is nonzero only if these are
 //! equal. A bouncing body has infinitely many impacts in a finite time, so a contact closes if the
 //! next flight would be shorter than a fraction of the elapsed time. A closed contact opens if its
-//! force falls to zero.
+//! force falls to zero. `friction` adds Coulomb friction.
 
 mod complementarity;
 mod correction;
+mod friction;
 mod impulses;
 mod power;
 mod start;
+mod tangents;
 
 use std::collections::VecDeque;
 
@@ -21,6 +23,7 @@ use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Poi
 
 use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
+use tangents::{ContactForces, Tangent};
 
 /// A distance this small beside the largest coordinate is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -58,6 +61,10 @@ pub(crate) struct Contacts {
     impact_work: f64,
     /// The impact at which the motion ended, and why.
     overlap: Option<(usize, Overlap)>,
+    /// Tangential motion of the contacts with friction.
+    tangents: Vec<Tangent>,
+    /// True if no contact forces were found between steps, so that the rates have no value.
+    has_no_forces: bool,
 }
 
 /// Why bodies overlap.
@@ -67,6 +74,8 @@ enum Overlap {
     Penetrated,
     /// No impulses keep all bodies apart that touch.
     NoImpulse,
+    /// No forces satisfy the law of friction (P. Painlevé).
+    NoForces,
 }
 
 impl Contacts {
@@ -84,7 +93,27 @@ impl Contacts {
             has_restitution: true,
             impact_work: 0.0,
             overlap: None,
+            tangents: Vec::new(),
+            has_no_forces: false,
         }
+    }
+
+    /// Adds friction to the contacts at these places.
+    pub fn with_friction(mut self, places: impl Iterator<Item = usize>) -> Self {
+        self.tangents = places.map(Tangent::new).collect();
+        self
+    }
+
+    /// Returns the name of each guard: those of the distances, then those of friction.
+    pub fn guard_names(&self) -> Vec<String> {
+        let tangents = self.tangents.iter();
+        let slips = tangents.map(|tangent| format!("slip of {}", self.names[tangent.place]));
+        self.names.iter().cloned().chain(slips).collect()
+    }
+
+    /// Returns the number of guards.
+    pub fn guard_count(&self) -> usize {
+        self.names.len() + self.tangents.len()
     }
 
     /// Returns true if a contact is closed.
@@ -92,8 +121,8 @@ impl Contacts {
         !self.closed.is_empty()
     }
 
-    /// Writes the guards, positive while the contacts keep their state: distances of open contacts
-    /// and forces of closed ones. The first call starts the motion.
+    /// Writes the guards, positive while the contacts keep their state: distances of open contacts,
+    /// forces of closed ones, then the guards of friction. The first call starts the motion.
     pub fn write_guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
         if self.start.is_none() {
             self.start_motion(own, point);
@@ -109,11 +138,11 @@ impl Contacts {
         for (slot, offset) in out.iter_mut().zip(&self.offsets) {
             *slot += offset;
         }
-        if !self.closed.is_empty() {
-            for (place, force) in self.closed.iter().zip(self.forces()) {
-                out[*place] = force + self.allowances[*place];
-            }
+        let forces = self.forces();
+        for (place, force) in self.closed.iter().zip(&forces.normal) {
+            out[*place] = force + self.allowances[*place];
         }
+        self.write_friction_guards(&forces, &mut out[self.names.len()..]);
     }
 
     /// Writes the bounds of the guards; those of closed contacts are unknown.
@@ -125,17 +154,27 @@ impl Contacts {
         for place in &self.closed {
             out[*place] = Enclosure::UNKNOWN;
         }
+        let slips = &mut out[self.names.len()..];
+        for (slot, tangent) in slips.iter_mut().zip(&self.tangents) {
+            *slot = match self.closed.contains(&tangent.place) {
+                true => Enclosure::UNKNOWN,
+                false => Enclosure::constant(1.0),
+            };
+        }
     }
 
     /// Adds the accelerations by the forces of closed contacts.
     pub fn add_to_rates(&mut self, own: &mut Evaluator, point: Point<'_>, rates: &mut [f64]) {
+        if self.has_no_forces {
+            return rates.fill(f64::NAN);
+        }
         if self.closed.is_empty() {
             return;
         }
         own.impacts(point, &mut self.at);
         let forces = self.forces();
         let degrees = own.program().degrees_of_freedom();
-        self.add_impulses(&self.closed, &forces, &mut rates[degrees..]);
+        self.add_forces(&self.closed, &forces, &mut rates[degrees..]);
     }
 
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
@@ -151,6 +190,11 @@ impl Contacts {
             Overlap::NoImpulse => format!(
                 "no impulses separate the bodies at the impact `{name}`, because of other impacts or \
                  constraints. Use a stiff spring instead of one of them"
+            ),
+            Overlap::NoForces => format!(
+                "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the \
+                 sliding bodies together faster than the contact can part them (Painlevé's paradox). Lower the \
+                 friction, or use a stiff spring and a friction force instead of the impact"
             ),
         })
     }
@@ -193,12 +237,69 @@ impl Contacts {
         let still: Vec<usize> = still.copied().collect();
         self.offset_distances(&touching, f64::MIN_POSITIVE);
         let degrees = own.program().degrees_of_freedom();
-        self.close(&still, distance_rounding(point.state, degrees, point.t));
+        let rounding = distance_rounding(point.state, degrees, point.t);
+        match self.has_friction() {
+            false => self.close(&still, rounding),
+            true => {
+                let started = self.start_resting(own, point, (&still, small), rounding);
+                self.note_forces(started);
+            }
+        }
+    }
+
+    /// Notes that the motion ends if there are no contact forces.
+    fn note_forces<T>(&mut self, found: Result<T, (usize, Overlap)>) -> Option<T> {
+        found
+            .map_err(|cause| {
+                self.overlap = Some(cause);
+                self.has_no_forces = true;
+            })
+            .ok()
+    }
+
+    /// Updates the modes of friction at a point between steps, where inputs may jump. Returns the guards of
+    /// friction that changed.
+    pub fn update_friction(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<usize> {
+        let degrees = own.program().degrees_of_freedom();
+        let rounding = distance_rounding(point.state, degrees, point.t);
+        let updated = self.update_modes(own, point, rounding);
+        let changed = self.note_forces(updated).unwrap_or_default();
+        let tangents = self.tangents.iter().enumerate();
+        let changed = tangents.filter(|(_, tangent)| changed.contains(&tangent.place));
+        changed.map(|(index, _)| self.names.len() + index).collect()
     }
 
     /// The forces of the closed contacts, in which their distances do not accelerate.
-    fn forces(&self) -> Vec<f64> {
-        self.solve_balance(&self.closed, |impact| impact.acceleration)
+    fn forces(&self) -> ContactForces {
+        match self.has_friction() {
+            true => self.friction_forces(),
+            false => ContactForces {
+                normal: self.solve_balance(&self.closed, |impact| impact.acceleration),
+                tangential: Vec::new(),
+            },
+        }
+    }
+
+    /// Returns the impulses that stop the closed contacts.
+    fn stopping(&self) -> ContactForces {
+        match self.has_friction() {
+            true => self.stopping_impulses(),
+            false => ContactForces {
+                normal: self.solve_balance(&self.closed, |impact| impact.rate),
+                tangential: Vec::new(),
+            },
+        }
+    }
+
+    /// Adds what normal and tangential impulses at these contacts do.
+    fn add_forces(&self, places: &[usize], impulses: &ContactForces, rates: &mut [f64]) {
+        self.add_impulses(places, &impulses.normal, rates);
+        for (place, impulse) in places.iter().zip(&impulses.tangential) {
+            let column = self.at[*place].friction.iter().flat_map(|one| &one.column);
+            for (rate, entry) in rates.iter_mut().zip(column) {
+                *rate += entry * impulse;
+            }
+        }
     }
 
     /// What at these contacts brings a quantity of theirs to zero.
@@ -221,11 +322,16 @@ impl Contacts {
     }
 
     /// The most that one of these impulses changes a rate by.
-    fn largest_push(&self, places: &[usize], impulses: &[f64]) -> f64 {
-        let pushes = places.iter().zip(impulses);
+    fn largest_push(&self, places: &[usize], impulses: &ContactForces) -> f64 {
+        let pushes = places.iter().zip(&impulses.normal);
         let pushes =
             pushes.map(|(place, impulse)| impulse.abs() * max_magnitude(&self.at[*place].column));
-        pushes.fold(0.0, f64::max)
+        let along = places.iter().zip(&impulses.tangential);
+        let along = along.map(|(place, impulse)| {
+            let friction = self.at[*place].friction.as_ref();
+            friction.map_or(0.0, |one| impulse.abs() * max_magnitude(&one.column))
+        });
+        pushes.chain(along).fold(0.0, f64::max)
     }
 
     /// Delassus' matrix of these contacts.

@@ -1,10 +1,35 @@
-//! Work of moving contacts. The force F of a contact whose distance g(q, t) depends on time has
-//! the power F g_q q' = F (g' - g_t). Its impulse P does the work -P g_t, without the loss by
-//! restitution.
+//! Work of contacts. The force F of a contact whose distance g(q, t) depends on time has the power
+//! F g_q q' = F (g' - g_t). Its impulse P does the work -P g_t, without the loss by restitution. Friction T along
+//! the slip s(q, q', t) has the power T (s - s_0), with s_0 the slip at zero rates, and its impulse does the
+//! work -P s_0 without the loss by friction.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, FrictionValues, Point};
 
 use super::Contacts;
+use super::tangents::ContactForces;
+
+/// Rates of the distances and slips at zero rates of the coordinates: motion of the contacts themselves.
+pub(super) struct Drifts {
+    pub normal: Vec<f64>,
+    /// Of all contacts; 0 without friction.
+    pub slips: Vec<f64>,
+}
+
+impl Drifts {
+    /// Returns the work (J) of impulses at these contacts against their own motion.
+    pub fn work_against(&self, places: &[usize], impulses: &ContactForces) -> f64 {
+        let normal = places.iter().zip(&impulses.normal);
+        let normal = normal.map(|(place, impulse)| impulse * self.normal[*place]);
+        let slips = places.iter().zip(&impulses.tangential);
+        let slips = slips.map(|(place, impulse)| impulse * self.slips[*place]);
+        normal.chain(slips).sum()
+    }
+
+    /// Returns true if a contact does not move itself.
+    pub fn is_still(&self, place: usize) -> bool {
+        self.normal[place] == 0.0 && self.slips[place] == 0.0
+    }
+}
 
 impl Contacts {
     /// Returns the power (W) of the forces of the closed contacts.
@@ -12,12 +37,21 @@ impl Contacts {
         if self.closed.is_empty() {
             return 0.0;
         }
-        let drifts = self.distance_rates_at_rest(own, point);
+        let drifts = self.drifts(own, point);
         own.impacts(point, &mut self.at);
-        let forces = self.closed.iter().zip(self.forces());
-        forces
-            .map(|(place, force)| force * (self.at[*place].rate - drifts[*place]))
-            .sum()
+        let forces = self.forces();
+        let normal = self.closed.iter().zip(&forces.normal);
+        let normal =
+            normal.map(|(place, force)| force * (self.at[*place].rate - drifts.normal[*place]));
+        let along = self.closed.iter().zip(&forces.tangential);
+        let along = along.map(|(place, force)| {
+            let slip = self.at[*place]
+                .friction
+                .as_ref()
+                .map_or(0.0, |one| one.slip);
+            force * (slip - drifts.slips[*place])
+        });
+        normal.chain(along).sum()
     }
 
     /// Returns the work (J) of moving contacts in the last impact.
@@ -25,12 +59,7 @@ impl Contacts {
         self.impact_work
     }
 
-    /// Returns the rate g_t of each distance at zero rates of the coordinates.
-    pub(super) fn distance_rates_at_rest(
-        &mut self,
-        own: &mut Evaluator,
-        point: Point<'_>,
-    ) -> Vec<f64> {
+    pub(super) fn drifts(&mut self, own: &mut Evaluator, point: Point<'_>) -> Drifts {
         let degrees = own.program().degrees_of_freedom();
         let mut state = point.state.to_vec();
         state[degrees..2 * degrees].fill(0.0);
@@ -39,6 +68,13 @@ impl Contacts {
             ..point
         };
         own.impacts(still, &mut self.at);
-        self.at.iter().map(|impact| impact.rate).collect()
+        let slip = |friction: &FrictionValues| friction.slip;
+        let slips = self.at.iter();
+        Drifts {
+            normal: self.at.iter().map(|impact| impact.rate).collect(),
+            slips: slips
+                .map(|impact| impact.friction.as_ref().map_or(0.0, slip))
+                .collect(),
+        }
     }
 }

@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::operating_point::{OperatingPoint, Setting};
+use crate::state_space::StateSpaceEvaluator;
 
 use super::linear::LinearisedEquations;
 
@@ -51,7 +51,7 @@ pub(super) enum Unknown {
 pub(super) struct Search<'i, 'm> {
     instance: &'i Instance<'m>,
     evaluator: Evaluator,
-    jacobians: JacobianEvaluator,
+    state_space: StateSpaceEvaluator<'i, 'm>,
     directions: Vec<Vec<f64>>,
     unknowns: Vec<Unknown>,
     /// Natural scales of the unknowns, if known.
@@ -82,7 +82,7 @@ impl<'i, 'm> Search<'i, 'm> {
         };
         Ok(Self {
             evaluator: instance.interpreter()?,
-            jacobians: instance.interpreted_jacobians()?,
+            state_space: instance.state_space_evaluator()?,
             instance,
             directions: directions.to_vec(),
             scales: unknowns.iter().map(scale).collect(),
@@ -198,16 +198,9 @@ impl<'i, 'm> Search<'i, 'm> {
         let states = at.state.len();
         let mut rates = vec![0.0; states];
         self.evaluator.rates(at.point(), &mut rates);
-        let mut dense = |of: Jacobian| {
-            let (rows, columns) = self.jacobians.shape(of);
-            DMatrix::from_row_slice(
-                rows,
-                columns,
-                &self.jacobians.evaluate_dense(of, at.point()),
-            )
-        };
-        let by_state = dense(Jacobian::RatesByState);
-        let by_inputs = dense(Jacobian::RatesByInputs);
+        let found = self.state_space.evaluate(at.point()).ok()?;
+        let by_state = DMatrix::from_row_slice(states, states, &found.a);
+        let by_inputs = DMatrix::from_row_slice(states, at.inputs.len(), &found.b);
         let rows = states - degrees;
         let matrix = DMatrix::from_fn(rows, self.unknowns.len(), |row, column| {
             let row = degrees + row;
@@ -284,10 +277,7 @@ impl<'i, 'm> Search<'i, 'm> {
 
     /// Returns true if a rate depends on time at a point.
     pub fn depends_on_time(&mut self, at: &OperatingPoint) -> bool {
-        let by_time = self
-            .jacobians
-            .evaluate_dense(Jacobian::RatesByTime, at.point());
-        by_time.iter().any(|rate| *rate != 0.0)
+        self.state_space.depends_on_time(at.point())
     }
 
     /// Returns the names of the unknowns.

@@ -118,11 +118,20 @@ fn format_number(value: f64) -> String {
     }
 }
 
-/// Formats a unit with superscript exponents, unless it has a fraction as an exponent.
+/// Formats a unit with the prefix µ and superscript exponents, unless it has a fraction as an exponent.
 pub fn format_unit(unit: &str) -> String {
     if unit.contains("^(") {
         return unit.to_owned();
     }
+    // A prefix is followed by its unit.
+    let unit = &unit
+        .split(' ')
+        .map(|part| match part.strip_prefix('u') {
+            Some(rest) if rest.starts_with(char::is_alphabetic) => format!("µ{rest}"),
+            _ => part.to_owned(),
+        })
+        .collect::<Vec<_>>()
+        .join(" ");
     let mut raised = false;
     let mut text = String::new();
     for letter in unit.chars() {
@@ -149,6 +158,7 @@ mod tests {
         for (unit, shown) in [
             ("m/s^2", "m/s²"),
             ("kg m^-10", "kg m⁻¹⁰"),
+            ("um", "µm"),
             ("N m", "N m"),
             ("1", "1"),
             ("m^(1/2)", "m^(1/2)"),

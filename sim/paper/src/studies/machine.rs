@@ -25,11 +25,12 @@ const PRESSURE: f64 = 24.6;
 
 pub(super) fn draw_machine() -> Figure {
     let caption = "The arm on its planetary reducer, every quantity drawn in its positive direction: angles theta_s, \
-                   theta_p and theta_c, mesh deflections x_sp and x_pr, the deflection w of the arm and that of its end, \
+                   theta_p and theta_c, motor torque T_M, mesh deflections x_sp and x_pr, forces F_sp and F_pr on a planet, the deflection w of the arm and that of its end, \
                    tip (dr in the paper), the lag dtheta of the carrier, and the two positioning errors f_la and f_la_signed";
     let parts = [
         gears(),
         meshes(),
+        forces(),
         arm(),
         errors(),
         draw_mesh_force(),
@@ -74,13 +75,13 @@ fn gears() -> Vec<Part> {
             LineStyle::Dimension,
             arc_points(CENTRE, 0.62 * SUN, (150.0, 400.0)),
         ),
-        words((CENTRE.0 - 13.0, CENTRE.1 + SUN + 15.0), -1, "theta_s"),
+        words((CENTRE.0 - 20.0, CENTRE.1 + SUN + 25.0), -1, "theta_s, T_M"),
         Part::Arrow(
             LineStyle::Dimension,
             arc_points(planet, 0.62 * PLANET, (240.0, -20.0)),
         ),
         words((planet.0 - 6.0, planet.1 + 20.0), 0, "theta_p"),
-        words((CENTRE.0, CENTRE.1 - RING - 22.0), 0, "ring, fixed"),
+        words((CENTRE.0 - 40.0, CENTRE.1 - RING - 22.0), 0, "ring, fixed"),
         words(
             (CENTRE.0, CENTRE.1 + RING + 30.0),
             0,
@@ -107,10 +108,31 @@ fn meshes() -> Vec<Part> {
         // The teeth of the sun move to the left there and push the planet.
         Part::Arrow(LineStyle::Dimension, along(sun, 180.0 - PRESSURE)),
         words((sun.0 - 48.0, sun.1 - 22.0), 1, "x_sp"),
-        // The teeth of the planet move to the right there and push the ring.
-        Part::Arrow(LineStyle::Dimension, along(ring, -PRESSURE)),
-        words((ring.0 + 48.0, ring.1 + 26.0), -1, "x_pr"),
+        // The teeth of the planet move to the right there and push the ring, outwards too.
+        Part::Arrow(LineStyle::Dimension, along(ring, PRESSURE)),
+        words((ring.0 + 46.0, ring.1 - 14.0), -1, "x_pr"),
     ]
+}
+
+/// Draws the forces of both meshes on the right planet. Their radial components push it out of each mesh.
+fn forces() -> Vec<Part> {
+    let place = PLANETS[2];
+    let planet = point_on_circle(CENTRE, SUN + PLANET, place);
+    let contacts = [
+        (place + 180.0, place + 90.0 - PRESSURE),
+        (place, place + 90.0 + PRESSURE),
+    ];
+    let arrow = |(contact, direction): (f64, f64)| {
+        let from = point_on_circle(planet, PLANET, contact);
+        let line = vec![from, point_on_circle(from, 40.0, direction)];
+        Part::Arrow(LineStyle::Dimension, line)
+    };
+    let mut parts: Vec<Part> = contacts.map(arrow).to_vec();
+    parts.extend([
+        words((planet.0 - 10.0, planet.1 - 20.0), -1, "F_sp"),
+        words((planet.0 + 12.0, planet.1 + 26.0), -1, "F_pr"),
+    ]);
+    parts
 }
 
 /// Draws the arm at rest on its carrier, and bent.
@@ -180,6 +202,26 @@ fn errors() -> Vec<Part> {
             "l dtheta: the carrier lags",
         ),
         words((end.0 + 30.0, end.1 + 18.0), -1, "tip: the end leads"),
+        Part::Arrow(
+            LineStyle::Dimension,
+            vec![
+                point_on_circle(CENTRE, LENGTH, CARRIER_WITHOUT_BACKLASH),
+                point_on_circle(
+                    point_on_circle(CENTRE, LENGTH, CARRIER_WITHOUT_BACKLASH),
+                    0.75 * TIP,
+                    CARRIER_WITHOUT_BACKLASH + 90.0,
+                ),
+            ],
+        ),
+        words(
+            point_on_circle(
+                point_on_circle(CENTRE, LENGTH - 12.0, CARRIER_WITHOUT_BACKLASH),
+                0.6 * TIP,
+                CARRIER_WITHOUT_BACKLASH + 90.0,
+            ),
+            1,
+            "f_la_signed",
+        ),
     ]
 }
 
@@ -218,11 +260,11 @@ fn draw_mesh_force() -> Vec<Part> {
 fn formulas() -> Vec<Part> {
     let mut parts = vec![Part::Heading((470.0, 352.0), "signs".to_owned())];
     let lines = [
-        "theta_s, theta_c: with the sun; theta_p: absolute, against it",
+        "theta_s, theta_c and the motor torque T_M: with the sun; theta_p: absolute, against it",
         "x_s = r_s theta_s,  x_p = r_p theta_p,  x_c = r_c cos(alpha) theta_c",
         "x_sp = x_s − x_p − x_c: the sun is ahead of the planet",
         "x_pr = x_p − x_c: the planet is ahead of the ring",
-        "F_sp, F_pr > 0 turn the carrier on, and F_sp turns the sun back",
+        "F_sp, F_pr > 0 push planet and carrier on, and F_sp turns the sun back",
         "w: with theta_c;  tip = w(l, t), dr in the paper",
         "dtheta = theta_s/i_sH − theta_c: a lag of the carrier",
         "f_la = l dtheta + tip: the sum that Eq. (24) prints",

@@ -44,7 +44,7 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
         match (first_difference(model, &known, given), form) {
             (None, None) => return arm_references(model, order, values),
             (None, Some(form)) => return closed_form(form, &known, model, order, values),
-            (Some(found), _) if known.name == model.name => {
+            (Some(found), _) if is_version_of(model, &known) => {
                 reason = format!(
                     "the equations differ from the hand-written ones of {}: {found}",
                     known.name
@@ -54,6 +54,16 @@ pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> Refer
         }
     }
     absent_reference("reference", reason)
+}
+
+/// Returns whether `model` describes the machine `known`, by its name and its coordinates. Another
+/// machine may have the same name.
+fn is_version_of(model: &Model, known: &Model) -> bool {
+    let coordinates = |model: &Model| -> Vec<String> {
+        let coordinates = model.coordinates.iter();
+        coordinates.map(|own| own.name.clone()).collect()
+    };
+    model.name == known.name && coordinates(model) == coordinates(known)
 }
 
 fn absent_reference(name: &str, reason: String) -> ReferenceEquations {

@@ -94,6 +94,15 @@ fn other_equations_have_no_reference_but_a_reason() {
 }
 
 #[test]
+fn another_machine_of_a_shipped_name_is_not_compared() {
+    let namesake = "[model]\nname = \"crane\"\ntitle = \"Trolley\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                    [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nm = \"1/2*m*dot(x)^2\"\n";
+    let (names, absent) = of(namesake, 0);
+    assert!(names.is_empty());
+    assert_eq!(absent[0].1, "there are no hand-written equations of crane");
+}
+
+#[test]
 fn arm_references_allow_other_plays_but_not_other_radii() {
     let wider = with(ARM, "b_sp = { value = 25e-6", "b_sp = { value = 80e-6");
     let heavier = with(&wider, "value = \"M_s*r_s^2\"", "value = 1e-3");

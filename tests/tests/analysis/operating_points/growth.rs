@@ -7,6 +7,12 @@ use eomgen_tests::program::path;
 
 const MAX_RATIO: f64 = 2.5;
 
+/// Axes of hinges.
+const SPATIAL: [char; 3] = ['x', 'y', 'z'];
+
+/// Ratio of a work that grows with the cube of the size. Eigenvalues of a connected machine take it.
+const CUBIC_RATIO: f64 = 8.0;
+
 fn section(name: &str, count: usize, line: &dyn Fn(usize) -> String) -> String {
     let lines = (0..count).map(|place| line(place) + "\n");
     format!("[{name}]\n{}", lines.collect::<String>())
@@ -46,6 +52,28 @@ fn chain_with_coefficients(count: usize) -> String {
         count,
         &(potential + &section("coefficients", count, &named)),
     )
+}
+
+/// Returns a chain of bodies on hinges about axes that repeat.
+fn hinged_bodies(count: usize, axes: &[char]) -> String {
+    let frame = |k: usize| {
+        let axis = axes[k % axes.len()];
+        let parent = match k {
+            0 => String::new(),
+            _ => format!(", in = \"f{}\", origin = [0, 0, \"-l\"]", k - 1),
+        };
+        format!("f{k} = {{ rotation = \"rotation_{axis}(q{k})\"{parent} }}")
+    };
+    let body = |k: usize| {
+        format!("f{k} = {{ frame = \"f{k}\", mass = \"m\", inertia = [\"J\", \"J\", \"J\"] }}")
+    };
+    "[model]\nname = \"hinged\"\ngravity = [0, 0, \"-g\"]\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+     l = { value = 1, unit = \"m\" }\nJ = { value = 1, unit = \"kg m^2\" }\n\
+     g = { value = 9.81, unit = \"m/s^2\" }\n"
+        .to_owned()
+        + &section("coordinates", count, &|k| format!("q{k} = {{ unit = \"rad\" }}"))
+        + &section("frames", count, &frame)
+        + &section("bodies", count, &body)
 }
 
 fn strings_with_impacts(count: usize) -> String {
@@ -92,6 +120,14 @@ fn instructions(command: &str, text: &str) -> f64 {
 /// Asserts that a command on a model of twice the size takes at most [`MAX_RATIO`] times the
 /// instructions.
 fn assert_growth(command: &str, size: usize, text: impl Fn(usize) -> String) {
+    assert_growth_below(MAX_RATIO, (command, size), text);
+}
+
+fn assert_growth_below(
+    max_ratio: f64,
+    (command, size): (&str, usize),
+    text: impl Fn(usize) -> String,
+) {
     if Command::new("valgrind").arg("--version").output().is_err() {
         skips::skip(
             "instructions were not counted: valgrind is missing (Debian: apt-get install valgrind)",
@@ -107,7 +143,7 @@ fn assert_growth(command: &str, size: usize, text: impl Fn(usize) -> String) {
     let [single, double] = [size, 2 * size].map(|size| instructions(command, &text(size)));
     let ratio = double / single;
     assert!(
-        ratio <= MAX_RATIO,
+        ratio <= max_ratio,
         "{command}: {single} to {double}, {ratio:.2}-fold"
     );
 }
@@ -135,6 +171,40 @@ fn check_of_coefficients_grows_linearly() {
 #[test]
 fn check_of_fields_with_impacts_grows_linearly() {
     assert_growth("check", 16, strings_with_impacts);
+}
+
+#[test]
+fn check_of_hinged_bodies_grows_linearly() {
+    assert_growth("check", 25, |count| hinged_bodies(count, &SPATIAL));
+}
+
+#[test]
+fn modes_of_connected_masses_grow_with_the_cube() {
+    assert_growth_below(CUBIC_RATIO, ("modes", 40), chain_with_coefficients);
+}
+
+#[test]
+fn modes_of_hinged_bodies_grow_with_the_cube() {
+    assert_growth_below(CUBIC_RATIO, ("modes", 4), |count| {
+        hinged_bodies(count, &SPATIAL)
+    });
+}
+
+/// With every entry of the Jacobians derived, this chain takes 1.5 GB.
+#[test]
+#[cfg(target_os = "linux")]
+fn modes_of_forty_hinged_bodies_take_less_than_800_mebibytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("model.toml");
+    std::fs::write(&file, hinged_bodies(40, &['y'])).expect("written");
+    let output = Command::new("sh")
+        .args(["-c", "ulimit -v 819200; exec \"$0\" modes \"$1\""])
+        .arg(path())
+        .arg(&file)
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn linearisation_matches_closed_form() {
     assert_eq!(numbers(&found["D"][0]), [0.0]);
     let out = folder.path().join("linear.json").display().to_string();
     let said = run_accepted(&["linearise", &model, "--set", "k=18", "--out", &out]);
-    assert!(said.contains("2 states, 1 inputs"), "{said}");
+    assert!(said.contains("2 states, 1 input, "), "{said}");
     let file: Value = serde_json::from_slice(&std::fs::read(&out).expect("a file")).expect("JSON");
     assert_eq!(file, found);
 }
@@ -214,6 +214,76 @@ fn equilibria_match_closed_form() {
     assert_eq!(none.status.code(), Some(1));
     let said = String::from_utf8_lossy(&none.stderr).into_owned();
     assert!(said.contains("no equilibrium was found"), "{said}");
+}
+
+#[test]
+fn inputs_with_steps_are_simulated_exactly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = write_model(folder.path(), OSCILLATOR);
+    let out = folder.path().join("stepped.csv").display().to_string();
+    let simulate = |input: &str| {
+        let arguments = ["simulate", &model, "--until", "3", "--interval", "0.01"];
+        let more = ["--input", input, "--out", &out, "--json"];
+        let summary = run_json(&[&arguments[..], &more].concat());
+        (
+            summary["solver"].as_str().expect("a name").to_owned(),
+            columns(Path::new(&out), &["t", "x"]),
+        )
+    };
+    let omega = 5.0_f64;
+    for (input, end) in [
+        ("u=10*above(t - 0.5)", f64::INFINITY),
+        ("u=10*(above(t - 0.5) - above(2*t - 4))", 2.0),
+    ] {
+        let (solver, rows) = simulate(input);
+        assert_eq!(solver, "exact", "{input}");
+        for row in rows {
+            let response = |from: f64| match row[0] > from {
+                true => 0.2 * (1.0 - (omega * (row[0] - from)).cos()),
+                false => 0.0,
+            };
+            let right = response(0.5) - response(end);
+            assert!((row[1] - right).abs() < 1e-13, "{input} {row:?} {right}");
+        }
+    }
+    let (solver, _) = simulate("u=10*above(t - 0.5)*t");
+    assert_eq!(solver, "rk");
+}
+
+#[test]
+fn equilibrium_is_printed_as_a_table_with_units() {
+    let spec = shipped("pendulum");
+    let output = run(&["trim", &spec, "--table"]);
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{table}");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("theta   3.14159 rad"), "{table}");
+    assert_eq!(table.lines().last(), Some("asymptotically stable"));
+    let both = run(&["trim", &spec, "--table", "--json"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
+fn amplitudes_of_several_units_are_labelled() {
+    let spec = eomgen_tests::models::project().join("examples/recipes/hydraulic_axis.toml");
+    let spec = spec.display().to_string();
+    let output = run(&["modes", &spec]);
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        table.contains("p_b 5.7939e9 Pa at 1 deg, x 1.0000 m, p_a"),
+        "{table}"
+    );
+    let found = run_json(&["modes", &spec, "--json"]);
+    let units = found["units"]["coordinates"].as_array().expect("units");
+    assert_eq!(
+        units.len(),
+        found["coordinates"].as_array().expect("names").len()
+    );
+    assert_eq!(
+        (&units[0], &units[1]),
+        (&"m".into(), &"Pa".into()),
+        "{found}"
+    );
 }
 
 fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {

@@ -89,7 +89,15 @@ pub fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     }
     found.sort();
     let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["map_poincare.png", "sweep.json", "sweep.parquet"]);
+    assert_eq!(
+        names,
+        [
+            "map_poincare.png",
+            "sweep.csv",
+            "sweep.json",
+            "sweep.parquet"
+        ]
+    );
     found
 }
 

@@ -144,7 +144,7 @@ fn samples_depend_on_seed_but_not_on_threads_shards_or_kills() {
         "{text}"
     );
     let whole = result_files(&place.path_to("one"));
-    assert_eq!(whole.len(), 5);
+    assert_eq!(whole.len(), 6);
     accept(&arguments(
         &place,
         "two",

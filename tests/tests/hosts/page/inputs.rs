@@ -50,6 +50,20 @@ fn prescribed_input_has_one_control() {
     }
 }
 
+#[test]
+fn machine_at_rest_starts_with_a_sine() {
+    let page = |name: &str| {
+        let spec = path(name).display().to_string();
+        run_accepted(&["page", &spec, "--out", "-"])
+    };
+    let resting = page("emps");
+    assert!(resting.contains("Without inputs this machine stays at rest."));
+    assert!(resting.contains("<option value=\"sine\" selected>"));
+    let moving = page("crane");
+    assert!(!moving.contains("stays at rest"));
+    assert!(!moving.contains("<option value=\"sine\" selected>"));
+}
+
 /// Returns the number of mentions in the script.
 fn script_mentions(page: &str) -> usize {
     let script = page.rsplit("<script>").next().unwrap_or_default();

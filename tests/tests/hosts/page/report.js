@@ -14,7 +14,7 @@
   const cell = document.querySelector("[data-left=now]");
   if (cell) {
     const canvas = document.getElementById("strips");
-    seen.computed = await until(() => cell.textContent !== "");
+    seen.computed = await until(() => cell.dataset.value !== undefined);
     seen.left = Number(cell.dataset.value);
     const before = [cell.textContent, canvas.toDataURL()];
     const slider = document.querySelector("[data-kind] input[type=range]");

@@ -82,6 +82,11 @@ fn report_slider_moves_found_friction() {
         let without = residual_on_page(&measured, "0");
         assert!(without > 5.0 * found, "{without} {found}");
     }
+    let page = std::fs::read_to_string(measured.file("out/report.html")).expect("a report");
+    assert!(
+        page.contains("data-left=\"now\">") && !page.contains("data-left=\"now\"></td>"),
+        "without JavaScript the table has no residuals"
+    );
     let Some(browser) = browser() else { return };
     for (width, dark) in [(1280, false), (400, true)] {
         let look = BrowserSettings {

@@ -1,0 +1,30 @@
+//! First motion of a page: a machine that stays at rest without inputs is driven by one of them.
+
+use eomgen_compiled_model::{CompiledModel, OperatingPoint};
+
+use crate::error::Result;
+
+/// Times at which the rates are evaluated, s; a forcing is not zero at all of them.
+const TIMES_S: [f64; 3] = [0.0, 0.37, 1.3];
+
+/// Returns true if the machine stays at the initial state with its default inputs.
+pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bool> {
+    let degrees = compiled.program().degrees_of_freedom();
+    if initial[degrees..2 * degrees]
+        .iter()
+        .any(|rate| *rate != 0.0)
+    {
+        return Ok(false);
+    }
+    let run = compiled.with_declared_parameters()?;
+    let is_equilibrium = |t: f64| {
+        let at = OperatingPoint {
+            t,
+            state: initial.to_vec(),
+            inputs: compiled.default_inputs(),
+        };
+        // A model without a Jacobian there is not judged.
+        run.is_equilibrium(&at).unwrap_or(false)
+    };
+    Ok(TIMES_S.into_iter().all(is_equilibrium))
+}

@@ -1,0 +1,191 @@
+//! Changes of the modes of closed contacts with friction.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
+
+use super::super::tangents::ContactForces;
+use super::super::{Contacts, Overlap};
+
+/// Rounding of a force, relative to the forces of its contact.
+const FORCE_ROUNDING: f64 = 1e-12;
+
+/// Acceleration of a slip, relative to the effect of the contact forces, that counts as zero.
+const MAX_STILL_FRACTION: f64 = 1e-9;
+
+/// Multiple of the rounding of a slip that counts as zero where other contacts stick.
+const NEAR_ROUNDINGS: f64 = 1e3;
+
+impl Contacts {
+    /// Changes the modes of closed contacts if a guard of theirs is negative: contacts that no longer push open,
+    /// sliding ends at zero slip, and rest ends at the limit of friction. Returns the contacts that changed.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    pub(in super::super) fn update_modes(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        rounding: f64,
+    ) -> Result<Vec<usize>, (usize, Overlap)> {
+        if !self.has_friction() || self.closed.is_empty() {
+            return Ok(Vec::new());
+        }
+        own.impacts(point, &mut self.at);
+        let places = self.closed.clone();
+        let forces = self.friction_forces();
+        let modes: Vec<ContactMode> = places.iter().map(|place| self.mode(*place)).collect();
+        let mut excluded = Vec::new();
+        for (index, place) in places.iter().enumerate() {
+            let is_pulling = forces.normal[index] + self.allowances[*place] < 0.0;
+            let tangent = self.tangent(*place);
+            let has_ended =
+                tangent.is_some_and(|own| self.friction_guard(own, index, &forces) < 0.0);
+            if is_pulling || has_ended {
+                excluded.push((index, modes[index]));
+            }
+        }
+        // Before the guards are NaN the forces may have grown beyond bounds.
+        let is_finite = forces.normal.iter().all(|force| force.is_finite());
+        if excluded.is_empty() && is_finite {
+            return Ok(Vec::new());
+        }
+        let roundings = self.slip_roundings(own, point);
+        let slipping = self.slip_directions(&roundings, &excluded);
+        let accelerations = self.free_accelerations(&places);
+        let problem = self.problem(&places, slipping, &accelerations);
+        let decided = problem.decide(Some(&modes), &excluded);
+        let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
+        let decision = decided.ok_or((places[0], Overlap::NoForces))?;
+        self.enter_modes(&places, &decision, &roundings, rounding);
+        let changed = places.iter().zip(modes.iter().zip(&decision.modes));
+        let changed = changed.filter(|(_, (before, after))| before != after);
+        Ok(changed.map(|(place, _)| *place).collect())
+    }
+
+    /// Returns the known directions of the slips; `None` for contacts that do not slip.
+    fn slip_directions(
+        &self,
+        roundings: &[f64],
+        ended: &[(usize, ContactMode)],
+    ) -> impl Fn(usize) -> Option<f64> + use<> {
+        let ended: Vec<usize> = ended.iter().map(|(index, _)| self.closed[*index]).collect();
+        let known = self
+            .tangents
+            .iter()
+            .zip(roundings)
+            .map(|(tangent, rounding)| {
+                let slip = self.slip(tangent.place);
+                let is_at_rest = match tangent.mode {
+                    _ if tangent.bears => true,
+                    ContactMode::Slides(_) if self.closed.contains(&tangent.place) => {
+                        let within = rounding.max(tangent.slip_offset);
+                        slip.abs() <= within || ended.contains(&tangent.place)
+                    }
+                    ContactMode::Sticks if self.closed.contains(&tangent.place) => true,
+                    _ => slip.abs() <= *rounding,
+                };
+                (tangent.place, (!is_at_rest).then(|| slip.signum()))
+            });
+        let known: Vec<(usize, Option<f64>)> = known.collect();
+        move |place| {
+            let found = known.iter().find(|(own, _)| *own == place);
+            found.and_then(|(_, direction)| *direction)
+        }
+    }
+
+    /// Decides the forces of contacts at rest in their normal directions, and the directions of zero slips.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    pub(in super::super) fn decide_resting(
+        &self,
+        places: &[usize],
+        (smallest, roundings): (f64, &[f64]),
+    ) -> Result<ContactDecision, (usize, Overlap)> {
+        let direction = |place: usize| {
+            let index = self.tangent_index(place)?;
+            let slip = self.slip(place);
+            (slip.abs() > roundings[index].max(smallest)).then(|| slip.signum())
+        };
+        let accelerations = self.free_accelerations(places);
+        let problem = self.problem(places, direction, &accelerations);
+        let decided = problem.decide(None, &[]);
+        decided.ok_or((places.first().copied().unwrap_or(0), Overlap::NoForces))
+    }
+
+    /// Enters decided modes: contacts that do not push open.
+    pub(in super::super) fn enter_modes(
+        &mut self,
+        places: &[usize],
+        decision: &ContactDecision,
+        roundings: &[f64],
+        distance_rounding: f64,
+    ) {
+        self.closed.clear();
+        let mut opened = Vec::new();
+        for (place, mode) in places.iter().zip(&decision.modes) {
+            match mode {
+                ContactMode::Open => opened.push(*place),
+                _ => self.closed.push(*place),
+            }
+            if let Some(index) = self.tangent_index(*place) {
+                self.tangents[index].mode = *mode;
+                self.tangents[index].bears = false;
+            }
+        }
+        self.offset_distances(&opened, distance_rounding);
+        let forces = self.friction_forces();
+        self.mark_bearing(&forces, roundings);
+        for index in 0..self.closed.len() {
+            let place = self.closed[index];
+            self.allowances[place] = (-2.0 * forces.normal[index]).max(0.0);
+            self.reset_offsets(place, index, &forces, roundings);
+        }
+    }
+
+    /// Marks contacts at the limit of friction whose slip other contacts keep at zero, as those of a box that rests
+    /// on two edges.
+    fn mark_bearing(&mut self, forces: &ContactForces, roundings: &[f64]) {
+        let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
+        if !self.closed.iter().any(sticks) {
+            return;
+        }
+        let free = self.free_accelerations(&self.closed);
+        let changes = self.rate_changes(&self.closed, forces);
+        let count = self.closed.len();
+        for index in 0..count {
+            let Some(tangent) = self.tangent_index(self.closed[index]) else {
+                continue;
+            };
+            let (acceleration, change) = (free[count + index], changes[count + index]);
+            let is_still = (acceleration + change).abs() <= MAX_STILL_FRACTION * change.abs();
+            let slides = matches!(self.tangents[tangent].mode, ContactMode::Slides(_));
+            let slip = self.slip(self.closed[index]);
+            self.tangents[tangent].bears =
+                slides && is_still && slip.abs() <= NEAR_ROUNDINGS * roundings[tangent];
+        }
+    }
+
+    /// Sets the offsets of a closed contact so that its guard of friction begins above zero.
+    pub(in super::super) fn reset_offsets(
+        &mut self,
+        place: usize,
+        index: usize,
+        forces: &ContactForces,
+        roundings: &[f64],
+    ) {
+        let Some(tangent) = self.tangent_index(place) else {
+            return;
+        };
+        let slip = self.slip(place);
+        let mu = self.friction_at(place).map_or(0.0, |one| one.coefficient);
+        let size = mu * forces.normal[index].abs() + forces.tangential[index].abs();
+        let margin = mu * forces.normal[index] - forces.tangential[index].abs();
+        let own = &mut self.tangents[tangent];
+        own.slip_offset = match own.mode {
+            ContactMode::Slides(side) => roundings[tangent].max(-2.0 * side * slip),
+            _ => 0.0,
+        };
+        own.force_allowance = (FORCE_ROUNDING * size).max(-2.0 * margin);
+    }
+}

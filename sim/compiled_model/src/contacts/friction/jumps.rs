@@ -1,0 +1,145 @@
+//! Impulses of contacts with friction. Restitution at a single contact is energetic (W. J. Stronge). Contacts
+//! that are hit together receive their impulses together, with a common limit of their restitutions.
+
+use eomgen_codegen::independence::vectors::max_magnitude;
+use eomgen_sim::contact_friction::{SingleImpact, energetic_impulse};
+
+use super::super::Contacts;
+use super::super::impulses::{ENERGY_GAIN_ROUNDING, RESTITUTION_HALVINGS};
+use super::super::tangents::ContactForces;
+
+/// A rate below this fraction of the largest is zero.
+const RATE_ROUNDING: f64 = 1e-12;
+
+impl Contacts {
+    /// Returns the impulses of contacts that touch and hit so long `ago` (s); `None` if none keep the bodies apart.
+    pub(in super::super) fn solve_friction_impulses(
+        &self,
+        touching: &[usize],
+        ago: f64,
+    ) -> Option<ContactForces> {
+        let required = touching.iter();
+        let required: Vec<f64> = required
+            .map(|place| self.required_rate_change(*place, ago, 1.0))
+            .collect();
+        let small = RATE_ROUNDING * max_magnitude(&required);
+        let mut hit = (0..touching.len()).filter(|index| required[*index] < -small);
+        if let (Some(index), None) = (hit.next(), hit.next())
+            && let Some(impulses) = self.solve_single(touching, index, ago)
+            && self.leaves_apart(touching, &impulses, ago)
+        {
+            return Some(impulses);
+        }
+        self.solve_together(touching, ago)
+    }
+
+    fn hit_slip(&self, place: usize, ago: f64) -> f64 {
+        let friction = self.friction_at(place);
+        friction.map_or(0.0, |friction| friction.slip - ago * friction.acceleration)
+    }
+
+    /// Returns the impulses if only one of the contacts receives one.
+    fn solve_single(&self, touching: &[usize], index: usize, ago: f64) -> Option<ContactForces> {
+        let place = touching[index];
+        let w = self.full_delassus(&[place]);
+        let friction = self.friction_at(place);
+        let [normal, tangential] = energetic_impulse(&SingleImpact {
+            w: [[w[0], w[1]], [w[2], w[3]]],
+            rates: [self.hit_rate(place, ago), self.hit_slip(place, ago)],
+            friction: friction.map_or(0.0, |friction| friction.coefficient),
+            restitution: match self.closed.contains(&place) {
+                true => 0.0,
+                false if !self.has_restitution => 0.0,
+                false => self.at[place].restitution,
+            },
+        })?;
+        let mut impulses = ContactForces {
+            normal: vec![0.0; touching.len()],
+            tangential: vec![0.0; touching.len()],
+        };
+        (impulses.normal[index], impulses.tangential[index]) = (normal, tangential);
+        Some(impulses)
+    }
+
+    /// Returns the rates of distances, then of slips, when they hit.
+    fn hit_rates(&self, touching: &[usize], ago: f64) -> Vec<f64> {
+        let normal = touching.iter().map(|place| self.hit_rate(*place, ago));
+        let slips = touching.iter().map(|place| self.hit_slip(*place, ago));
+        normal.chain(slips).collect()
+    }
+
+    /// Returns true if no distance decreases after these impulses.
+    fn leaves_apart(&self, touching: &[usize], impulses: &ContactForces, ago: f64) -> bool {
+        let before = self.hit_rates(touching, ago);
+        let changes = self.rate_changes(touching, impulses);
+        let small = RATE_ROUNDING * max_magnitude(&before);
+        let mut after = before.iter().zip(&changes).take(touching.len());
+        after.all(|(before, change)| before + change >= -small)
+    }
+
+    /// Returns the changes of the rates of distances, then of slips, by impulses.
+    pub(super) fn rate_changes(&self, touching: &[usize], impulses: &ContactForces) -> Vec<f64> {
+        let all: Vec<f64> = impulses
+            .normal
+            .iter()
+            .chain(&impulses.tangential)
+            .copied()
+            .collect();
+        let w = self.full_delassus(touching);
+        let rows = w.chunks_exact(all.len().max(1));
+        rows.map(|row| row.iter().zip(&all).map(|(w, p)| w * p).sum())
+            .collect()
+    }
+
+    /// Returns the impulses of contacts that are hit together: Newton's law in Moreau's form with Coulomb's law
+    /// of friction. The restitutions are limited so that the energy above that of the plastic impact is
+    /// at most e^2 times as large as before the impact.
+    fn solve_together(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
+        let before = self.hit_rates(touching, ago);
+        let with = |most: f64| {
+            let mut rates = before.clone();
+            for (rate, place) in rates.iter_mut().zip(touching) {
+                *rate = self.required_rate_change(*place, ago, most);
+            }
+            let decided = self.problem(touching, |_| None, &rates).decide(None, &[])?;
+            Some(ContactForces::from_directions(decided.impulses))
+        };
+        // Energy gained, and the size of its terms.
+        let gain = |impulses: &ContactForces| {
+            let changes = self.rate_changes(touching, impulses);
+            let all = impulses.normal.iter().chain(&impulses.tangential);
+            let rates = before.iter().zip(&changes);
+            let gains = all
+                .zip(rates)
+                .map(|(p, (before, change))| p * (before + 0.5 * change));
+            gains.fold((0.0, 0.0), |(sum, size), gain: f64| {
+                (sum + gain, size + gain.abs())
+            })
+        };
+        let plastic = with(0.0)?;
+        let open = touching.iter().filter(|place| !self.closed.contains(place));
+        let restitutions = open.map(|place| self.at[*place].restitution);
+        let largest = restitutions.fold(0.0, f64::max);
+        if largest == 0.0 {
+            return Some(plastic);
+        }
+        let bound = gain(&plastic).0 * (1.0 - largest * largest);
+        let is_energetic = |impulses: &ContactForces| {
+            let (sum, size) = gain(impulses);
+            sum <= bound + ENERGY_GAIN_ROUNDING * size
+        };
+        let elastic = with(1.0);
+        if let Some(impulses) = elastic.filter(|impulses| is_energetic(impulses)) {
+            return Some(impulses);
+        }
+        let (mut most, mut found) = (0.0, plastic);
+        let mut part = 0.5;
+        for _ in 0..RESTITUTION_HALVINGS {
+            if let Some(trial) = with(most + part).filter(|trial| is_energetic(trial)) {
+                (most, found) = (most + part, trial);
+            }
+            part *= 0.5;
+        }
+        Some(found)
+    }
+}

@@ -1,0 +1,186 @@
+//! Contact friction: modes of closed contacts, their forces and their guards.
+//!
+//! A closed contact with friction sticks or slides in a direction. The mode is constant between events, so that
+//! the rates are smooth: a contact that slides has the tangential force -mu N in its direction even in trial
+//! states beyond zero slip. `events` changes the modes, `jumps` computes impulses, `resting` closes
+//! contacts.
+
+mod events;
+mod jumps;
+mod resting;
+
+use eomgen_codegen::program::evaluator::{Evaluator, FrictionValues, Point};
+use eomgen_sim::contact_friction::{ContactFriction, ContactMode, ContactProblem};
+
+use super::Contacts;
+use super::tangents::{ContactForces, Tangent};
+
+/// Relative change of a rate for its effect on a slip.
+const RELATIVE_CHANGE: f64 = 1e-6;
+
+/// Rounding of a slip, relative to the sum of its terms.
+const SLIP_ROUNDING: f64 = 1024.0 * f64::EPSILON;
+
+impl Contacts {
+    pub(super) fn has_friction(&self) -> bool {
+        !self.tangents.is_empty()
+    }
+
+    /// Returns the index of a contact among those with friction.
+    fn tangent_index(&self, place: usize) -> Option<usize> {
+        self.tangents
+            .iter()
+            .position(|tangent| tangent.place == place)
+    }
+
+    fn tangent(&self, place: usize) -> Option<&Tangent> {
+        self.tangents.iter().find(|tangent| tangent.place == place)
+    }
+
+    /// Returns the mode of a closed contact.
+    fn mode(&self, place: usize) -> ContactMode {
+        let tangent = self.tangent(place);
+        tangent.map_or(ContactMode::Slides(0.0), |tangent| tangent.mode)
+    }
+
+    /// Returns the friction of a contact with friction at the last point.
+    fn friction_at(&self, place: usize) -> Option<&FrictionValues> {
+        self.at[place].friction.as_ref()
+    }
+
+    fn slip(&self, place: usize) -> f64 {
+        self.friction_at(place)
+            .map_or(0.0, |friction| friction.slip)
+    }
+
+    /// Returns the problem of some contacts with the slip directions `direction`, of which only those with
+    /// friction have one. The rates are those of the distances, then of the slips.
+    fn problem(
+        &self,
+        places: &[usize],
+        direction: impl Fn(usize) -> Option<f64>,
+        rates: &[f64],
+    ) -> ContactProblem {
+        let friction = places.iter().map(|place| match self.friction_at(*place) {
+            Some(friction) => ContactFriction {
+                coefficient: friction.coefficient,
+                direction: direction(*place),
+            },
+            None => ContactFriction::NONE,
+        });
+        ContactProblem::new(friction.collect(), &self.full_delassus(places), rates)
+    }
+
+    /// Returns Delassus' matrix of the normal and the tangential directions, row by row.
+    fn full_delassus(&self, places: &[usize]) -> Vec<f64> {
+        let impacts = self.names.len();
+        let normal = places.iter().map(|place| Some(*place));
+        let tangents = places.iter().map(|place| self.tangent_index(*place));
+        let columns: Vec<Option<usize>> = normal
+            .chain(tangents.map(|index| index.map(|index| impacts + index)))
+            .collect();
+        let normal = places.iter().map(|place| Some(&self.at[*place].delassus));
+        let tangents = places.iter().map(|place| self.friction_at(*place));
+        let rows = normal.chain(tangents.map(|one| one.map(|friction| &friction.delassus)));
+        let entries = rows.flat_map(|row| {
+            let columns = columns.iter();
+            columns.map(move |column| row.zip(*column).map_or(0.0, |(row, column)| row[column]))
+        });
+        entries.collect()
+    }
+
+    /// Returns the accelerations of distances and slips without contact forces.
+    fn free_accelerations(&self, places: &[usize]) -> Vec<f64> {
+        let normal = places.iter().map(|place| self.at[*place].acceleration);
+        let tangential = places.iter().map(|place| {
+            let friction = self.friction_at(*place);
+            friction.map_or(0.0, |friction| friction.acceleration)
+        });
+        normal.chain(tangential).collect()
+    }
+
+    /// Returns the forces of the closed contacts in their modes.
+    pub(super) fn friction_forces(&self) -> ContactForces {
+        let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
+        let rates = self.free_accelerations(&self.closed);
+        let problem = self.problem(&self.closed, |_| None, &rates);
+        ContactForces::from_directions(problem.impulses(&modes))
+    }
+
+    /// Returns the impulses that stop the closed contacts and the slips of those that stick.
+    pub(super) fn stopping_impulses(&self) -> ContactForces {
+        let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
+        let modes = self.closed.iter().map(|place| match sticks(place) {
+            true => ContactMode::Sticks,
+            false => ContactMode::Slides(0.0),
+        });
+        let modes: Vec<ContactMode> = modes.collect();
+        let normal = self.closed.iter().map(|place| self.at[*place].rate);
+        let slips = self.closed.iter().map(|place| self.slip(*place));
+        let rates: Vec<f64> = normal.chain(slips).collect();
+        let problem = self.problem(&self.closed, |_| None, &rates);
+        ContactForces::from_directions(problem.impulses(&modes))
+    }
+
+    /// Writes the guards of friction: the slip in its direction while a contact slides, the margin mu N - |T|
+    /// while it sticks.
+    pub(super) fn write_friction_guards(&self, forces: &ContactForces, out: &mut [f64]) {
+        for (slot, tangent) in out.iter_mut().zip(&self.tangents) {
+            let closed = self.closed.iter().position(|place| *place == tangent.place);
+            *slot = match closed {
+                Some(index) => self.friction_guard(tangent, index, forces),
+                None => 1.0,
+            };
+        }
+    }
+
+    /// Returns the guard of a closed contact, the one with this index among the closed ones.
+    fn friction_guard(&self, tangent: &Tangent, index: usize, forces: &ContactForces) -> f64 {
+        let Some(friction) = self.friction_at(tangent.place) else {
+            return 1.0;
+        };
+        match tangent.mode {
+            _ if tangent.bears => 1.0,
+            ContactMode::Slides(side) => side * friction.slip + tangent.slip_offset,
+            ContactMode::Sticks => {
+                let bound = friction.coefficient * forces.normal[index];
+                bound - forces.tangential[index].abs() + tangent.force_allowance
+            }
+            ContactMode::Open => 1.0,
+        }
+    }
+
+    /// Returns the effect of rounding of the rates on each slip.
+    fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+        let degrees = own.program().degrees_of_freedom();
+        own.impacts(point, &mut self.at);
+        let slips = |contacts: &Self| -> Vec<f64> {
+            let tangents = contacts.tangents.iter();
+            tangents
+                .map(|tangent| contacts.slip(tangent.place))
+                .collect()
+        };
+        let here = slips(self);
+        let mut sums = vec![0.0; here.len()];
+        let mut moved = point.state.to_vec();
+        for entry in degrees..2 * degrees {
+            if moved[entry] == 0.0 {
+                continue;
+            }
+            moved[entry] *= 1.0 + RELATIVE_CHANGE;
+            let beside = Point {
+                state: &moved,
+                ..point
+            };
+            own.impacts(beside, &mut self.at);
+            for (sum, (a, b)) in sums.iter_mut().zip(slips(self).iter().zip(&here)) {
+                *sum += (a - b).abs() / RELATIVE_CHANGE;
+            }
+            moved[entry] = point.state[entry];
+        }
+        own.impacts(point, &mut self.at);
+        sums.iter()
+            .map(|sum| f64::MIN_POSITIVE + SLIP_ROUNDING * sum)
+            .collect()
+    }
+}

@@ -1,0 +1,119 @@
+//! Contacts with friction that close: at the start and after an impact.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::contact_friction::ContactMode;
+
+use super::super::impulses::Flight;
+use super::super::tangents::ContactForces;
+use super::super::{Contacts, DISTANCE_ROUNDING, Overlap, distance_rounding};
+
+impl Contacts {
+    /// Closes those of the contacts at rest that push at the start. Slips up to `small` are zero.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    pub(in super::super) fn start_resting(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        (still, small): (&[usize], f64),
+        rounding: f64,
+    ) -> Result<(), (usize, Overlap)> {
+        if still.is_empty() {
+            return Ok(());
+        }
+        let roundings = self.slip_roundings(own, point);
+        let decision = self.decide_resting(still, (small, &roundings))?;
+        self.enter_modes(still, &decision, &roundings, rounding);
+        Ok(())
+    }
+
+    /// Closes those that touch and would not fly after an impact, or that move on together.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    pub(in super::super) fn close_resting_with_friction(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        touching: &[usize],
+        flight: &Flight,
+    ) -> Result<(), (usize, Overlap)> {
+        let roundings = self.slip_roundings(own, point);
+        self.closed.clear();
+        let mut resting: Vec<usize> = Vec::new();
+        let mut decision = None;
+        let mut even = flight.acceleration_rounding;
+        let mut accelerations = self.resting_accelerations(touching, (&[], &Default::default()));
+        loop {
+            let is_next = |(place, acceleration): &(&usize, &f64)| {
+                let rate = self.at[**place].rate;
+                !resting.contains(*place) && flight.is_none(rate, **acceleration, even)
+            };
+            let Some((next, _)) = touching.iter().zip(&accelerations).find(is_next) else {
+                break;
+            };
+            resting.push(*next);
+            let decided = self.decide_resting(&resting, (flight.rate_rounding, &roundings))?;
+            let forces = ContactForces::from_directions(decided.impulses.clone());
+            even = flight.acceleration_rounding
+                + DISTANCE_ROUNDING * self.largest_push(&resting, &forces);
+            accelerations = self.resting_accelerations(touching, (&resting, &forces));
+            decision = Some(decided);
+        }
+        self.offset_distances(touching, f64::MIN_POSITIVE);
+        let Some(mut decision) = decision else {
+            return Ok(());
+        };
+        // Contacts that move on together without a force stay closed.
+        for (place, mode) in resting.iter().zip(&mut decision.modes) {
+            let among = touching.iter().zip(&accelerations);
+            let is_even = among
+                .filter(|(own, _)| *own == place)
+                .any(|(_, a)| *a <= even);
+            if *mode == ContactMode::Open && is_even {
+                let is_slipping = self.tangent_index(*place).is_some_and(|index| {
+                    self.slip(*place).abs() > roundings[index].max(flight.rate_rounding)
+                });
+                *mode = match (self.tangent_index(*place), is_slipping) {
+                    (None, _) => ContactMode::Slides(0.0),
+                    (Some(_), true) => ContactMode::Slides(self.slip(*place).signum()),
+                    (Some(_), false) => ContactMode::Sticks,
+                };
+            }
+        }
+        let degrees = own.program().degrees_of_freedom();
+        let rounding = distance_rounding(point.state, degrees, point.t);
+        self.enter_modes(&resting, &decision, &roundings, rounding);
+        for place in self.closed.clone() {
+            let least = even / self.at[place].delassus[place];
+            self.allowances[place] = self.allowances[place].max(least);
+            let tangents = self.tangents.iter_mut().filter(|own| own.place == place);
+            for tangent in tangents {
+                tangent.force_allowance = tangent.force_allowance.max(least);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the accelerations of the distances of contacts with these forces at others.
+    fn resting_accelerations(
+        &self,
+        touching: &[usize],
+        (resting, forces): (&[usize], &ContactForces),
+    ) -> Vec<f64> {
+        let impacts = self.names.len();
+        let acceleration = |place: &usize| {
+            let impact = &self.at[*place];
+            let normal = resting.iter().zip(&forces.normal);
+            let normal = normal.map(|(other, force)| impact.delassus[*other] * force);
+            let along = resting.iter().zip(&forces.tangential);
+            let along = along.filter_map(|(other, force)| {
+                let column = impacts + self.tangent_index(*other)?;
+                Some(impact.delassus[column] * force)
+            });
+            impact.acceleration + normal.chain(along).sum::<f64>()
+        };
+        touching.iter().map(acceleration).collect()
+    }
+}

@@ -1,0 +1,313 @@
+//! Linearisation of a model at a point, and the cause if there is none.
+
+use eomgen_codegen::program::Variable;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_codegen::singular_terms::{SingularTerm, singular_terms};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::RESIDUAL;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::model::CompiledModel;
+use crate::state_space::StateSpace;
+
+/// Largest magnitude of a state or an input whose fourth power does not overflow.
+const LARGEST_VALUE: f64 = 1e75;
+
+/// Variables listed in a message.
+const MAX_LISTED: usize = 6;
+
+/// Cure of a term without a derivative.
+const SMOOTH_FORMS: &str = "choose another state (--state), or write a smooth form with a small eps: sqrt(v^2 + eps^2) \
+    instead of norm(v) or abs(v), x/sqrt(x + eps) instead of sqrt(x)";
+
+/// Linearisation of a model about a point: d(dx)/dt = f + A dx + B du and dy = C dx + D du, with
+/// the deviations dx, du, dy from the point. Matrices are row-major.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearisation {
+    /// Matrix A: rates by states.
+    pub a: Vec<f64>,
+    /// Matrix B: rates by inputs.
+    pub b: Vec<f64>,
+    /// Matrix C: observables by states.
+    pub c: Vec<f64>,
+    /// Matrix D: observables by inputs.
+    pub d: Vec<f64>,
+    /// Rates f at the point, SI; zero at an equilibrium.
+    pub rates: Vec<f64>,
+    /// Observables at the point, SI.
+    pub observables: Vec<f64>,
+}
+
+impl Linearisation {
+    /// Returns the rows of H in H dx = 0, the constraints on small motions dx, row-major:
+    /// derivatives of all residuals, and of the rates of holonomic residuals. Empty without
+    /// constraints.
+    pub fn constraint_matrix(&self, model: &CompiledModel) -> Vec<f64> {
+        let states = self.rates.len();
+        let names = model.observable_names();
+        let mut held = Vec::new();
+        for constraint in &model.model().constraints {
+            let residual = format!("{RESIDUAL}{}", constraint.name);
+            let Some(row) = names.iter().position(|name| *name == residual) else {
+                continue;
+            };
+            let row = &self.c[row * states..][..states];
+            held.extend(row);
+            if !constraint.is_nonholonomic {
+                let rate = |column: usize| -> f64 {
+                    let entries = row.iter().enumerate();
+                    entries
+                        .map(|(place, entry)| entry * self.a[place * states + column])
+                        .sum()
+                };
+                held.extend((0..states).map(rate));
+            }
+        }
+        held
+    }
+}
+
+impl Instance<'_> {
+    /// Linearises the model about a time (s), a state and inputs, SI.
+    ///
+    /// # Errors
+    /// Same as [`Instance::jacobian_evaluator`], and a derivative that has no finite limit at the
+    /// point, with the place of its term.
+    pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
+        let mut evaluator = self.interpreter()?;
+        let StateSpace { a, b, c, d } = self.state_space_evaluator()?.evaluate(point)?;
+        let mut rates = vec![0.0; evaluator.program().states()];
+        evaluator.rates(point, &mut rates);
+        let mut observables = vec![0.0; evaluator.program().observables.len()];
+        evaluator.observables(point, &mut observables);
+        let all = [&a, &b, &c, &d, &rates, &observables];
+        if !all.into_iter().flatten().all(|number| number.is_finite()) {
+            return Err(self.no_linearisation_error(point));
+        }
+        Ok(Linearisation {
+            a,
+            b,
+            c,
+            d,
+            rates,
+            observables,
+        })
+    }
+
+    /// Returns the error for a point without a linearisation, with its cause.
+    pub(crate) fn no_linearisation_error(&self, point: Point<'_>) -> Error {
+        let model = self.model().model();
+        if let Some(far) = self.out_of_range(point) {
+            return Error::Request(far);
+        }
+        let found = singular_terms(model, self.model().orders(), self.values(), point);
+        let found = match found {
+            Ok(found) => found,
+            Err(found) => return found.into(),
+        };
+        let Some((first, others)) = found.split_first() else {
+            return Error::Request(format!(
+                "an acceleration of the model `{}` or its derivative is not finite at this state: check for a \
+                 stiffness or mass that is too large or too small",
+                model.name
+            ));
+        };
+        let what = match first.has_value {
+            true => "a derivative has no finite limit",
+            false => "a term has no finite value",
+        };
+        let message = format!(
+            "the model `{}` has no linearisation at this state: {what}",
+            model.name
+        );
+        let diagnostic = Diagnostic::error(message)
+            .with_span(first.span, self.singularity(first, point))
+            .with_help(SMOOTH_FORMS);
+        let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| {
+            diagnostic.with_related_span(other.span, self.singularity(other, point))
+        });
+        Diagnostics::from_one(model.source.clone(), diagnostic).into()
+    }
+
+    /// Returns the message for a state or an input so large that its powers overflow.
+    fn out_of_range(&self, point: Point<'_>) -> Option<String> {
+        let states = self.model().state_names().into_iter().zip(point.state);
+        let inputs = self.model().model().inputs.iter();
+        let inputs = inputs.map(|input| input.name.clone()).zip(point.inputs);
+        let mut all = states.chain(inputs);
+        let (name, value) = all.find(|(_, value)| value.abs() > LARGEST_VALUE)?;
+        Some(format!(
+            "{name} = {value:e} (SI) is out of range: its powers exceed the largest number of a computer, about \
+             1e308; give a value that the machine can reach"
+        ))
+    }
+
+    /// Returns kind, variables and point of a singularity, for a message.
+    fn singularity(&self, term: &SingularTerm, point: Point<'_>) -> String {
+        let program = self.model().program();
+        let names = self.model().state_names();
+        let units = self.model().state_units();
+        let inputs = &self.model().model().inputs;
+        let quantity = |variable: &Variable| {
+            let place = program.variable_place(*variable);
+            match variable {
+                Variable::Input(_) => {
+                    let input = &inputs[place];
+                    (
+                        input.name.clone(),
+                        point.inputs[place],
+                        input.unit.to_string(),
+                    )
+                }
+                _ => (
+                    names[place].clone(),
+                    point.state[place],
+                    units[place].clone(),
+                ),
+            }
+        };
+        let list = |parts: Vec<String>| match parts.get(..MAX_LISTED) {
+            Some(first) if parts.len() > MAX_LISTED => format!("{}, ...", first.join(", ")),
+            _ => parts.join(", "),
+        };
+        let at = term.of.iter().map(quantity);
+        let at = list(
+            at.map(|(name, value, unit)| format!("{name} = {value} {unit}"))
+                .collect(),
+        );
+        let by = term.by.iter().map(quantity);
+        let by = list(by.map(|(name, ..)| format!("`{name}`")).collect());
+        match (term.has_value, term.by.is_empty()) {
+            (false, _) => format!("the {} has no finite value at {at}", term.name),
+            (true, true) => format!("the {} has no derivative at {at}", term.name),
+            (true, false) => format!("the {} has no derivative by {by} at {at}", term.name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Jacobian;
+    use crate::Orders;
+
+    const DRIVEN: &str = r#"
+[model]
+name = "driven"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 8, unit = "N/m" }
+c = { value = 3, unit = "N s/m" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+[forces]
+motor = { on = "x", value = "u" }
+[observables]
+pull = { value = "k*x + u", unit = "N" }
+"#;
+
+    #[test]
+    fn term_without_derivative_is_named_with_variable_and_point() {
+        for (force, cause, place) in [
+            (
+                "F*dot(x)/abs(dot(x))",
+                "a term has no finite value",
+                "the force `motor` has no finite value at x_dot = 0 m/s, u = 0 N",
+            ),
+            (
+                "F*sqrt(abs(x)/l)",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
+            (
+                "F*(abs(x)/l)^0.3",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
+            (
+                "F*sqrt(max(x/l, 0))",
+                "a derivative has no finite limit",
+                "the force `motor` has no derivative by `x` at x = 0 m, u = 0 N",
+            ),
+        ] {
+            let found = refused(force, [0.0, 0.0]).to_string();
+            for part in [cause, place, force, "sqrt(v^2 + eps^2)"] {
+                assert!(found.contains(part), "{part}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn state_out_of_range_is_named() {
+        let found = refused("F*x/l", [1e300, 0.0]).to_string();
+        assert!(
+            found.starts_with("x = 1e300 (SI) is out of range"),
+            "{found}"
+        );
+        let found = refused("F*(x/l)^3", [0.0, -1e200]).to_string();
+        assert!(
+            found.starts_with("x_dot = -1e200 (SI) is out of range"),
+            "{found}"
+        );
+    }
+
+    /// Returns the error of the driven machine with another force.
+    fn refused(force: &str, state: [f64; 2]) -> Error {
+        let text = DRIVEN
+            .replace("value = \"u\"", &format!("value = \"u + {force}\""))
+            .replace("1/2*k*x^2", "1/2*k*x^2 + 1/4*k*x^4/l^2")
+            .replace(
+                "c = {",
+                "F = { value = 1, unit = \"N\" }\nl = { value = 1, unit = \"m\" }\nc = {",
+            );
+        let model = CompiledModel::from_text("driven.toml", &text, Orders::Declared);
+        let model = model.unwrap_or_else(|error| panic!("{force}: {error}"));
+        let run = model.with_declared_parameters().expect("an instance");
+        let point = Point {
+            t: 0.0,
+            state: &state,
+            inputs: &[0.0],
+        };
+        match run.linearise(point) {
+            Err(error) => error,
+            Ok(_) => panic!("{force} was linearised"),
+        }
+    }
+
+    #[test]
+    fn linearisation_of_linear_model_is_exact() {
+        let model = CompiledModel::from_text("driven.toml", DRIVEN, Orders::Declared);
+        let model = model.expect("a model");
+        let run = model.with_parameters(&[("k", 18.0)]).expect("an instance");
+        let (state, inputs) = ([0.1, 0.3], [4.0]);
+        let point = Point {
+            t: 0.0,
+            state: &state,
+            inputs: &inputs,
+        };
+        let found = run.linearise(point).expect("a linearisation");
+        assert_eq!(found.a, [0.0, 1.0, -9.0, -1.5]);
+        assert_eq!(found.b, [0.0, 0.5]);
+        // pull, energy and its rate by the damper and the motor.
+        assert_eq!(found.c[..2], [18.0, 0.0]);
+        assert_eq!(found.d[..2], [1.0, 0.0]);
+        for (value, right) in found.rates.iter().zip([0.3, 2.0 - 0.9 - 0.45]) {
+            assert!((value - right).abs() < 1e-15);
+        }
+        assert!((found.observables[0] - 5.8).abs() < 1e-15);
+        let mut by_parameters = [0.0; 6];
+        let mut jacobians = run.jacobian_evaluator().expect("Jacobians");
+        jacobians.evaluate(Jacobian::RatesByParameters, point, &mut by_parameters);
+        assert_eq!(by_parameters[..3], [0.0; 3]);
+        assert!((by_parameters[4] + 0.05).abs() < 1e-16); // d(-k x/m)/dk
+    }
+}
