@@ -1,47 +1,44 @@
-//! The arm at S = 4 for the general solvers: the generated equations with their switching surfaces, and the same motion
+//! The arm at S = 4 for the general solvers: the compiled model with its switching surfaces, and the same motion
 //! in variables with a continuous right-hand side.
 
+use std::cell::RefCell;
+use std::path::Path;
+
+use eomgen_compiled_model::{CompiledModel, DrivenModel, Orders};
 use eomgen_generated::planetary_arm_order_4 as g;
-use eomgen_sim::ode::System;
+use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
 /// Number of states: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
 pub const STATES: usize = g::STATES;
 
 const DEGREES: usize = STATES / 2;
 
-/// Generated equations; both ends of each play are switching surfaces.
+/// Compiled model, as `simulate` runs it; both ends of each play are switching surfaces.
 pub struct Located {
-    coefficients: g::Coefficients,
+    model: CompiledModel,
 }
 
 impl Located {
-    /// Creates the reference case, with the parameters of the specification.
+    /// Compiles the reference case, with the parameters of the specification.
     pub fn new() -> Self {
-        Self {
-            coefficients: g::Coefficients::prepare(&g::Parameters::default()),
-        }
-    }
-}
-
-impl System for Located {
-    fn state_count(&self) -> usize {
-        STATES
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../model-spec/models/planetary_arm.toml");
+        let model = CompiledModel::load(path, Orders::Uniform(4)).expect("the model compiles");
+        Self { model }
     }
 
-    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        if let Some(state) = y.first_chunk() {
-            let inputs = g::Inputs::default();
-            out.copy_from_slice(&g::rates(t, state, &inputs, &self.coefficients));
-        }
-    }
-
-    fn guard_count(&self) -> usize {
-        4
-    }
-
-    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-        let (sp, pr) = (self.coefficients.b_sp, self.coefficients.b_pr);
-        out.copy_from_slice(&[y[0] - sp, y[0] + sp, y[1] - pr, y[1] + pr]);
+    /// Simulates one second from rest and returns the states at `times` (s) and at the end.
+    pub fn simulate(&self, times: &[f64], settings: &Settings) -> Option<Trajectory> {
+        let instance = self.model.with_declared_parameters().ok()?;
+        let (evaluator, inputs) = (
+            RefCell::new(instance.evaluator().ok()?),
+            instance.default_inputs(),
+        );
+        let system = DrivenModel::new(&evaluator, &inputs)
+            .with_typical_sizes(self.model.typical_sizes())
+            .with_sides(instance.sided_model().ok()?);
+        let start = [0.0; STATES];
+        simulate(&system, &start, (0.0, 1.0), times, settings, &mut |_| {}).ok()
     }
 }
 

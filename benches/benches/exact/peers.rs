@@ -3,7 +3,7 @@
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
-use eomgen_sim::ode::{Method, Settings, simulate};
+use eomgen_sim::ode::{Method, Settings};
 
 use crate::arm::{Located, Momentum, STATES};
 
@@ -29,7 +29,7 @@ pub const ALL: [Peer; 6] = [
 /// General solver and its treatment of switches.
 #[derive(Clone, Copy)]
 pub enum Peer {
-    /// Solver of this project with the generated equations; every switch is located.
+    /// Solver of this project with the compiled model; every switch is located.
     Located(Method),
     /// Crate `differential-equations`, in momentum-like variables. Its error control handles switches as
     /// discontinuities of the second derivative.
@@ -129,8 +129,7 @@ fn locate(arm: &Located, method: Method, tolerance: f64, times: &[f64]) -> Optio
         method,
         ..Settings::with_tolerance(tolerance)
     };
-    let start = [0.0; STATES];
-    let found = simulate(arm, &start, (0.0, 1.0), times, &settings, &mut |_| {}).ok()?;
+    let found = arm.simulate(times, &settings)?;
     let samples = found.states.iter().map(|state| state[0]).collect();
     Some((found.final_state[0], samples))
 }

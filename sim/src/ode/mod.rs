@@ -1,26 +1,20 @@
 //! General solvers for y' = f(t, y) with switching surfaces.
 //!
-//! A [`System`] is evaluated under `watch`, which detects a trial state outside the regime in
-//! which the step began. A `stepper` makes single steps: `dormand_prince` (Runge-Kutta, order 8),
+//! `watch` fixes the sides of the surfaces of a [`System`] during a step, so that its rates are smooth and a step may pass a
+//! surface. A `stepper` makes single steps: `dormand_prince` (Runge-Kutta, order 8; with `slopes` and `tableau`),
 //! `adams` (multistep, variable order; with `attempt` and `history`) or `radau` (implicit, order
-//! 5; with `collocation`). `crossing` approaches a switching surface by steps on one side and then
-//! steps across it. `examination` searches each step for crossings: `event_search` by bounds of the
+//! 5; with `collocation`). `examination` searches each step for crossings: `event_search` by bounds of the
 //! switching functions over its interior, a polynomial in `bernstein` form; `grazing` and
-//! `resolution` by samples, for functions without bounds. `driver` combines these into a
-//! [`Trajectory`], with `passage`, `limits` and `stiffness`. No step averages over a kink or jump
+//! `resolution` by samples, for functions without bounds. `location` finds the root on the interior and makes steps that
+//! end at the surface; `passage` applies the event there. `driver` combines these into a
+//! [`Trajectory`], with `limits` and `stiffness`. No step averages over a kink or jump
 //! of the right-hand side, which would reduce the order of the method.
-//!
-//! The Runge-Kutta steps come from the crate `differential-equations`. Its interpolation within
-//! steps has order 4 instead of 7 in version 0.7; `continuous_extension` corrects this without
-//! further evaluations. The coefficients of its Verner methods have only eleven digits. Its
-//! predictor-corrector method restarts from three Runge-Kutta steps after every step, without
-//! error control, so the Adams method is implemented here.
 //!
 //! # Tolerance
 //!
 //! `tolerance` is relative and applies to each component: the estimated error of a step in
-//! component i stays below `tolerance` times (|y_i| + the largest |y_i| up to now), as a root mean
-//! square over the components. It does not depend on units: deflections of micrometres and
+//! component i stays below `tolerance` times (|y_i| + the largest |y_i| up to now), for `adams` and `radau` as a root
+//! mean square over the components. It does not depend on units: deflections of micrometres and
 //! rotations of several radians get the same number of digits. Until a component moves,
 //! [`UNMOVED_SIZE_FRACTION`] of its typical size ([`System::typical_sizes`]) counts as its largest
 //! magnitude.
