@@ -21,8 +21,8 @@ pub struct Located {
 impl Located {
     /// Compiles the reference case, with the parameters of the specification.
     pub fn new() -> Self {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../model-spec/models/planetary_arm.toml");
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
         let model = CompiledModel::load(path, Orders::Uniform(4)).expect("the model compiles");
         Self { model }
     }

@@ -100,6 +100,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         settings,
         samples,
         end: span.1,
+        until: span.1,
         recent: VecDeque::new(),
         pace: Pace::new(span.0),
         approaches: VecDeque::new(),
@@ -132,6 +133,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) settings: &'a Settings,
     samples: &'a [f64],
     pub(super) end: f64,
+    /// Time at which the present step ends at the latest, s.
+    pub(super) until: f64,
     /// The last switches: when, s, and of which function.
     pub(super) recent: VecDeque<(f64, usize)>,
     pub(super) pace: Pace,
@@ -165,6 +168,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let begin = self.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
         let until = next.map_or(self.end, |next| next.min(self.end));
+        self.until = until;
         self.watched.limit_time(next.unwrap_or(f64::INFINITY));
         let mut shortened = 0;
         loop {

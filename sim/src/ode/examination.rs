@@ -88,7 +88,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 })
             }
             (Some(crossing), Accepted::Continues) => Accepted::Crossed(crossing),
-            (None, found) => found,
+            (None, Accepted::Crossed(crossing)) => Accepted::Crossed(crossing),
+            // The end may be beyond a surface by rounding.
+            (None, Accepted::Continues) => self.find_change_over_step(),
         }
     }
 

@@ -188,7 +188,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let lowest = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
         let mut found = Located::Touched(line.point.clone());
         while distance <= longest {
-            let (near, beyond) = (line.at(offset - distance), line.at(offset + distance));
+            let at = |offset: f64| {
+                let Point { t, y } = line.at(offset);
+                let t = t.min(self.until);
+                Point { t, y }
+            };
+            let (near, beyond) = (at(offset - distance), at(offset + distance));
             if lowest(&beyond) < 0.0 && beyond.t > begin {
                 // Rounding may move the near side by more than the distance.
                 let is_near = near.t <= begin || lowest(&near) >= 0.0;

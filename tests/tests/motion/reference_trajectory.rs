@@ -118,7 +118,9 @@ fn arm_matches_quadruple_precision_trajectory() {
     let (found, work) = simulate(folder.path(), UNTIL, "0.01", &[]);
     assert_eq!(work["solver"], "exact");
     assert_eq!(work["switches"], SWITCHES);
-    assert_eq!(found["t"], expected["t"]);
+    // The times of the reference are multiples of the interval, rounded once more.
+    assert_eq!(found["t"].len(), expected["t"].len());
+    assert!(deviation(&found["t"], &expected["t"]) <= 4.0 * f64::EPSILON);
     for (name, tolerance) in TOLERANCES {
         let worst = deviation(&found[name], &expected[name]);
         println!("{name}: {worst:.1e} m");
