@@ -167,10 +167,10 @@ impl<'m> Instance<'m> {
         Some(rows)
     }
 
-    /// Returns [`CompiledModel::sided`] at these parameters.
+    /// Returns [`CompiledModel::sided_model`] at these parameters.
     ///
     /// # Errors
-    /// Terms that cannot be derived.
+    /// Same as [`CompiledModel::sided_model`].
     pub fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
         self.model.sided_model(&self.parameters)
     }

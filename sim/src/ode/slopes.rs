@@ -91,11 +91,11 @@ impl Slopes {
         for stage in END + 1..SLOPES {
             self.evaluate(watched, start, length, stage);
         }
-        let states = start.y.len();
-        let mut coefficients: [Vec<f64>; 7] = std::array::from_fn(|_| vec![0.0; states]);
-        for place in 0..states {
-            let moved = end.y[place] - start.y[place];
-            let [first, last] = [0, END].map(|slope: usize| length * self.rates[slope][place]);
+        let moves = start.y.iter().zip(&end.y).map(|(a, b)| b - a);
+        let ends = self.rates[0].iter().zip(&self.rates[END]);
+        let ends = ends.map(|(first, last)| (length * first, length * last));
+        let mut coefficients: [Vec<f64>; 7] = std::array::from_fn(|_| vec![0.0; start.y.len()]);
+        for (place, (moved, (first, last))) in moves.zip(ends).enumerate() {
             coefficients[0][place] = moved;
             coefficients[1][place] = first - moved;
             coefficients[2][place] = 2.0 * moved - (first + last);

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::systems::{FixedSides, Functions, dead_zone, dry_friction, smooth};
+use super::systems::{FixedSides, Functions, dead_zone, dry_friction, smooth, smooth_between};
 use eomgen_sim::ode::{
     Method, Names, Settings, SolveError, Surface, System, Trajectory, simulate, simulate_into,
 };
@@ -164,12 +164,9 @@ fn no_step_crosses_a_breakpoint() {
     // A staircase: the integral of the number of whole tenths.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
-    let staircase = Functions {
-        breakpoints,
-        ..smooth(1, move |t, _, out| {
-            out[0] = stairs.iter().filter(|stair| **stair <= t).count() as f64;
-        })
-    };
+    let staircase = smooth_between(breakpoints, 1, move |t, _, out| {
+        out[0] = stairs.iter().filter(|stair| **stair <= t).count() as f64;
+    });
     let trajectory = run(&staircase, &[0.0], 1.0, 1e-9).expect("a trajectory");
     // Constant rates are integrated exactly up to rounding.
     assert!(

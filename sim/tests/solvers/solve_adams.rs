@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::systems::{Functions, dead_zone, dry_friction, smooth};
+use super::systems::{dead_zone, dry_friction, smooth, smooth_between};
 use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate};
 
 fn adams(tolerance: f64) -> Settings {
@@ -114,13 +114,10 @@ fn no_step_or_history_crosses_a_breakpoint() {
     // A staircase of ramps: y' has a jump and a kink at every tenth.
     let breakpoints: Vec<f64> = (1..=10).map(|i| f64::from(i) / 10.0).collect();
     let stairs = breakpoints.clone();
-    let ramps = Functions {
-        breakpoints,
-        ..smooth(1, move |t, _, out| {
-            let passed = stairs.iter().filter(|stair| **stair <= t).count() as f64;
-            out[0] = passed * t;
-        })
-    };
+    let ramps = smooth_between(breakpoints, 1, move |t, _, out| {
+        let passed = stairs.iter().filter(|stair| **stair <= t).count() as f64;
+        out[0] = passed * t;
+    });
     let trajectory = run(&ramps, &[0.0], 1.0, &adams(1e-9)).expect("a trajectory");
     // The sum of n (2 n + 1)/200 for n = 0 .. 9; linear rates are integrated exactly.
     assert!(

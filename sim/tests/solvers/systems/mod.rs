@@ -70,17 +70,23 @@ where
 }
 
 /// A system without switching surfaces.
-pub fn smooth<R: Fn(f64, &[f64], &mut [f64])>(
+pub fn smooth(states: usize, rates: impl Fn(f64, &[f64], &mut [f64])) -> impl System {
+    smooth_between(Vec::new(), states, rates)
+}
+
+/// A system without switching surfaces that is smooth between breakpoints (s).
+pub fn smooth_between(
+    breakpoints: Vec<f64>,
     states: usize,
-    rates: R,
-) -> Functions<impl Fn(f64, &[f64], &[f64], &mut [f64]), impl Fn(&[f64], &mut [f64])> {
+    rates: impl Fn(f64, &[f64], &mut [f64]),
+) -> impl System {
     Functions {
         states,
         rates: move |t, y: &[f64], _: &[f64], out: &mut [f64]| rates(t, y, out),
         sides: FixedSides::default(),
         guard_count: 0,
         guards: |_: &[f64], _: &mut [f64]| {},
-        breakpoints: Vec::new(),
+        breakpoints,
     }
 }
 
