@@ -362,7 +362,7 @@ fn parameters_without_solution_are_rejected() {
     }
     let fast = ["--solver", "rk", "--set", "omega=1e300"];
     let found = stop_message(&fast);
-    assert!(found.contains("`x_sp`"), "{found}");
+    assert!(found.contains("`x_sp"), "{found}");
     for (assignment, part) in [
         ("l=1e-300", "a coefficient"),
         ("omega=1e300", "slower motion"),
