@@ -173,6 +173,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let mut shortened = 0;
         loop {
             self.limit_step();
+            self.watched.restore_sides();
             if self.step_is_too_short() {
                 return self.cross_at_once();
             }
@@ -221,9 +222,6 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.watched.forget_trials();
             self.stepper.set_step(outcome.length);
             outcome = self.stepper.advance(self.watched, until)?;
-            if !outcome.is_accepted {
-                self.watched.fix_sides(true);
-            }
         }
         if outcome.is_accepted && self.watched.non_finite_state().is_some() {
             // It ends where the rates have no value: no motion gets there.

@@ -20,6 +20,8 @@ pub struct WatchedSystem<'a, S: System + ?Sized> {
     not_finite: Cell<Option<usize>>,
     indefinite: Cell<Option<usize>>,
     evaluations: Cell<u64>,
+    /// True while rates are evaluated on the side of each state.
+    has_released_sides: Cell<bool>,
 }
 
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
@@ -32,6 +34,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             not_finite: Cell::new(None),
             indefinite: Cell::new(None),
             evaluations: Cell::new(0),
+            has_released_sides: Cell::new(true),
         };
         watched.enter_regime(t, y);
         watched
@@ -212,8 +215,16 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
     /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {
+        self.has_released_sides.set(!keep);
         let regime = self.regime.borrow();
         self.system.fix_sides(keep.then_some(regime.as_slice()));
+    }
+
+    /// Fixes sides that were released for an earlier step.
+    pub fn restore_sides(&self) {
+        if self.has_released_sides.get() {
+            self.fix_sides(true);
+        }
     }
 
     /// Evaluates rates on the side of each state, if those of the present regime were not finite in a trial. Returns
