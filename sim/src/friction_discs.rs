@@ -268,22 +268,12 @@ fn rows(of: &DVector<f64>, rows: &Range<usize>) -> DVector<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-        }
-    }
+    use crate::random_numbers::Numbers;
 
     /// Returns the rates of discs in two or three directions and of scalar frictions on bodies with a common mass
     /// matrix, and their arrivals.
     fn problem(seed: u64) -> (Rates, Vec<Arrival>, Vec<DiscArrival>) {
-        let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let mut numbers = Numbers::new(seed);
         let scalars = (seed % 3) as usize;
         let mut count = scalars;
         let mut discs = Vec::new();

@@ -103,5 +103,7 @@ pub mod friction_discs;
 pub mod inputs;
 pub mod ode;
 pub mod piecewise_linear;
+#[cfg(test)]
+mod random_numbers;
 pub mod sliding_modes;
 pub mod variational;

@@ -205,26 +205,16 @@ pub fn solve_least_squares(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random_numbers::Numbers;
 
     const UP: Arrival = Arrival {
         side: 1.0,
         exceeds_limit: false,
     };
 
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-        }
-    }
-
     /// Returns friction in random directions in a space of this dimension, with a load.
     fn frictions(seed: u64, count: usize, dimensions: usize) -> Rates {
-        let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let mut numbers = Numbers::new(seed);
         let j = DMatrix::from_fn(count, dimensions, |_, _| numbers.next());
         let load = DVector::from_fn(dimensions, |_, _| 3.0 * numbers.next());
         let levels = DVector::from_fn(count, |_, _| 0.1 + numbers.next().abs());

@@ -34,7 +34,7 @@ use crate::symbolic::substitute::substitute;
 
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
 pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
-    !guards_with_sides(equations).is_empty()
+    !guards_that_may_hold(equations).is_empty()
         || divides_by_speed(&equations.graph, &roots(equations))
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct SideInputs {
 /// though it `may_hold`; the equations are then unusable.
 pub(crate) fn add_side_inputs(equations: &mut Equations, may_hold: bool) -> Option<SideInputs> {
     let mut sliding = match may_hold {
-        true => guards_with_sides(equations),
+        true => guards_that_may_hold(equations),
         false => Vec::new(),
     };
     if !sliding.is_empty() {
@@ -210,7 +210,7 @@ fn add_unit_vectors(
 }
 
 /// Returns the guards that depend on rates or on first-order states, each with its index among all guard values.
-fn guards_with_sides(equations: &Equations) -> Vec<(usize, usize)> {
+fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let moves = Dependence::RATE.join(Dependence::STATE);
     let mut found = scalar_guards(equations);

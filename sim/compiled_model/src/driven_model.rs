@@ -66,9 +66,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// Returns energy and power, with the forces during sticking and those of contacts at rest.
     fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
         let mut observables = vec![0.0; self.evaluator().program().observables.len()];
-        // The forces of closed contacts are those of the side of the state.
-        let has_fixed_sides = self.is_sticking_active() && !self.has_closed_contacts();
-        match self.sliding.as_ref().filter(|_| has_fixed_sides) {
+        match self.surface_states() {
             Some(sliding) => {
                 let inputs = &self.inputs.borrow().evaluate(t);
                 let mut sliding = sliding.borrow_mut();
@@ -180,7 +178,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         contacts.is_some_and(|contacts| contacts.borrow().has_closed())
     }
 
-    /// Returns true if surfaces hold the motion, so that the signs of the switching functions do
+    /// Returns the states of the surfaces if they determine rates and observables: while sides are fixed or surfaces hold
+    /// the motion. The forces of closed contacts are those of the side of the state.
+    fn surface_states(&self) -> Option<&RefCell<SurfaceStates>> {
+        let decides = self.is_sticking_active() && !self.has_closed_contacts();
+        self.sliding.as_ref().filter(|_| decides)
+    }
+
+    /// Returns true if sides are fixed or surfaces hold the motion, so that the signs of the switching functions do
     /// not determine the rates.
     fn is_sticking_active(&self) -> bool {
         let sliding = self.sliding.as_ref();
@@ -270,9 +275,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             state: y,
             inputs,
         };
-        // The forces of closed contacts are those of the side of the state.
-        let has_fixed_sides = self.is_sticking_active() && !self.has_closed_contacts();
-        match self.sliding.as_ref().filter(|_| has_fixed_sides) {
+        match self.surface_states() {
             Some(sliding) => sliding.borrow_mut().write_rates((t, y), inputs, out),
             None => self.evaluator().rates(point, out),
         }

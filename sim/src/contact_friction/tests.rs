@@ -1,19 +1,5 @@
 use super::*;
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    }
-}
+use crate::random_numbers::Numbers;
 
 /// Returns random contacts of a body or machine with this number of degrees of freedom.
 fn random_problem(seed: u64, count: usize, degrees: usize, most: f64) -> ContactProblem {

@@ -1,6 +1,6 @@
 //! Approaches to switching surfaces, from which stiffness at a surface is detected.
 
-/// Approach to a switching surface that a trial state crossed.
+/// Approach to a switching surface that a step crossed.
 pub(super) struct Approach {
     /// Time of its end, s.
     pub(super) t: f64,

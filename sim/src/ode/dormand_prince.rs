@@ -233,19 +233,14 @@ impl DormandPrince853 {
 
 /// Returns the state after one step of exactly `length` s from `start`, whatever its error; `None` if a stage is not
 /// finite.
-pub fn make_step<S: System + ?Sized>(
+fn make_step<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     start: &Point,
     length: f64,
 ) -> Option<Point> {
-    let mut slopes = Slopes::new(start.y.len());
-    slopes.begin(watched, start);
-    let mut y = Vec::new();
-    let is_finite = slopes.make_step(watched, start, length, &mut y);
-    is_finite.then_some(Point {
-        t: start.t + length,
-        y,
-    })
+    let y = Slopes::new(start.y.len()).step_from(watched, start, length)?;
+    let t = start.t + length;
+    Some(Point { t, y })
 }
 
 /// Returns the state `length` s after `start` by steps that meet the tolerance, one if that does; `None` if
@@ -258,14 +253,12 @@ pub fn make_steps_within<S: System + ?Sized>(
 ) -> Option<Point> {
     let mut slopes = Slopes::new(start.y.len());
     let step = |start: &Point, length: f64, t: f64| {
-        slopes.begin(watched, start);
-        let mut y = Vec::new();
-        let is_finite = slopes.make_step(watched, start, length, &mut y);
-        let is_met = is_finite && slopes.error(magnitudes, length, &y) <= 1.0;
-        is_met.then_some(Point { t, y })
+        let y = slopes.step_from(watched, start, length)?;
+        (slopes.error(magnitudes, length, &y) <= 1.0).then_some(Point { t, y })
     };
     split_step(start, length, step)
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,7 +13,7 @@ const SWITCHES_AVERAGED: usize = 256;
 /// Approaches to surfaces over which an explicit method is judged.
 const APPROACHES: usize = 64;
 
-/// Largest number of them that cross if stiffness makes the trial states overshoot. Of 120 machines of the study
+/// Largest number of them that cross if stiffness makes steps overshoot. Of 120 machines of the study
 /// `grazing` 56 or more crossed in every window, of flows through orifices that come to rest 16
 /// or fewer in 222 of 230 windows.
 const MOST_CROSSED: usize = 32;
@@ -88,7 +88,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// Records an approach to the surface `guard`. Returns an error if trial states of an explicit method overshoot
+    /// Records an approach to the surface `guard`. Returns an error if steps of an explicit method overshoot
     /// a surface that the motion does not cross, and the projected number of steps exceeds `max_steps_if_stiff`.
     pub(super) fn check_approaches(
         &mut self,

@@ -7,10 +7,10 @@ use super::event_search::Crossing;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 
-/// Iterations of the search on the interior; bisection alone needs 52.
+/// Maximum number of iterations of the search on the interior. Bisection needs 52.
 const MAX_ITERATIONS: u32 = 60;
 
-/// Steps to a surface; Newton's method needs one or two.
+/// Maximum number of steps to a surface. Newton's method needs one or two.
 const MAX_STEPS: u32 = 60;
 
 /// Longest extrapolation along the rates to a surface, as a part of a step. Its error is of second order.

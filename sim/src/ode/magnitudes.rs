@@ -80,33 +80,31 @@ impl Magnitudes {
     /// Returns true if changes of a state `y` are errors that a step may make, none larger than some times what
     /// is allowed. Where a state has not moved, rounding of the others is no error.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
-        let sizes = self.largest.iter().zip(y);
-        let allowed = sizes.map(|(largest, y)| self.tolerance * (largest + y.abs()));
-        changes.zip(allowed).all(|(change, allowed)| {
+        changes.zip(self.allowed(y)).all(|(change, allowed)| {
             change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * self.most
         })
     }
 
-    /// Returns the largest of `errors` relative to what is allowed at `y`; NaN if one is.
-    pub fn largest(&self, errors: &[f64], y: &[f64]) -> f64 {
-        let allowed = self.largest.iter().zip(y);
-        let allowed = allowed.map(|(largest, y)| self.tolerance * (largest + y.abs()));
-        let relative = errors
-            .iter()
-            .zip(allowed)
-            .map(|(error, allowed)| (error / allowed).abs());
+    /// Returns the largest error of a component at `y`, as a multiple of its tolerance. NaN if an error is NaN.
+    pub fn max_norm(&self, errors: &[f64], y: &[f64]) -> f64 {
+        let errors = errors.iter().zip(self.allowed(y));
+        let relative = errors.map(|(error, allowed)| (error / allowed).abs());
         relative.fold(0.0, |most, error| if error <= most { most } else { error })
     }
 
-    /// Returns the root mean square of `errors` relative to what is allowed at `y`: at most 1 is small enough.
+    /// Returns the root mean square of the errors at `y`, each as a multiple of its tolerance.
     pub fn norm(&self, errors: impl Iterator<Item = f64>, y: &[f64]) -> f64 {
-        let allowed = self.largest.iter().zip(y);
-        let allowed = allowed.map(|(largest, y)| self.tolerance * (largest + y.abs()));
-        let squares = errors.zip(allowed).map(|(error, allowed)| {
+        let squares = errors.zip(self.allowed(y)).map(|(error, allowed)| {
             let relative = error / allowed;
             relative * relative
         });
         (squares.sum::<f64>() / y.len() as f64).sqrt()
+    }
+
+    /// Returns the error allowed to each component at `y`, in its own unit.
+    fn allowed(&self, y: &[f64]) -> impl Iterator<Item = f64> {
+        let sizes = self.largest.iter().zip(y);
+        sizes.map(|(largest, y)| self.tolerance * (largest + y.abs()))
     }
 }
 

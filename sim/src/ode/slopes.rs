@@ -57,6 +57,19 @@ impl Slopes {
         is_finite(end)
     }
 
+    /// Returns the end state of a step of `length` s from `start`; `None` if a state or a rate is not finite.
+    pub fn step_from<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        start: &Point,
+        length: f64,
+    ) -> Option<Vec<f64>> {
+        self.begin(watched, start);
+        let mut end = Vec::new();
+        self.make_step(watched, start, length, &mut end)
+            .then_some(end)
+    }
+
     /// Evaluates the slope at the end of a step.
     pub fn end<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>, end: &Point) {
         watched.rates(end.t, &end.y, &mut self.rates[END]);
@@ -67,13 +80,13 @@ impl Slopes {
         &self.rates[END]
     }
 
-    /// Returns the error of a step of `length` s to the state `end`, relative to what is allowed there.
+    /// Returns the error of a step of `length` s to the state `end`, as a multiple of the tolerance.
     pub fn error(&mut self, magnitudes: &Magnitudes, length: f64, end: &[f64]) -> f64 {
         let [order_5, order_3] = &mut self.sums;
         combine(&self.rates, ERROR_5, order_5);
         combine(&self.rates, ERROR_3, order_3);
-        let fifth = magnitudes.largest(order_5, end);
-        let third = WEIGHT_OF_ORDER_3 * magnitudes.largest(order_3, end);
+        let fifth = magnitudes.max_norm(order_5, end);
+        let third = WEIGHT_OF_ORDER_3 * magnitudes.max_norm(order_3, end);
         let size = fifth.hypot(third);
         match size > 0.0 {
             true => length * fifth * (fifth / size),

@@ -165,11 +165,16 @@ impl Contacts {
     /// The rate of a contact that hit so long `ago` (s), for which impulses must make up.
     pub(super) fn required_rate_change(&self, place: usize, ago: f64, most: f64) -> f64 {
         let rate = self.hit_rate(place, ago);
-        match self.closed.contains(&place) {
-            true => rate,
-            // What already leaves must not be pulled back.
-            false if !self.has_restitution => rate,
-            false => rate + self.at[place].restitution.min(most) * rate.min(0.0),
+        // What already leaves must not be pulled back.
+        rate + self.restitution(place).min(most) * rate.min(0.0)
+    }
+
+    /// Returns the restitution of a contact in the present impact: 0 if it is closed, or if the impact ends infinitely
+    /// many.
+    pub(super) fn restitution(&self, place: usize) -> f64 {
+        match self.has_restitution && !self.closed.contains(&place) {
+            true => self.at[place].restitution,
+            false => 0.0,
         }
     }
 

@@ -11,7 +11,7 @@ use super::tangents::ContactForces;
 /// Rates of the distances and slips at zero rates of the coordinates: motion of the contacts themselves.
 pub(super) struct Drifts {
     pub normal: Vec<f64>,
-    /// Of all contacts; 0 without friction.
+    /// Rates of the slips of all contacts; 0 for those without friction.
     pub slips: Vec<f64>,
 }
 

@@ -47,11 +47,7 @@ impl Contacts {
             w: [[w[0], w[1]], [w[2], w[3]]],
             rates: [self.hit_rate(place, ago), self.hit_slip(place, ago)],
             friction: friction.map_or(0.0, |friction| friction.coefficient),
-            restitution: match self.closed.contains(&place) {
-                true => 0.0,
-                false if !self.has_restitution => 0.0,
-                false => self.at[place].restitution,
-            },
+            restitution: self.restitution(place),
         })?;
         let mut impulses = ContactForces {
             normal: vec![0.0; touching.len()],
@@ -117,8 +113,7 @@ impl Contacts {
             })
         };
         let plastic = with(0.0)?;
-        let open = touching.iter().filter(|place| !self.closed.contains(place));
-        let restitutions = open.map(|place| self.at[*place].restitution);
+        let restitutions = touching.iter().map(|place| self.restitution(*place));
         let largest = restitutions.fold(0.0, f64::max);
         if largest == 0.0 {
             return Some(plastic);
