@@ -18,13 +18,13 @@ use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// The error aimed at, relative to what is allowed.
+/// Error aimed at, relative to the allowed error.
 const AIM: f64 = 0.5;
 
 /// After so many refusals at one point the memory is of no use.
 const REFUSALS: u32 = 3;
 
-/// Where the method stands and what it remembers there.
+/// Current state and history of the method.
 #[derive(Clone)]
 struct Stand {
     point: Point,
@@ -65,7 +65,7 @@ pub struct Adams {
     /// The length of the next step, s.
     step: f64,
     magnitudes: Magnitudes,
-    /// Steps refused where the method stands.
+    /// Rejected steps at the current point.
     refusals: u32,
 }
 
@@ -141,8 +141,8 @@ impl Stepper for Adams {
         let step = self.step;
         self.accept(watched, attempt, errors);
         if is_cut {
-            // A step cut short says nothing against the longer one, and what the rates
-            // were before says nothing of those after `until`.
+            // A step that is cut short does not contradict the longer one, and the rates before
+            // `until` do not predict those after it.
             let point = Point {
                 t: until,
                 y: self.now.point.y.clone(),
@@ -212,7 +212,7 @@ impl Stepper for Adams {
 }
 
 impl Adams {
-    /// Evaluates the rates at a start and shortens the step to what they allow.
+    /// Evaluates the rates at a start and limits the first step by them.
     fn begin<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,

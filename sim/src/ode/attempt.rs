@@ -1,6 +1,5 @@
-//! One step of Adams' method of a given length and order: prediction, evaluation,
-//! correction, and what the errors of this and of lower orders are. What follows from
-//! the errors is decided in `adams`.
+//! One step of Adams' method with a given length and order: prediction, evaluation, correction, and
+//! the errors of this and lower orders. `adams` decides from the errors.
 
 use super::history::{History, Weights};
 use super::magnitudes::Magnitudes;
@@ -16,11 +15,11 @@ pub struct Attempt {
     pub order: usize,
     /// The new difference of the predicted rates.
     pub difference: Vec<f64>,
-    /// Where it leads.
+    /// End of the step.
     pub end: Point,
 }
 
-/// Errors of a step relative to what is allowed, by the order of the predictor.
+/// Errors of a step relative to the allowed error, by the order of the predictor.
 #[derive(Clone, Copy)]
 pub struct Errors {
     /// Of the order used.

@@ -1,6 +1,6 @@
 //! One step of Radau's method: its three stages by Newton's method, the error estimate and the
-//! collocation polynomial (Hairer and Wanner, "Solving Ordinary Differential Equations II",
-//! section IV.8). Which steps, and what is made of them, is decided in `radau`.
+//! collocation polynomial (Hairer and Wanner, "Solving Ordinary Differential Equations II", section
+//! IV.8). `radau` selects the length of steps and accepts them.
 //!
 //! With Z the differences of the stages from the start, A the coefficients of the method and h the
 //! step, the stages solve A^-1 Z / h = F(Z). In the variables W = T^-1 Z, which make A^-1 a real
@@ -23,7 +23,7 @@ const STAGES: f64 = 0.03;
 /// And no closer than rounding lets them, in units of the last place.
 const ROUNDING: f64 = 10.0;
 
-/// A change this small, relative to what the stages are solved for to, is the last one.
+/// Iterations end at a change below this fraction of the stages' tolerance.
 const SMALL: f64 = 0.3;
 
 /// Changes that become no smaller lead nowhere.
@@ -75,7 +75,7 @@ fn nodes() -> [f64; 3] {
     [(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]
 }
 
-/// What the stages enter the error estimate with.
+/// Weights of the stages in the error estimate.
 fn weights_of_error() -> [f64; 3] {
     let root = 6.0_f64.sqrt();
     [
@@ -169,7 +169,7 @@ impl Stages {
             if !is_small && contraction >= DIVERGES {
                 break;
             }
-            // What is left after a first change is not known.
+            // The remaining error is unknown after the first change.
             let left = contraction / (1.0 - contraction) * size;
             if is_small || (!is_first && left <= enough) {
                 return Some(Self {
@@ -193,8 +193,8 @@ impl Stages {
         start.iter().zip(&self.z[2]).map(|(y, z)| y + z).collect()
     }
 
-    /// The state so long after `start` (s), where the step began, by the polynomial through the
-    /// start and the stages: of order 3 everywhere in the step.
+    /// Returns the state at a time `after` the start of the step, s, from the polynomial of order 3
+    /// through the start and the stages.
     pub fn interpolate(&self, start: &[f64], after: f64) -> Vec<f64> {
         let difference = self.difference(after / self.length);
         start.iter().zip(&difference).map(|(y, z)| y + z).collect()
@@ -221,9 +221,10 @@ impl Stages {
         sum
     }
 
-    /// The estimated error of states inside the step relative to what is allowed, from how the third
-    /// derivative changed since the step `before`. The error estimate of the step does not see it
-    /// in what decays fast, where the ends of steps are right however long they are.
+    /// Returns the estimated error of states inside the step relative to the allowed error, from
+    /// the change of the third derivative since the step `before`. The error estimate of the step
+    /// ignores fast decaying components, whose values at the ends of steps are correct for any
+    /// length.
     pub fn estimate_interior_error(
         &self,
         before: &Self,
@@ -248,9 +249,9 @@ impl Stages {
         sum
     }
 
-    /// The estimated error of the step relative to what is allowed. `rates` are those at the start.
-    /// `is_doubted` filters it once more by the rates beside the start, which a first step or one
-    /// after a refusal needs.
+    /// Returns the estimated error of the step relative to the allowed error. `rates` are those at
+    /// the start. `is_doubted` filters it once more by the rates next to the start, as a first step
+    /// or one after a rejection needs.
     pub fn estimate_error<S: System + ?Sized>(
         &self,
         watched: &WatchedSystem<'_, S>,

@@ -116,9 +116,9 @@ fn run<S: System + ?Sized, M: Stepper>(
     ended
 }
 
-/// What becomes of a step whose error is small enough.
+/// Action after a step with an acceptable error.
 pub(super) enum Accepted {
-    /// The motion goes on from its end.
+    /// The motion continues from its end.
     Continues,
     /// It was taken back and is to be made shorter.
     Shortened,
@@ -255,8 +255,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         is_near
     }
 
-    /// The state at `t` (s), which lies inside the last step, interpolated if the interior `is_told`. Where
-    /// a surface was stepped over nothing is interpolated.
+    /// Returns the state at `t` (s) inside the last step. It is interpolated if the interior
+    /// `is_told` and the step crossed no surface.
     fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
         if is_told && let Some(state) = self.stepper.interpolated(self.watched, t) {
             return Ok(state);
@@ -333,7 +333,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.samples.get(self.trajectory.times.len()).copied()
     }
 
-    /// Takes note of the surfaces that caught the motion or let it go, and of the switching functions
+    /// Records the surfaces that began or ceased to hold the motion, and the switching functions
     /// that changed sign.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.stepper.current_point();

@@ -51,8 +51,8 @@ pub enum SolveError {
         /// Estimated number of further steps.
         steps: f64,
     },
-    /// The system is stiff beside a switching surface: trial states of an explicit method overshoot it
-    /// unless steps are so short that there would be no end within the limit on steps.
+    /// The system is stiff at a switching surface: trial states of an explicit method overshoot it
+    /// unless the steps are so short that they exceed the limit on steps.
     StiffAtSurface {
         /// Time, s.
         t: f64,

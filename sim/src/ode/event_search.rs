@@ -25,7 +25,7 @@ const MAX_PIECES: usize = 500;
 
 /// Evaluations that the search needs.
 pub trait Functions {
-    /// Writes the switching functions at a part of the step, where the state is `y`.
+    /// Returns the switching functions at state `y`, at a fraction `part` of the step.
     fn evaluate(&mut self, part: f64, y: &[f64]) -> Vec<f64>;
 
     /// Writes the bounds of the switching functions over a piece of the step.

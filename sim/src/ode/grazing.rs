@@ -1,44 +1,48 @@
-//! What an accepted step may have passed over: a switching function that changes sign and changes
-//! back between the places where the step was evaluated.
+//! Searches accepted steps for missed crossings: a switching function that changes sign and changes
+//! back between the times at which the step evaluated it.
 //!
-//! The switching functions where they are lowest of five times in the step give a parabola each. Where
-//! one comes close to zero in between, or beyond, the motion itself is asked there, and again
-//! beside the lowest value found until nothing lower is to be expected. This is the search for
-//! turning points of the event functions that Shampine and Thompson recommend ("Event location
-//! for ordinary differential equations", Computers and Mathematics with Applications 39, 2000),
-//! with a parabola in place of the interpolant's polynomial. What it cannot see is a function that turns more
-//! than once within a step.
+//! For each switching function, a parabola through the lowest of five samples and its two
+//! neighbours predicts the minimum. If the predicted minimum is near or below zero, the search
+//! evaluates the function there on the motion and refines the parabola until no lower value is to
+//! be expected. This is the search for turning points of the event functions that Shampine and
+//! Thompson recommend ("Event location for ordinary differential equations", Computers and
+//! Mathematics with Applications 39, 2000), with a parabola instead of the interpolant's
+//! polynomial. The search misses functions with more than one turning point in a step.
 
 use super::resolution::PARTS;
 use super::stepper::{Point, Stepper};
 use super::system::System;
 use super::watch::WatchedSystem;
 
-/// The motion is asked where a parabola promises less than this part of the lowest value known.
+/// The search evaluates a predicted minimum if it is below this fraction of the lowest known value.
 const WORTH_A_LOOK: f64 = 0.5;
 
-/// A parabola through three of equally spaced values is off between them by less than this part of the third
+/// Bound on the error of a parabola through three equally spaced values, as a fraction of the third
 /// difference.
 const DOUBT: f64 = 0.1;
 
-/// Negative values up to this part of the highest one in a step may be rounding.
+/// Rounding of a switching function, as a fraction of its highest value in the step. Smaller
+/// negative values count as positive.
 const ROUNDING: f64 = 1e-12;
 
-/// States looked at for one switching function in one step. The search converges in two or three.
+/// Maximum evaluations for one switching function in one step. The search converges in two or
+/// three.
 const MOST_LOOKS: u32 = 8;
 
-/// A time within a step as a part of its length, and a switching function there, positive on the
-/// side that the step began on.
+/// A time in a step, as a fraction of its length, and the switching function there, positive on the
+/// side of the start.
 #[derive(Clone, Copy)]
 struct Sample {
     at: f64,
     value: f64,
 }
 
-/// Returns a function and how far from its start (s) the last, accepted step of a stepper was beyond its surface, which it
-/// neither began nor ended beyond; `None` if it was not. `sides` are 0 for functions to ignore, and
-/// `values` those of the functions at [`PARTS`] of the step. `trials` counts the states that the stepper
-/// computes. A state inside that overflows or leaves the domain of the rates counts as one beyond.
+/// Returns the first switching function found beyond its surface inside the last accepted step, and
+/// the time since the start of the step, s.
+///
+/// `sides` are 0 for functions to ignore, and `values` are the functions at [`PARTS`] of the step.
+/// `trials` counts the states that the stepper computes. A state that overflows or leaves the
+/// domain of the rates counts as beyond the surface.
 pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     (watched, stepper): (&WatchedSystem<'_, S>, &mut M),
     sides: &[f64],
@@ -71,8 +75,9 @@ pub fn find_passed_surface<S: System + ?Sized, M: Stepper>(
     search(watched, end - begin, sides, samples, &mut after)
 }
 
-/// Returns a function and how far from its start (s) a motion in a step of `length` s is beyond its surface, given the `samples` of
-/// each function on its side and the error of their parabola; `after` computes the point so far from the start.
+/// Returns the first switching function found beyond its surface in a step of `length` s, and the
+/// time since its start, s. `samples` returns the samples of a function on its side and the error
+/// of their parabola. `after` computes the point at a time since the start, s.
 fn search<S: System + ?Sized>(
     watched: &WatchedSystem<'_, S>,
     length: f64,
@@ -103,8 +108,8 @@ fn search<S: System + ?Sized>(
     None
 }
 
-/// Where the function of `samples` is beyond the surface, if anywhere; `look` gives its value, or
-/// `None` where it is beyond.
+/// Returns a time at which the function of `samples` is beyond the surface. `look` evaluates the
+/// function and returns `None` beyond the surface; `doubt` is the error of the first parabola.
 fn beyond(
     mut samples: [Sample; 3],
     doubt: f64,
@@ -120,12 +125,13 @@ fn beyond(
     None
 }
 
-/// Where within three samples, whose parabola may be off by `doubt`, to look for something negative, if anywhere.
+/// Returns the time of the predicted minimum if it may be negative. `doubt` is the error of the
+/// parabola through the samples.
 fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     let [a, b, c] = *samples;
     let lowest = a.value.min(b.value).min(c.value);
     if lowest < 0.0 {
-        // Only an interpolated state can be, the middle one at first: is the motion there as well?
+        // Only the middle sample, which is interpolated, can be negative: evaluate the motion.
         return Some(b.at);
     }
     let before = (b.value - a.value) / (b.at - a.at);
@@ -140,7 +146,7 @@ fn next_look(samples: &[Sample; 3], doubt: f64) -> Option<f64> {
     (is_inside && value < (WORTH_A_LOOK * lowest).max(doubt)).then_some(at)
 }
 
-/// The three of four samples that stand around the lowest.
+/// Returns the lowest of the four samples with its neighbours.
 fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
     let [a, b, c] = samples;
     if new.at == b.at {
@@ -158,8 +164,7 @@ fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
 mod tests {
     use super::*;
 
-    /// Returns the point on 0..1 at which a function is found negative, and the number of
-    /// evaluations.
+    /// Returns a point in 0..1 with a negative value, and the number of evaluations.
     fn search(function: impl Fn(f64) -> f64) -> (Option<f64>, u32) {
         let mut looks = 0;
         let samples = [0.0, 0.5, 1.0].map(|at| Sample {

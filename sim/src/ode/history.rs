@@ -1,9 +1,9 @@
-//! What the method of Adams remembers: the rates at its last points, as modified divided
-//! differences, and what follows from them for a step of any length.
+//! History of Adams' method: the rates at its last points as modified divided differences, and the
+//! resulting weights for a step of any length.
 //!
-//! The formulas are those of Krogh in the notation of Hairer, Norsett and Wanner,
-//! "Solving Ordinary Differential Equations I", section III.5, with the last point x_n,
-//! the new one x, and tau = x - x_n:
+//! The formulas are those of Krogh in the notation of Hairer, Norsett and Wanner, "Solving Ordinary
+//! Differential Equations I", section III.5, with the last point x_n, the new one x, and tau = x -
+//! x_n:
 //!
 //! ```text
 //! Phi_j   = (x_n - x_(n-1)) ... (x_n - x_(n-j)) y'[x_n, ..., x_(n-j)]
@@ -11,8 +11,8 @@
 //! y(x)    = y_n + tau (g_0 beta_0 Phi_0 + ... + g_(k-1) beta_(k-1) Phi_(k-1))
 //! ```
 //!
-//! where g_j is the integral of the j-th Newton polynomial over the step. How long a step
-//! is and of which order is not decided here.
+//! Here g_j is the integral of the j-th Newton polynomial over the step. `adams` selects length and
+//! order.
 
 /// The highest order of the predictor.
 pub const MAX_ORDER: usize = 12;
@@ -73,7 +73,7 @@ impl History {
         self.differences.clear();
     }
 
-    /// Begins with one point, where the rates are `rates`.
+    /// Begins with one point and its rates.
     pub fn begin(&mut self, rates: &[f64]) {
         self.clear();
         self.ages.push(0.0);

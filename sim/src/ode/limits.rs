@@ -1,4 +1,4 @@
-//! When to give up: steps too short or too many, switches too fast, stiffness.
+//! Limits of a simulation: step length, number of steps, switching rate, stiffness.
 
 use super::approach::Approach;
 use super::driver::Driver;
@@ -7,28 +7,27 @@ use super::stepper::{Point, Stepper};
 use super::stiffness::Progress;
 use super::system::System;
 
-/// Over this many switches their rate is averaged.
+/// Number of switches over which their rate is averaged.
 const SWITCHES_AVERAGED: usize = 256;
 
-/// Approaches to surfaces over which an explicit method is judged.
+/// Number of approaches to surfaces over which steps of an explicit method are judged.
 const APPROACHES: usize = 64;
 
-/// Largest number of them that cross if stiffness makes steps overshoot. Of 120 machines of the study
-/// `grazing` 56 or more crossed in every window, of flows through orifices that come to rest 16
-/// or fewer in 222 of 230 windows.
+/// Largest number of crossings among [`APPROACHES`] if stiffness makes steps overshoot. In 120
+/// machines of the study `grazing`, 56 or more approaches crossed in every window. In flows through
+/// orifices that settle, 16 or fewer crossed in 222 of 230 windows.
 const MOST_CROSSED: usize = 32;
 
-/// Times closer to 0 than this part of the span count as so far from it when a step is
-/// judged too short.
+/// Smallest time for [`Driver::shortest_step`], as a fraction of the span.
 const SMALLEST_TIME: f64 = 1e-6;
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    /// Returns true if the next step would not move the time.
+    /// Returns true if the next step would not change the time.
     pub(super) fn step_is_too_short(&self) -> bool {
         self.stepper.step() <= self.shortest_step()
     }
 
-    /// The shortest step that moves the time, s.
+    /// Returns the shortest step that changes the time, s.
     pub(super) fn shortest_step(&self) -> f64 {
         let t = self.stepper.current_point().t.abs();
         f64::EPSILON * t.max(SMALLEST_TIME * self.end.abs())
@@ -51,8 +50,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         Ok(())
     }
 
-    /// Of the switching functions that take turns in the last switches, the one that switched least: a
-    /// surface that catches the motion and lets it go between those of another is not what chatters.
+    /// Returns the least frequent of the switching functions with at least a quarter of the recent
+    /// switches. A surface that sticks and releases between the switches of another one does not
+    /// chatter.
     fn rarest(&self) -> usize {
         let mut counts = vec![
             0;
@@ -95,8 +95,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         guard: Option<usize>,
         has_crossed: bool,
     ) -> Result<(), SolveError> {
-        // A motion that reverses at a surface stalls for some approaches and then leaves. The projection is
-        // therefore only used by a caller that can change to an implicit method.
+        // At a surface where the motion reverses, steps are short for some approaches and then
+        // grow. The projection is therefore only used by a caller that can change to an implicit
+        // method.
         let can_change = self.settings.max_steps_if_stiff < self.settings.max_steps;
         if !M::IS_EXPLICIT || !can_change {
             return Ok(());
@@ -130,13 +131,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         })
     }
 
-    /// All steps that were tried so far.
+    /// Number of steps tried so far.
     fn steps(&self) -> u64 {
         let work = &self.trajectory.statistics;
         work.steps + work.rejected_steps + work.trial_steps
     }
 
-    /// Returns true if there will be an end.
+    /// Returns an error if the system is stiff and the step limit will be exceeded; see
+    /// [`super::stiffness`].
     pub(super) fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
         if !M::IS_EXPLICIT {
             return Ok(());

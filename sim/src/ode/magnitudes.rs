@@ -2,7 +2,7 @@
 
 use super::settings::UNMOVED_SIZE_FRACTION;
 
-/// What rounding is, in units of the last place.
+/// Rounding error of a state, in units of the last place.
 const ROUNDING: f64 = 10.0;
 
 /// A step leaves an invariant by at most this number of its allowed errors.
@@ -40,8 +40,9 @@ impl Magnitudes {
         }
     }
 
-    /// Components that have not moved yet, none so small that the rounding of what it has been counts: what
-    /// has come to rest is small, and its rounding is not.
+    /// Returns a copy with no past motion. The scale of each component is at least the rounding
+    /// error of its largest value so far: a component at rest is small, but its rounding error is
+    /// not.
     pub fn reset_copy(&self) -> Self {
         let roundings = ROUNDING * f64::EPSILON / self.tolerance;
         let largest = self.largest.iter().zip(&self.smallest);
@@ -77,8 +78,8 @@ impl Magnitudes {
         }
     }
 
-    /// Returns true if changes of a state `y` are errors that a step may make, none larger than some times what
-    /// is allowed. Where a state has not moved, rounding of the others is no error.
+    /// Returns true if all changes of a state `y` are below some multiple of the allowed error.
+    /// Rounding of other components is ignored for a state that has not moved.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
         changes.zip(self.allowed(y)).all(|(change, allowed)| {
             change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * self.most

@@ -35,9 +35,9 @@ struct Accepted {
 
 /// Steps of the method.
 pub struct Radau {
-    /// Where the last step began.
+    /// Start of the last step.
     last: Point,
-    /// Where the next step begins.
+    /// Start of the next step.
     here: Point,
     /// The rates there, if they are known.
     rates: Option<Vec<f64>>,
@@ -265,10 +265,10 @@ impl Radau {
         self.is_starting = true;
     }
 
-    /// Shortens the first step of a start to what the rates and their change allow. The error
-    /// estimate is blind there: it passes a step so long that the method damps a fast vibration
-    /// which it should follow. By the rule of Hairer, Norsett and Wanner, "Solving Ordinary
-    /// Differential Equations I", section II.4, for an error of order 3.
+    /// Limits the first step by the rates and their change. The error estimate fails there: it
+    /// accepts a step so long that the method damps a fast vibration. The rule is that of Hairer,
+    /// Norsett and Wanner, "Solving Ordinary Differential Equations I", section II.4, for an error
+    /// of order 3.
     fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         let here = &self.here;
         let norm = |values: &[f64]| self.magnitudes.norm(values.iter().copied(), &here.y);

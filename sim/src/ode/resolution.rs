@@ -1,40 +1,39 @@
-//! Whether a step is short enough to see what switching functions do in it.
+//! Step lengths that resolve the switching functions.
 //!
-//! Where nothing moves the error of a step is zero, however long it is. What a surface bears that holds
-//! the motion, or a function of time that switches a force, may go beyond its bound within such a step and
-//! come back, and no trial need see it. So a step is held to the switching functions as well: the parabola
-//! through a function's values at both ends and in the middle of a step must tell those at its quarters,
-//! wherever a change of sign could be hidden in what it does not tell.
+//! The error of a step is zero if no state changes, whatever the length of the step. Within such a
+//! step a static friction force, or a function of time that switches a force, may cross its bound
+//! and return unseen. The switching functions limit the step as well: a parabola through the values
+//! at both ends and in the middle must predict the values at the quarters. Larger deviations are
+//! allowed only if they cannot hide a change of sign.
 
-/// A parabola tells a function if it is no farther off than this part of how much the function moves.
+/// Largest deviation from the parabola, as a fraction of the function's range in the step.
 const TOLD: f64 = 0.1;
 
-/// A change of sign may be hidden where the lowest value is no more than so many times what the parabola is
-/// off by.
+/// A change of sign is possible if the lowest value is at most this multiple of the deviation.
 const HIDDEN: f64 = 2.0;
 
-/// A function comes near its surface in a next step only if it is within so many times its move.
+/// A function can reach its surface in the next step if it is within this multiple of its range.
 const WITHIN_REACH: f64 = 20.0;
 
-/// In units of the tolerance, what a function's values inside a step may be off by.
+/// Error of a function's values inside a step, in units of the tolerance.
 const ERRORS: f64 = 10.0;
 
-/// Changes of a function below this number of roundings are no motion.
+/// A function is constant if it changes by less than this number of roundings.
 pub const ROUNDINGS: f64 = 8.0;
 
-/// The parts of a step where functions are asked.
+/// Sample times, as fractions of the step.
 pub const PARTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// How steps and switching functions go together.
+/// Limit on the step length from the switching functions.
 pub struct Resolution {
-    /// The largest that each function has been.
+    /// Largest magnitude of each function so far.
     sizes: Vec<f64>,
-    /// What is this small beside it is the error of a step.
+    /// Error of the functions inside a step, as a fraction of their size.
     error: f64,
 }
 
 impl Resolution {
-    /// Of steps with this relative tolerance.
+    /// Creates the limit for steps with this relative tolerance.
     pub fn new(tolerance: f64) -> Self {
         Self {
             sizes: Vec::new(),
@@ -42,9 +41,9 @@ impl Resolution {
         }
     }
 
-    /// The values of the functions at [`PARTS`] of a step, and the sides on which it began: by which factor
-    /// a step is longer at most that still sees all, or shorter than 1 where this one did not. Moves within the
-    /// `roundings` of the functions, where these are known, are none.
+    /// Returns the factor by which the next step may grow, or a factor below 1 if this step was too
+    /// long. `values` are the functions at [`PARTS`], `sides` the sides at the start. Changes
+    /// within `roundings` do not count.
     pub fn longest(
         &self,
         values: &[Vec<f64>; 5],
@@ -65,7 +64,7 @@ impl Resolution {
         longest
     }
 
-    /// Adds the values of a step that stands to the sizes of the functions.
+    /// Updates the sizes of the functions from an accepted step.
     pub fn settle(&mut self, values: &[Vec<f64>; 5]) {
         self.sizes.resize(values[0].len(), 0.0);
         for (guard, size) in self.sizes.iter_mut().enumerate() {
@@ -74,13 +73,13 @@ impl Resolution {
     }
 }
 
-/// The largest magnitude of samples and of what was before.
+/// Returns the largest of `before` and the magnitudes of the samples.
 fn largest(samples: [f64; 5], before: f64) -> f64 {
     let magnitudes = samples.iter().map(|value| value.abs());
     magnitudes.fold(before, f64::max)
 }
 
-/// The factor for one function, which is positive where the step began.
+/// Returns the factor for one function that is positive at the start.
 fn factor(samples: [f64; 5], error: f64) -> f64 {
     let lowest = samples.into_iter().fold(f64::INFINITY, f64::min);
     let highest = samples.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -92,7 +91,7 @@ fn factor(samples: [f64; 5], error: f64) -> f64 {
     if off <= error || !is_within_reach {
         return f64::INFINITY;
     }
-    // What a parabola leaves is of third order.
+    // The deviation is of third order in the step length.
     let factor = (TOLD * moved / off).cbrt();
     match factor < 1.0 && lowest > HIDDEN * off {
         true => 1.0,

@@ -1,5 +1,5 @@
-//! What the driver asks of a method: steps whose length follows from the error, steps of
-//! a given length, and states inside a step. Where steps lead is not decided here.
+//! Interface between the driver and a method: steps of controlled length, steps of a given length,
+//! and states inside a step. The driver decides about switches.
 
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
@@ -10,7 +10,7 @@ use super::watch::WatchedSystem;
 /// Parts of a step that may be refused; see [`split_step`].
 const MOST_REFUSED: u32 = 50;
 
-/// How a controlled step ended.
+/// Result of a controlled step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// The error meets the tolerance. If not, the next step will be shorter.
@@ -19,7 +19,7 @@ pub struct Outcome {
     pub length: f64,
 }
 
-/// A method that stands at a point and can go on from there.
+/// A method with a current point from which it can step.
 pub trait Stepper: Sized {
     /// True if stability keeps its steps short where a system is stiff.
     const IS_EXPLICIT: bool;
@@ -27,10 +27,10 @@ pub trait Stepper: Sized {
     /// Steps from `start`, the first one of length `step` (s) at most.
     fn new(start: Point, step: f64, magnitudes: Magnitudes) -> Self;
 
-    /// Where the next step begins.
+    /// Start of the next step.
     fn current_point(&self) -> &Point;
 
-    /// Where the last step began.
+    /// Start of the last step.
     fn step_start(&self) -> &Point;
 
     /// The length of the next step, s.
@@ -39,8 +39,8 @@ pub trait Stepper: Sized {
     /// Makes the next step one of length `step` (s), and forgets nothing else.
     fn set_step(&mut self, step: f64);
 
-    /// Goes on from another point, behind a switching surface, with a step of length
-    /// `step` (s) at most and without relying on what came before.
+    /// Continues from another point, beyond a switching surface, without history. The first step is
+    /// at most `step` (s) long.
     fn restart(&mut self, point: Point, step: f64);
 
     /// Goes on from a state that replaces the one here and differs from it by errors of the last step.
@@ -49,7 +49,7 @@ pub trait Stepper: Sized {
         self.restart(Point { t, y }, self.step());
     }
 
-    /// Scales of the errors. They follow the states of the trajectory alone; see
+    /// Scales of the errors. They follow only the states of the trajectory; see
     /// [`Stepper::settle`].
     fn magnitudes(&self) -> &Magnitudes;
 
@@ -58,8 +58,8 @@ pub trait Stepper: Sized {
     /// all its components.
     fn settle(&mut self, is_projected: bool);
 
-    /// Tries a step that ends at `until` (s) at the latest, where the right-hand side may
-    /// jump. If it is accepted the method stands at the new point.
+    /// Tries a step that ends at `until` (s) at the latest, as the right-hand side may jump there.
+    /// An accepted step moves the method to its end.
     fn advance<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,

@@ -1,10 +1,9 @@
-//! Whether there will be an end, and whether it is stability that keeps the steps short.
+//! Detects stiffness: stability instead of accuracy limits the steps.
 //!
-//! A step of an explicit method is no longer than stability allows: a few times what decays
-//! fastest takes, whatever the tolerance. Where the pace of the last steps would need more of
-//! them than there may be, the fastest decay is found by iterating with differences of the
-//! rates; if the steps are as long as it allows, the system is stiff. Otherwise the motion
-//! itself is fast, and goes on to the limit on steps.
+//! Stability limits a step of an explicit method to a few times the fastest decay time, at any
+//! tolerance. If the projected number of steps exceeds the limit, an iteration with differences of
+//! the rates finds the fastest decay. The system is stiff if the steps are as long as it allows.
+//! Otherwise the motion itself is fast, and the simulation continues to the limit on steps.
 
 use super::error::SolveError;
 use super::system::System;
@@ -12,20 +11,20 @@ use super::system::System;
 /// Steps between two looks at the pace: a fraction of a second's work.
 const STEPS: u64 = 1 << 13;
 
-/// So many looks in a row must find no end.
+/// Number of successive checks that must exceed the limit.
 const LOOKS: u32 = 3;
 
 /// Iterations towards the fastest decay; neighbours in speed need not be told apart.
 const ITERATIONS: usize = 12;
 
-/// Steps that are this long, in units of the fastest decay, are limited by stability: what
-/// decays is gone, and no error comes from it.
+/// Stability limits steps at least this long, in units of the fastest decay time: the decaying
+/// component is gone and causes no error.
 const LIMITED: f64 = 0.3;
 
-/// The same for what vibrates, whose error counts as long as it is there.
+/// The same for a vibration, which causes errors for as long as it lasts.
 const LIMITED_BY_VIBRATION: f64 = 2.0;
 
-/// How far states are moved for a difference of rates, relative.
+/// Relative change of the state for differences of the rates.
 const MOVED: f64 = 1e-7;
 
 /// The pace of a simulation.
@@ -35,7 +34,7 @@ pub struct Pace {
     hopeless: u32,
 }
 
-/// Where a simulation stands.
+/// Progress of a simulation.
 pub struct Progress<'a> {
     /// The time, s.
     pub t: f64,
@@ -98,7 +97,7 @@ impl Pace {
     }
 }
 
-/// How fast neighbouring motions part or meet at most.
+/// Fastest divergence or convergence of neighbouring motions.
 struct Fastest {
     /// 1/s.
     rate: f64,
@@ -109,7 +108,7 @@ struct Fastest {
 }
 
 impl Fastest {
-    /// Returns true if it is what keeps steps of this length, s, from being longer.
+    /// Returns true if it limits steps of this length, s.
     fn limits(&self, step: f64) -> bool {
         let limit = if self.decays {
             LIMITED
@@ -120,7 +119,7 @@ impl Fastest {
     }
 }
 
-/// What is fastest where the simulation stands.
+/// Finds the fastest mode at the present state.
 fn fastest<S: System + ?Sized>(system: &S, standing: &Progress<'_>) -> Option<Fastest> {
     let (t, y) = (standing.t, standing.y);
     let sizes: Vec<f64> = y.iter().map(|y| y.abs().max(standing.step)).collect();

@@ -1,4 +1,4 @@
-//! The system during a simulation: sides of its switching surfaces, number of evaluations, and rates
+//! A system during a simulation: sides of its switching surfaces, number of evaluations, and rates
 //! that are not finite.
 
 use std::cell::{Cell, RefCell};
@@ -9,10 +9,10 @@ use super::point::Point;
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 
-/// The side of every switching surface: -1, 1, or 0 where a step begins on it.
+/// Side of every switching surface: -1, 1, or 0 if a step begins on it.
 pub type Regime = Vec<f64>;
 
-/// A system, the regime the present step began in and what its trials ran into.
+/// A system, the regime of the present step and the errors of its trials.
 pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
     regime: RefCell<Regime>,
@@ -25,7 +25,7 @@ pub struct WatchedSystem<'a, S: System + ?Sized> {
 }
 
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
-    /// Watches `system`, which starts at `t` and `y`.
+    /// Wraps `system` for a simulation from time `t` and state `y`.
     pub fn new(system: &'a S, t: f64, y: &[f64]) -> Self {
         let watched = Self {
             system,
@@ -40,45 +40,46 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         watched
     }
 
-    /// Forgets what earlier trials ran into.
+    /// Clears the errors of earlier trials.
     pub fn forget_trials(&self) {
         self.not_finite.set(None);
     }
 
-    /// Lets trials see times before `t` only: at a breakpoint the right-hand side may
-    /// jump, and a step that ends there belongs to the time before.
+    /// Clips the time of trials to just before `t`. At a breakpoint the right-hand side may jump,
+    /// and a step that ends there belongs to the time before.
     pub fn limit_time(&self, t: f64) {
         self.horizon.set(t);
     }
 
-    /// The time that trials at `t` see.
+    /// Returns the time of evaluation for a trial at `t`.
     fn seen(&self, t: f64) -> f64 {
         let horizon = self.horizon.get();
         if t < horizon { t } else { horizon.next_down() }
     }
 
-    /// The state variable whose rate was not finite in a trial since the reset.
+    /// Returns a state variable with a non-finite rate in a trial since
+    /// [`WatchedSystem::forget_trials`].
     pub fn non_finite_state(&self) -> Option<usize> {
         self.not_finite.get()
     }
 
-    /// The coordinate without positive inertia at a state that a trial has come to since the
-    /// last [`WatchedSystem::arrive`].
+    /// Returns a coordinate without positive inertia at a trial since
+    /// [`WatchedSystem::forget_later_trials`].
     pub fn indefinite_coordinate(&self) -> Option<usize> {
         self.indefinite.get()
     }
 
-    /// Forgets what trials beyond the next point ran into: the motion has come there.
+    /// Clears errors of trials beyond the present point, after the motion has reached them.
     pub fn forget_later_trials(&self) {
         self.indefinite.set(None);
     }
 
-    /// Evaluations of the right-hand side so far.
+    /// Returns the number of evaluations of the right-hand side.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
 
-    /// The rates at `t` and `y`, without a look at which side of a surface that is.
+    /// Computes the rates at `t` and `y` in the present regime.
     pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let t = self.seen(t);
         self.system.rates(t, y, out);
@@ -92,25 +93,25 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         }
     }
 
-    /// Brings a state onto what the motion keeps; whether there is anything to keep. See
-    /// [`System::project`].
+    /// Projects a state onto constraints and invariants; see [`System::project`]. Returns false if
+    /// the system has none.
     pub fn project(&self, t: f64, y: &mut [f64]) -> bool {
         let evaluations = self.system.project(self.seen(t), y);
         self.evaluations.set(self.evaluations.get() + evaluations);
         evaluations > 0
     }
 
-    /// The derivatives of the rates by the state, row by row; see [`System::jacobian`].
+    /// Computes the Jacobian of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.jacobian(self.seen(t), y, out);
     }
 
-    /// Returns true if there are switching surfaces at all.
+    /// Returns true if the system has switching surfaces.
     pub fn has_guards(&self) -> bool {
         !self.regime.borrow().is_empty()
     }
 
-    /// The side of the surface `guard` in the present regime: -1, 1, or 0 where it is not known.
+    /// Returns the side of the surface `guard` in the present regime: -1, 1, or 0 if unknown.
     pub fn side(&self, guard: usize) -> f64 {
         self.regime.borrow().get(guard).copied().unwrap_or(0.0)
     }
@@ -120,14 +121,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.regime.borrow().clone()
     }
 
-    /// The switching functions at `t` and `y`.
+    /// Returns the switching functions at `t` and `y`.
     pub fn evaluate_guards(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
         self.system.guards(t, y, &mut guards);
         guards
     }
 
-    /// Writes the bounds of the switching functions over a stretch of a motion; see
+    /// Writes bounds of the switching functions over a segment of a motion; see
     /// [`System::bound_guards`].
     pub fn bound_guards(
         &self,
@@ -139,7 +140,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.bound_guards(t, state, out);
     }
 
-    /// By how much the rounding of `y` changes the switching functions there.
+    /// Returns the change of each switching function for a rounding of `y`.
     pub fn guard_roundings(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let here = self.evaluate_guards(t, y);
         let mut roundings = vec![0.0; here.len()];
@@ -155,12 +156,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         roundings
     }
 
-    /// The same as [`WatchedSystem::evaluate_guards`] where nothing jumps yet at the end of a step; see [`WatchedSystem::limit_time`].
+    /// Returns the switching functions at the end of a step, before the jump of a breakpoint; see
+    /// [`WatchedSystem::limit_time`].
     pub fn evaluate_guards_before(&self, t: f64, y: &[f64]) -> Vec<f64> {
         self.evaluate_guards(self.seen(t), y)
     }
 
-    /// Returns the lowest of the switching functions `guards`, each positive on the side of the present regime.
+    /// Returns the lowest of the switching functions `guards`, each positive on its side in the
+    /// present regime.
     pub fn lowest_guard(&self, guards: &[usize], t: f64, y: &[f64]) -> f64 {
         let values = self.evaluate_guards_before(t, y);
         let regime = self.regime.borrow();
@@ -178,8 +181,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.side(guard) * value < 0.0
     }
 
-    /// Makes the regime that of `t` and `y`, and returns the functions that changed
-    /// sign. A function that is exactly 0 keeps the side it came from.
+    /// Sets the regime to that of `t` and `y`, and returns the functions that changed sign. A
+    /// function that is exactly 0 keeps its side.
     pub fn enter_regime(&self, t: f64, y: &[f64]) -> Vec<usize> {
         let guards = self.evaluate_guards(t, y);
         let mut regime = self.regime.borrow_mut();
@@ -196,13 +199,13 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         changed
     }
 
-    /// Has the system change what jumps between a point on the near side of a surface and one just
-    /// beyond it.
+    /// Applies the jumps of an event between a point just before a surface and one just beyond it.
     pub fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
         self.system.apply_event(before, t, y);
     }
 
-    /// Changes `y` where inputs jump at `t`, if they do; see [`System::apply_breakpoint`].
+    /// Applies the jumps of inputs at `t`; see [`System::apply_breakpoint`]. Returns true if there
+    /// are any.
     pub fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
         self.system.apply_breakpoint(t, y)
     }
@@ -212,7 +215,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         t == self.horizon.get()
     }
 
-    /// Has rates go on smoothly over surfaces as they are in the present regime, or no longer; see
+    /// Extends the rates of the present regime smoothly beyond its surfaces if `keep`; see
     /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {
         self.has_released_sides.set(!keep);
@@ -227,8 +230,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         }
     }
 
-    /// Evaluates rates on the side of each state, if those of the present regime were not finite in a trial. Returns
-    /// true if it does.
+    /// Evaluates rates on the side of each state if those of the present regime were not finite in
+    /// a trial. Returns true if so.
     pub fn release_sides(&self) -> bool {
         let releases = self.has_guards() && self.not_finite.get().is_some();
         if releases {
@@ -237,7 +240,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         releases
     }
 
-    /// The switching functions whose surfaces have caught the motion or let it go; see
+    /// Returns the switching functions whose surfaces began or ceased to hold the motion; see
     /// [`System::update_sticking`].
     pub fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
         self.system.update_sticking(t, y)
@@ -248,7 +251,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.is_observing()
     }
 
-    /// Shows the system a step that was accepted; see [`System::observe_step`].
+    /// Passes an accepted step to the system; see [`System::observe_step`].
     pub fn observe_step(
         &self,
         start: &Point,
@@ -262,7 +265,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         });
     }
 
-    /// The state variable that changes fastest at `t` and `y`, in parts of its size.
+    /// Returns the state variable with the highest rate relative to its size.
     pub fn fastest_state(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];
         self.system.rates(t, y, &mut rates);
