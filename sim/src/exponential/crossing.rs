@@ -1,8 +1,8 @@
-//! Where within a step a function of the motion reaches its surface.
+//! Time of a crossing within a step.
 
 use super::surfaces::Side;
 
-/// Halvings of the part of a step in which a crossing lies: a function is polished afterwards.
+/// Bisections of the interval with a crossing, before its refinement.
 const HALVINGS: usize = 30;
 
 /// A function's value and rate at one end of a step.
@@ -33,7 +33,7 @@ fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
     let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
     let value = |s: f64| a + s * (da + s * (c + s * d));
     let mut last = 1.0;
-    // The lowest point within, where the function has one.
+    // The minimum of the cubic, if it has one.
     let discriminant = c * c - 3.0 * da * d;
     if discriminant > 0.0 {
         let root = discriminant.sqrt();

@@ -1,6 +1,6 @@
-//! How the nonlinear remainder changes with the state: the part of their forces that
-//! neighbouring motions feel and the linear part's matrix does not hold. By differences, for
-//! the model tells no more of itself than its accelerations.
+//! Derivatives of the nonlinear remainder by the state: the part of the forces on neighbouring
+//! motions that the matrix of the linear part lacks. They are computed by differences, since the
+//! model provides only accelerations.
 
 use super::remainder::{Force, Remainder};
 use super::slopes::Slopes;
@@ -11,7 +11,8 @@ use super::types::{ExponentialIntegrator, Motion, Options};
 /// place, of which little passes in between.
 const ANEW: usize = 4;
 
-/// A state is changed by this part of what it moves in a step, or of itself, whichever is more.
+/// Change of a state for a difference, as a fraction of its displacement in a step or of itself,
+/// whichever is more.
 const OF_MOVE: f64 = 1e-3;
 const OF_ITSELF: f64 = 1e-8;
 
@@ -23,7 +24,7 @@ const OF_TYPICAL_SIZE: f64 = 1e-10;
 const ROUNDING: f64 = 1e-10;
 
 impl ExponentialIntegrator {
-    /// Lets the neighbours make the steps that they have not made, up to where the motion stands.
+    /// Advances the neighbours by their outstanding steps to the present time of the motion.
     pub(super) fn bring(
         &mut self,
         motion: &Motion,
@@ -43,8 +44,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Finds the derivatives where the motion stands; not on a surface, where rounding decides
-    /// on which side the model is.
+    /// Computes the derivatives at the present state, which must not be on a surface: there
+    /// rounding errors decide the side.
     pub(super) fn differentiate(
         &mut self,
         motion: &Motion,
@@ -99,8 +100,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// How the function of a surface changes with each state, as the whole model says; rates tell
-    /// how far the states may be moved.
+    /// Returns the gradient of a surface's function in the whole model. The rates scale the changes
+    /// of the states.
     pub(super) fn gradient(
         &self,
         motion: &Motion,
@@ -132,7 +133,7 @@ impl ExponentialIntegrator {
         size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
     }
 
-    /// Returns true if a surface lies between a motion's state and the same with one state
+    /// Returns true if a surface separates a motion's state from the same state with one entry
     /// changed.
     fn sides_differ(
         &self,

@@ -5,7 +5,7 @@ use fearless_simd::{Level, dispatch};
 /// Rows are filled up to a multiple of this.
 pub const LANES: usize = 8;
 
-/// A matrix whose columns stand one after the other, filled with zeros to whole SIMD vectors of rows.
+/// A matrix stored by columns, each filled with zeros to whole SIMD vectors.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
     /// Rows with those that fill up.
@@ -40,8 +40,8 @@ impl Columns {
         dispatch!(Level::new(), _simd => add_product(entries, rows, vector, out));
     }
 
-    /// Adds the products with many vectors, which stand one after the other, each filled up as
-    /// the rows are, of which the first `inner` numbers count.
+    /// Adds the products with many vectors, stored one after the other with the padding of the
+    /// rows. The first `inner` numbers of each are used.
     pub fn add_products(&self, inner: usize, vectors: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);
         dispatch!(Level::new(), _simd => {

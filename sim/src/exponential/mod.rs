@@ -317,8 +317,8 @@ impl ExponentialIntegrator {
         self.evaluate_events(motion);
     }
 
-    /// Finds the surfaces' functions and, but for how they are moved, their rates where the
-    /// motion stands.
+    /// Evaluates the surfaces' functions and their rates at the present state, without the
+    /// contribution of the remainder to the rates.
     fn evaluate_events(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
         let degrees = self.degrees;

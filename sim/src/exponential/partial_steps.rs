@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-16;
 /// it moves away from the surface by more than rounding.
 const RELEASED: f64 = 1e-6;
 
-/// What happens within a step.
+/// Event within a step.
 enum Event {
     /// The motion reaches a surface at a time, s, from the beginning; the surface itself moves with
     /// a slope.
@@ -39,7 +39,7 @@ impl Event {
     }
 }
 
-/// Where a function's rate leads back by less than this part of its size, it does not.
+/// Smallest rate of a function that leads back, as a fraction of its size.
 const LEADS_BACK: f64 = 1e-9;
 
 impl ExponentialIntegrator {
@@ -96,7 +96,7 @@ impl ExponentialIntegrator {
         }
         self.part(motion, rest);
         self.ended(motion, rest, end, inputs, options)?;
-        // Where surfaces follow each other too fast, signs decide.
+        // If surfaces follow each other too fast, signs decide.
         let regime = &self.regimes[motion.regime];
         let functions = regime.functions.iter().zip(&motion.remainder.moved);
         for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
@@ -112,8 +112,9 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// Returns what happens first in a part of a step, s, at whose end the motion stands. `begin`:
-    /// functions of the surfaces with their rates, and the state; and the nonlinear remainder there.
+    /// Returns the first event in a part of a step, s, at whose end the motion is. `begin` is the
+    /// state at its beginning with the functions of the surfaces, their rates, and the nonlinear
+    /// remainder.
     fn first_event(
         &self,
         motion: &Motion,
@@ -154,7 +155,7 @@ impl ExponentialIntegrator {
         add_exponential_series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
     }
 
-    /// The rates where the motion stands.
+    /// Computes the rates at the present state.
     pub(super) fn rates(&self, motion: &Motion, out: &mut [f64]) {
         let regime = &self.regimes[motion.regime];
         let degrees = self.degrees;

@@ -13,8 +13,8 @@ use super::parameter_derivatives::RegimeDerivative;
 use super::regime_rates::{DOUBLINGS, HeldRates, Rates, flow_scale, held_rates, state_scale};
 use super::surfaces::{Row, Side, Surfaces, dot};
 
-/// Distance from a surface that holds a motion, at which a model is evaluated on one side of it: this
-/// part of what the jump across the surface makes of its function in one step.
+/// Distance from a holding surface at which a model is evaluated on one side, as a fraction of the
+/// effect of the jump on the surface's function in one step.
 const ASIDE: f64 = 1e-6;
 
 /// A regime.
@@ -22,14 +22,14 @@ const ASIDE: f64 = 1e-6;
 pub struct Regime {
     /// The rates' matrix, states x states.
     pub matrix: Columns,
-    /// What a unit constant and the inputs do to the rates.
+    /// Effect of a unit constant and the inputs on the rates.
     pub given: DMatrix<f64>,
     /// A state to the one a step later; below it the surfaces' functions there, then their
     /// rates.
     pub step: Columns,
-    /// What a unit constant and the inputs, held over the step, add to that.
+    /// Effect of a unit constant and the inputs, held over the step, on the same.
     pub step_given: Columns,
-    /// What accelerations held over the step add to it.
+    /// Effect of accelerations, held over the step, on the same.
     pub step_force: Columns,
     /// For neighbouring motions: one step, two, four and so on.
     pub doubled: Vec<DoubledStep>,
@@ -41,8 +41,8 @@ pub struct Regime {
     pub rates: Vec<Row>,
     /// The surfaces that hold the motion.
     pub held: Vec<HeldSurface>,
-    /// What accelerations that come from elsewhere add to these sides, a row for each, and what that
-    /// adds to the accelerations, a column for each.
+    /// Effect of external accelerations on the sides of holding surfaces, a row for each, and the
+    /// effect of the sides on the accelerations, a column for each.
     force_effects: (DMatrix<f64>, DMatrix<f64>),
 }
 
@@ -157,8 +157,8 @@ impl Regime {
 }
 
 impl Regime {
-    /// Takes from accelerations that come from elsewhere what surfaces that hold the motion bear of
-    /// them, and says what that adds to the sides.
+    /// Subtracts the reaction of holding surfaces from external accelerations, and writes the
+    /// change of their sides to `sides`.
     pub fn subtract_held(&self, accelerations: &mut [f64], sides: &mut Vec<f64>) {
         sides.clear();
         if self.held.is_empty() {

@@ -69,13 +69,13 @@ pub(super) fn held_rates(
     Some((rates, functions, held))
 }
 
-/// How surfaces hold a motion.
+/// Surfaces that hold a motion.
 pub(super) struct HeldRates {
     /// For each of them its place and its side.
     pub sides: Vec<(usize, Row)>,
-    /// What rates add to these sides, a row for each.
+    /// Effect of the rates on these sides, a row for each.
     pub factor: DMatrix<f64>,
-    /// What a side adds to the rates, a column for each.
+    /// Effect of a side on the rates, a column for each.
     pub jumps: DMatrix<f64>,
 }
 

@@ -15,7 +15,7 @@ type End<'e> = (&'e [f64], &'e Remainder);
 pub(super) struct Release {
     /// Place among the surfaces that hold the motion.
     pub place: usize,
-    /// The side to which the motion goes on.
+    /// Side of the motion after the release.
     pub to: Side,
     /// Time from the beginning of the step, s.
     pub tau: f64,

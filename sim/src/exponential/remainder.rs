@@ -6,7 +6,7 @@ use super::surfaces::{Row, Surfaces};
 
 /// Terms that a model adds to its piecewise-linear part.
 pub trait Force {
-    /// Writes the added accelerations at a state; each term uses the sides of its own surfaces.
+    /// Writes the added accelerations at a state. Each term uses the sides of its surfaces.
     fn write_accelerations(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
 
     /// Writes the value of each guard of the piecewise-linear part in the whole model. Returns
@@ -19,11 +19,11 @@ pub trait Force {
 pub struct Remainder {
     /// Accelerations, with a regime's own taken away.
     pub force: Vec<f64>,
-    /// What is added to the function of each surface.
+    /// Addition to the function of each surface.
     pub moved: Vec<f64>,
     /// True if a surface may be moved.
     pub moves: bool,
-    /// What it adds to the side of each surface that holds the motion, in the order of the regime's.
+    /// Addition to the side of each holding surface, in the order of the regime.
     pub borne: Vec<f64>,
     guards: Vec<f64>,
 }
@@ -38,8 +38,8 @@ impl Remainder {
         }
     }
 
-    /// Finds it at a state; accelerations relative to the linear part on the sides of its own
-    /// surfaces.
+    /// Computes the remainder at a state: accelerations relative to those of the linear part on the
+    /// sides of its surfaces.
     pub fn find(
         &mut self,
         force: &mut dyn Force,
@@ -58,7 +58,7 @@ impl Remainder {
     }
 }
 
-/// How much the accelerations of one regime are above those of another.
+/// Difference of the accelerations of two regimes.
 #[derive(Debug, Default)]
 pub struct RegimeDifference {
     pub pair: (usize, usize),

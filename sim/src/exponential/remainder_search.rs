@@ -7,12 +7,12 @@ use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::Side;
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// How far from a surface that is crossed, in steps, a model is asked for its accelerations on
-/// either side: on the surface itself rounding decides on which it is.
+/// Distance from a crossed surface, in steps, at which a model is evaluated on either side: on the
+/// surface itself rounding errors decide the side.
 pub const AHEAD: f64 = 1e-4;
 
 impl ExponentialIntegrator {
-    /// Finds the nonlinear remainder where a motion stands.
+    /// Computes the nonlinear remainder at the present state of a motion.
     pub(super) fn find_remainder(
         &mut self,
         motion: &mut Motion,
@@ -39,8 +39,8 @@ impl ExponentialIntegrator {
         Ok(())
     }
 
-    /// The same where a motion with these rates is so many steps later, or was so many before:
-    /// beside a surface that it crosses.
+    /// Computes the remainder at a distance of `steps` from a crossed surface, by extrapolation
+    /// with the given rates.
     pub(super) fn find_remainder_beside(
         &mut self,
         motion: &mut Motion,
@@ -62,8 +62,8 @@ impl ExponentialIntegrator {
         self.remainder_at(here, at, &mut **force, &mut motion.remainder)
     }
 
-    /// Takes accelerations relative to a regime with its sides, not to the one in which the
-    /// linear part alone would be.
+    /// Takes accelerations relative to those of a regime on its sides, instead of the regime in
+    /// which the linear part would be.
     fn relate(
         &mut self,
         (here, sides): (usize, &[Side]),

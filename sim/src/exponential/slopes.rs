@@ -3,8 +3,8 @@
 
 use super::remainder::Remainder;
 
-/// Derivatives of the nonlinear remainder's accelerations by each state, at the two ends of
-/// what neighbouring motions go on by.
+/// Derivatives of the nonlinear remainder's accelerations by each state, at both ends of the
+/// neighbours' step.
 #[derive(Debug, Default)]
 pub struct Slopes {
     /// For each state the accelerations' derivatives, one after the other.
@@ -36,19 +36,20 @@ impl Slopes {
         }
     }
 
-    /// Where the motion stands nothing is known any more.
+    /// Marks the derivatives at the present state as unknown.
     pub fn forget_here(&mut self) {
         self.is_known = [false; 2];
         self.asked = 0;
     }
 
-    /// What is felt has not changed.
+    /// Keeps the derivatives unchanged over the step.
     pub fn keep(&mut self) {
         self.there.copy_from_slice(&self.here);
         self.is_known[1] = true;
     }
 
-    /// The neighbours have come where the motion stands.
+    /// Moves the derivatives at the end of the step to its beginning, after the neighbours have
+    /// made it.
     pub fn shift_to_end(&mut self) {
         std::mem::swap(&mut self.here, &mut self.there);
         self.is_known = [self.is_known[1], false];

@@ -14,7 +14,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Where a surface's function has this value.
+    /// Returns the side of a surface with this value of its function.
     pub fn of(value: f64) -> Self {
         if value > 0.0 {
             Self::Above
@@ -29,7 +29,7 @@ impl Side {
 pub struct Surfaces {
     /// For each surface the guards that are it.
     pub guards: Vec<Vec<usize>>,
-    /// How many guards there are.
+    /// Number of guards.
     count: usize,
 }
 
@@ -75,8 +75,8 @@ fn row(system: &AffineSystem, guard: usize) -> Row {
 }
 
 impl Surfaces {
-    /// The surfaces of a model; none if one of them may move with the side of another, or be
-    /// of inputs alone.
+    /// Returns the surfaces of a model, or `None` if one may move with the side of another, or
+    /// depends only on inputs.
     pub fn of(evaluator: &mut AffineEvaluator) -> Option<Self> {
         let count = evaluator.guard_count();
         if evaluator.guards_rest().contains(&true) {

@@ -56,7 +56,7 @@ pub struct Directions {
 pub struct Tangents<'d> {
     states: usize,
     degrees: usize,
-    /// How many are of the initial state.
+    /// Number of derivatives by the initial state.
     free: usize,
     by_parameter: usize,
     driven: usize,
@@ -70,13 +70,13 @@ pub struct Tangents<'d> {
     later: Vec<f64>,
     /// Steps that the motion has made and the vectors have not.
     pending: usize,
-    /// The motion stands on a surface, where rounding decides what the drives are.
+    /// True if the motion is on a surface: rounding errors decide the drives.
     on_surface: bool,
     drives: &'d mut dyn DrivingAccelerations,
-    /// The drives where the motion stands, and a step later.
+    /// Drives at the present state, and a step later.
     here: Vec<f64>,
     there: Vec<f64>,
-    /// What the nonlinear remainder do to neighbours, where there are such.
+    /// Effect of the nonlinear remainder on neighbours, if there are any.
     pub(super) slopes: Option<Slopes>,
     felt: Vec<f64>,
 }
@@ -402,7 +402,7 @@ pub fn add_exponential_series(
         large.resize(rates.len(), 0.0);
         &mut large
     };
-    // What each number was, and the sizes of the terms so far.
+    // The original numbers, and the sizes of the terms so far.
     let mut sizes: Vec<f64> = vector.iter().map(|value| value.abs()).collect();
     for (slot, rate) in rates.iter_mut().enumerate() {
         *rate *= tau;

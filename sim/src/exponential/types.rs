@@ -26,8 +26,8 @@ pub struct ExponentialIntegrator {
     /// The most surfaces that a motion may cross, and how many it did.
     pub(super) most_crossings: usize,
     pub(super) crossings: usize,
-    /// The sides on which the linear part alone would be, those for which that was asked last
-    /// with their regime, and how that differs from the one where the motion is.
+    /// The sides of the linear part by itself, the last such sides with their regime, and the
+    /// difference of that regime from the present one.
     pub(super) own: Vec<Side>,
     pub(super) last_own: (Vec<Side>, usize),
     pub(super) apart: RegimeDifference,
@@ -45,7 +45,7 @@ pub enum UnsupportedModel {
     TooManySteps(f64),
 }
 
-/// Where a motion stands.
+/// Present point of a motion.
 pub(super) struct Motion {
     pub(super) t: f64,
     pub(super) state: Vec<f64>,
@@ -53,13 +53,13 @@ pub(super) struct Motion {
     pub(super) regime: usize,
     /// A unit constant and the inputs.
     pub(super) given: Vec<f64>,
-    /// What these add to a step.
+    /// Contribution of these to a step.
     pub(super) base: Vec<f64>,
     /// Functions of the surfaces and their rates.
     pub(super) event_values: Vec<f64>,
-    /// What is not linear there.
+    /// Nonlinear remainder there.
     pub(super) remainder: Remainder,
-    /// A step's end, what is not linear there, and half of what that changed.
+    /// End of a step, its nonlinear remainder, and half the change of the remainder.
     pub(super) next: Vec<f64>,
     pub(super) later: Remainder,
     pub(super) change: Vec<f64>,

@@ -1,5 +1,5 @@
-//! What lies beyond a limit of a regime: which regime, whether the rate of the function that
-//! reached it may jump there, and how neighbouring motions pass.
+//! Regimes next to the limits of a regime: the regime itself, possible jumps of the rate of the
+//! limiting function, and the transition of neighbouring motions.
 
 use nalgebra::Complex;
 
@@ -16,23 +16,22 @@ const CONTINUOUS: f64 = 1e-12;
 /// The roundings of a sum of products of size 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The regime that borders on another at a limit, and what the transition there does.
+/// Regime on the other side of a limit, and the kind of the transition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Adjacent {
     pub regime: usize,
     /// True if the rate of the family's function may jump there.
     pub jumps: bool,
-    /// Where the constant saltation matrix of the transition is kept, if it is constant.
+    /// Index of the saltation matrix of the transition, if it is constant.
     pub saltation: Option<usize>,
     /// True if the functions of other families may jump in the transition.
     pub moves_others: bool,
-    /// True if the motion stands on other surfaces there, so that what happens is decided for all
-    /// together.
+    /// True if the motion is on other surfaces there, so that all surfaces are decided together.
     pub meets_others: bool,
 }
 
 impl Propagator {
-    /// Finds what lies beyond a limit and remembers it.
+    /// Finds the regime on the other side of a limit and stores it.
     pub(super) fn find_adjacent(&mut self, limit: &Limit) -> Result<Adjacent, ExactError> {
         let &Limit {
             before,
@@ -124,7 +123,7 @@ impl Propagator {
         rate + self.explicit_rate(function, phases)
     }
 
-    /// What rounding may make of the rate of a family's function.
+    /// Returns the rounding error of the rate of a family's function.
     pub(super) fn rate_rounding(&self, index: usize, family: usize, state: &[f64]) -> f64 {
         let visited = &self.regimes[index];
         let matrix = &visited.regime.system.rates.state;
@@ -142,7 +141,7 @@ impl Propagator {
         ROUNDING * size
     }
 
-    /// The rate of a function of sinusoids that is due to time alone.
+    /// Returns the partial derivative by time of a function of sinusoids.
     pub(super) fn explicit_rate(&self, function: &Linear, phases: &[Complex<f64>]) -> f64 {
         let terms = phases.iter().enumerate().map(|(index, phase)| {
             let omega = self.phases[index][0];

@@ -1,20 +1,20 @@
-//! What a function certainly does within a step.
+//! Bounds of a function within a step.
 //!
-//! Where the flow stands, each function is known with three derivatives and a bound m of the
-//! fourth: the cubic through them minus m s^4/24 is a lower bound over a step, 0 <= s <= h,
-//! and plus m s^4/24 an upper one; their derivatives bound its rate. In Bernstein's basis the
-//! coefficients of a bound enclose it. If those of the lower one stay above the lower limit,
-//! and those of the upper one below the upper limit, no crossing lies within the step. If
-//! instead a function ends below its limit for certain, exactly one does when it must fall
-//! all the way, or when it bends downwards all the way.
+//! At the present time of the flow each function is known with three derivatives and a bound m of
+//! the fourth. The cubic through them minus m s^4/24 is a lower bound over a step, 0 <= s <= h, and
+//! plus m s^4/24 an upper one; their derivatives bound the rate. In Bernstein's basis the
+//! coefficients of a bound enclose it. If those of the lower bound are above the lower limit, and
+//! those of the upper bound below the upper limit, the step contains no crossing. If a function
+//! certainly ends below its limit, and either falls or is concave throughout the step, the step
+//! contains exactly one crossing.
 //!
-//! Modes too fast for a step are bounded by their amplitudes, or, where a limit has just been
-//! left, by their rates: from where the function stands they move it by no more than their
-//! rate in proportion to time.
+//! Modes too fast for a step are bounded by their amplitudes. After a limit has just been left they
+//! are bounded by their rates instead: they change the function by at most their rate times the
+//! time.
 
 use super::event_evaluation::Local;
 
-/// What a step does to a function.
+/// Behaviour of a function within a step.
 pub(super) enum Verdict {
     /// It keeps its limits.
     WithinLimits,
@@ -24,7 +24,7 @@ pub(super) enum Verdict {
     Undecided,
 }
 
-/// What can be said of a function between two limits over the next `length` s.
+/// Classifies a function between two limits over the next `length` s.
 #[inline(always)]
 pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
     let [value, rate, second, third] = local.derivatives;
@@ -61,9 +61,11 @@ pub(super) fn classify_step(local: &Local, [low, high]: [f64; 2], length: f64) -
 struct Room {
     /// The most that can be left at the end of the step.
     ends: [f64; 2],
-    /// What is left here for certain, whatever the fast modes do, or rounding.
+    /// Distances from the limits at the start for any values of the fast modes, at least the
+    /// rounding error.
     margins: [f64; 2],
-    /// What is left here with the fast modes as they are, or rounding.
+    /// Distances from the limits at the start for the present values of the fast modes, at least
+    /// the rounding error.
     margins_here: [f64; 2],
     /// A bound of the fast modes' contribution to differences of coefficients.
     fast_difference: f64,

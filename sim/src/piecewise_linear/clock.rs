@@ -30,7 +30,7 @@ impl Clock {
         self.time
     }
 
-    /// How far away a later time is, s.
+    /// Returns the time until `later`, s.
     pub fn time_until(self, later: f64) -> f64 {
         (later - self.time) - self.rest
     }

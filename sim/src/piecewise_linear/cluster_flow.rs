@@ -1,5 +1,5 @@
-//! The motion of a cluster of eigenvalues: exp(centre tau) times a polynomial, and what
-//! constant and sinusoidal forces make of it, in resonance too.
+//! Motion of a cluster of eigenvalues: exp(centre tau) times a polynomial, and the response to
+//! constant and sinusoidal forces, including resonance.
 
 use nalgebra::{Complex, DVector};
 
@@ -49,7 +49,7 @@ impl ClusterFlow {
         }
     }
 
-    /// Exponents, relative to the centre, with what they force.
+    /// Returns the exponents, relative to the centre, with the response to each.
     fn exponents<'a>(
         &'a self,
         cluster: &Cluster,
@@ -101,7 +101,7 @@ impl ClusterFlow {
             }
         }
         add_derivatives(cluster, tau, end, &inner, &bound, local);
-        // Where it stood at the start is known from the state.
+        // The contribution at the start is known from the state.
         if let Some(power) = powers.first() {
             local.derivatives[0] -= dot(power, &self.zeta).re;
         }

@@ -1,12 +1,12 @@
-//! Which eigenvalues share a part of a decomposition: those near zero, and those that are too
+//! Clusters of eigenvalues that share a part of a decomposition: those near zero, and those too
 //! close to each other.
 
 use std::ops::Range;
 
 use nalgebra::Complex;
 
-/// Eigenvalues below this part of the fastest rate, or of 1 1/s, count as near zero: as modes
-/// of their own they would answer a constant force with a large and useless amplitude.
+/// Eigenvalues below this fraction of the fastest rate, or of 1 1/s, count as near zero. As
+/// separate modes they would respond to a constant force with a large amplitude that cancels.
 const NEAR_ZERO: f64 = 1e-5;
 
 /// Eigenvalues closer than this, relative, always share a part.
@@ -15,7 +15,7 @@ const EQUAL: f64 = 1e-9;
 /// Imaginary parts below this part of the largest eigenvalue count as zero.
 pub(super) const REAL: f64 = 1e-11;
 
-/// Which eigenvalues are near zero.
+/// Returns true for each eigenvalue near zero.
 pub(super) fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -> Vec<bool> {
     let fastest = forcing.abs().max(1.0);
     let largest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
@@ -33,8 +33,8 @@ pub(super) fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -
         .collect()
 }
 
-/// Eigenvalues in clusters: for each the number of its cluster, 0 for those near zero. `share`
-/// says of two eigenvalues and their relative distance whether they belong together.
+/// Returns the number of the cluster of each eigenvalue, 0 for those near zero. `share` decides
+/// from two eigenvalues and their relative distance.
 pub(super) fn clusters(
     eigenvalues: &[Complex<f64>],
     zeros: usize,

@@ -1,10 +1,10 @@
-//! Surfaces that coincide: their functions are in proportion, and both are on their thresholds
-//! at once. Which of them is crossed first must not decide what happens.
+//! Coincident surfaces: their functions are proportional, and both are on their thresholds at once.
+//! The order in which they are found to be crossed must not affect the result.
 
 use super::event_function::Linear;
 use super::outline::Outline;
 
-/// What is left of functions that are in proportion, relative.
+/// Largest residual of proportional functions, relative.
 const ROUNDING: f64 = 1e-11;
 
 /// A surface that is crossed.
@@ -12,7 +12,7 @@ pub(super) struct Crossing {
     pub family: usize,
     /// The family's function in the regime before, without a constant.
     pub function: Linear,
-    /// What it equals.
+    /// Threshold that the function equals.
     pub threshold: f64,
     /// The outline of the regime before.
     pub outline: usize,

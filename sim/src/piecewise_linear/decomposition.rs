@@ -1,10 +1,9 @@
-//! A real matrix as a sum of parts that move by themselves: A = sum of columns matrix rows.
+//! A real matrix as a sum of independent parts: A = sum of columns matrix rows.
 //!
-//! What integrates (states that no other state feels, and everything with an eigenvalue
-//! near zero) is one part with a real basis and a matrix that is nearly nilpotent: its
-//! exponential is a polynomial. Plain eigenvectors of such a cluster have condition 1e12
-//! and worse. Every other eigenvalue is a part of its own, and those so close together that
-//! their eigenvectors nearly agree share one.
+//! Integrals (states that affect no other state, and all eigenvalues near zero) are one part with a
+//! real basis and a nearly nilpotent matrix: its exponential is a polynomial. The eigenvectors of
+//! such a cluster have a condition number of 1e12 and more. Every other eigenvalue is a separate
+//! part, except that eigenvalues with nearly equal eigenvectors share one.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -26,7 +25,7 @@ const HOPELESS: (f64, f64) = (1e6, 1e-2);
 /// A part of a matrix: A columns = columns (centre + matrix).
 #[derive(Clone, Debug)]
 pub(super) struct Part {
-    /// What the eigenvalues are near to, 1/s.
+    /// Centre of the eigenvalues, 1/s.
     pub centre: Complex<f64>,
     /// The rest: upper triangular with small diagonal, 1/s.
     pub matrix: DMatrix<Complex<f64>>,
@@ -34,7 +33,7 @@ pub(super) struct Part {
     pub columns: DMatrix<Complex<f64>>,
     /// size x states; rows columns = 1.
     pub rows: DMatrix<Complex<f64>>,
-    /// 2 for a part that stands for itself and its conjugate, 1 for one that is real.
+    /// 2 for a part that represents its conjugate as well, 1 for a real part.
     pub weight: f64,
 }
 
@@ -49,7 +48,7 @@ pub(super) struct Integrals {
     pub rows: DMatrix<f64>,
     /// The largest magnitude of its eigenvalues, 1/s.
     pub radius: f64,
-    /// So many of its coordinates, the first ones, are felt by no other.
+    /// Number of coordinates that affect no other coordinate; they are the first ones.
     pub pure: usize,
 }
 
@@ -105,10 +104,10 @@ impl Decomposition {
     }
 }
 
-/// A unit of time in which positions and rates are of like size: 1 for the positions, which come
-/// first in the state, and for states of first order, a power of two near the fastest rate for
-/// the rates between them. Forces may act on rates through states of first order alone; then
-/// what rounding leaves of the others must not decide.
+/// Returns a unit of time for each state in which positions and rates have similar magnitudes: 1
+/// for the positions, which are the first states, and for states of first order; a power of two
+/// near the fastest rate for the rates between them. If forces act on rates only through states of
+/// first order, rounding errors of other entries must not set the unit.
 fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64> {
     let filters = matrix.ncols() - 2 * degrees;
     let block = |row: usize, column: usize| {
@@ -116,7 +115,7 @@ fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64>
         let (shape, place) = ((size(row), size(column)), (row * degrees, column * degrees));
         matrix.view(place, shape).amax()
     };
-    // Through a filter that is faster than what it drives at its gain, through a slower one as an integral.
+    // A filter faster than its load acts as a gain, a slower one as an integral.
     let filter = block(2, 2);
     let through = [block(1, 2) * block(2, 0), block(1, 2) * block(2, 1)];
     let at_gain = through.map(|product| match product > 0.0 {

@@ -1,16 +1,16 @@
-//! How a motion is let go by a surface that held it, as a body breaks away from dry friction.
+//! Release of a motion from a surface that held it, such as breakaway from dry friction.
 //!
-//! There the surface's function stands at its threshold, and its rate is zero: the force has
-//! just reached what friction can bear, and what leads off is the second derivative. Value and
-//! rate are rounding. Taken at their signs they would lead back onto the surface, off it again,
-//! and so on. So the state is put onto the surface, and until the function is farther away than
-//! rounding can have brought it, `flow` takes what it does within that for none.
+//! At the release the surface's function equals its threshold and its rate is zero: the force has
+//! just reached the friction limit, and the second derivative leads off the surface. The signs of
+//! value and rate are rounding errors. If they were used, the motion would alternate between
+//! sticking and slipping. The state is therefore put onto the surface, and `flow` ignores crossings
+//! until the function is farther away than its rounding error.
 
 use super::propagator::{Motion, Propagator};
 
 impl Propagator {
-    /// After a change from the regime `before`: the motion stands on every surface that holds it
-    /// from here on, or did until here, and departs from those that did.
+    /// Puts the motion, after a change from the regime `before`, onto every surface that holds it
+    /// now or held it before. The motion departs from those that held it only before.
     pub(super) fn let_go(&self, motion: &mut Motion, before: usize) {
         let (before, after) = (&self.regimes[before], &self.regimes[motion.regime]);
         for (family, pair) in before.cells.iter().zip(&after.cells).enumerate() {

@@ -1,8 +1,7 @@
-//! Surfaces whose functions feel the sides of others, as that of sign(deadzone(p, b)) does, or
-//! are of inputs alone. Within a regime such a function may have one value throughout: it is
-//! on no side of a threshold then that it equals, and nothing is to be watched. Whenever
-//! another surface is crossed, or an input jumps, its cell is decided anew: by its value, and
-//! on a threshold by its rates.
+//! Surfaces whose functions depend on the sides of others, as that of sign(deadzone(p, b)) does, or
+//! only on inputs. Such a function can be constant within a regime and equal to a threshold. It
+//! then has no side and needs no search. Whenever another surface is crossed, or an input jumps,
+//! the cell of the function is determined again: by its value, and on a threshold by its rates.
 
 use nalgebra::Complex;
 
@@ -13,7 +12,7 @@ use super::propagator::Propagator;
 /// A value is on a threshold if it differs by no more than this part of its terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Where a motion stands when cells are decided.
+/// State of a motion when cells are determined.
 #[derive(Clone, Copy)]
 pub(super) struct StateAt<'a> {
     pub state: &'a [f64],
@@ -21,7 +20,7 @@ pub(super) struct StateAt<'a> {
     pub phases: &'a [Complex<f64>],
 }
 
-/// What asks for a decision.
+/// Reason for a decision.
 #[derive(Clone, Copy)]
 pub(super) enum DecisionCause<'a> {
     /// A motion that begins.
@@ -142,7 +141,8 @@ impl Propagator {
         }
     }
 
-    /// Where the rates on both sides of a threshold lead a function that is on it.
+    /// Returns the cell into which the rates on both sides of a threshold lead a function that is
+    /// on it.
     fn led(&mut self, family: usize, rank: usize, cells: &[Cell], standing: StateAt<'_>) -> Cell {
         let mut with = |cell: Cell| {
             let mut cells = cells.to_vec();

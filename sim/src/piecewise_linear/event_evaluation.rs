@@ -1,5 +1,5 @@
-//! A function in one flow: what it is made of there, its value and derivatives where the
-//! flow stands, and bounds of what it can do within a step.
+//! A function in one flow: its terms, its value and derivatives at the present time, and its bounds
+//! within a step.
 
 use fearless_simd::Simd;
 
@@ -16,19 +16,19 @@ pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub(super) struct EventEvaluation {
     /// It keeps its limits until then, s after the start.
     pub safe_until: f64,
-    /// Where it was last summed up, s after the start.
+    /// Time since the start of the last summation, s.
     pub summed_up_at: f64,
     /// The value at the start.
     start: f64,
     /// The sum of its terms' magnitudes.
     start_size: f64,
-    /// What each power of time adds to the value and the derivatives of order 1 to 3.
+    /// Contribution of each power of time to the value and the derivatives of order 1 to 3.
     terms: Vec<SimdVector>,
     /// The sum of the magnitudes of the terms of the rate at the start, which may cancel.
     rate_size: f64,
     /// A bound of the polynomial's fourth derivative within the window.
     fourth: f64,
-    /// The value, and what its terms' magnitudes add up to.
+    /// The value, and the sum of the magnitudes of its terms.
     pub value: f64,
     pub size: f64,
     /// Derivatives of order 1 to 3 at the places of their orders.
@@ -41,12 +41,11 @@ pub(super) struct EventEvaluation {
     /// Their magnitudes in the orders 0, 1, 4 and 2, and of which measurement.
     sizes_before: Vec<SimdVector>,
     measurement: u64,
-    /// What value and rate at the start may be wrong by, as long as the function is leaving a
-    /// limit that held it.
+    /// Errors of value and rate at the start while the function leaves a limit that held it.
     pub slack: Option<[f64; 2]>,
 }
 
-/// Value and derivatives of a function where a flow stands, with bounds.
+/// Value and derivatives of a function at the present time of a flow, with bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Local {
     /// The value and the derivatives of order 1 to 3, of the slow modes only.
@@ -61,17 +60,17 @@ pub(super) struct Local {
     pub fast_second: f64,
     /// The fast modes' contribution to the value here.
     pub fast_here: f64,
-    /// What rounding may make of the value.
+    /// Rounding error of the value.
     pub noise: f64,
-    /// What rounding may make of the first derivative.
+    /// Rounding error of the first derivative.
     pub rate_noise: f64,
     /// The part of it that adds to the value in proportion to time.
     pub drift_noise: f64,
 }
 
 impl EventEvaluation {
-    /// Prepares for a flow from a start, given what is known there and what drives the
-    /// integrals. `coefficients` is memory for them.
+    /// Prepares for a flow from a start, given the known quantities there and the causes of the
+    /// integrals' rates. `coefficients` is scratch memory.
     #[inline(always)]
     pub fn start<S: Simd>(
         &mut self,

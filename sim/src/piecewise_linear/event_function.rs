@@ -47,7 +47,7 @@ impl Linear {
         value + self.constant
     }
 
-    /// The sum of the magnitudes of what the value is made of.
+    /// Returns the sum of the magnitudes of the terms of the value.
     pub fn size(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> f64 {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum::<f64>();
         let sinusoids = self.sines.iter().zip(&self.cosines).zip(phases);
@@ -63,14 +63,14 @@ impl Linear {
         moving.copied().all(|factor| factor == 0.0)
     }
 
-    /// All factors of what moves.
+    /// Returns the factors of all variables.
     pub fn coefficients(&self) -> impl Iterator<Item = f64> + '_ {
         let driven = self.inputs.iter().chain(&self.sines).chain(&self.cosines);
         self.state.iter().chain(driven).copied()
     }
 }
 
-/// What happens to a regime when a function reaches a limit.
+/// Limits of a function within a regime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     /// The family of parallel guards the function belongs to.
@@ -120,14 +120,14 @@ pub(super) struct EventFunction {
     pub weights: Vec<Weights>,
     /// The factors of each SIMD vector of modes in the value.
     pub value_weights: Vec<ValueWeights>,
-    /// What it feels of the integrals.
+    /// Contribution of the integrals.
     pub polynomial: Polynomial,
     /// row columns N^k of each cluster.
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
-    /// What it reads of a motion's start, with factors.
+    /// Known quantities at a motion's start that the function reads, with factors.
     felt: Vec<(usize, f64)>,
-    /// How much all that is known of a motion's start adds to the magnitudes of what makes up
-    /// the rate, per unit.
+    /// Sum of the magnitudes of the terms of the rate, per unit of each known quantity at a
+    /// motion's start.
     rate_sizes: Vec<f64>,
 }
 
@@ -195,8 +195,7 @@ impl EventFunction {
         (value, size)
     }
 
-    /// The sum of the magnitudes of what makes up the rate at the start of a motion, before
-    /// any of it cancels.
+    /// Returns the sum of the magnitudes of the terms of the rate at the start of a motion.
     pub fn rate_size(&self, given: &[f64]) -> f64 {
         let terms = self.rate_sizes.iter().zip(given);
         terms.map(|(size, given)| size * given.abs()).sum()

@@ -1,10 +1,9 @@
-//! The motion within one regime from one state on: how far it has moved after a time tau.
+//! Motion within one regime from a start: its displacement after a time tau.
 //!
-//! Nothing but differences from the start is summed up: a motion that has hardly moved is as
-//! accurate as its start, though it may be made of modes whose amplitudes are thousands of
-//! times larger and nearly cancel. A flow advances by a step of the step table or by any time,
-//! gives the values and derivatives of the regime's functions where it stands, and the state
-//! there.
+//! All sums are differences from the start. A motion that has hardly moved is then as accurate as
+//! its start, even if it consists of modes whose amplitudes are thousands of times larger and
+//! nearly cancel. A flow advances by a step of the step table or by any time, and returns the
+//! values and derivatives of the regime's functions and the state at its present time.
 
 use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::Complex;
@@ -19,15 +18,16 @@ use super::simd_vectors::{
 };
 use super::step_table::Step;
 
-/// So many times the fastest decay's time constant amplitudes may be followed back, which magnifies their rounding.
+/// Amplitudes may be followed back by at most this multiple of the shortest decay time, as this
+/// magnifies their rounding errors.
 const BACK: f64 = 1.0;
 
 /// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
 /// of a difference to their logarithm.
 const DECAYED: f64 = 0.25;
 
-/// What rounding may make of a rate that vanishes where a motion is let go, in roundings of all
-/// that it is made of: the place of letting go is known to as many.
+/// Error of a rate that vanishes at the release of a motion, in rounding errors of all its terms:
+/// the place of the release is known as accurately.
 const OF_A_DEPARTURE: f64 = 16.0;
 
 /// A function has left its limit when it is this many times farther than rounding can bring it.
@@ -42,7 +42,7 @@ pub(super) struct Flow {
     given: Vec<f64>,
     /// The coordinates at the start, as [`Regime`] has them.
     start: Vec<SimdVector>,
-    /// How far they have moved.
+    /// Displacements of the coordinates.
     moved: Vec<SimdVector>,
     /// The modes' amplitudes at tau.
     now: Vec<SimdVector>,
@@ -210,7 +210,7 @@ impl Flow {
         });
     }
 
-    /// Goes to a time after the start, where nothing but the state will be asked for.
+    /// Advances to a time after the start at which only the state is needed.
     #[inline(always)]
     pub fn advance_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
         self.rewind(regime);
@@ -277,15 +277,14 @@ impl Flow {
         );
     }
 
-    /// What rounding at the start may have made of the rate of a function, whatever is left of
-    /// what cancelled.
+    /// Returns the rounding error of the rate of a function at the start, including cancelled
+    /// terms.
     pub fn start_rate_noise(&self, regime: &Regime, place: usize) -> f64 {
         ROUNDING * regime.event_functions[place].rate_size(&self.given)
     }
 
-    /// Begins the departure of a function that stands at a limit which held it, so that its
-    /// value and its rate there are rounding, whatever their signs. Nothing is to be done if it
-    /// leaves for certain.
+    /// Begins the departure of a function from a limit that held it, where its value and rate are
+    /// rounding errors. Does nothing if the function leaves for certain.
     pub fn depart<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
         let Some(step) = regime.step_table.steps.last() else {
             return;
@@ -356,8 +355,8 @@ impl Flow {
         self.clusters.is_empty() && low < value && value < high
     }
 
-    /// What is made of value and derivatives of a function that has been summed up here, with
-    /// bounds over the next step of `step`. They stay in registers that way.
+    /// Computes a result from value and derivatives of a function that has been summed up here,
+    /// with bounds over the next step of `step`. The closure keeps them in registers.
     #[inline(always)]
     pub fn local<T>(
         &self,
@@ -374,7 +373,7 @@ impl Flow {
         }
     }
 
-    /// With the clusters' parts, and what a departure makes uncertain.
+    /// Adds the parts of the clusters and the uncertainty after a departure.
     #[cold]
     fn completed(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
         if let Some([value, rate]) = self.evaluations[place].slack {

@@ -56,7 +56,8 @@ impl<'s> Samples<'s> {
         }
     }
 
-    /// How long after the segment's beginning the next sample is, s, if it is within.
+    /// Returns the time from the segment's start to the next sample, s, if it is within the
+    /// segment.
     pub fn next_in(&self, segment: &Segment<'_>) -> Option<f64> {
         let after = segment.start.time_until(self.next()?);
         (after <= segment.tau).then_some(after)

@@ -8,7 +8,7 @@
 
 use nalgebra::Complex;
 
-/// Derivatives that are asked for: orders -DERIVATIVES to -1 stand before order 0.
+/// Number of derivatives. Orders -DERIVATIVES to -1 precede order 0.
 pub(super) const DERIVATIVES: usize = 4;
 
 /// Terms of the series at |z| < 1: the remainder is below 1/20! of the sum.

@@ -1,10 +1,10 @@
 //! The part of a regime with eigenvalues near zero, as a Taylor series in time.
 //!
-//! Its coordinates obey z' = N z + f(t), where N is nearly nilpotent and f constant or
-//! slowly sinusoidal. What drives them obeys c' = G c by itself, with c made of coordinates,
-//! constants and sinusoids, so that z moves by the sum over k of tau^k / k! H G^(k-1) c. The
-//! terms soon vanish, and all but c is known before any motion. A sinusoid that turns many
-//! times within the series' reach is answered by a sinusoid instead.
+//! Its coordinates obey z' = N z + f(t), where N is nearly nilpotent and f is constant or slowly
+//! sinusoidal. The causes c of z' are coordinates, constants and sinusoids, and obey c' = G c.
+//! Hence z changes by the sum over k of tau^k / k! H G^(k-1) c. The terms soon vanish, and all
+//! factors but c are known before the motion. A sinusoid with many periods within the range of the
+//! series has a sinusoid as response instead.
 
 use fearless_simd::Simd;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -36,7 +36,7 @@ pub(super) struct Polynomial {
     /// For each cause SIMD vectors of coefficients of the powers of time, from the power 0 on,
     /// whose is zero.
     columns: Vec<Vec<SimdVector>>,
-    /// How many powers count at near times.
+    /// Number of powers needed at near times.
     near_powers: usize,
     /// The magnitudes of the first coefficients.
     rates: Vec<f64>,
@@ -54,9 +54,9 @@ pub(super) struct Polynomial {
 /// and cosine of each slow sinusoid.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
-    /// How many coordinates there are.
+    /// Number of coordinates.
     pub size: usize,
-    /// How many of them no other one feels, the first ones.
+    /// Number of coordinates that affect no other one; they are the first ones.
     pure: usize,
     /// The rates of all coordinates per unit of each cause, 1/s.
     rates: DMatrix<f64>,
@@ -67,7 +67,7 @@ pub(super) struct Integrals {
     /// For each cause how a unit of it moves the coordinates: SIMD vectors of factors for each
     /// power of time from the first on, as far as they count.
     by_cause: Vec<Vec<SimdVector>>,
-    /// How many powers count at near times, and how long those are, s.
+    /// Number of powers needed at near times for each cause; length of near times, s.
     near_powers: Vec<usize>,
     near: f64,
     /// size x states.
@@ -145,7 +145,7 @@ impl Integrals {
         (integrals, window)
     }
 
-    /// How many SIMD vectors the coordinates fill.
+    /// Returns the number of SIMD vectors that hold the coordinates.
     pub fn simd_vectors(&self) -> usize {
         simd_vectors(self.size)
     }
@@ -173,7 +173,8 @@ impl Integrals {
         }
     }
 
-    /// How many coordinates others feel: as many causes a free motion has.
+    /// Returns the number of coordinates that affect others, which is the number of causes in a
+    /// free motion.
     pub fn felt(&self) -> usize {
         self.size - self.pure
     }
@@ -286,8 +287,8 @@ impl Integrals {
         }
     }
 
-    /// The sum of the magnitudes of what each cause makes the coordinates' rates, with these
-    /// weights.
+    /// Returns for each cause the weighted sum of the magnitudes of its contributions to the
+    /// coordinates' rates.
     fn rate_sizes(&self, weights: &[f64]) -> Vec<f64> {
         let size = |column: usize| {
             let terms = self.rates.column(column);
@@ -297,8 +298,8 @@ impl Integrals {
         (0..self.rates.ncols()).map(size).collect()
     }
 
-    /// The same by what is known of a motion's start: the state, a unit constant and the inputs
-    /// (`units`), and sine and cosine of each phase.
+    /// Returns the same for each known quantity at a motion's start: the state, a unit constant and
+    /// the inputs (`units`), and sine and cosine of each phase.
     pub fn rate_sizes_by_start(&self, weights: &[f64], units: usize) -> Vec<f64> {
         let (states, felt) = (self.rows.ncols(), self.felt());
         let by_cause = self.rate_sizes(weights);
@@ -348,7 +349,8 @@ impl Integrals {
 }
 
 impl Polynomial {
-    /// How many powers of time count, from the power 0 on: at near times and at all.
+    /// Returns the number of powers of time needed, from the power 0 on: at near times and at all
+    /// times.
     pub fn powers(&self) -> [usize; 2] {
         [self.near_powers, self.factors.len()]
     }
@@ -405,8 +407,8 @@ fn falling(k: usize, factors: usize) -> f64 {
         .product()
 }
 
-/// How many coefficients of these magnitudes count, of the powers of time from the first on,
-/// within a window.
+/// Returns the number of coefficients of these magnitudes needed within a window, from the first
+/// power of time on.
 fn needed(sizes: &[f64], window: f64) -> usize {
     let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
     for (order, size) in sizes.iter().enumerate() {
@@ -439,7 +441,7 @@ fn forced_coordinates(
     [answer.map(|z| z.re), answer.map(|z| z.im)]
 }
 
-/// How many terms of an exponential series count at this argument.
+/// Returns the number of terms of an exponential series needed at this argument.
 fn terms(argument: f64) -> usize {
     let (mut terms, mut term) = (0, 1.0);
     while term > REMAINDER && terms < MOST_TERMS {

@@ -14,7 +14,7 @@ use super::schur::SchurForm;
 /// Parts found with one grouping, in the balanced inner state.
 pub(super) struct Found {
     subspaces: Subspaces,
-    /// How many dimensions are near zero, the first ones.
+    /// Dimension of the subspace near zero, which is the first one.
     zeros: usize,
     /// The largest magnitude of the eigenvalues near zero, 1/s.
     radius: f64,
@@ -148,7 +148,7 @@ impl Found {
         let outer_complex = outer.map(|entry| Complex::new(entry, 0.0));
         let states = pure.len() + felt.len();
         let mut parts = Vec::new();
-        // What the moving parts contribute to the pure integrals, to be taken off them.
+        // Contribution of the moving parts to the pure integrals, to be subtracted.
         let mut carried = DMatrix::<f64>::zeros(pure.len(), felt.len());
         let simple = self.weights();
         for (block, weight) in self.subspaces.blocks.iter().zip(simple) {
@@ -180,7 +180,7 @@ impl Found {
         Decomposition { integrals, parts }
     }
 
-    /// For each block 2, 1 or, for those that another one stands for, 0.
+    /// Returns a weight for each block: 2 or 1, or 0 for the conjugate of another block.
     fn weights(&self) -> Vec<f64> {
         let matrix = &self.subspaces.matrix;
         let imaginary = |block: &Range<usize>| -> (f64, f64) {
@@ -291,8 +291,8 @@ fn scatter_rows(
     whole
 }
 
-/// An orthonormal real basis of what complex columns span, given that they span a space
-/// that is its own conjugate: Gram-Schmidt with the largest remainder next.
+/// Returns an orthonormal real basis of the span of complex columns, which must equal its
+/// conjugate: Gram-Schmidt with the largest remainder next.
 fn real_basis(columns: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     let (rows, size) = columns.shape();
     let mut candidates = DMatrix::from_fn(rows, 2 * size, |i, j| {

@@ -1,27 +1,25 @@
-//! The loops over SIMD vectors of numbers that a motion spends its time in. With all that calls them
-//! they are compiled for several instruction sets; which one is chosen when a motion runs. They
-//! do the same operations in the same order whatever the set, without fused ones, so that no
-//! bit depends on the choice.
+//! Inner loops over SIMD vectors. They and their callers are compiled for several instruction sets;
+//! the set is selected at run time. All sets perform the same operations in the same order without
+//! fused ones, so no bit depends on the set.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4};
 
 use super::event_function::{ValueWeights, Weights};
 use super::simd_vectors::{SimdVector, SplitComplex, numbers};
 
-/// What a function sums up to.
+/// Sums of a function.
 pub(super) struct Summed {
-    /// How far the value has moved.
+    /// Change of the value since the start.
     pub value: f64,
-    /// The magnitudes of what moved it.
+    /// Sum of the magnitudes of the terms of that change.
     pub size: f64,
     /// The derivatives of order 1 to 3 at the places of their orders.
     pub derivatives: SimdVector,
-    /// What the polynomial makes up of the first one.
+    /// Contribution of the polynomial to the first derivative.
     pub polynomial_rate: f64,
 }
 
-/// Adds a product with a matrix whose rows stand in SIMD vectors, in each the columns one after the
-/// other.
+/// Adds a product with a matrix whose rows are packed in SIMD vectors, column by column.
 #[inline(always)]
 pub(super) fn add_product<S: Simd>(
     simd: S,

@@ -176,7 +176,7 @@ struct Frame {
     tangents: Tangents,
     /// The squared weight of each state in a length.
     metric: Vec<f64>,
-    /// ln of what each vector has grown by.
+    /// Logarithm of the growth of each vector.
     growth: Vec<f64>,
 }
 

@@ -1,5 +1,5 @@
-//! The modes of a regime: eigenvalues of their own, and one per sinusoid for the response
-//! that it forces. What they answer to constant and sinusoidal forces.
+//! Modes of a regime: the single eigenvalues, and one mode per sinusoid for its forced response.
+//! Responses of the modes to constant and sinusoidal forces.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -7,7 +7,7 @@ use super::decomposition::Part;
 use super::integrals::Integrals;
 use super::simd_vectors::{SplitComplex, simd_vectors};
 
-/// What acts on the rates of the state.
+/// Forces on the rates of the state.
 pub(super) struct Forcing {
     /// For each phase the factors of its sine and of its cosine.
     pub sinusoids: Vec<[DVector<f64>; 2]>,
@@ -25,7 +25,7 @@ pub(super) struct Modes {
     pub magnitude: Vec<f64>,
     /// The rate of the fastest decay; infinite if any mode grows, 1/s.
     pub damping: f64,
-    /// Which phase a sinusoid belongs to; nothing for a mode.
+    /// Phase of a sinusoid; `None` for a mode.
     pub phase: Vec<Option<usize>>,
     /// The same rates in SIMD vectors.
     pub rates: SplitComplex,
@@ -40,9 +40,9 @@ pub(super) struct Modes {
 }
 
 impl Modes {
-    /// For a function with these weights of the modes the sum of the magnitudes of what makes
-    /// up its rate, by what is known of a motion's start: the state, a unit constant and the
-    /// inputs, and sine and cosine of each phase.
+    /// Returns the sum of the magnitudes of the terms of the rate of a function with these weights
+    /// of the modes, for each known quantity at a motion's start: the state, a unit constant and
+    /// the inputs, and sine and cosine of each phase.
     pub fn rate_sizes_by_start(&self, weights: &[Complex<f64>]) -> Vec<f64> {
         let own = |mode: usize, phase: usize| f64::from(self.phase[mode] == Some(phase));
         let of = |amplitude: &dyn Fn(usize) -> f64| -> f64 {
@@ -131,12 +131,12 @@ impl Modes {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of modes.
     pub fn count(&self) -> usize {
         self.rate.len()
     }
 
-    /// How many SIMD vectors they fill.
+    /// Returns the number of SIMD vectors that hold them.
     pub fn simd_vectors(&self) -> usize {
         simd_vectors(self.count())
     }

@@ -73,7 +73,7 @@ impl Carrier<'_> {
 
 impl Follow for Carrier<'_> {
     fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
-        // Inputs change at samples: the last sample of a segment mostly stands at its end.
+        // Inputs change at samples: the last sample of a segment is usually at its end.
         let mut at_end = false;
         while let Some(after) = self.samples.next_in(segment) {
             self.samples.take_in(segment, after, flow);

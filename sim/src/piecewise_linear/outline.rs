@@ -77,7 +77,7 @@ impl Outline {
             && self.thresholds[family] == other.thresholds[family]
     }
 
-    /// The rate of a function that is due to the state's, and what rounding may make of it.
+    /// Returns the rate of a function due to the rates of the state, and its rounding error.
     pub fn rate(&self, function: &Linear, standing: StateAt<'_>) -> (f64, f64) {
         let Rates { values, sizes } = self.rates(standing);
         let factors = function.state.iter();

@@ -1,4 +1,4 @@
-//! Switching surfaces in families of parallel ones, and where a motion stands among them.
+//! Families of parallel switching surfaces, and the cell of a motion in each.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
@@ -13,7 +13,7 @@ pub(super) struct ParallelGuards {
     pub ranks: Vec<Vec<usize>>,
 }
 
-/// Where a motion stands within a family.
+/// Cell of a motion within a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Cell {
     /// Above as many thresholds as the number says, below the others.
@@ -36,7 +36,7 @@ impl Cell {
         }
     }
 
-    /// The rank of the threshold that the motion stands on, if it stands on one.
+    /// Returns the rank of the threshold that the function equals, if any.
     pub fn standing_on(self) -> Option<usize> {
         match self {
             Self::Between(_) => None,
@@ -101,7 +101,7 @@ impl ParallelGuards {
         -system.guards.constant[self.ranks[rank][0]]
     }
 
-    /// What bounds the function above so many thresholds.
+    /// Returns the limits of a function that is above this number of thresholds.
     pub fn limits(&self, system: &AffineSystem, family: usize, above: usize) -> Limits {
         Limits {
             family,

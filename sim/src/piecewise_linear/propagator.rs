@@ -25,8 +25,8 @@ use crate::ode::{SolveError, Switch};
 /// Switches in one instant before the motion is moved on by the shortest step.
 const AT_ONCE: u32 = 16;
 
-/// Decays that are slower than what switches by this factor are carried as polynomials: as
-/// modes they would hold large amplitudes that cancel.
+/// Decays slower than the switching by this factor are treated as polynomials: as modes they would
+/// have large amplitudes that cancel.
 const SLOW: f64 = 1e-2;
 
 /// A motion that would need more steps than this, hours of them, is not begun.
@@ -41,19 +41,19 @@ pub struct Propagator {
     pub(super) families: Vec<ParallelGuards>,
     pub(super) regimes: Vec<VisitedRegime>,
     pub(super) known: HashMap<Vec<Cell>, usize>,
-    /// For each family whether its function feels the sides of others, or is of inputs alone.
+    /// True for each family whose function depends on the sides of others, or only on inputs.
     pub(super) dependent: Vec<bool>,
     pub(super) outlines: Vec<Outline>,
     pub(super) outlined: HashMap<Vec<Cell>, usize>,
-    /// By the regime before, the function and its limit, and the regime after, where the
-    /// constant saltation matrix is kept, if it is constant.
+    /// Index of the saltation matrix, if it is constant, by the regime before, the function and its
+    /// limit, and the regime after.
     pub(super) saltation_of: HashMap<(usize, usize, bool, usize), Option<usize>>,
     flow: Flow,
     pub(super) inputs: usize,
     pub(super) states: usize,
     pub(super) phases: Vec<[f64; 2]>,
     pub(super) saltations: Vec<DVector<f64>>,
-    /// Decays up to this rate are slow beside what happens between switches, 1/s.
+    /// Decays up to this rate are slow compared with the switching, 1/s.
     pub(super) slow: f64,
     /// Maximum average number of events per second; the simulation stops if it is exceeded.
     pub max_switch_rate: f64,
@@ -73,7 +73,7 @@ pub struct Motion {
     averaged_from: f64,
     /// The families whose functions are leaving a surface that held the motion.
     pub(super) departing: Vec<usize>,
-    /// What was done so far.
+    /// Work done so far.
     pub(super) effort: Effort,
     /// The state at the start of the present segment.
     before: Vec<f64>,
@@ -88,7 +88,7 @@ enum Jumped {
     Any,
     /// Those of any family but this one.
     AnyBut(usize),
-    /// The shares of both sides, where a motion is held on a surface.
+    /// A motion held on a surface by a combination of both sides.
     Held,
 }
 
@@ -102,9 +102,9 @@ impl Jumped {
     }
 }
 
-/// Who follows a motion.
+/// Observer of a motion.
 pub(super) trait Follow {
-    /// The motion went on in one regime; `flow` stands at the end and may be moved.
+    /// Called after a segment in one regime. `flow` is at its end and may be moved.
     fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow);
 
     /// The motion changed from one regime to another at a switching surface.
@@ -118,7 +118,7 @@ pub(super) struct Segment<'a> {
     pub start: Clock,
     /// The state then.
     pub state: &'a [f64],
-    /// How long it took, s.
+    /// Duration, s.
     pub tau: f64,
     /// True if a surface held the motion.
     pub is_held: bool,
@@ -438,12 +438,12 @@ fn go_on<S: Simd>(
     step: &mut usize,
 ) -> (Found, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
-    // A family's function stands at the index of its family among the functions.
+    // The functions have the indices of their families.
     for family in &motion.departing {
         flow.depart(simd, regime, *family);
     }
     if motion.at_once > AT_ONCE {
-        // Rounding alone decides between surfaces: the motion itself must.
+        // Only rounding errors separate the surfaces: advance the motion first.
         if let Some(shortest) = regime.step_table.steps.last() {
             flow.step(simd, regime, shortest);
         }

@@ -1,10 +1,10 @@
-//! A decomposition A X = X D, Y X = 1 made as exact as double precision can hold it.
+//! Refines a decomposition A X = X D, Y X = 1 to double precision.
 //!
-//! The QR iteration leaves eigenvalues wrong by a rounding of the largest one. A slow mode
-//! then drifts in phase: by 1e-10 of its amplitude after some thousand periods. What is
-//! missing is found from residuals accumulated in twice the precision, and added to first
-//! order; two rounds leave each eigenvalue wrong by a rounding of its own. The size of the last
-//! correction also tells whether the decomposition can be trusted at all.
+//! The QR iteration leaves eigenvalues with an error of a rounding of the largest one. The phase of
+//! a slow mode then drifts by 1e-10 of its amplitude within some thousand periods. The corrections
+//! are computed from residuals accumulated in twice the precision, to first order. Two rounds leave
+//! each eigenvalue with an error of its own rounding. The size of the last correction decides
+//! whether the decomposition is reliable.
 
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ use super::error_free::{two_product, two_sum};
 /// Corrections that are made at most; each squares the relative error.
 const ROUNDS: usize = 5;
 
-/// What is wrong by less than this part of the eigenvalues is rounding and stays: among
-/// eigenvalues that nearly agree there is no telling their vectors apart, nor a need to.
+/// Errors below this fraction of the eigenvalues are rounding and remain: the vectors of nearly
+/// equal eigenvalues cannot be separated, and need not be.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Subspaces are apart, and corrected by roundings too, if an error turns them by no more than
@@ -26,7 +26,7 @@ const APART: f64 = 1e3;
 /// A vector turned by more than this is beyond first order, and left as it is.
 const TURN: f64 = 0.1;
 
-/// What is still wrong by more than this part of the eigenvalues cannot be relied on.
+/// A decomposition with a remaining error above this fraction of the eigenvalues is unreliable.
 const HOPELESS: f64 = 1e-9;
 
 /// A matrix by invariant subspaces, D being block-diagonal.
@@ -35,13 +35,13 @@ pub(super) struct Subspaces {
     pub columns: DMatrix<Complex<f64>>,
     /// Y, the inverse of X.
     pub rows: DMatrix<Complex<f64>>,
-    /// D, 1/s; what lies outside of its blocks is not read.
+    /// D, 1/s; entries outside of its blocks are not read.
     pub matrix: DMatrix<Complex<f64>>,
     /// The subspaces' places.
     pub blocks: Vec<Range<usize>>,
 }
 
-/// How a refinement ended.
+/// Result of a refinement.
 pub(super) struct Refinement {
     /// True if the subspaces can be relied on.
     pub converged: bool,
@@ -115,7 +115,7 @@ impl Subspaces {
         }
         let correction = &self.columns * &turn;
         for (entry, correction) in self.columns.iter_mut().zip(correction.iter()) {
-            // What a subspace does not move, it does not move by a rounding either.
+            // Zeros of a subspace stay exact zeros.
             if entry.norm() > 0.0 || correction.norm() > ROUNDING {
                 *entry += correction;
             }

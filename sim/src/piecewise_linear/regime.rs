@@ -26,7 +26,7 @@ const REMAINDER: f64 = 1e-19;
 /// A cluster of eigenvalues away from zero.
 #[derive(Clone, Debug)]
 pub(super) struct Cluster {
-    /// What the eigenvalues are near to, 1/s.
+    /// Centre of the eigenvalues, 1/s.
     pub centre: Complex<f64>,
     /// size x size, 1/s.
     pub matrix: DMatrix<Complex<f64>>,
@@ -44,8 +44,8 @@ pub(super) struct Cluster {
 
 /// A regime.
 ///
-/// Its coordinates stand in one vector of vectors: the real parts of the modes' amplitudes,
-/// the imaginary ones, the integrals.
+/// Its coordinates share one array of SIMD vectors: the real parts of the modes' amplitudes, the
+/// imaginary parts, the integrals.
 #[derive(Clone, Debug)]
 pub(super) struct Regime {
     /// Its equations.
@@ -53,12 +53,12 @@ pub(super) struct Regime {
     pub modes: Modes,
     pub integrals: Integrals,
     pub clusters: Vec<Cluster>,
-    /// Coordinates from a state, a unit constant, the inputs, and sine and cosine of each
-    /// phase; those of a free motion from a state alone.
+    /// Maps a state, a unit constant, the inputs, and sine and cosine of each phase to coordinates;
+    /// in a free motion, a state only.
     pub coordinates: PackedMatrix,
     /// A state from coordinates, without what is constant.
     pub states: PackedMatrix,
-    /// What is evaluation.
+    /// Functions to evaluate.
     pub event_functions: Vec<EventFunction>,
     pub step_table: StepTable,
 }
@@ -159,11 +159,11 @@ pub(super) fn rates(
     }
 }
 
-/// Where the coordinates stand in their vector.
+/// Places of the coordinates in their array.
 struct Layout {
-    /// How many numbers the real parts of the modes' amplitudes fill.
+    /// Length of the real parts of the modes' amplitudes.
     modes: usize,
-    /// How many SIMD vectors the whole vector fills.
+    /// Length of the array in SIMD vectors.
     vectors: usize,
 }
 
@@ -192,8 +192,9 @@ impl Layout {
         packed
     }
 
-    /// What a state, a unit constant, the inputs, and sines and cosines make up: a mode's
-    /// amplitude is what is left of the state without what is held and forced.
+    /// Returns the map from a state, a unit constant, the inputs, and sines and cosines to
+    /// coordinates. The amplitude of a mode excludes its response to constant and sinusoidal
+    /// forces.
     fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> PackedMatrix {
         let column = |matrix: &DMatrix<f64>, state: usize| matrix.column(state).clone_owned();
         let mut columns: Vec<Vec<f64>> = (0..modes.rows.ncols())
@@ -223,8 +224,8 @@ impl Layout {
         })
     }
 
-    /// What coordinates make up of a state; those that are `still` stay where they are, without
-    /// rounding.
+    /// Returns the map from coordinates to states; those that are `still` are constant, without
+    /// rounding errors.
     fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> PackedMatrix {
         let states = modes.columns.nrows();
         let width = 2 * self.modes + integrals.size;
@@ -242,7 +243,7 @@ impl Layout {
     }
 }
 
-/// Which states have no rate, whatever the others do.
+/// Returns true for each state whose rate is identically zero.
 fn still_states(system: &AffineSystem) -> Vec<bool> {
     let rates = &system.rates;
     let blocks = [
@@ -315,7 +316,7 @@ fn radius(part: &Part) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// How many powers of a matrix of this size and radius count within a time.
+/// Returns the number of powers of a matrix of this size and radius needed within a time.
 fn terms(size: usize, radius: f64, window: f64) -> usize {
     let argument = radius * window;
     let (mut terms, mut term) = (size, argument);

@@ -1,17 +1,17 @@
-//! What a switch does to neighbouring motions (the saltation matrix):
-//! I + (f_after - f_before) grad g / (rate of g).
+//! Saltation matrix, the effect of a switch on neighbouring motions: I + (f_after - f_before) grad
+//! g / (rate of g).
 //!
-//! Where a force jumps in proportion to the rate of the function that switches, as damping
-//! in a mesh does, the quotient is the same for every crossing, f_after - f_before =
-//! u (rate of g) on the surface; it is then found once, and a grazing crossing divides
-//! nothing small by nothing small.
+//! The jump of a force can be proportional to the rate of the switching function, as for damping in
+//! a mesh: f_after - f_before = u (rate of g) on the surface. The quotient is then the same for
+//! every crossing and is computed once. A grazing crossing thus needs no quotient of two small
+//! numbers.
 
 use eomgen_codegen::program::affine::{AffineRows, AffineSystem};
 use nalgebra::{DVector, Matrix2, Vector2};
 
 use super::event_function::Linear;
 
-/// What is left of a jump that is proportional to the rate, relative.
+/// Largest residual of a jump that is proportional to the rate, relative.
 const ROUNDING: f64 = 1e-10;
 
 /// u of the constant saltation matrix I + u grad g, if it is constant.

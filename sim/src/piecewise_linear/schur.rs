@@ -49,7 +49,7 @@ impl SchurForm {
             .collect()
     }
 
-    /// Brings the eigenvalues into ascending order of `key`, equal ones as they stand.
+    /// Sorts the eigenvalues by `key`, stably.
     pub fn sort_by_key(&mut self, mut key: Vec<usize>) {
         for end in (1..key.len()).rev() {
             for place in 0..end {

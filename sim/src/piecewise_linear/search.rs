@@ -1,12 +1,12 @@
-//! The first time at which a function of a regime reaches one of its limits.
+//! Search for the first time at which a function of a regime reaches one of its limits.
 //!
-//! What each function does within a step is told by `bounds`: if no crossing lies within it,
-//! it is made; if exactly one does, that is polished by Newton's method; otherwise the step is
-//! halved. Nothing is sampled, nothing can be jumped.
+//! `bounds` classifies each function within a step. If the step contains no crossing, it is made.
+//! If it contains exactly one, Newton's method refines it. Otherwise the step is halved. The search
+//! evaluates bounds instead of samples, so it misses no crossing.
 //!
-//! Modes too fast for a step are bounded by their amplitudes. Rounding: a function at its
-//! limit up to rounding crosses it only if its rate leads outward; otherwise two surfaces
-//! left within 1e-11 s of each other would be entered and left for ever.
+//! Modes too fast for a step are bounded by their amplitudes. A function at its limit up to
+//! rounding crosses it only if its rate leads outward. Otherwise two surfaces within 1e-11 s of
+//! each other would be entered and left for ever.
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -19,17 +19,17 @@ use super::regime::Regime;
 /// Newton steps towards a crossing; two or three are usual.
 const POLISHING: usize = 60;
 
-/// What a step to the zero of a cubic may still be wrong by, relative to the rounding of the
-/// function, which is a bound and mostly far from reached.
+/// Largest error of a step to the zero of a cubic, relative to the bound on the rounding error of
+/// the function, which is mostly pessimistic.
 const REST: f64 = 1e-3;
 
 /// A function that is beyond its limit by more than this many times its rounding has jumped.
 const JUMP: f64 = 64.0;
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Found {
-    /// The flow stands where this function has reached its upper or lower limit.
+    /// The flow is at the time at which this function has reached its upper or lower limit.
     Limit {
         /// The index of the function.
         event_function: usize,
@@ -40,19 +40,19 @@ pub(super) enum Found {
     Nothing,
 }
 
-/// How a search went, for those who count, and its memory.
+/// Counters of a search and its scratch memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Effort {
     /// Steps made.
     pub steps: u64,
     /// Newton steps made.
     pub newton: u64,
-    /// What is certain to be crossed within the present step.
+    /// Certain crossings within the present step.
     crossings: Vec<Crossing>,
 }
 
-/// Searches from where the flow stands to `end` after its start, s. `first` is the step to
-/// begin with and becomes the one at which the last step was made.
+/// Searches from the present time of the flow to `end` after its start, s. `first` is the level of
+/// the first step, and becomes that of the last.
 #[inline(always)]
 pub(super) fn search<S: Simd>(
     simd: S,
@@ -156,7 +156,7 @@ fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
             let [_, rate, second, third] = local.derivatives.map(f64::abs);
             let fourth = 0.25 * length * local.fourth;
             let moved = length * (rate + 0.5 * length * (second + length * (third + fourth) / 3.0));
-            // A limit without rounding of its own still has that of the time.
+            // A limit without a rounding error is still subject to that of the time.
             moved <= local.noise || length <= f64::MIN_POSITIVE
         })
     })
@@ -178,7 +178,7 @@ fn step<S: Simd>(
     let origin = flow.tau;
     let until = origin + length;
     for event_function in 0..regime.event_functions.len() {
-        // Each function is looked at as often as it asks for.
+        // Each function has its own interval between evaluations.
         if flow.is_safe(event_function, until) {
             continue;
         }
@@ -366,7 +366,7 @@ fn polish<S: Simd>(
             return;
         }
         flow.shift(simd, regime, shift);
-        // What is left of the cubic, and what it leaves out, are below rounding.
+        // The residual of the cubic and its truncation error are below rounding.
         let squared = shift * shift;
         let rest = here.cubic(shift).abs() + here.fourth * squared * squared / 24.0;
         if settled || rest <= REST * here.noise {
@@ -414,7 +414,7 @@ impl Distance {
         is_beyond || (leads_outward && self.value <= 0.0)
     }
 
-    /// Where the cubic through value and derivatives crosses zero, for a certain crossing.
+    /// Returns the zero of the cubic through value and derivatives, for a certain crossing.
     fn first_guess(&self, length: f64) -> f64 {
         // The zero of the parabola, also where the motion starts from rest, and the later one
         // where it turns back.

@@ -88,7 +88,7 @@ impl MulAssign for SimdVector {
     }
 }
 
-/// How many SIMD vectors hold so many numbers.
+/// Returns the number of SIMD vectors that hold `count` numbers.
 pub(super) fn simd_vectors(count: usize) -> usize {
     count.div_ceil(4)
 }
@@ -113,7 +113,7 @@ pub(super) fn numbers_mut(vectors: &mut [SimdVector]) -> &mut [f64] {
     bytemuck::cast_slice_mut(vectors)
 }
 
-/// A real matrix whose rows stand in SIMD vectors, for products with vectors.
+/// A real matrix with rows packed in SIMD vectors, for products with vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PackedMatrix {
     columns: usize,
@@ -185,7 +185,7 @@ pub(super) fn expm1(z: Complex<f64>) -> Complex<f64> {
 /// The largest argument of [`kernels::advance_little`].
 pub(super) const MAX_SMALL_ARGUMENT: f64 = 1.0;
 
-/// How many terms it needs for arguments up to this: the first term left out is below 5e-19
+/// Returns the number of terms for arguments up to this one: the first omitted term is below 5e-19
 /// of the sum.
 pub(super) fn terms_of_expm1(argument: f64) -> usize {
     match argument {

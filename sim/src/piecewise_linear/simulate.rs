@@ -69,7 +69,7 @@ impl Propagator {
         recorder.samples.take_until(span.0, initial);
         let ended = self.follow_until(&mut motion, span.1, inputs, &mut recorder);
         if ended.is_ok() {
-            // The last switch may stand at the end, up to rounding.
+            // The last switch may be at the end, up to rounding.
             recorder.samples.take_until(span.1, motion.state());
         }
         trajectory.times = recorder.samples.times;

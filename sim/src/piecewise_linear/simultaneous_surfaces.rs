@@ -1,8 +1,10 @@
-//! Several surfaces that a motion stands on at once, as two bodies do that rub at the ground and against each
-//! other: what each of them does hangs on the others, and is decided for all together.
+//! Several surfaces that hold or change a motion at the same time, such as two bodies that rub on
+//! the ground and on each other. The behaviours of the surfaces depend on each other and are
+//! decided together.
 //!
-//! A function that follows from those that are held keeps its value as they do: it comes to its threshold with
-//! the last of them, and stands there as long as they hold, whether its own surface holds or bears all it can.
+//! A function that follows from held functions is constant as well. It reaches its threshold with
+//! the last of them and equals it while they hold, whether its own surface sticks or is at its
+//! limit.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,16 +15,16 @@ use super::propagator::Propagator;
 use super::transition::Limit;
 use crate::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
 
-/// What is left of a function that follows from others, and of its threshold, relative.
+/// Largest residual of a function that follows from others, and of its threshold, relative.
 const FOLLOWS: f64 = 1e-10;
 
-/// What is left of rates that are the sum of what the sides of each surface make of them, relative.
+/// Largest residual of rates that are the sum of contributions of the surfaces' sides, relative.
 const ADDS_UP: f64 = 1e-9;
 
-/// What a surface changes in a rate is rounding if it is this small beside its terms.
+/// A surface's contribution to a rate is rounding below this fraction of the rate's terms.
 const ROUNDING: f64 = 1e-12;
 
-/// A surface that a motion stands on.
+/// A surface whose function equals its threshold.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceContact {
     pub family: usize,
@@ -31,7 +33,7 @@ pub(super) struct SurfaceContact {
 }
 
 impl Propagator {
-    /// The surfaces that the motion stands on at a limit.
+    /// Returns the surfaces that a motion is on at a limit.
     pub(super) fn surfaces_at_limit(&self, limit: &Limit) -> Vec<SurfaceContact> {
         let visited = &self.regimes[limit.before];
         let rank = limit.rank(visited.cells[limit.family]).0;
@@ -104,8 +106,8 @@ impl Propagator {
         met
     }
 
-    /// The cells beyond a limit where the motion stands on several surfaces; nothing where what they do is not
-    /// told by the sum of what each of them does.
+    /// Returns the cells beyond a limit at which the motion is on several surfaces, or `None` if
+    /// their effect is not the sum of their single effects.
     pub(super) fn decide_together(
         &mut self,
         limit: &Limit,

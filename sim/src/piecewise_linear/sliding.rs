@@ -1,7 +1,7 @@
-//! Motion held on switching surfaces, such as dry friction that sticks: the rates lead onto
-//! the surface from both sides, and the convex combination of both that keeps to the surface
-//! is followed (Filippov). How much of either side is a linear function of the motion
-//! again; where it leaves 0 to 1 the surface is left.
+//! Motion held on switching surfaces, such as sticking dry friction: the rates lead onto the
+//! surface from both sides, and the motion follows the convex combination of both that stays on the
+//! surface (Filippov). The weight of either side is again a linear function of the motion; the
+//! motion leaves the surface when the weight leaves 0 to 1.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineRows, AffineSystem};
 use nalgebra::{DMatrix, DVector};
@@ -10,13 +10,14 @@ use super::event_function::Linear;
 use super::parallel_guards::{Cell, ParallelGuards};
 use crate::sliding_modes::MIN_SINGULAR_VALUE_FRACTION;
 
-/// What is left of a jump that is constant on its surface, relative.
+/// Largest residual of a jump that is constant on its surface, relative.
 const ROUNDING: f64 = 1e-11;
 
-/// What is left of the rate of a function that is held, relative.
+/// Largest residual of the rate of a held function, relative.
 const HELD: f64 = 1e-9;
 
-/// A function has a state of its own beside others if it feels it with no less than this part of its largest factor.
+/// A state is the pivot of a function if its factor is at least this fraction of the function's
+/// largest factor.
 const ALONE: f64 = 1e-6;
 
 /// A regime held on surfaces.
@@ -133,7 +134,7 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
         })
         .collect();
     if are_dependent {
-        // Of all shares that hold, those with the smallest signs.
+        // Of all holding shares, use those with the smallest signs.
         let halves = &inverse * projected.column_sum() * 0.5;
         for (part, half) in parts.iter_mut().zip(&halves) {
             part.constant += 0.5 - half;
@@ -162,8 +163,8 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
     Some(Sliding { system, parts })
 }
 
-/// The inverse of what the jumps do to the functions held, or its pseudoinverse where some of these follow
-/// from others, and whether they do.
+/// Returns the inverse of the jumps' effect on the held functions and false, or the pseudoinverse
+/// and true if some functions follow from others.
 fn inverted(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     if projected.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -203,14 +204,14 @@ fn blocks(rates: &AffineRows) -> [&Vec<f64>; 5] {
     ]
 }
 
-/// Takes the rounding out of the rates that are held: of each function one state that the surfaces move has the
-/// rate that the others leave it, which is none where it is alone.
+/// Removes rounding errors from held rates. For each function, the rate of one state that the
+/// surfaces move is computed from the others; it is zero if the function has no other state.
 fn hold(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) {
     let states = system.states;
     let moved: Vec<usize> = (0..states)
         .filter(|state| jumps.iter().any(|jump| jump[*state] != 0.0))
         .collect();
-    // Each row less the others until it has a state of its own (Gauss and Jordan).
+    // Gauss-Jordan elimination: subtract the other rows from each row until it has a pivot.
     let mut left = rows.to_vec();
     let mut own: Vec<(usize, DVector<f64>)> = Vec::new();
     while let Some(row) = left.pop() {

@@ -1,5 +1,5 @@
-//! Steps of fixed lengths, each half as long as the one before, with every mode's expm1
-//! over each of them: during a search the modes advance by multiplications alone.
+//! Steps of fixed lengths, each half as long as the one before, with every mode's expm1 over each
+//! of them: a search advances the modes by multiplications.
 
 use super::modes::Modes;
 use super::simd_vectors::SplitComplex;
@@ -22,11 +22,11 @@ pub(super) struct Step {
     pub expm1: SplitComplex,
     /// The largest growth of a mode within the step, at least 1.
     pub growth: f64,
-    /// So many modes, the slowest ones, turn little within the step.
+    /// Number of modes that turn little within the step; they are the slowest ones.
     pub slow: usize,
 }
 
-/// So many steps at least, where no mode says how short they should be.
+/// Minimum number of steps if no mode limits their length.
 const FEWEST: usize = 25;
 
 /// Steps from the longest to the shortest.

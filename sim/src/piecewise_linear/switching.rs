@@ -1,4 +1,4 @@
-//! What switching can do to a model at all, whatever its state.
+//! Effects of switching on a model at any state.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
@@ -8,11 +8,11 @@ use super::propagator::Propagator;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Propagator {
-    /// Which states any rate or any switching function feels.
+    /// Returns true for each state that affects any rate or switching function.
     pub(super) fn influential_states(&mut self) -> Vec<bool> {
         let guards = self.evaluator.guard_count();
         let mut felt = vec![false; self.states];
-        // What needs several sides at once is felt between them.
+        // The last case evaluates between the sides, for functions that depend on several of them.
         let nested = usize::from(self.has_dependents());
         for case in 0..guards + 2 + nested {
             let side = |guard: usize| match case == guards + 2 {

@@ -23,7 +23,7 @@ pub(super) struct Tangents {
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
     coordinates: Vec<SimdVector>,
-    /// How the integrals move.
+    /// Transition matrix of the integrals.
     transition: Vec<SimdVector>,
     moved: Vec<SimdVector>,
     sum: Vec<SimdVector>,

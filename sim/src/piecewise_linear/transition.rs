@@ -24,12 +24,12 @@ pub(super) struct Limit {
     pub t: f64,
 }
 
-/// How a motion goes on.
+/// Continuation of a motion after a limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Transition {
     /// The regime it enters.
     pub after: usize,
-    /// Where the constant saltation matrix is kept, if it is constant.
+    /// Index of the saltation matrix, if it is constant.
     pub saltation: Option<usize>,
     /// True if functions of other families may jump.
     pub moves_others: bool,
@@ -46,14 +46,14 @@ impl Limit {
         }
     }
 
-    /// To which side of the surface it leads, 1 or -1.
+    /// Returns the side of the surface beyond the limit, 1 or -1.
     pub fn outward(&self) -> f64 {
         if self.upper { 1.0 } else { -1.0 }
     }
 }
 
 impl Propagator {
-    /// How a motion passes a limit of its regime.
+    /// Determines the transition of a motion at a limit of its regime.
     pub(super) fn transition(
         &mut self,
         limit: &Limit,
@@ -155,8 +155,8 @@ impl Propagator {
         there * limit.outward() < -slack && here * limit.outward() > -slack
     }
 
-    /// The cells held on the surface that makes the rates lead back: the one that is crossed
-    /// or, of those that coincide with it, the outermost one whose side alone does so.
+    /// Returns the cells held on the surface whose rates lead back: the crossed one or, of those
+    /// that coincide with it, the outermost one whose side has this effect by itself.
     fn held(
         &mut self,
         limit: &Limit,
@@ -190,7 +190,7 @@ impl Propagator {
         None
     }
 
-    /// The rate of a function in an outline, and what rounding may make of it.
+    /// Returns the rate of a function in an outline, and its rounding error.
     pub(super) fn rate_in(
         &self,
         outline: usize,
@@ -204,7 +204,7 @@ impl Propagator {
         )
     }
 
-    /// Where the constant saltation matrix of a transition is kept, if it is constant.
+    /// Returns the index of the saltation matrix of a transition, if it is constant.
     fn saltation(&mut self, limit: &Limit, after: usize) -> Option<usize> {
         let key = (limit.before, limit.event_function, limit.upper, after);
         if let Some(&known) = self.saltation_of.get(&key) {

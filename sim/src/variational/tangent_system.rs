@@ -1,4 +1,4 @@
-//! A system with a tangent vector beside its state.
+//! A system extended by a tangent vector.
 
 use std::cell::{Cell, RefCell};
 
@@ -117,8 +117,8 @@ impl<S: System + ?Sized> System for TangentSystem<'_, S> {
     fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
         let states = self.system.state_count();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
-        // The start of the step can be on the surface up to the last bit, where the rates of
-        // either side are possible. So evaluate as far before it as the end is behind it.
+        // The start of the step can be on the surface up to the last bit, with the rates of either
+        // side. Evaluate as far before it as the end is behind it.
         let mirrored = start.iter().zip(&*y).map(|(start, end)| 2.0 * start - end);
         let near: Vec<f64> = mirrored.collect();
         let near = (2.0 * before - t, &*near);
