@@ -10,7 +10,7 @@ use eomgen_records::windows::Windows;
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 
-/// What is said where somebody asked to stop.
+/// Message after a stop on request.
 const STOPPED: &str = "stopped on request";
 
 /// Error between reading a specification and returning a result.

@@ -66,7 +66,7 @@ pub const MIN_SIMILARITY_OF_RIVALS: f64 = 0.95;
 
 /// Relative difference below which two candidates form one class. Their held-out gaps differ by
 /// less than this or by less than `MIN_REDUCTION_STANDARD_ERRORS`, and their training gaps by less
-/// than this or by less than `MIN_INFORMATION_GAIN`. So small a difference may come from the fit
+/// than this or by less than `MIN_INFORMATION_GAIN`. A smaller difference may be due to the fit
 /// itself.
 pub const MAX_CLASS_DIFFERENCE: f64 = 0.01;
 

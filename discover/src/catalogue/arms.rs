@@ -14,7 +14,7 @@ use crate::catalogue::site::{Site, format_expression};
 /// Returns the flexible bodies of a model.
 pub(super) fn find_arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
-        // What is spread along the body; a mass at its end is none.
+        // Distributed mass only; a mass at the end of the body is a separate term.
         let velocity = squared(
             spread(&term.value)?,
             &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
@@ -70,7 +70,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
     model.kinetic.iter().filter_map(arm).collect()
 }
 
-/// What an expression integrates.
+/// Returns the integrand of an expression.
 fn spread(expr: &Expr) -> Option<&Expr> {
     match &expr.kind {
         ExprKind::Integral { integrand, .. } => Some(integrand),
@@ -117,7 +117,7 @@ fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Exp
     }
 }
 
-/// What a square that holds something wanted is multiplied with, inside an integral.
+/// Returns the factor, inside an integral, of a square that contains something `wanted`.
 fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => match squared(right, wanted) {

@@ -207,7 +207,7 @@ impl Candidate {
     ) -> Result<SpecificationTexts, DiscoverError> {
         let written = |text: &str| self.write_effect(text, &problem.path, values, "");
         let extended = written(&texts.full)?;
-        // What is linear between switches itself belongs to the linear part.
+        // Terms that are linear between switches belong to the linear part.
         let linear = match written(&texts.linear) {
             Ok(extended) if is_linear(&extended, &problem.path, problem.order) => extended,
             _ => texts.linear.clone(),

@@ -8,7 +8,7 @@ use super::effect::{Change, DAMPER_PLACEHOLDER, SiteKind, SubstitutionScope};
 use super::fields::{read_new_name, read_nonempty_list, read_text};
 use super::placeholders::{Placeholders, read_expression};
 
-/// What an edit adds.
+/// Kind of entry that an edit adds.
 #[derive(Clone, Copy)]
 enum Added {
     Term(Section),
@@ -28,21 +28,21 @@ const ADDED: [(&str, Added); 7] = [
     ("state", Added::State),
 ];
 
-/// Where an edit replaces.
+/// Scope in which an edit replaces text.
 #[derive(Clone, Copy)]
 enum Replaced {
     Kinetic,
     /// In the terms of a site of this kind.
     Site(SiteKind),
-    /// In the dampers beside a spring.
+    /// In the dampers parallel to a spring.
     Dampers,
     Measured,
-    /// Wherever an input stands.
+    /// In every occurrence of an input.
     Input,
 }
 
 impl Replaced {
-    /// The kind of site that it is for, if for one alone.
+    /// Returns the only kind of site at which this scope exists, if there is one.
     fn site(self) -> Option<SiteKind> {
         match self {
             Self::Site(kind) => Some(kind),
@@ -160,7 +160,7 @@ fn addition(
     })
 }
 
-/// The unit of what is added.
+/// Reads the unit of the added quantity.
 fn unit(
     record: &Record<'_>,
     placeholders: &mut Placeholders,
@@ -171,7 +171,7 @@ fn unit(
     Some(unit.text)
 }
 
-/// What is added, in words.
+/// Reads the description of the added quantity.
 fn doc(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
     Some(read_text(record, "doc", "\"description of the quantity\"", found)?.text)
 }

@@ -56,7 +56,7 @@ fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
     named == Some(&force.name) && on().is_some_and(|on| on.is_proportional_to(rate))
 }
 
-/// What a force adds up and takes away.
+/// Returns the terms of a sum or difference.
 fn parts(value: &Expr) -> Vec<&Expr> {
     match &value.kind {
         ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, right) => {

@@ -131,7 +131,7 @@ fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool
     truth.map_or(Some(false), |truth| found.push_error(truth))
 }
 
-/// The name that a parameter or an addition gives to what it adds, where it is read by others.
+/// Returns the name that a parameter or an addition defines for use in other texts.
 fn named(entry: &Entry<'_>) -> Option<StringValue> {
     let entries = entry.table("").ok()?;
     let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
@@ -174,7 +174,7 @@ fn parameter(
     })
 }
 
-/// Of what of a site's motion a parameter is a part, and how large that is.
+/// Reads the scale of a parameter: a quantity of the site's motion and a fraction of it.
 fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
     let word = match scale {

@@ -43,7 +43,7 @@ fn of_term(model: &Model, term: &Term) -> Vec<Load> {
     squares.iter().enumerate().filter_map(load).collect()
 }
 
-/// Returns true if what is squared is a deflection, or what is left of one beyond a play that does not move.
+/// Returns true if the base of a square is a deflection, or a deflection beyond a constant play.
 fn is_load(model: &Model, base: &Expr) -> bool {
     let is_play = match &base.kind {
         ExprKind::Call(Function::Deadzone, arguments) => {
@@ -54,7 +54,7 @@ fn is_load(model: &Model, base: &Expr) -> bool {
     is_play && is_deflection(model, beyond_play(base))
 }
 
-/// What deflects, of what is left of it beyond a play.
+/// Returns the argument p of deadzone(p, b), or the expression itself.
 fn beyond_play(base: &Expr) -> &Expr {
     match &base.kind {
         ExprKind::Call(Function::Deadzone, arguments) => &arguments[0],
@@ -62,7 +62,8 @@ fn beyond_play(base: &Expr) -> &Expr {
     }
 }
 
-/// The derivative of a product by what is squared in it, as the specification would write it.
+/// Returns the derivative of a product by the base of its square, in the language of
+/// specifications.
 fn slope(model: &Model, product: &Expr, square: &Square<'_>) -> String {
     let source = &model.source.text;
     let part = |from: usize, to: usize| source.get(from..to).unwrap_or_default();

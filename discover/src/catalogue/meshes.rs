@@ -19,7 +19,7 @@ pub(super) fn find_meshes(model: &Model) -> Vec<Site> {
     found.collect()
 }
 
-/// What deflects with play, each once: coordinates first, in their order.
+/// Returns the distinct deflections with play, coordinates first, in their order.
 fn deflections(model: &Model) -> Vec<Expr> {
     let mut found: Vec<Expr> = Vec::new();
     for (_, _, value) in values(model) {
@@ -38,8 +38,8 @@ fn deflections(model: &Model) -> Vec<Expr> {
     found
 }
 
-/// Calls `each` with every function with play in an expression and its arguments, the first of which is what
-/// deflects.
+/// Calls `each` with every function with play in an expression and its arguments. The first
+/// argument is the deflection.
 fn visit_play(expr: &Expr, each: &mut impl FnMut(Function, &[Expr])) {
     expr.visit(&mut |part| {
         if let ExprKind::Call(function @ (Function::Deadzone | Function::Contact), arguments) =
@@ -94,7 +94,7 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
         .collect()
 }
 
-/// Returns true if an expression holds a function with play of what deflects.
+/// Returns true if an expression contains a function with play of this deflection.
 fn has_play(model: &Model, expr: &Expr, deflection: &Expr) -> bool {
     let mut found = false;
     visit_play(expr, &mut |_, arguments| {
@@ -159,8 +159,8 @@ fn mesh(model: &Model, deflection: &Expr) -> Option<Site> {
     })
 }
 
-/// The name of what deflects: a coordinate's, also where a middle of the play is taken from it, or a
-/// definition's; none if it is an expression.
+/// Returns the name of a deflection: that of a coordinate, possibly less a middle of the play, or
+/// of a definition. `None` for other expressions.
 fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
     match deflection.kind {
         ExprKind::Coordinate(id) => Some(&model.coordinates[id].name),
@@ -180,7 +180,7 @@ fn name_of_mesh<'m>(model: &'m Model, deflection: &Expr) -> Option<&'m str> {
     }
 }
 
-/// The half-play of what deflects, as the specification writes it.
+/// Returns the half-play of a deflection as written in the specification.
 fn half_play(model: &Model, deflection: &Expr) -> Option<String> {
     let mut play = None;
     for (_, _, value) in values(model) {

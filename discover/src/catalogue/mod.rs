@@ -36,7 +36,7 @@ use eomgen_model_spec::toml_file;
 use crate::catalogue::effect::Effect;
 use crate::thresholds;
 
-/// The catalogue that comes with the program.
+/// The built-in catalogue.
 const BUILT_IN: &str = include_str!("catalogue.toml");
 
 /// Loads the effects of the program and those of a user's file. A user's effect replaces the

@@ -11,7 +11,7 @@ use super::fields::read_text;
 pub(super) struct Placeholders {
     /// Known names.
     pub(super) known: Vec<String>,
-    /// What does.
+    /// Names in use.
     pub(super) used: Vec<String>,
 }
 

@@ -73,7 +73,7 @@ impl Polynomial {
         !own.is_empty() && !others.is_empty() && ids().all(|a| ids().all(|b| agree(a, b)))
     }
 
-    /// The factor of each rate; none if something stands without a rate, or with more than one.
+    /// Returns the factor of each rate, or `None` if a term has no rate or several rates.
     fn coefficients(&self) -> Option<BTreeMap<CoordinateId, Self>> {
         let mut found: BTreeMap<CoordinateId, Self> = BTreeMap::new();
         for (monomial, factor) in &self.0 {

@@ -44,8 +44,8 @@ pub(super) fn find_square<'m>(model: &Model, product: &'m Expr) -> Option<Square
     })
 }
 
-/// Goes through the factors of a product: one square of what moves, and parameters and numbers
-/// beside it; none if anything else is there.
+/// Reads the factors of a product: one square of a moving quantity, parameters and numbers. `None`
+/// if there is any other factor.
 fn factors<'m>(
     model: &Model,
     expr: &'m Expr,

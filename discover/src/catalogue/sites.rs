@@ -34,7 +34,7 @@ fn input(input: &Input) -> Site {
     }
 }
 
-/// What an expression is made of, definitions written out.
+/// Coordinates, rates and functions in an expression, with definitions expanded.
 #[derive(Default)]
 struct Parts {
     coordinates: Vec<CoordinateId>,

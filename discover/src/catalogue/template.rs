@@ -76,7 +76,7 @@ pub(crate) fn instantiate_change(
     }])
 }
 
-/// What is replaced, section by section; none if it is nowhere.
+/// Returns the replacements by section, or `None` if the text occurs nowhere.
 fn substitutions(
     model: &Model,
     within: &SubstitutionScope,
@@ -95,7 +95,7 @@ fn substitutions(
         }
         SubstitutionScope::Input => find_occurrences(model, found.as_deref()?),
         SubstitutionScope::Site => holding(model, site, found.as_deref()?),
-        // Each damper is a blank of its own.
+        // Each damper is replaced separately.
         SubstitutionScope::Dampers => return dampers(site, (find, replace), arguments),
         SubstitutionScope::Measured => measured(model, found.as_deref()?),
     };
@@ -114,7 +114,7 @@ fn substitutions(
     (!substitutions.is_empty()).then_some(substitutions)
 }
 
-/// What is replaced in the dampers beside a spring, each by itself; none if there is none.
+/// Returns a replacement for each damper parallel to a spring, or `None` if there is no damper.
 fn dampers(
     site: &Site,
     (find, replace): (&str, &str),
@@ -158,7 +158,7 @@ fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
 
 /// The site's terms that hold a name.
 fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
-    // What deflects may be any expression, and a spring's term holds it.
+    // The deflection may be any expression; a spring's term contains it.
     if site.kind == SiteKind::Spring {
         return site.terms.clone();
     }

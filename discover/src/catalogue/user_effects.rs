@@ -21,7 +21,7 @@ pub fn check_user_effects(
     text: &str,
 ) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = eomgen_model_spec::check(Source::new(path, text)) else {
-        // What is wrong with the specification itself is said where it is read.
+        // Reading the specification reports its errors.
         return Ok(Vec::new());
     };
     let model = checked.model;

@@ -90,8 +90,8 @@ impl Function {
         }
     }
 
-    /// As a specification writes it, of a quantity over its scale; `kink`: the parameter that says where it has
-    /// one.
+    /// Returns the text of a term in a quantity over its scale. `kink` is the parameter with the
+    /// place of the kink.
     fn text(self, quantity: &str, scale: &str, kink: &str) -> String {
         let times = |order: u32| match order {
             1 => quantity.to_owned(),
@@ -232,7 +232,7 @@ pub fn list_terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     found.extend(alone.map(|factor| Term {
         factors: vec![*factor],
     }));
-    // What an input does may change with the motion; it goes in with its first power.
+    // The effect of an input may vary with the motion; the input enters in its first power.
     let drives = inputs.iter().filter(|factor| factor.1 == Power(1));
     let motion = rates.iter().chain(&positions);
     let with_inputs = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));

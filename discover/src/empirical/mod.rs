@@ -60,8 +60,8 @@ pub fn add_empirical_effect(
     }
 }
 
-/// Adds an expression to what was found, if a real gap is left and one closes it. `floor`: what a
-/// right model would leave, in standard deviations; `progress` is told what is done.
+/// Adds an expression to the result if a gap remains and the expression closes it. `floor` is the
+/// RMS residual of a correct model in standard deviations.
 fn add_empirical(
     problem: &EstimationProblem<'_>,
     found: &mut SearchResult,
@@ -123,7 +123,7 @@ fn add_empirical(
     }
 }
 
-/// The best expression in the equations where the residual force may sit.
+/// Finds the best expression in the equations that may contain the residual force.
 fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
     let force = estimate_residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
@@ -247,8 +247,8 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
     }
 }
 
-/// An expression fitted, without the terms that are not needed: some stand for what parameters
-/// and sensors do once they are free again.
+/// Removes superfluous terms of a fitted expression: some only replace parameters and sensors,
+/// which are free again.
 fn simplest(
     problem: &EstimationProblem<'_>,
     before: &Fit,
@@ -337,7 +337,7 @@ fn accepted(
         let is_shape = parameter.shape_size.is_some();
         EffectUnknown {
             unknown: *unknown,
-            // Where a kink is has no size of its own, and goes with any term.
+            // The place of a kink has no size, and belongs to any term.
             effect: EffectId::new(if is_shape { 0 } else { number }),
             base: 0.0,
             is_shape,

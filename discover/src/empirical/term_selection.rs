@@ -32,7 +32,7 @@ pub struct Expression {
     pub explained_fraction: f64,
 }
 
-/// A set of terms with what it is expected to do.
+/// A set of terms with its predicted reduction.
 struct Set {
     terms: Vec<BasisFunctionId>,
     sizes: Coefficients,
@@ -104,7 +104,7 @@ fn in_equation(
     })
 }
 
-/// The best set of one term, or of more where that takes much of what fewer leave.
+/// Returns the best set of one term, or of more terms if each greatly reduces the residual.
 fn best(
     regression: &Regression,
     of: Linearisation<'_>,

@@ -43,15 +43,15 @@ pub struct HiddenEffect<'f> {
     /// The model without it.
     without: &'f Rival<'f>,
     place: Place,
-    /// What scales it.
+    /// Unknown that scales the effect.
     unknown: Unknown,
     /// Its value where it is absent, SI.
     base: f64,
 }
 
-/// Where an effect sits.
+/// Place of an effect.
 enum Place {
-    /// In terms of its own.
+    /// In separate terms.
     Model {
         model: Box<EstimationModel>,
         /// The values of its parameters where it is absent, SI.
@@ -79,10 +79,10 @@ struct Tried<'t> {
     place: usize,
     proposal: &'t Proposal,
     size: f64,
-    /// How far it moves the outputs, in standard deviations.
+    /// Change of the outputs, in standard deviations.
     moved: f64,
     present: Prediction,
-    /// What the model without it leaves before it is fitted, by the size.
+    /// RMS residual of the model without the effect before a fit, per unit of size.
     most: f64,
 }
 
@@ -163,7 +163,7 @@ impl<'f> HiddenEffect<'f> {
         }
     }
 
-    /// What a size of it leaves of an experiment, if that is within bounds.
+    /// Predicts an experiment with the effect at a size, if that is within its bounds.
     fn predicted(
         &self,
         (bounds, times): (&Bounds, &[f64]),
@@ -210,7 +210,8 @@ impl<'f> HiddenEffect<'f> {
         })
     }
 
-    /// A size that moves the outputs of an experiment by as much as is small, and what it leaves.
+    /// Finds a size with a small but measurable change of an experiment's outputs, and its
+    /// prediction.
     fn small(
         &self,
         within: (&Bounds, &[f64]),
@@ -248,9 +249,9 @@ impl<'f> HiddenEffect<'f> {
         (sum / count).sqrt()
     }
 
-    /// Of experiments with a small size the one of whose outputs' motion most is its own, by the size
-    /// that makes it, and what that leaves by a straight line. Derivatives are dear: they are taken of
-    /// those alone that may still be the one.
+    /// Returns the experiment, all with a small size, whose outputs change most by the effect
+    /// itself, per unit of size, and its RMS residual after a linear fit. Derivatives are expensive
+    /// and computed only for experiments that may be the best.
     fn most_shown<'t>(&self, mut tried: Vec<Tried<'t>>) -> Option<(Tried<'t>, f64)> {
         tried.sort_by(|a, b| b.most.total_cmp(&a.most));
         let mut best: Option<(Tried<'t>, f64)> = None;
@@ -276,7 +277,7 @@ impl<'f> HiddenEffect<'f> {
         within: (&Bounds, &[f64]),
         family: &[PredictedExperiment<'_>],
     ) -> Option<Detection> {
-        // What is small in one experiment nearly is in the next.
+        // A small size in one experiment is a good start for the next.
         let usual = 1e-3 * self.unknown.scale;
         let (mut first, mut others) = (None, family);
         while let (None, Some((played, rest))) = (&first, others.split_first()) {

@@ -117,7 +117,7 @@ impl Members<'_> {
         pairs.collect()
     }
 
-    /// What each member predicts of an experiment.
+    /// Predicts an experiment with each member.
     fn predictions(
         &self,
         bounds: &Bounds,
@@ -132,7 +132,7 @@ impl Members<'_> {
         self.rivals.iter().map(predicted).collect()
     }
 
-    /// How far the members of each pair are apart, by a straight line.
+    /// Returns the linearised distance of the members of each pair.
     fn promised(
         &self,
         bounds: &Bounds,

@@ -42,7 +42,7 @@ pub(super) fn write_experiment_csv(
     text
 }
 
-/// A number to twelve digits: what a difference of times leaves behind them is nobody's.
+/// Rounds to twelve digits, which removes rounding errors of differences of times.
 fn rounded(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

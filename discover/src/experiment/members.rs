@@ -1,4 +1,4 @@
-//! Members of a class, each fitted to the records in place of the named effect.
+//! Members of a class, each fitted to the records instead of the named effect.
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fit_result::Fit;

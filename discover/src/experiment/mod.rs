@@ -79,7 +79,7 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
     experiments
 }
 
-/// What may be played.
+/// Experiments that the rig can run.
 struct Plan<'r> {
     context: RoundContext<'r>,
     /// The model's inputs.
@@ -94,7 +94,7 @@ struct Plan<'r> {
 }
 
 impl Plan<'_> {
-    /// No experiment, where nothing can be played at all.
+    /// Returns an experiment that states the reason if the rig can run none.
     fn none(&self) -> Option<NextExperiment> {
         let reason = match (&self.impossible, self.family.is_empty()) {
             (Some(reason), _) => reason.clone(),
@@ -104,7 +104,7 @@ impl Plan<'_> {
         Some(NextExperiment::without_experiment(&reason, &self.bounds))
     }
 
-    /// What separates the members of an accepted effect's class.
+    /// Proposes an experiment that separates the members of an accepted effect's class.
     fn of_class(
         &self,
         found: &SearchResult,
@@ -238,7 +238,8 @@ impl Plan<'_> {
         files.len() - 1
     }
 
-    /// What would show the effects that the records could not have shown, each at each place once.
+    /// Proposes experiments that detect the effects that the records cannot show, one for each
+    /// effect and place.
     fn of_not_testable(&self, found: &SearchResult, experiments: &mut Experiments) {
         let problem = self.context.problem;
         experiments.for_rejected = vec![None; found.rejected.len()];
@@ -313,7 +314,7 @@ impl Plan<'_> {
             .collect()
     }
 
-    /// What shows an effect best.
+    /// Returns the experiment that detects an effect best.
     fn shown(
         &self,
         hidden: &HiddenEffect<'_>,
@@ -354,7 +355,7 @@ impl Plan<'_> {
         }
     }
 
-    /// What scales an effect and the value from which on it is shown, in its unit.
+    /// Returns the quantity that scales an effect and its smallest detectable value, in its unit.
     fn smallest(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
         let shown = |what: &str, from: f64, unit: &str| {
             Some(DetectableSize {

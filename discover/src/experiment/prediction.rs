@@ -60,7 +60,7 @@ impl<'a> Predictor<'a> {
         values: &[f64],
     ) -> Option<Self> {
         let initial = match problem.dataset.initial {
-            // Where a record began says nothing of where a rig can begin anew.
+            // The initial state of a record is no evidence that a rig can start there.
             Initial::Estimate => model.initial_state(),
             Initial::Rest | Initial::Values(_) => {
                 problem.estimate_first_state(model, &problem.dataset.train[0])

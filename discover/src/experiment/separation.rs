@@ -30,7 +30,7 @@ use crate::thresholds;
 pub struct Rival<'f> {
     /// The fit.
     pub fit: &'f Fit,
-    /// What is known of its unknowns: a factor of the information.
+    /// Factor of the information on its unknowns.
     information: DMatrix<f64>,
     /// Its unknowns, whose priors are in the information.
     unknowns: Vec<Unknown>,
@@ -169,7 +169,7 @@ impl<'f> Rival<'f> {
         &self.fit.train.estimate.theta
     }
 
-    /// Where its windows begin: where the prediction's do.
+    /// Returns the initial states of the windows: those of the prediction.
     fn begin(
         &self,
         problem: &EstimationProblem<'_>,
@@ -203,7 +203,7 @@ impl<'f> Rival<'f> {
         }
     }
 
-    /// Fitted to windows and to what its records tell.
+    /// Fits to windows and to the information from its records.
     fn fitted(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
         let Beginning { states, prior, .. } = begin;
         let total = |estimate: &Estimate| {
@@ -239,13 +239,14 @@ impl<'f> Rival<'f> {
         Some(present)
     }
 
-    /// How far an estimate is from what its records led to.
+    /// Returns the difference between an estimate and the fit to its records.
     fn change(&self, estimate: &Estimate) -> DVector<f64> {
         let pairs = estimate.theta.iter().zip(self.theta());
         DVector::from_iterator(self.unknowns.len(), pairs.map(|(a, b)| a - b))
     }
 
-    /// The triangular factor of [unknowns | residual], of windows and of what its records tell.
+    /// Returns the triangular factor of [unknowns | residual] from the windows and the information
+    /// of its records.
     fn factor(&self, blocks: &[Option<ReducedBlock>], present: &Estimate) -> DMatrix<f64> {
         let count = self.unknowns.len();
         let mut rows = DMatrix::zeros(count, count + 1);
@@ -261,10 +262,10 @@ impl<'f> Rival<'f> {
     }
 }
 
-/// Where a rival's windows begin.
+/// Initial states of a rival's windows.
 struct Beginning {
     states: Vec<Vec<f64>>,
-    /// How far its states go, in the records or in the experiment.
+    /// Ranges of its states, in the records or in the experiment.
     ranges: Vec<f64>,
     prior: InitialStatePrior,
 }

@@ -147,8 +147,8 @@ impl Waveform {
     }
 }
 
-/// Where in its period something is that has so many, a part of the time after its beginning. At the end
-/// none begins anew.
+/// Returns the phase in its period of a signal with this number of periods, at a fraction of the
+/// duration. The end belongs to the last period.
 fn phase(part: f64, periods: u32) -> f64 {
     (part.min(1.0 - 1e-12) * f64::from(periods)).fract()
 }

@@ -30,7 +30,7 @@ pub fn solve_least_squares(
     }
     for _ in 0..MOST_CHANGES {
         let target = free_solution(a, b, &x, &free, &scale);
-        // How far the way is free.
+        // Fraction of the step within the bounds.
         let mut reach = 1.0;
         let mut stop = None;
         for column in (0..columns).filter(|column| free[*column]) {
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn a_bound_met_on_the_way_is_left_again() {
-        // The steepest way from 0 first meets x <= 0.5; the minimum lies at (-1, 2).
+        // The steepest descent from 0 first meets x <= 0.5; the minimum is at (-1, 2).
         let a = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 0.0, 1.0]);
         let b = DVector::from_vec(vec![-1.0, 2.0]);
         let x = solve_least_squares(&a, &b, &[Interval::new(-5.0, 0.5), Interval::new(0.0, 5.0)]);

@@ -29,12 +29,12 @@ pub struct ContinuationResult {
     pub is_converged: bool,
 }
 
-/// Which derivatives by the unknowns a step goes by.
+/// Derivatives by the unknowns used in a step.
 #[derive(Clone, Copy, PartialEq)]
 enum Derivatives {
     /// Those of the motion. Impacts make them grow without bound, and right for next to nothing.
     Tangents,
-    /// Differences of motions that are followed anew, for what has no prior.
+    /// Differences of simulated motions, for unknowns without prior.
     Secants,
 }
 
@@ -117,7 +117,7 @@ impl<'a> Continuation<'a> {
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
-    /// So many steps at most, while they are worth it.
+    /// Makes at most `steps` steps, while they reduce the cost enough.
     fn go(&mut self, present: &mut ContinuationResult, steps: usize, derivatives: Derivatives) {
         for _ in 0..steps {
             if derivatives == Derivatives::Secants
@@ -196,7 +196,7 @@ impl<'a> Continuation<'a> {
         taken
     }
 
-    /// What a change of an unknown, does to each window's residuals.
+    /// Computes the change of each window's residuals for a change of an unknown.
     fn secant(
         &self,
         estimate: &Estimate,
@@ -221,7 +221,7 @@ impl<'a> Continuation<'a> {
     }
 }
 
-/// What a change of an unknown did.
+/// Change of the residuals for a change of an unknown.
 struct Secant {
     /// The change.
     size: f64,

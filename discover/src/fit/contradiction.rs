@@ -12,7 +12,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, UnknownKind, bounds_with_sign};
 use crate::thresholds;
 
-/// How many records are fitted side by side before it is asked whether more are needed.
+/// Number of records that are fitted in parallel before the need for more is checked.
 const AT_ONCE: usize = 2;
 
 /// Returns sentences on contradicting records of a fit with a gap. Two records contradict each
@@ -26,7 +26,7 @@ pub fn describe_contradictions(
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Vec<String> {
-    // What none leaves more of than each could alone is no contradiction.
+    // A contradiction leaves a large joint residual in at least one record.
     if largest_record_rms(problem, fit) < thresholds::MIN_CONTRADICTION_RATIO * floor {
         return Vec::new();
     }
@@ -65,7 +65,7 @@ pub fn describe_contradictions(
     }
 }
 
-/// Returns true if records could still contradict each other, whatever so many more came to alone.
+/// Returns true if the fits of `more` further records could still show a contradiction.
 fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool {
     let of_its_own = records.iter().filter(|record| is_better_alone(record));
     if of_its_own.count() + more > 1 {
@@ -78,12 +78,12 @@ fn may_contradict(records: &[SingleRecordFit], more: usize, floor: f64) -> bool 
     !Oddness::of(&left, floor).odd.is_empty()
 }
 
-/// Returns true if a record is explained much better alone than with the others.
+/// Returns true if a single fit explains a record much better than the joint fit.
 fn is_better_alone(record: &SingleRecordFit) -> bool {
     record.rms.is_finite() && record.rms * thresholds::MIN_CONTRADICTION_RATIO < record.joint_rms
 }
 
-/// Which of some records the others do not go with, by what each leaves alone.
+/// Odd records among several, judged by the residuals of their single fits.
 struct Oddness {
     /// Places of those that leave much more than most do; none where they are as many as the others.
     odd: Vec<usize>,
@@ -92,8 +92,9 @@ struct Oddness {
 }
 
 impl Oddness {
-    /// Of what records leave alone, in standard deviations. What is missing in a model leaves something
-    /// of each: much is much more than the median, or than a right model leaves.
+    /// Judges the RMS residuals of single fits, in standard deviations. A missing effect leaves a
+    /// residual in each record; a residual is large if it is far above the median and above that of
+    /// a correct model.
     fn of(alone: &[f64], floor: f64) -> Self {
         let mut sorted = alone.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -105,7 +106,8 @@ impl Oddness {
         };
         let explained: Vec<usize> = such(&|rms| rms < thresholds::MAX_FLOOR_RATIO_TO_STOP * usual);
         let odd: Vec<usize> = such(&|rms| rms > thresholds::FAR_FROM_NOISE * usual);
-        // What is missing may show in a few records only; that most show it contradicts nothing.
+        // A missing effect may show in a few records only. If most records show it, they do not
+        // contradict each other.
         match odd.len() < explained.len() {
             true => Self { odd, explained },
             false => Self {
@@ -116,7 +118,7 @@ impl Oddness {
     }
 }
 
-/// Records that leave much alone where most others leave little.
+/// Finds records with large residuals in single fits while most others have small ones.
 fn odd(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -151,7 +153,7 @@ fn odd(
     odd.iter().map(sentence).collect()
 }
 
-/// The single parameters of the model that explain a record alone, with their values.
+/// Finds the single parameters that explain a record by themselves, with their values.
 fn explaining(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
@@ -290,7 +292,8 @@ mod tests {
 
     #[test]
     fn no_record_is_left_out_that_could_contradict_others() {
-        // At the floor or not with values of its own, in between, odd likewise, and not followed at all.
+        // Near the floor or not with values of its own, in between, odd likewise, and not simulated
+        // at all.
         let kinds = [
             (1.0, 1.2),
             (1.0, 9.0),

@@ -20,9 +20,9 @@ use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
-/// Where whole windows are fitted from.
+/// Starting point of a fit to whole windows.
 struct StartingPoint {
-    /// What is known of their initial states.
+    /// Prior of their initial states.
     prior: InitialStatePrior,
     /// The estimate so far.
     estimate: Estimate,
@@ -34,9 +34,9 @@ struct StartingPoint {
 
 /// Whole windows fitted.
 struct Converged {
-    /// What is known of their initial states.
+    /// Prior of their initial states.
     prior: InitialStatePrior,
-    /// What is left of them.
+    /// Their residuals.
     residuals: Residuals,
     /// True if that is too much to be worth more.
     is_far: bool,
@@ -145,7 +145,7 @@ pub fn complete_fit(
     })
 }
 
-/// What a preliminary fit comes to over whole windows, before they are fitted together.
+/// Evaluates a preliminary fit over whole windows, before they are fitted together.
 fn near(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
@@ -163,7 +163,7 @@ fn near(
             thresholds::INITIAL_STATE_HORIZONS.len(),
         );
         let mut near = run_continuation(all, &[theta], &follow, thresholds::MAX_CONTINUATION_STEPS);
-        // What is not linear costs ten times as much.
+        // A nonlinear model costs ten times as much.
         if preliminary.model.is_linear() {
             continue_by_secants(all, &mut near, &follow);
         }
@@ -216,8 +216,8 @@ fn converged(
     };
     let mut residuals = Residuals::compute(all, free);
     let is_far = near.is_far || residuals.rms > most;
-    // What remains where records are trusted as if noise were all that they hold says how
-    // far they may be trusted against the priors.
+    // The remaining residual, if treated as noise, gives the weight of the records relative to the
+    // priors.
     all.prior_weight = residuals.variance_inflation();
     for _ in 0..thresholds::MAX_REFRESHES {
         let Estimate {

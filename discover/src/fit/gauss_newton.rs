@@ -99,7 +99,7 @@ pub(crate) fn sum_of_squares(residual: &Option<Residual>) -> f64 {
         .map_or(f64::INFINITY, Residual::sum_of_squares)
 }
 
-/// What the unknowns' priors add to the cost.
+/// Returns the contribution of the unknowns' priors to the cost.
 fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
         let unknown_before = NormalPrior {

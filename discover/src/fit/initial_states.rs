@@ -134,7 +134,7 @@ pub fn prior_from_states(
     }
 }
 
-/// Where what is known of each window's initial state comes from.
+/// Returns the source of the prior of each window's initial state.
 fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorSource> {
     let of = |window: &Window| {
         let is_stated = window.first == 0
@@ -149,14 +149,14 @@ fn sources(problem: &EstimationProblem<'_>, windows: &Windows<'_>) -> Vec<PriorS
     windows.windows.iter().map(of).collect()
 }
 
-/// What is known of windows' initial states beforehand.
+/// Prior of windows' initial states.
 #[derive(Clone, Copy)]
 struct Known<'a> {
     /// The first state of each record.
     firsts: &'a [Vec<f64>],
-    /// One standard deviation of each state, where it is stated or carried.
+    /// Standard deviation of each state, if stated or carried over.
     sd: &'a [f64],
-    /// Where each window's mean comes from.
+    /// Source of each window's mean.
     sources: &'a [PriorSource],
 }
 
@@ -229,14 +229,14 @@ pub fn propagate_to_next_windows(
     })
 }
 
-/// How windows are followed one after the other.
+/// Simulation of consecutive windows.
 struct Chain<'a> {
     shooting: &'a Shooting<'a>,
     known: Known<'a>,
     horizons: &'a [f64],
 }
 
-/// What is known of a window's initial state before its samples are looked at, and the state.
+/// Prior mean of a window's initial state, without its samples, and the state.
 struct FollowedState {
     mean: Vec<f64>,
     state: Vec<f64>,
@@ -288,10 +288,10 @@ impl Chain<'_> {
     }
 }
 
-/// Initial states read from smoothed records, where the channels show all coordinates and states of first order.
+/// Reads initial states from smoothed records, if the channels measure all coordinates and states
+/// of first order.
 ///
-/// # Errors
-/// The coordinate, or the state of first order, that no channel shows.
+/// # Errors The coordinate, or the state of first order, that no channel measures.
 fn read_smoothed(
     model: &EstimationModel,
     windows: &Windows<'_>,

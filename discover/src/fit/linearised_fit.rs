@@ -86,8 +86,8 @@ impl LinearisedFit {
     }
 }
 
-/// So much of each window at a fit: what is known of initial states, and states that suit
-/// these parts.
+/// Returns the priors of the initial states for a part of each window, and states that fit these
+/// parts.
 fn beginnings(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -25,8 +25,8 @@ pub fn fit_null_model(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit
     let unknowns = list_null_unknowns(problem.dataset, model.specification(), &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
     let texts = || SpecificationTexts::from_text(text);
-    // Sensors that are free from the first step on find what is off by much, and now and then
-    // stand in for what parameters have not done yet: those that wait do not.
+    // Sensors that are free from the first step on find large errors, but sometimes absorb the
+    // effect of parameters that have not converged. Sensors that become free later do not.
     let held = |unknown: &Unknown| match unknown.kind {
         UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => unknown.clone(),
         UnknownKind::Gain(_)

@@ -100,7 +100,7 @@ pub fn fit_beginnings(
         );
         (found, true)
     };
-    // How far states go may depend on what was found: a joint yields so much the more.
+    // Ranges of states may depend on the result: a more compliant joint moves farther.
     let ranges = problem.compute_state_ranges(&model, &shooting.parameter_values(&found.theta));
     Ok(PreliminaryFit {
         cost: found.cost,

@@ -107,8 +107,8 @@ fn bridged(column: &[f64]) -> Vec<f64> {
     (0..column.len()).map(value).collect()
 }
 
-/// What stands out of a spectrum that is a mean over so many windows: its largest density, if that exceeds
-/// what white noise shows by chance. The first lines hold what is slower than a window, whatever its frequency.
+/// Returns the largest density of a spectrum averaged over `windows` windows, if it exceeds that of
+/// white noise. The first lines contain all components slower than a window.
 fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     let density = &spectrum.density;
     let lines = 1..density.len();
@@ -133,7 +133,8 @@ mod tests {
 
     const STEP: f64 = 0.01;
 
-    /// Windows of a residual, each of so many samples, with what stands out of their spectrum.
+    /// Returns the peak in the spectrum of `count` windows of a residual with `samples` samples
+    /// each.
     fn found(samples: usize, count: usize, of: impl Fn(f64, f64) -> f64) -> Option<SpectralPeak> {
         let time = |k: usize| STEP * k as f64;
         let windows: Vec<(Window, Vec<f64>)> = (0..count)

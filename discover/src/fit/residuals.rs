@@ -144,7 +144,7 @@ pub(crate) fn compute_correlation_samples(residuals: &[Vec<f64>], channels: usiz
         let mut time = 1.0;
         for lag in 1..longest / 2 {
             let part = at(lag) / whole;
-            // What white noise shows by chance is none.
+            // Values that white noise produces by chance are ignored.
             if part.is_nan() || part < thresholds::MIN_AUTOCORRELATION {
                 break;
             }

@@ -112,7 +112,7 @@ impl<'a> Shooting<'a> {
 
     /// Returns the sensor values at these unknowns.
     pub fn sensor_values(&self, theta: &[f64]) -> SensorValues {
-        // What is expected of a sensor holds until it is estimated.
+        // The expected value of a sensor applies until it is estimated.
         let expected = || self.model.sensors.iter();
         let mut sensors = SensorValues {
             gain: expected().map(|sensor| sensor.gain).collect(),
@@ -130,7 +130,7 @@ impl<'a> Shooting<'a> {
             }
         }
         if input_delay != 0.0 {
-            // What acts late is seen late by all, as far as windows leave room for it.
+            // A delayed input delays all outputs, as far as the windows allow it.
             let times = self
                 .windows
                 .windows

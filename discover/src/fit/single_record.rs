@@ -102,7 +102,8 @@ pub fn fit_record_separately(
     })
 }
 
-/// Returns true if a parameter of a fit is held where its prior ends, and would go on alone.
+/// Returns true if a parameter of a joint fit is at the limit of its prior, and a single fit would
+/// exceed it.
 fn is_held(fit: &Fit) -> bool {
     fit.unknowns().any(|(id, unknown)| {
         let is_narrowed = unknown.bounds != unknown.bounds_without_prior;

@@ -102,7 +102,7 @@ pub struct StateProjection {
     pub by_unknown: DMatrix<f64>,
     /// By the initial state, with the priors' rows below.
     by_state: DMatrix<f64>,
-    /// What the priors' rows hold of the residual.
+    /// Residuals of the rows of the priors.
     prior_residual: DVector<f64>,
 }
 

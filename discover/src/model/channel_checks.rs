@@ -108,7 +108,7 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
     Ok(notes)
 }
 
-/// How a column follows what is expected, lines taken out of both.
+/// Correlation of a column with its expectation after removing a line from both.
 struct Correspondence {
     correlation: f64,
     factor: f64,

@@ -38,7 +38,7 @@ pub struct EstimationModel {
     pub values: Vec<f64>,
     /// Names of the states.
     pub states: Vec<String>,
-    /// Where each coordinate lives, for those of which the specification says so.
+    /// Range of each coordinate, if the specification declares one.
     ranges: Vec<Option<(f64, f64)>>,
     linear: Option<LinearPart>,
     pub(crate) measured: MeasuredOutputs,
@@ -60,7 +60,7 @@ pub struct EstimationModel {
 /// the shorter ones, which falls with the fourth power.
 const RUNGE_KUTTA_GAIN: f64 = 15.0;
 
-/// What of a model is linear between switches.
+/// Part of a model that is linear between switches.
 enum LinearPart {
     /// All of it.
     Whole,
@@ -328,12 +328,12 @@ impl EstimationModel {
         let mut simulation = Simulation::new(of, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
         if self.measured.has_rates() {
-            // What cannot be derived with sides is not held either.
+            // A model without a derivation with sides is not held either.
             simulation.measure_sticking(self.compiled.sided_model(values).ok().flatten());
         }
         let (linear, own) = match &self.linear {
             None => {
-                // What cannot be derived with sides was derived without: it is followed without.
+                // A model without a derivation with sides is simulated without them.
                 if let Ok(Some(sided)) = self.compiled.sided_model(values) {
                     simulation.use_sticking(sided);
                 }

@@ -19,7 +19,7 @@ pub fn estimate_first_state(
 ) -> Vec<f64> {
     let mut state = model.initial_state();
     match initial {
-        // What is known of the beginning does not hold later.
+        // Information on the initial state does not apply to a later part.
         _ if record.is_continued => measured(model, record, channels, state),
         Initial::Rest => state,
         Initial::Values(values) => {
@@ -35,7 +35,7 @@ pub fn estimate_first_state(
     }
 }
 
-/// A state with what the channels show of it at the beginning of a record.
+/// Replaces parts of a state by the measurements at the beginning of a record.
 fn measured(
     model: &EstimationModel,
     record: &Record,
@@ -62,8 +62,8 @@ fn measured(
     model.clamp_state(state)
 }
 
-/// The parabola through a column's first samples at the first time: value and slope. A line
-/// would show the slope in their middle, and what is late by that looks like a late sensor.
+/// Returns value and slope at the first time of the parabola through a column's first samples. A
+/// line would give the slope at their middle, and this delay would look like that of a sensor.
 fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
     let points: Vec<(f64, f64)> = (times.iter().zip(column))
         .filter(|(_, value)| value.is_finite())

@@ -10,7 +10,7 @@ use crate::thresholds;
 /// A model along motions that records give. A row of a record holds its inputs, then all
 /// coordinates, all rates and all second derivatives.
 pub(crate) struct GivenMotion {
-    /// How many inputs there are.
+    /// Number of inputs.
     inputs: usize,
     degrees: usize,
     /// The inputs that are sought, as many as degrees of freedom.

@@ -125,7 +125,7 @@ pub fn add_declared_faults(
             };
             let source = Source::new(path, text.as_str());
             let Ok(checked) = eomgen_model_spec::check(source.clone()) else {
-                // What is wrong with a text is said where it is derived.
+                // The derivation reports errors in a text.
                 return Ok(text);
             };
             let (model, name) = (&checked.model, fault.parameter_name(&priors.name));

@@ -19,7 +19,7 @@ struct Written<'m> {
     value: &'m Expr,
 }
 
-/// The entries in which an input may stand.
+/// Returns the entries that may contain an input.
 fn entries(model: &Model) -> Vec<Written<'_>> {
     let of = |section: Section| {
         move |(name, span, value)| Written {

@@ -52,9 +52,9 @@ pub(crate) struct MeasuredOutputs {
     outputs: Vec<Output>,
     /// The inputs among them, each once.
     inputs: Vec<MeasuredInput>,
-    /// How many observables the model has.
+    /// Number of observables of the model.
     observables: usize,
-    /// How many states the model has.
+    /// Number of states of the model.
     states: usize,
     degrees_of_freedom: usize,
 }

@@ -10,7 +10,7 @@ pub(crate) struct NonlinearRemainder {
     whole: Evaluator,
     linear: Evaluator,
     rates: [Vec<f64>; 2],
-    /// For each guard of the linear part the whole model's, where some of them differ.
+    /// For each guard of the linear part that of the whole model, if they differ.
     guards: Option<Vec<usize>>,
     values: Vec<f64>,
 }
@@ -186,7 +186,7 @@ mod tests {
                 states.expect("a motion")[3][0]
             });
             let quotient = (more - less) / (2.0 * size);
-            // What is felt is held over two steps, three of which the contact lasts.
+            // The force is held over two steps, and the contact lasts three.
             let is_near = (tangent - quotient).abs() < 3e-2 * quotient.abs();
             assert!(is_near, "{state}: {tangent:e} for {quotient:e}");
         }

@@ -20,13 +20,13 @@ pub struct OutputTimes<'s> {
 }
 
 impl OutputRate {
-    /// At the samples alone.
+    /// At the samples only.
     #[cfg(test)]
     pub const SAMPLES: Self = Self(1);
 
-    /// As often as the cubic through four neighbours asks for, so that it errs by less than a part
-    /// of the noise. How much it errs is read off the records: what every other sample says of the one
-    /// between them, which errs sixteen times as much, less what noise does to that.
+    /// Selects the rate at which a cubic through four neighbours has an error below a fraction of
+    /// the noise. The error is estimated from the records: every other sample predicts the one
+    /// between them with sixteen times the error, less the contribution of the noise.
     pub fn of(dataset: &Dataset) -> Self {
         // A motion that is given is known at its samples.
         if dataset.gives_motion() {
@@ -71,17 +71,17 @@ impl OutputRate {
 }
 
 impl OutputTimes<'_> {
-    /// How many samples there are.
+    /// Returns the number of samples.
     pub fn samples(&self) -> usize {
         self.times.len().div_ceil(self.rate)
     }
 
-    /// Of something for each time, what stands at the samples.
+    /// Selects the entries at the samples from one entry per time.
     pub fn at_samples<T>(&self, all: Vec<T>) -> Vec<T> {
         all.into_iter().step_by(self.rate).collect()
     }
 
-    /// Where a sample stands among the times.
+    /// Returns the index of a sample among the times.
     pub fn of_sample(&self, sample: usize) -> usize {
         sample * self.rate
     }
@@ -90,7 +90,8 @@ impl OutputTimes<'_> {
 /// By so much the error of a cubic falls where its points are twice as dense.
 const ORDER: f64 = 16.0;
 
-/// What a cubic through a column's neighbouring samples errs by, half way between two of them.
+/// Returns the error of a cubic through neighbouring samples of a column, half way between two of
+/// them.
 fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noise: f64) -> f64 {
     let (mut sum, mut expected, mut count) = (0.0, 0.0, 0.0);
     for (times, values) in columns {
@@ -114,7 +115,8 @@ fn error_of_cubic<'c>(columns: impl Iterator<Item = (&'c [f64], &'c [f64])>, noi
     square.max(0.0).sqrt() / ORDER
 }
 
-/// What one of some points counts at a time in the polynomial through all of them (Lagrange).
+/// Returns the weight of one of several points at a time, in the polynomial through all points
+/// (Lagrange).
 pub(crate) fn lagrange_weight(
     times: &[f64],
     points: impl Iterator<Item = usize>,

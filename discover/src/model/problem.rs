@@ -71,7 +71,7 @@ impl<'d> EstimationProblem<'d> {
             Some(model.state_names(&model.orders(order).ok()?))
         };
         Self {
-            // What is wrong with a text is said where it is derived.
+            // The derivation reports errors in a text.
             states: states().unwrap_or_default(),
             dataset,
             noise: dataset

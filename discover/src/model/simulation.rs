@@ -38,11 +38,11 @@ pub struct Simulation<'m> {
     integrator: Option<ExponentialIntegrator>,
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
-    /// What surfaces such as those of dry friction do where they hold a motion, for the solver.
+    /// Behaviour of surfaces that hold a motion, such as dry friction, for the solver.
     sided: Option<SidedModel>,
     /// The same for accelerations that are measured.
     resting: Option<SidedModel>,
-    /// Where records give the motion: what it takes.
+    /// Inputs of a model whose motion is given by the records.
     given: Option<GivenMotion>,
     /// The most steps of the solver with error control in one motion.
     most_steps: u64,
@@ -432,7 +432,8 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// What holds this motion is to be known where its accelerations are measured.
+    /// Determines the held surfaces of this motion at the times at which its accelerations are
+    /// measured.
     fn look_at(&mut self, motion: (&[f64], &[Vec<f64>]), inputs: &HeldInputs) {
         let sided = self.resting.take();
         self.buffers.rest = sided.map(|sided| StickingMotion::new(sided, motion, inputs));

@@ -54,8 +54,8 @@ pub fn fill_missing(times: &[f64], column: &[f64]) -> Vec<f64> {
     values
 }
 
-/// The column with both ends reflected through their end points, so that a filter starts on
-/// what goes on.
+/// Returns the column with both ends reflected through their end points, so that the filter starts
+/// on a smooth continuation.
 fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
     let last = values.len() - 1;
     let before = (1..=padding).rev().map(|k| 2.0 * values[0] - values[k]);

@@ -12,7 +12,7 @@ use crate::error::DiscoverError;
 pub struct StopRequest {
     is_requested: Arc<AtomicBool>,
     begin: Instant,
-    /// How long the search may take.
+    /// Time limit of the search.
     most: Option<Duration>,
     /// When the search is over, ns after the beginning; the largest number where it is not.
     limit: Arc<AtomicU64>,

@@ -102,8 +102,8 @@ impl Unknown {
         }
     }
 
-    /// One of the null model: within so many standard deviations of what was declared, because
-    /// beyond it is an effect.
+    /// Returns an unknown of the null model, bounded to some standard deviations around its
+    /// declared value. A larger deviation is an effect.
     fn declared(
         (what, label): (UnknownKind, String),
         prior: NormalPrior,
@@ -248,7 +248,7 @@ pub fn list_sensor_unknowns(
             prior(expected.bias, bias),
             free,
         ),
-        // What no prior holds is late: no sensor sees ahead.
+        // A delay without a prior is positive: no sensor measures ahead of time.
         Unknown {
             bounds_without_prior: Interval::new(expected.delay.min(0.0), late.high),
             ..Unknown::declared(

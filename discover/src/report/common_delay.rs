@@ -37,7 +37,7 @@ pub(crate) fn note_common_delay(problem: &EstimationProblem<'_>, fit: &Fit) -> O
     })
 }
 
-/// How late a channel is, s, if that is as much as its prior admits, or what was found.
+/// Returns the delay of a channel, s, if it was found as an effect or is at the limit of its prior.
 fn lateness(fit: &Fit, (id, unknown): (UnknownId, &Unknown)) -> Option<f64> {
     let value = fit.train.estimate.theta[id];
     let reach = thresholds::BOUND_FRACTION * thresholds::MAX_PRIOR_DEVIATION;

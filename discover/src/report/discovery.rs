@@ -58,7 +58,7 @@ pub(crate) fn summarise_effects(
         .zip(&experiments.for_effects)
         .collect();
     order.sort_by(|(a, _), (b, _)| {
-        // Squares add up: what one effect closes of them hardly depends on what came before.
+        // Squared gaps add up: the contribution of one effect hardly depends on earlier effects.
         let closed = |effect: &AcceptedEffect| {
             effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2)
         };
@@ -82,8 +82,8 @@ pub(crate) fn list_rejected(
 ) -> Vec<RejectedEffect> {
     let such = found.rejected.iter().zip(&experiments.for_rejected);
     let such = such.filter(|(rejected, _)| rejected.is_untestable == not_testable);
-    // What is accepted, or may be meant by what is, is not rejected too: a later round knows it as
-    // one more of the same.
+    // An effect that is accepted, or belongs to the class of an accepted effect, is not listed as
+    // rejected; a later round tests it again as a second effect of its kind.
     let is_believed = |of: &RejectedCandidate| {
         let accepted = found.accepted.iter();
         let mut believed = accepted
@@ -269,7 +269,7 @@ pub(crate) fn describe_bounds(nuisances: &[Nuisance]) -> Vec<String> {
     at_bound.map(note).collect()
 }
 
-/// What an unknown of the null model is called, the number of its units that one SI unit is, and
+/// Returns the name of an unknown of the null model, the number of its units in one SI unit, and
 /// the unit.
 fn named(
     problem: &EstimationProblem<'_>,

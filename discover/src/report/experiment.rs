@@ -49,7 +49,7 @@ pub(crate) fn describe_experiment(next: &NextExperiment, files: &[ExperimentFile
 
 /// Pairs that an experiment does not separate, as a sentence.
 fn not_told(next: &NextExperiment) -> String {
-    // Pairs stand either way, one behind the other.
+    // Pairs appear in both orders, one after the other.
     let pairs = next.pairs.chunks_exact(2);
     let is_told = |pair: &&[MemberPair]| {
         pair.iter()

@@ -95,7 +95,7 @@ impl Discovery {
     }
 }
 
-/// What both documents hold.
+/// Writes the fields common to both documents.
 fn common(compared: &CommonResult, gap: impl Fn(&ChannelGap) -> Value) -> Value {
     let gaps = compared
         .gap
@@ -133,7 +133,7 @@ fn at(of: &EffectSite) -> Value {
     json!({"effect": of.effect, "on": of.site})
 }
 
-/// `files`: the experiments, for what the records could not have shown.
+/// Writes a rejected effect. `files` are the experiments for effects that the records cannot show.
 fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
     let mut entry = at(&of.at);
     entry["reason"] = json!(of.reason);

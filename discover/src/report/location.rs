@@ -23,7 +23,7 @@ pub fn describe_location(
     }
 }
 
-/// Which channel shows the difference, when, at which speed and frequency.
+/// Describes the channel that shows the difference, with time, speed and frequency.
 fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     let count = problem.noise.len();
     let normalised_rms: Vec<f64> = fit

@@ -28,7 +28,8 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
     inputs.filter_map(note).collect()
 }
 
-/// What a channel is computed to show along the first training record, NaN where nothing is compared, SI.
+/// Returns the computed values of a channel along the first training record, SI, and NaN for
+/// samples that are not compared.
 fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
     let count = problem.noise.len();
     let windows = problem
@@ -40,7 +41,7 @@ fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> V
     let values = first.flat_map(|(window, residuals)| {
         let pairs = window.measured.iter().zip(residuals);
         let own = pairs.skip(channel.index()).step_by(count);
-        // What is not compared has a residual of 0, and would be taken for the measured noise.
+        // A sample that is not compared has a residual of 0, which would count as noise-free.
         own.map(|(measured, residual)| match *residual {
             0.0 => f64::NAN,
             residual => measured + residual * problem.noise[channel.index()],

@@ -78,7 +78,7 @@ struct Channel {
 }
 
 impl Seen {
-    /// The columns of a record of a set, with what each model leaves of them.
+    /// Returns the columns of a record, with the residuals of each model.
     fn of(
         problem: &EstimationProblem<'_>,
         (set, record): (&Windows<'_>, usize),

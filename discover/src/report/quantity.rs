@@ -126,7 +126,7 @@ pub(crate) fn format_readable(text: &str) -> String {
     words.collect::<Vec<String>>().join(" ")
 }
 
-/// A word that is a number with an exponent, and what follows it, `1.2e-3,` say.
+/// Splits a word into a number with an exponent and its suffix, such as `1.2e-3,`.
 fn number_word(word: &str) -> Option<String> {
     let number = word.trim_end_matches([',', '.', ';', ':', ')']);
     let (mantissa, exponent) = number.split_once('e')?;

@@ -146,7 +146,7 @@ pub fn discover_until(
     let mut problem = EstimationProblem::new(&dataset, order, path, text);
     problem.stop = stop.clone();
     let null = null(&problem, text, seed, progress);
-    // What failed because somebody asked to stop says nothing of the records.
+    // A failure after a stop on request is no property of the records.
     stop.check_not_stopped()?;
     let Null {
         fit,
@@ -222,9 +222,9 @@ pub fn discover_until(
         progress(&format!("note: {note}"));
         notes.push(note);
     }
-    // Each record alone takes as long as all together: not after a limit.
+    // Single fits take as long as the joint fit: skip them after a time limit.
     if found.unfinished.is_none() {
-        // What has no name explains the records instead.
+        // A change without a name explains the records instead.
         let unconfirmed = found.unconfirmed.as_ref();
         let unconfirmed = unconfirmed.filter(|_| found.extended_fit.is_none());
         if let Some(of) = unconfirmed {
@@ -273,8 +273,8 @@ pub fn discover_until(
     })
 }
 
-/// What training records speak for and held-out ones do not, in a sentence. What comes behind it holds
-/// with that in the model.
+/// Describes a hypothesis that training records support and held-out records do not. Later
+/// statements of the report include it in the model.
 fn note_of_unconfirmed(of: &UnconfirmedHypothesis, null: &Fit, floor: f64) -> String {
     let UnconfirmedHypothesis {
         label,
@@ -308,7 +308,7 @@ fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
     )
 }
 
-/// Which records contradict each other. `progress` is told.
+/// Finds records that contradict each other, and reports the progress.
 fn contradicting(
     problem: &EstimationProblem<'_>,
     fit: &Fit,

@@ -80,7 +80,8 @@ impl Summary {
     }
 }
 
-/// What was fitted beside and is as far off as the fit admits; none if nothing is.
+/// Lists the refitted parameters and sensors that are at the limit of their range, or returns
+/// `None`.
 fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
     let at_bound = nuisances.iter().filter(|of| of.is_at_bound());
     let names: Vec<String> = at_bound.map(Nuisance::full_name).collect();
@@ -131,7 +132,7 @@ fn found(discovery: &Discovery, before: &RemainingGap, after: &RemainingGap) -> 
     }
 }
 
-/// How much of the gap is closed on the records held out.
+/// Describes the fraction of the gap that is closed on held-out records.
 fn closed(closure: TrainTest<Option<f64>>) -> String {
     match closure.test {
         Some(part) if part > 0.0 => format!(
@@ -152,7 +153,7 @@ fn listed(effects: &[FoundEffect]) -> String {
     }
 }
 
-/// An effect with its size; with what the records do not tell from it.
+/// Describes an effect with its size and the effects that the records cannot distinguish from it.
 fn named(effect: &FoundEffect) -> String {
     let sizes = effect.parameters.iter();
     let sizes =

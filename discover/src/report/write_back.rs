@@ -68,7 +68,7 @@ pub fn write_extended(
     )?)
 }
 
-/// Where numbers come from.
+/// Describes the source of the numbers.
 fn provenance(problem: &EstimationProblem<'_>) -> String {
     let title = &problem.dataset.title;
     let files = problem

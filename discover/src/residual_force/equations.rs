@@ -63,7 +63,7 @@ pub struct EquationSet {
     shown: Vec<PositionAndRate>,
 }
 
-/// The observables that tell where a motion stands in an equation.
+/// Observables with position and rate in an equation.
 #[derive(Clone, Copy, Debug)]
 struct PositionAndRate {
     position: ObservableId,
@@ -200,7 +200,7 @@ impl EquationEvaluator {
     }
 }
 
-/// The sites where effects may act along one line, and what of a flexible body is observed.
+/// Returns the sites at which effects act along one line, and the observables of a flexible body.
 fn equations(model: &Model) -> Vec<Equation> {
     let unit = |text: &str| match text {
         "rad" => Some("rad"),
@@ -216,11 +216,11 @@ fn equations(model: &Model) -> Vec<Equation> {
             coordinates.any(|coordinate| Some(&coordinate.name) == on)
         };
         let unit = match site.kind {
-            // A force between both ends of a spring is in the equations of what it joins, as that of teeth is
-            // whose deflection is no coordinate.
+            // A force between both ends of a spring is in the equations of the joined bodies, and
+            // so is that of teeth whose deflection is no coordinate.
             SiteKind::Spring => None,
             SiteKind::Mesh if !is_coordinate() => None,
-            // No motion of its own.
+            // An input has no equation.
             SiteKind::Input => None,
             _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };

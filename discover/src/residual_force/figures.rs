@@ -7,15 +7,14 @@ use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
-/// Half the width of the tick that marks a point, and what is left free at both ends, in parts of
-/// the range.
+/// Half the width of the tick at a point, and the margin at both ends, as fractions of the range.
 const TICK: f64 = 0.008;
 const MARGIN: f64 = 0.02;
 
 /// Ticks keep from each other by twice this part of the range.
 const APART: f64 = 0.003;
 
-/// What a profile is drawn over, how bars are set, and which of a force's it is.
+/// Description of a figure of one profile of a force.
 struct Picture {
     title: &'static str,
     axes: Axes,
@@ -45,7 +44,7 @@ pub fn draw_profiles(
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
         })
-        // What is left says nothing where nobody knows what was there.
+        // The remaining force means nothing without the force before.
         .filter(|(picture, _)| {
             let profile = (picture.of)(before);
             let most = most(profile);
@@ -144,7 +143,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
 /// Abscissae and values of a curve.
 type Points = (Vec<f64>, Vec<f64>);
 
-/// The largest standard deviation that is drawn, from what was there before.
+/// Returns the largest standard deviation to draw, from the force before.
 fn most(profile: &Profile) -> f64 {
     let known = profile.values.iter().zip(&profile.sd);
     let largest = known

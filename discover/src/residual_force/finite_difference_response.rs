@@ -98,7 +98,7 @@ impl<'s> SteppedWindow<'s> {
                 };
                 matrix.column_mut(column).copy_from_slice(&seen);
                 let per_unit = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
-                // What the first moves tells how large the others may be.
+                // The effect of the first size gives the scale of the others.
                 let better = wanted / (per_unit * usual);
                 let is_near = (1.0 / thresholds::FORCE_CHANGE_FACTOR
                     ..thresholds::FORCE_CHANGE_FACTOR)
@@ -165,7 +165,7 @@ impl<'s> SteppedWindow<'s> {
         found
     }
 
-    /// How far a force of this size moves the outputs, in standard deviations per unit.
+    /// Returns the change of the outputs for a force of this size, in standard deviations per unit.
     fn change(
         &mut self,
         start: &[f64],

@@ -44,7 +44,7 @@ pub fn estimate_residual_force(
     fit: &Fit,
     wanted: Option<&str>,
 ) -> Option<ResidualForce> {
-    // What is missing of a motion that is given is a channel's own residual.
+    // If the motion is given, the residual of a channel is the residual force.
     if problem.dataset.gives_motion() {
         return None;
     }
@@ -140,7 +140,7 @@ pub fn estimate_residual_force(
     } else if found.frequency.explained_fraction > thresholds::MIN_FORCE_FRACTION
         && equation == ranking.best
     {
-        // A line may stand between the bends over time.
+        // A line may be between the bends over time.
         found.explained_fraction = found.frequency.explained_fraction;
         found.kind = Some(ForceKind::Time);
     }

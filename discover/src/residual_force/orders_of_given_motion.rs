@@ -14,9 +14,9 @@ use eomgen_records::samples::typical_step;
 
 /// The samples of all channels along one angle.
 struct Along {
-    /// Where the angle is at each sample of a window, rad.
+    /// Angle at each sample of a window, rad.
     angles: Vec<Vec<f64>>,
-    /// How far it goes in all windows, rad.
+    /// Range of the angle over all windows, rad.
     travel: f64,
     /// The usual size of its rate, rad/s.
     rate: f64,
@@ -88,7 +88,7 @@ impl Along {
         explained.into_iter().map(|(_, order)| order).collect()
     }
 
-    /// By how much a wave lowers the sum of squares of what is left, of all channels.
+    /// Returns the reduction of the sum of squares of the residuals of all channels by a wave.
     fn explained(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
         let channels = problem.noise.len();
         let of_channel = |channel: usize| {
@@ -97,7 +97,7 @@ impl Along {
                 let residuals = fit.train.window_residuals[window].iter().skip(channel);
                 let residuals = residuals.step_by(channels);
                 for (angle, residual) in angles.iter().zip(residuals) {
-                    // What is not compared is 0, and no wave's.
+                    // Samples that are not compared have a residual of 0.
                     if *residual != 0.0 {
                         let (sine, cosine) = (f64::from(order) * angle).sin_cos();
                         let wave = Vector3::new(1.0, cosine, sine);

@@ -115,9 +115,9 @@ impl ProfileInputs<'_> {
         profile
     }
 
-    /// The usual size over the frequency, of waves that differ from window to window, all at once:
-    /// alone, a fast one would have to do what a slow one does. Which explains most is looked at
-    /// one by one.
+    /// Returns the usual size over frequency of waves that differ between windows, fitted together:
+    /// a fast wave fitted by itself would also absorb slow ones. The fraction that each wave
+    /// explains is computed one by one.
     fn over_frequency(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let frequency = |family: &BasisFamily| match family.argument {
@@ -153,8 +153,8 @@ impl ProfileInputs<'_> {
         profile
     }
 
-    /// What of the force goes with the rate in each window, at its root mean square there, over
-    /// the largest rate.
+    /// Returns the part of the force proportional to the rate in each window, at the window's RMS
+    /// rate relative to the largest rate.
     fn by_amplitude(
         &self,
         regressed: &FamilyRegression,

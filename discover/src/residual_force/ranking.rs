@@ -60,7 +60,8 @@ impl EquationRanking {
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::MIN_STATE_FRACTION * times[by_time];
-        // What explains as much over rate or position is distinguished by what it explains over time.
+        // If rate and position explain the same fraction, the fraction over time distinguishes
+        // them.
         let most = states[by_state].0;
         let as_well = |a: &usize| states[*a].0 >= most.min(thresholds::MIN_FRACTION_OF_BEST * most);
         let by_state = (0..count)

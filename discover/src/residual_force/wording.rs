@@ -80,7 +80,7 @@ fn shape(force: &ResidualForce, kind: &ForceKind) -> String {
     }
 }
 
-/// What rate and position are called.
+/// Returns the words for rate and position.
 fn words(equation: &Equation) -> (&'static str, &'static str) {
     match equation.unit {
         "rad" => ("rate", "angle"),

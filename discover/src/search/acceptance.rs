@@ -50,14 +50,14 @@ pub fn test_acceptance(
     own: &[EffectUnknown],
 ) -> Result<TestStatistics, Rejection> {
     let statistics = test_explanation(before, after, own)?;
-    // Beyond its prior for certain, not by what the record leaves open.
+    // Certainly beyond its prior, not only within its uncertainty.
     if let Some(rejection) = within_prior(after, own, thresholds::MIN_REDUCTION_STANDARD_ERRORS) {
         return Err(rejection);
     }
     if statistics.t_value < thresholds::MIN_SIGNIFICANCE {
         return Err(Rejection::Significance(statistics.t_value));
     }
-    // The null model does what is within a prior itself: what is beyond may be small beside it.
+    // The null model covers values within a prior; the part beyond the prior may be small.
     let has_prior = own.iter().all(|own| own.dropped_prior_sd.is_some());
     if !has_prior && statistics.size_over_noise < thresholds::MIN_EFFECT_OVER_NOISE {
         return Err(Rejection::Influence(statistics.size_over_noise));
@@ -119,8 +119,8 @@ pub fn compute_test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown])
     }
 }
 
-/// What the effect does to the channel that shows it best, on the records that do, in standard
-/// deviations: the part of the root mean square that goes.
+/// Returns the reduction of the RMS residual by the effect, in standard deviations, for the channel
+/// and the records that show it best.
 fn size(before: &Fit, after: &Fit) -> f64 {
     let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
     let both =

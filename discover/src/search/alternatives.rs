@@ -38,8 +38,8 @@ pub fn test_alternatives(
     }
 }
 
-/// The best of those that may stand in the place of a fitted hypothesis, started where that ended;
-/// none if it is not one effect with terms of its own.
+/// Finds the best alternatives to a fitted hypothesis, starting from its result. Empty if the
+/// hypothesis is not one effect with separate terms.
 fn alternatives(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
@@ -62,8 +62,8 @@ fn alternatives(
         in_model.len(),
         pool.candidate(response).label()
     ));
-    // Where more is left than a right model leaves, the same effect elsewhere is tried whatever it
-    // promises: a promise along the motion of a wrong place may be far off.
+    // If the residual exceeds that of a correct model, test the same effect at all other places: a
+    // prediction along the motion of a wrong place may be far off.
     let at_floor = fitted.fit.is_at_floor(pool.context.floor);
     let most = match at_floor {
         true => thresholds::MAX_RIVAL_COST_RATIO,
@@ -135,14 +135,14 @@ fn orders(
     on.map(|on| (on.clone(), orders.clone())).collect()
 }
 
-/// What a candidate promises.
+/// Predicted residual of a candidate.
 struct Predicted {
     candidate: CandidateId,
     prediction: LinearPrediction,
 }
 
-/// Which candidates promise to leave less than so many times what a fitted hypothesis leaves,
-/// without its own terms, what they leave and their sizes.
+/// Returns the candidates with a predicted residual below a multiple of that of a fitted
+/// hypothesis, which is linearised without its own terms.
 fn predictions(
     pool: &CandidatePool<'_>,
     fitted: &FittedHypothesis,
@@ -170,8 +170,8 @@ fn predictions(
     )
 }
 
-/// How a fitted hypothesis' shape ended, in what it began with: a speed that friction falls with is
-/// so many times the usual one wherever the friction sits.
+/// Returns the ratio of a fitted hypothesis' shape to its initial value. The falling speed of
+/// friction scales with the usual speed of its place.
 fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
     let shape = fitted.effect_unknowns.iter().find(|own| own.is_shape)?;
     let began = pool.screening.responses[fitted.responses[0]]
@@ -181,8 +181,8 @@ fn shape_ratio(pool: &CandidatePool<'_>, fitted: &FittedHypothesis) -> Option<f6
     Some(fitted.fit.train.estimate.theta[shape.unknown] / began.unknown.start)
 }
 
-/// The same effect elsewhere, and what the record hardly tells from it, unless it leaves as
-/// little already.
+/// Returns the same effect at other places and similar candidates, except those with equally small
+/// residuals already.
 fn rivals(
     pool: &CandidatePool<'_>,
     fitted_hypotheses: &[FittedHypothesis],

@@ -50,7 +50,8 @@ pub fn eliminate_backwards(
     }
 }
 
-/// Returns true if a fit with less leaves no more than one with more, but for what is asked of an effect.
+/// Returns true if a fit without an effect is as good as one with it, by the criteria for accepting
+/// an effect.
 fn is_as_good(with: &Fit, without: &Fit) -> bool {
     let worse =
         |with: f64, without: f64| with < (1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * without;

@@ -23,7 +23,7 @@ pub struct Hypothesis {
     pub predicted_sizes: Vec<f64>,
 }
 
-/// The unknowns of a fit with further ones, and where they begin, SI.
+/// Unknowns of a fit with additional ones, and their initial values, SI.
 struct Extended {
     unknowns: Vec<Unknown>,
     theta: Vec<f64>,
@@ -86,7 +86,7 @@ pub fn fit_preliminary(
     problem.stop.check_not_stopped()?;
     let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.size_fractions[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    // What swings in coordinates of its own is far from the fit however little it does.
+    // A small vibration in additional coordinates is already far from the fit.
     let adds_states = hypothesis.responses.iter().any(|response| {
         let parameters = &pool.candidate(*response).parameters;
         parameters.iter().any(|parameter| parameter.is_inverse)

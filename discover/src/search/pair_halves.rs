@@ -31,7 +31,7 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
     run_full_fits(pool, preliminaries)
 }
 
-/// The half of a pair that is needed, where the other is not.
+/// Returns the only necessary half of a pair, if the other one is superfluous.
 fn needed(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
     let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor;
     let has_terms = |response: &ResponseId| {

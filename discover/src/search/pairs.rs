@@ -15,7 +15,7 @@ use crate::thresholds;
 /// Fits pairs of candidates, and pairs that replace a term of the model. `singles`: fitted single
 /// candidates.
 pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
-    // A sensor that runs to the end of what is admitted stands in for something else.
+    // A sensor at the limit of its range compensates another error.
     let is_at_limit = |fitted: &&FittedHypothesis| {
         let of = |own: &EffectUnknown| {
             own.dropped_prior_sd.is_some() && fitted.fit.is_at_bound(own.unknown)
@@ -48,10 +48,10 @@ pub fn fit_pairs(pool: &CandidatePool<'_>, singles: &[FittedHypothesis]) -> Vec<
     fitted_hypotheses
 }
 
-/// The pairs that promise to leave clearly less than the best single candidate, and for each term
-/// of the model that may go the pair that takes its place best. Of what repeats with an angle the
-/// best alone are paired, and with something else: of that there is so much that some of it is
-/// lucky.
+/// Returns the pairs with a predicted residual clearly below that of the best single candidate,
+/// and, for each term of the model that may be deleted, the pair that replaces it best. Of the
+/// candidates that repeat with an angle only the best are paired, and only with others: they are so
+/// many that some fit by chance.
 fn best_pairs(
     pool: &CandidatePool<'_>,
     ranking: &[ResponseId],
@@ -62,7 +62,8 @@ fn best_pairs(
         .first()
         .map_or(0.0, |r| screening.responses[*r].cost_decrease);
     let single = screening.predict(&[]).cost - best;
-    // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
+    // A candidate of no use by itself may be half of a pair: two kinds of friction may replace a
+    // third one.
     let repeats = |r: &ResponseId| pool.candidate(*r).angle_order.is_some();
     let repeating: Vec<ResponseId> = (ranking.iter().copied().filter(repeats))
         .take(thresholds::MAX_FULL_FITS_PER_ROUND)
@@ -86,8 +87,8 @@ fn best_pairs(
             for b in others.filter(|b| !never(*a, **b)) {
                 let responses = vec![*a, *b];
                 let LinearPrediction { cost, sizes } = screening.predict(&responses);
-                // What replaces a term is far from where it was linearised: it is not held
-                // to a promise.
+                // The replacement of a term is far from the linearisation: its prediction is not
+                // used.
                 let promising =
                     deleted.is_some() || cost < thresholds::MAX_PAIR_COST_RATIO * single;
                 if promising

@@ -116,8 +116,9 @@ pub fn fit_similar_offsets(
     })
 }
 
-/// What repeats with the angle on which something was named that does not: an unbalanced weight and a torque
-/// that repeats once per turn are one term. A round looks at them only where all else promises little.
+/// Returns the candidates that repeat with the angle of an accepted effect that does not: an
+/// unbalanced weight and a torque that repeats once per turn are one term. A round tests them only
+/// if all others predict little.
 fn waves(context: RoundContext<'_>, selected: &Candidate) -> Vec<Candidate> {
     if selected.angle_order.is_some() {
         return Vec::new();

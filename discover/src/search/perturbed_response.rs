@@ -1,5 +1,5 @@
-//! Responses of candidates by simulation of their own models, each at a size that changes the
-//! outputs by a fraction of the misfit. No candidate needs code of its own.
+//! Responses of candidates by simulation of their models, each at a size that changes the outputs
+//! by a fraction of the misfit. No candidate needs special code.
 
 use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
@@ -55,7 +55,7 @@ pub fn simulate_responses(
     found.into_iter().flatten().collect()
 }
 
-/// What a candidate does in each window, a column per parameter that scales it.
+/// Returns the response of a candidate in each window, a column for each scaling parameter.
 fn response(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,

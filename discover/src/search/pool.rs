@@ -53,7 +53,8 @@ impl<'r> CandidatePool<'r> {
         };
         let enough = |r: &ResponseId| {
             let response = &screening.responses[*r];
-            // What a nuisance gains without its prior, the others did not do within theirs.
+            // A gain of a nuisance without its prior, which the others did not achieve within
+            // theirs.
             let is_own = response.dropped_prior.is_some()
                 || response.unexplained_fraction > thresholds::MIN_UNEXPLAINED_FRACTION
                 || response.cost_decrease > thresholds::MIN_EXPLAINED_FRACTION * alone;

@@ -8,7 +8,7 @@ use crate::search::search_result::RejectedCandidate;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
-/// A reason, and whether it comes from a fit: that says more than what screening promised.
+/// Reason of a rejection. A reason from a fit replaces one from screening.
 struct Reason {
     text: String,
     not_testable: bool,

@@ -38,8 +38,8 @@ impl SearchRound<'_> {
         let mut has_offsets = false;
         for window in self.windows() {
             if *window == ExcitationWindow::BacklashRemoved {
-                // Without play everything but teeth is seen worse: it is for what nothing else
-                // explains.
+                // In a model without play every candidate outside of teeth is predicted worse: test
+                // play only if no other candidate explains the gap.
                 if is_any(&tested, &|fitted| fitted.verdict.is_ok()) {
                     continue;
                 }
@@ -58,7 +58,8 @@ impl SearchRound<'_> {
             let number = seen.len();
             tested.insert(number, found);
             seen.push(*window);
-            // Near the floor another excitation window is quick, and what is nearly as good may be the answer.
+            // Near the floor another excitation window is cheap, and a nearly equal candidate may
+            // be the answer.
             let is_done = match self.context.is_near_floor() {
                 true => is_any(&tested, &|fitted| self.is_enough(fitted)),
                 false => is_any(&tested, &|fitted| self.is_close(fitted)),
@@ -101,8 +102,8 @@ impl SearchRound<'_> {
             self.context.is_near_floor(),
             self.is_first_round,
         ) {
-            // What is small beside what was found already is seen over whole windows or not at
-            // all.
+            // An effect that is small compared with accepted ones shows over whole windows or not
+            // at all.
             (false, _, _) | (true, true, false) => &[ExcitationWindow::Whole],
             (true, true, true) => &[
                 ExcitationWindow::Whole,
@@ -232,7 +233,7 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Parameters that nobody called uncertain.
+    /// Returns the parameters that are not declared uncertain.
     fn offsets(&self) -> TestedPool {
         let offsets = list_offsets(self.context);
         (self.context.progress)(&format!(
@@ -271,7 +272,7 @@ impl SearchRound<'_> {
             orders: find_ripple_orders(problem, fit),
             ..compute_usual_motion(problem, fit, &sites)
         };
-        // Where the motion is given nothing is simulated beside it.
+        // Nothing is simulated if the motion is given.
         let is_given = problem.dataset.gives_motion();
         let may_be =
             |effect: &&Effect| !(effect.scales_stiffness() || is_given && effect.adds_states());
@@ -297,8 +298,9 @@ impl SearchRound<'_> {
     }
 }
 
-/// What nobody doubts, which stands last, is off only if no other single unknown that is accepted comes
-/// near, and nothing of more unknowns leaves clearly less; what does not gives way to it.
+/// Removes accepted offsets of parameters that are not declared uncertain, which are the last pool,
+/// if another accepted single unknown is nearly as good or more unknowns are clearly better. The
+/// remaining offsets remove accepted hypotheses of more unknowns that are not clearly better.
 fn keep_clear(tested: &mut [TestedPool]) {
     let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
@@ -324,7 +326,7 @@ fn keep_clear(tested: &mut [TestedPool]) {
     }
 }
 
-/// What leaves least of all that is accepted.
+/// Returns the accepted hypothesis with the smallest residual.
 fn best_accepted(tested: &[TestedPool]) -> Option<&FittedHypothesis> {
     let all = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
     let accepted = all.filter(|fitted| fitted.verdict.is_ok());

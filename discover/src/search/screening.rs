@@ -28,7 +28,7 @@ pub struct ScreenedResponse {
     pub candidate: CandidateId,
     /// Unknowns of the candidate.
     pub candidate_unknowns: Vec<CandidateUnknown>,
-    /// Where its columns stand.
+    /// Range of its columns.
     columns: std::ops::Range<usize>,
     /// Nuisance that loses its prior, if that is the effect.
     pub dropped_prior: Option<UnknownId>,
@@ -70,7 +70,7 @@ pub struct Screening {
     /// Products of all columns: nuisances, candidates, the residual last.
     products: DMatrix<f64>,
     nuisances: usize,
-    /// What the prior of each nuisance adds to the products.
+    /// Contribution of the prior of each nuisance to the products.
     priors: Vec<PriorTerm>,
     bounds: Vec<Interval>,
     /// The bounds of each nuisance once its prior is dropped.
@@ -203,7 +203,7 @@ fn products(
 }
 
 impl Screening {
-    /// How well each candidate does alone.
+    /// Predicts the cost with each candidate by itself.
     fn predict_singles(&mut self) {
         let alone = self.predict(&[]).cost;
         for id in ResponseId::first(self.responses.len()) {
@@ -350,7 +350,7 @@ impl Screening {
         least > thresholds::MIN_CANCELLATION_RATIO.powi(2) * square(&sum)
     }
 
-    /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
+    /// Returns the range of a response's columns, or of the nuisance whose prior it drops.
     fn columns(&self, response: ResponseId) -> std::ops::Range<usize> {
         let response = &self.responses[response];
         match response.dropped_prior {
@@ -528,7 +528,8 @@ mod tests {
 
     #[test]
     fn what_of_many_parameters_holds_what_of_one_looks_like_it() {
-        // Two parameters that do x and y, at their best size x alone; one does 3 x + 4 y, one z.
+        // Two parameters with responses x and y, at their best size x only; one with 3 x + 4 y, one
+        // with z.
         let columns = DMatrix::from_row_slice(
             3,
             5,

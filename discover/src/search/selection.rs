@@ -38,7 +38,7 @@ pub struct AcceptedHalf {
     pub test_rms: f64,
 }
 
-/// What of a hypothesis the records do not distinguish from what another has instead.
+/// Half of a hypothesis that the records cannot distinguish from a half of another one.
 struct IndistinguishableHalf {
     effect: EffectId,
     /// The other's response.
@@ -91,8 +91,9 @@ pub fn select_hypothesis(
     })
 }
 
-/// The fitted hypotheses of a round with, if a pair is best, further pairs with what looks like one
-/// of its halves; and of a better one found so, again, while it leaves more than a right model.
+/// Returns the fitted hypotheses of a round. If a pair is best, further pairs with a candidate
+/// similar to one of its halves are fitted. This repeats with each better pair while its residual
+/// exceeds that of a correct model.
 fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
@@ -124,9 +125,10 @@ fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPoo
     }
 }
 
-/// The accepted hypothesis that is best, with what is indistinguishable from it among the others.
-/// Hypotheses that the records cannot distinguish are ordered: first those that contradict no declared prior of
-/// a sensor, then by the number of unknowns, then by the deviation of a declared parameter.
+/// Returns the best accepted hypothesis, with the others that are indistinguishable from it.
+/// Hypotheses that the records cannot distinguish are ordered: first those that contradict no
+/// declared prior of a sensor, then by the number of unknowns, then by the deviation of a declared
+/// parameter.
 fn best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothesis> {
     let TestedPool {
         candidates,
@@ -205,8 +207,8 @@ fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> b
         })
 }
 
-/// How far off what was declared is, in standard deviations of its prior; none if something was
-/// not.
+/// Returns the deviation from declared values, in standard deviations of their priors, or `None` if
+/// an unknown has no declared value.
 fn off(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
     let of =
@@ -237,8 +239,9 @@ pub fn select_best_fit(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedI
     }
 }
 
-/// Returns true if a fit leaves clearly less than another: on both sets of records, or of the test records
-/// for certain and of the training records no more, where the other's further unknowns help it.
+/// Returns true if a fit is clearly better than another: on both sets of records, or certainly on
+/// the test records and at least equal on the training records, in which additional unknowns favour
+/// the other fit.
 fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     let statistics = compute_test_statistics(other, one, &[]);
     let is_certain = statistics.held_out_reduction > thresholds::MIN_HELD_OUT_REDUCTION
@@ -246,8 +249,8 @@ fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     one.is_clearly_below(other) || (is_certain && one.train.rms < other.train.rms)
 }
 
-/// What of a hypothesis the records do not distinguish from another's, if that is as large and
-/// differs in nothing else: its number, and the other's response.
+/// Returns the half of a hypothesis that the records cannot distinguish from another's, if it is as
+/// large and the rest is equal: its number, and the other's response.
 fn indistinguishable_half(
     fitted: &FittedHypothesis,
     other: &FittedHypothesis,
@@ -275,7 +278,7 @@ fn indistinguishable_half(
     )
 }
 
-/// How similar two responses are, 0 to 1; two names of one thing entirely.
+/// Returns the similarity of two responses, 0 to 1; 1 for two names of one change.
 fn similarity(
     candidates: &[Candidate],
     screening: &Screening,
@@ -292,9 +295,10 @@ fn similarity(
     }
 }
 
-/// Returns true if records do not distinguish what led to a fit from what led to another: the responses are
-/// similar, and the other leaves no more of the test records; nor, but for two names of one thing, of
-/// the training records. One that leaves less, though not so clearly that it is named instead, is no worse a name.
+/// Returns true if records cannot distinguish the hypotheses of two fits: the responses are
+/// similar, and the other fit is no worse on the test records. Except for two names of one change,
+/// it is also no worse on the training records. The other fit may be better, but not so clearly
+/// that it is selected instead.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
     let statistics = compute_test_statistics(one, other, &[]);
     let (part, errors) = (
@@ -312,7 +316,8 @@ fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
     similarity > thresholds::MIN_SIMILARITY_OF_RIVALS && (is_same || (as_good && !is_told))
 }
 
-/// The half of a pair that was accepted alone, and the test gap that it left: a step of the way.
+/// Returns the half of a pair that was accepted by itself, with its test gap, as an intermediate
+/// step.
 fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<AcceptedHalf> {
     if best.responses.len() < 2 {
         return None;

@@ -28,8 +28,8 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
     let mut fitted_hypotheses: Vec<FittedHypothesis> = Vec::new();
     let (mut fits, mut best) = (0, f64::INFINITY);
     while !preliminaries.is_empty() && fits < thresholds::MAX_FULL_FITS_PER_ROUND {
-        // Once one is accepted, only what is nearly as good or looks like it may be another
-        // answer; until then whoever is next.
+        // After a candidate is accepted, only similar or nearly equal candidates may be another
+        // answer. Before, the next one in the ranking is tested.
         let accepted = fitted_hypotheses
             .iter()
             .find(|fitted| fitted.verdict.is_ok());
@@ -72,9 +72,9 @@ pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<Fitted
     run_full_fits(pool, run_preliminary_fits(pool, chosen(pool, &similar)))
 }
 
-/// Those of the ranked that get a preliminary fit: of what repeats with an angle, of which there is so
-/// much that some is lucky, half as many, and of the orders of one effect at one place the
-/// two best.
+/// Selects the candidates for a preliminary fit. Candidates that repeat with an angle are so many
+/// that some fit by chance, so half as many of them are selected, and the two best orders of one
+/// effect at one place.
 fn chosen(pool: &CandidatePool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
     let (mut plain, mut repeating) = (Vec::new(), Vec::new());
     for response in ranking {

@@ -19,7 +19,8 @@ use crate::search::acceptance::EffectUnknown;
 /// Held-out residuals of a fit and their derivatives by its unknowns.
 pub struct SplitSampleTest<'f> {
     fit: &'f Fit,
-    /// What each unknown does to the residuals, of length 1: one row for each number of all windows.
+    /// Normalised response of the residuals to each unknown: one row for each residual of all
+    /// windows.
     nuisances: DMatrix<f64>,
     /// The numbers that are compared, less those that initial states and unknowns take up, and one.
     freedom: f64,
@@ -50,7 +51,7 @@ impl<'f> SplitSampleTest<'f> {
             }
             first += linear.residual.len();
         }
-        // Columns of units of their own, so that none is lost beside another.
+        // Columns are normalised, so that none is lost to rounding.
         for mut column in nuisances.column_iter_mut() {
             let norm = column.norm();
             if norm > 0.0 {
@@ -67,10 +68,10 @@ impl<'f> SplitSampleTest<'f> {
         })
     }
 
-    /// Returns the probability that noise alone produces at least this projection of the residuals
-    /// on the response of an effect. Unknowns that lost their priors for the effect are not
-    /// projected out, because without it they are within their bounds. `None` if the response
-    /// vanishes or a simulation fails.
+    /// Returns the probability that noise produces at least this projection of the residuals on the
+    /// response of an effect. Unknowns that lost their priors for the effect are not projected out,
+    /// because without it they are within their bounds. `None` if the response vanishes or a
+    /// simulation fails.
     pub fn compute_p_value(&self, with: &Fit, own: &[EffectUnknown]) -> Option<f64> {
         let column = |fit: &Fit| {
             DVector::from_iterator(
@@ -92,7 +93,7 @@ impl<'f> SplitSampleTest<'f> {
         let along = residual.dot(&own) / size;
         let rest = (residual.norm_squared() - along * along).max(0.0);
         let correlation = with.test.correlation_samples;
-        // What is correlated over several samples is known from so many fewer.
+        // Correlation over several samples reduces the number of independent samples.
         let t = along / (rest / self.freedom * correlation).sqrt();
         let freedom = self.freedom / correlation;
         let p_value = || student_tail(t, freedom).max(f64::MIN_POSITIVE);

@@ -50,7 +50,7 @@ pub fn find_unconfirmed(tested: &mut [TestedPool], before: &Fit) -> Option<Uncon
     })
 }
 
-/// Returns true if a hypothesis was rejected by the held-out records alone, and takes a half of what is left of
+/// Returns true if only the held-out records rejected a hypothesis, and it halves the residual of
 /// the training records.
 fn is_unconfirmed(fitted: &FittedHypothesis, before: &Fit) -> bool {
     let by_held_out = matches!(

@@ -10,7 +10,7 @@ pub fn describe_unfinished(tested: &[TestedPool]) -> String {
         let fitted = pool.fitted_hypotheses.iter();
         fitted.map(move |fitted| (pool, fitted))
     });
-    // What was cut off has no end that counts.
+    // Interrupted fits have no valid test residual.
     let all = all.filter(|(_, fitted)| fitted.fit.test.rms.is_finite());
     let order = |(_, fitted): &(&TestedPool, &FittedHypothesis)| {
         (fitted.verdict.is_err(), fitted.fit.test.rms)
@@ -38,7 +38,7 @@ pub fn describe_unfinished(tested: &[TestedPool]) -> String {
     )
 }
 
-/// What promised to explain most where candidates were screened.
+/// Returns the candidate with the best prediction in screening.
 fn promising(tested: &[TestedPool]) -> Option<String> {
     let all = tested.iter().flat_map(|pool| {
         let responses = pool.screening.responses.iter();

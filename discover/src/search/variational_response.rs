@@ -20,7 +20,7 @@ use crate::model::problem::EstimationProblem;
 use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
-/// Where sizes are tried: a motion's points with their accelerations.
+/// Points of a motion with their accelerations, at which sizes are tested.
 struct Points {
     times: Vec<f64>,
     states: Vec<Vec<f64>>,
@@ -114,7 +114,7 @@ fn sized(
     })
 }
 
-/// Points of the fitted motion; none if neighbouring motions do not come with it.
+/// Returns points of the fitted motion, or `None` if the model provides no neighbouring motions.
 fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Points> {
     let shooting = fit.training_shooting(problem);
     let LinearisedFit {

@@ -17,7 +17,7 @@ struct Group<'a> {
     effects: Vec<&'a EffectSite>,
     reason: &'a str,
     experiment: &'a str,
-    /// What was computed to be played, for those for which it was.
+    /// Computed experiments, if there are any.
     next: Vec<&'a NextExperiment>,
 }
 
@@ -71,7 +71,8 @@ impl<'a> Group<'a> {
         each.collect::<Vec<String>>().join("; ")
     }
 
-    /// What to play, as sentences behind what would show it in words.
+    /// Describes the experiments in sentences, after the description of the evidence they would
+    /// give.
     fn next(&self, files: &[ExperimentFile]) -> String {
         let all = self.next.iter();
         let all =
@@ -85,7 +86,7 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Lists the rejected effects, first those with a reason of their own.
+/// Lists the rejected effects. Those with an individual reason are first.
 pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
     if list.is_empty() {
         return html! {};

@@ -86,7 +86,7 @@ fn whole(compared: &CommonResult, body: &Markup) -> String {
     }
 }
 
-/// What was found, to be moved.
+/// Writes the interactive figure of the result.
 fn playback(compared: &CommonResult) -> Markup {
     match &compared.pictures.playback {
         Playback::Computed { body, .. } => section("Interactive simulation", body),
@@ -97,7 +97,7 @@ fn playback(compared: &CommonResult) -> Markup {
     }
 }
 
-/// What is seen of the gap.
+/// Writes the figures of the gap.
 fn opening(compared: &CommonResult) -> Markup {
     html! {
         (section("Measured and simulated", &html! {
@@ -108,7 +108,7 @@ fn opening(compared: &CommonResult) -> Markup {
     }
 }
 
-/// Where the gap is, and what was fitted beside.
+/// Writes the location of the gap and the refitted parameters.
 fn closing(compared: &CommonResult) -> Markup {
     let force = compared.pictures.force.as_ref();
     let has_location = !compared.location.is_empty();

@@ -10,7 +10,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::UnknownKind;
 use crate::search::search_result::AcceptedEffect;
 
-/// How far a sensor can be moved beyond what was found, in parts of that.
+/// Range of a sensor's control around the result, as a fraction of it.
 const AROUND: f64 = 2.0;
 
 /// Writes the sliders and the reset button.

@@ -52,7 +52,7 @@ pub(super) fn write_json(
     document.to_string()
 }
 
-/// The channels: where each is found, its sensor, and what is left of it.
+/// Writes the channels: column, sensor and residual of each.
 fn channels(
     problem: &EstimationProblem<'_>,
     best: &Fit,

@@ -21,7 +21,7 @@ use crate::report::playback::record_excerpt::RecordExcerpt;
 use crate::report::quantity::format_quantity;
 use crate::search::search_result::AcceptedEffect;
 
-/// What such a part needs besides the style of all that compute.
+/// Style of the interactive figure, in addition to that of all pages with computations.
 const STYLE: &str = include_str!("playback.css");
 
 /// Its own part of the script.

@@ -20,9 +20,10 @@ const TOLERANCE: f64 = 1e-7;
 /// The most steps in a window, and in all: some seconds of a browser's time.
 const MOST_STEPS: u64 = 400_000;
 
-/// How much more, or less, than the fit the page may leave, as a part of that. Both are right to a
-/// small part of the noise, by methods of their own, of which the fit's stops at `MAX_STEP_ERROR`; where
-/// impacts unfold that, no motion is the motion, and the page would contradict the report.
+/// Largest relative difference between the residuals of the page and of the fit. Both are accurate
+/// to a small fraction of the noise, with different methods; the fit stops at `MAX_STEP_ERROR`. If
+/// impacts amplify this difference, the motion is not reproducible and the page would contradict
+/// the report.
 const DIFFERENT: f64 = 0.05;
 
 /// Checks that explicit steps reproduce the residuals of the fit, with the numbers of the extended
@@ -64,7 +65,7 @@ pub(super) fn check_reproduces_fit(
     let left = sums.iter().zip(&counts).zip(&stretch.rms_before_after);
     for (channel, ((sum, count), [_, fitted])) in problem.dataset.channels.iter().zip(left) {
         let left = f64::sqrt(sum / f64::max(*count, 1.0));
-        // What is not a number is no small difference.
+        // NaN fails the comparison.
         let agree = (left - fitted).abs() <= DIFFERENT * fitted;
         if !agree {
             let [left, fitted] =
