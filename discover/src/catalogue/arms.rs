@@ -15,8 +15,8 @@ use crate::catalogue::site::{Site, format_expression};
 pub(super) fn find_arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
         // Distributed mass only; a mass at the end of the body is a separate term.
-        let velocity = squared(
-            spread(&term.value)?,
+        let velocity = find_square(
+            find_integrand(&term.value)?,
             &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
         )?;
         let mut field = None;
@@ -71,11 +71,11 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
 }
 
 /// Returns the integrand of an expression.
-fn spread(expr: &Expr) -> Option<&Expr> {
+fn find_integrand(expr: &Expr) -> Option<&Expr> {
     match &expr.kind {
         ExprKind::Integral { integrand, .. } => Some(integrand),
-        ExprKind::Binary(_, left, right) => spread(left).or_else(|| spread(right)),
-        ExprKind::Negate(inner) => spread(inner),
+        ExprKind::Binary(_, left, right) => find_integrand(left).or_else(|| find_integrand(right)),
+        ExprKind::Negate(inner) => find_integrand(inner),
         _ => None,
     }
 }
@@ -100,7 +100,7 @@ fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
 }
 
 /// The base of a square that holds something wanted.
-fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
+fn find_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
     let holds = |expr: &Expr| {
         let mut found = false;
         expr.visit(&mut |part| found |= wanted(part));
@@ -109,10 +109,10 @@ fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Exp
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Power, base, _) => holds(base).then_some(base),
         ExprKind::Binary(_, left, right) => {
-            squared(left, wanted).or_else(|| squared(right, wanted))
+            find_square(left, wanted).or_else(|| find_square(right, wanted))
         }
-        ExprKind::Integral { integrand, .. } => squared(integrand, wanted),
-        ExprKind::Negate(inner) => squared(inner, wanted),
+        ExprKind::Integral { integrand, .. } => find_square(integrand, wanted),
+        ExprKind::Negate(inner) => find_square(inner, wanted),
         _ => None,
     }
 }
@@ -120,7 +120,8 @@ fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Exp
 /// Returns the factor, inside an integral, of a square that contains something `wanted`.
 fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
     match &expr.kind {
-        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match squared(right, wanted) {
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match find_square(right, wanted)
+        {
             Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => {
                 Some(left)
             }

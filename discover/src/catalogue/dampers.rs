@@ -39,7 +39,7 @@ pub(super) fn find_dampers(model: &Model, deflection: &Expr) -> Vec<Damper> {
         }
     }
     for force in model.forces.iter().filter(|f| acts_along(model, f, &rate)) {
-        for part in parts(&force.value) {
+        for part in split_terms(&force.value) {
             if moving_factor(model, part).is_some_and(is_along) {
                 note(Section::Forces, &force.name, part);
             }
@@ -57,10 +57,10 @@ fn acts_along(model: &Model, force: &Force, rate: &Polynomial) -> bool {
 }
 
 /// Returns the terms of a sum or difference.
-fn parts(value: &Expr) -> Vec<&Expr> {
+fn split_terms(value: &Expr) -> Vec<&Expr> {
     match &value.kind {
         ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, right) => {
-            [parts(left), parts(right)].concat()
+            [split_terms(left), split_terms(right)].concat()
         }
         _ => vec![value],
     }

@@ -58,7 +58,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let edits = read_nonempty_list(&record, "edits", "[{ add = \"force\", ... }]", found)?;
     let (site, orders, loads) = (site?, orders?, loads?);
     let own: Vec<StringValue> = (parameters.iter().chain(&edits))
-        .filter_map(|entry| named(entry))
+        .filter_map(|entry| read_name(entry))
         .collect();
     let of_site = site.placeholders().iter().map(|blank| (*blank).to_owned());
     let of_site: Vec<String> = of_site.collect();
@@ -103,7 +103,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     for entry in &edits {
         changes.extend(read_change(entry, site, &mut placeholders, found));
     }
-    for parameter in parameters.iter().filter_map(named) {
+    for parameter in parameters.iter().filter_map(read_name) {
         if !placeholders.used.contains(&parameter.text) {
             found.push(
                 Diagnostic::error(format!("{} is not used", quote(&parameter.text)))
@@ -132,7 +132,7 @@ fn truth(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<bool
 }
 
 /// Returns the name that a parameter or an addition defines for use in other texts.
-fn named(entry: &Entry<'_>) -> Option<StringValue> {
+fn read_name(entry: &Entry<'_>) -> Option<StringValue> {
     let entries = entry.table("").ok()?;
     let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
     match of("add") {
@@ -170,12 +170,12 @@ fn parameter(
         is_positive: positive?,
         doc: doc?.text,
         is_inverse: inverse?,
-        shape: shape(&record, found),
+        shape: read_shape(&record, found),
     })
 }
 
 /// Reads the scale of a parameter: a quantity of the site's motion and a fraction of it.
-fn shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
+fn read_shape(record: &Record<'_>, found: &mut Diagnostics) -> Option<Shape> {
     let (scale, share) = (record.get("scale"), record.get("share"));
     let word = match scale {
         Some(scale) => Some(found.push_error(scale.clone().keyword(&ShapeScale::KEYWORDS))?),

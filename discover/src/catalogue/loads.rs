@@ -84,7 +84,7 @@ mod tests {
     use super::{Load, find_loads};
 
     /// The loads of a mass on a spring whose energy is this.
-    fn of(energy: &str) -> Vec<Load> {
+    fn loads_of(energy: &str) -> Vec<Load> {
         let text = format!(
             "[model]\nname = \"one\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
              k = {{ value = 2, unit = \"N/m\" }}\nn = {{ value = 3 }}\nb = {{ value = 1, unit = \"m\" }}\n\
@@ -105,15 +105,15 @@ mod tests {
             ("k*(x - n*y)^2/2", "2*k*(x - n*y)/2"),
             ("(1/2*k)*x^2", "2*(1/2*k)*x"),
         ] {
-            let found = of(energy);
+            let found = loads_of(energy);
             let forces: Vec<&str> = found.iter().map(|load| load.force.as_str()).collect();
             assert_eq!(forces, [force], "{energy}");
             assert_eq!((found[0].name.as_str(), found[0].unit), ("spring", "N"));
         }
-        let two = of("1/2*k*x^2 + 1/2*k*n*y^2");
+        let two = loads_of("1/2*k*x^2 + 1/2*k*n*y^2");
         let names: Vec<&str> = two.iter().map(|load| load.name.as_str()).collect();
         assert_eq!(names, ["spring_k", "spring_2"]);
-        assert_eq!(of("1/4*k*x^4/b^2"), []);
-        assert_eq!(of("k*x*y"), []);
+        assert_eq!(loads_of("1/4*k*x^4/b^2"), []);
+        assert_eq!(loads_of("k*x*y"), []);
     }
 }

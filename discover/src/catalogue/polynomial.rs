@@ -122,7 +122,7 @@ impl Polynomial {
         };
     }
 
-    fn plus(mut self, other: &Self, sign: f64) -> Option<Self> {
+    fn add_scaled(mut self, other: &Self, sign: f64) -> Option<Self> {
         for (monomial, factor) in &other.0 {
             self.add_term(monomial.clone(), sign * factor);
         }
@@ -200,12 +200,14 @@ impl<'m> Reader<'m> {
                 self.definitions[*id].clone().flatten()
             }
             ExprKind::Dot(inner) => self.polynomial(inner)?.differentiate(),
-            ExprKind::Negate(inner) => Polynomial::default().plus(&self.polynomial(inner)?, -1.0),
+            ExprKind::Negate(inner) => {
+                Polynomial::default().add_scaled(&self.polynomial(inner)?, -1.0)
+            }
             ExprKind::Binary(operator, left, right) => {
                 let (left, right) = (self.polynomial(left)?, self.polynomial(right)?);
                 match operator {
-                    BinaryOperator::Add => left.plus(&right, 1.0),
-                    BinaryOperator::Subtract => left.plus(&right, -1.0),
+                    BinaryOperator::Add => left.add_scaled(&right, 1.0),
+                    BinaryOperator::Subtract => left.add_scaled(&right, -1.0),
                     BinaryOperator::Multiply => left.times(&right),
                     BinaryOperator::Divide => left.times(&right.inverse()?),
                     BinaryOperator::Power => power(&left, &right),

@@ -43,11 +43,11 @@ struct Parts {
     other: bool,
 }
 
-fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
+fn collect_parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(id) => into.coordinates.push(id),
         ExprKind::Definition(id) if into.definitions.insert(id.index()) => {
-            parts(model, &model.definitions[id].value, into);
+            collect_parts(model, &model.definitions[id].value, into);
         }
         ExprKind::Dot(_)
         | ExprKind::Field(_)
@@ -73,7 +73,7 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
             _ => continue,
         };
         let mut of = Parts::default();
-        parts(model, &observable.value, &mut of);
+        collect_parts(model, &observable.value, &mut of);
         of.coordinates.sort_unstable();
         of.coordinates.dedup();
         let only_meshes = of.coordinates.iter().all(|place| meshes.contains(place));

@@ -97,7 +97,7 @@ fn substitutions(
         SubstitutionScope::Site => holding(model, site, found.as_deref()?),
         // Each damper is replaced separately.
         SubstitutionScope::Dampers => return dampers(site, (find, replace), arguments),
-        SubstitutionScope::Measured => measured(model, found.as_deref()?),
+        SubstitutionScope::Measured => replace_measured(model, found.as_deref()?),
     };
     let (find, replace) = (found?, fill_placeholders(replace, arguments)?);
     let substitutions: Vec<Edit> = (places.into_iter())
@@ -135,7 +135,7 @@ fn dampers(
 }
 
 /// The definitions and observables that hold an expression, however it is spaced.
-fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
+fn replace_measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
     let plain = |text: &str| text.split_whitespace().collect::<String>();
     let find = plain(find);
     let holds = |value: &Expr| {

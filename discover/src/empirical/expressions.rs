@@ -68,7 +68,7 @@ pub struct ExpressionNames {
 }
 
 impl Function {
-    fn at(self, scaled: f64, plain: f64) -> f64 {
+    fn evaluate(self, scaled: f64, plain: f64) -> f64 {
         match self {
             Self::Power(power) => scaled.powi(power as i32),
             Self::Absolute => scaled.abs(),
@@ -129,7 +129,7 @@ impl Term {
                 FactorArgument::Position => (operating_point.position, scales.position),
                 FactorArgument::Input(input) => (inputs[*input], scales.inputs[*input]),
             };
-            function.at(value / scale, value)
+            function.evaluate(value / scale, value)
         };
         self.factors.iter().map(factor).product()
     }

@@ -74,11 +74,11 @@ fn add_empirical(
         return;
     }
     progress("no effect of the catalogue explains the residual; searching for an expression");
-    let Some(expression) = sought(problem, before) else {
+    let Some(expression) = find_expression(problem, before) else {
         progress("  no force of few terms in one equation is significant");
         return;
     };
-    let (candidate, fit) = match simplest(problem, before, expression) {
+    let (candidate, fit) = match simplify_expression(problem, before, expression) {
         Ok(found) => found,
         Err(error) => {
             progress(&format!("  {error}"));
@@ -89,7 +89,7 @@ fn add_empirical(
     let unknowns: Vec<UnknownId> = UnknownId::first(fit.unknowns.len())
         .skip(before.unknowns.len())
         .collect();
-    let verdict = accepted((before, &fit), &candidate, &unknowns, floor);
+    let verdict = accept_expression((before, &fit), &candidate, &unknowns, floor);
     let outcome = verdict
         .as_ref()
         .err()
@@ -124,7 +124,7 @@ fn add_empirical(
 }
 
 /// Finds the best expression in the equations that may contain the residual force.
-fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
+fn find_expression(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
     let force = estimate_residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
     let explains =
@@ -141,7 +141,7 @@ fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
 
 /// An expression as an effect that can be written into a specification: a parameter with the
 /// unit of the force for each term, and one for each scale.
-fn written(model: &Model, expression: &Expression) -> Candidate {
+fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
     let equation = &expression.equation;
     let mut taken = names_in_use(model);
     let mut name = |wanted: &str| reserve_name(wanted, &equation.name, &mut taken);
@@ -249,14 +249,14 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
 
 /// Removes superfluous terms of a fitted expression: some only replace parameters and sensors,
 /// which are free again.
-fn simplest(
+fn simplify_expression(
     problem: &EstimationProblem<'_>,
     before: &Fit,
     mut expression: Expression,
 ) -> Result<(Candidate, Fit), DiscoverError> {
     loop {
-        let candidate = written(before.model.specification(), &expression);
-        let fit = fitted(problem, before, &candidate, &expression)?;
+        let candidate = write_candidate(before.model.specification(), &expression);
+        let fit = fit_candidate(problem, before, &candidate, &expression)?;
         let (first, count) = (before.unknowns.len(), expression.terms.len());
         let (own, kinks) = fit.train.estimate.theta[first..].split_at(count);
         let sizes = own.iter().zip(&fit.effect_sd[first..]);
@@ -283,7 +283,7 @@ fn simplest(
 
 /// The fit with an expression: started close to the one without, and anew from the beginnings of
 /// the windows; the better of both.
-fn fitted(
+fn fit_candidate(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidate: &Candidate,
@@ -326,7 +326,7 @@ fn fitted(
 
 /// Returns true if an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
-fn accepted(
+fn accept_expression(
     (before, after): (&Fit, &Fit),
     candidate: &Candidate,
     unknowns: &[UnknownId],

@@ -58,8 +58,8 @@ pub fn select_expression(
         let own = operating_points.iter().flatten().map(|all| all[*equation]);
         let range = OperatingRange::from_operating_points(&own.collect::<Vec<OperatingPoint>>());
         let scales = Scales {
-            rate: rounded(range.largest_rate),
-            position: rounded(
+            rate: round_to_two_digits(range.largest_rate),
+            position: round_to_two_digits(
                 range
                     .position_bounds
                     .0
@@ -94,7 +94,7 @@ fn in_equation(
     };
     let blocks = compute_force_responses(of, equations, &columns)?;
     let regression = Regression::new(of.point, of.fit, &blocks)?;
-    let best = best(&regression, of, &blocks)?;
+    let best = select_best_set(&regression, of, &blocks)?;
     Some(Expression {
         equation: own.clone(),
         terms: best.terms.iter().map(|term| terms[*term].clone()).collect(),
@@ -105,7 +105,7 @@ fn in_equation(
 }
 
 /// Returns the best set of one term, or of more terms if each greatly reduces the residual.
-fn best(
+fn select_best_set(
     regression: &Regression,
     of: Linearisation<'_>,
     blocks: &[Option<DMatrix<f64>>],
@@ -161,13 +161,13 @@ fn largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
     let largest = |input: usize| {
         let columns = records.iter().filter_map(|r| r.input_columns.get(input));
         let sizes = columns.flatten().map(|value| value.abs());
-        rounded(sizes.filter(|size| size.is_finite()).fold(0.0, f64::max))
+        round_to_two_digits(sizes.filter(|size| size.is_finite()).fold(0.0, f64::max))
     };
     (0..count.unwrap_or(0)).map(largest).collect()
 }
 
 /// Two significant digits, for reading.
-fn rounded(value: f64) -> f64 {
+fn round_to_two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 

@@ -70,7 +70,7 @@ impl Bounds {
                 continue;
             }
             let of = said.inputs.get(place).copied().unwrap_or_default();
-            let (recorded, fastest) = recorded(problem, place);
+            let (recorded, fastest) = find_input_range(problem, place);
             if of.range.is_none() {
                 from_records.push(format!("the range of {name}"));
             }
@@ -106,7 +106,7 @@ impl Bounds {
             said.map_or_else(
                 || {
                     from_records.push(format!("the limits of {}", channel.name));
-                    moved(problem, id)
+                    find_channel_range(problem, id)
                 },
                 |(low, high)| Interval::new(low, high),
             )
@@ -151,7 +151,7 @@ impl Bounds {
 
 /// The least and the greatest value of an input on all records, with the drive off; and the frequency
 /// below which nearly all of its power is.
-fn recorded(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
+fn find_input_range(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
     let records = || problem.dataset.train.iter().chain(&problem.dataset.test);
     let mut range = Interval::ZERO;
     let mut fastest: f64 = 0.0;
@@ -184,7 +184,7 @@ fn recorded(problem: &EstimationProblem<'_>, place: usize) -> (Interval, f64) {
 }
 
 /// Between what values a channel's quantity was, noise aside.
-fn moved(problem: &EstimationProblem<'_>, channel: ChannelId) -> Interval {
+fn find_channel_range(problem: &EstimationProblem<'_>, channel: ChannelId) -> Interval {
     let records = problem.dataset.train.iter().chain(&problem.dataset.test);
     let values = records.flat_map(|record| record.channels[channel].iter());
     let values = values.filter(|value| value.is_finite());

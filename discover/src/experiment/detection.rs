@@ -164,7 +164,7 @@ impl<'f> HiddenEffect<'f> {
     }
 
     /// Predicts an experiment with the effect at a size, if that is within its bounds.
-    fn predicted(
+    fn predict_with_effect(
         &self,
         (bounds, times): (&Bounds, &[f64]),
         proposal: &Proposal,
@@ -190,13 +190,13 @@ impl<'f> HiddenEffect<'f> {
     }
 
     /// An experiment with a small size, sought from a `start`.
-    fn tried<'t>(
+    fn try_small_size<'t>(
         &self,
         within: (&Bounds, &[f64]),
         played: &'t PredictedExperiment<'_>,
         start: f64,
     ) -> Option<Tried<'t>> {
-        let (size, moved, present) = self.small(within, played, start)?;
+        let (size, moved, present) = self.find_small_size(within, played, start)?;
         let most = self
             .without
             .predict_unfitted_rms(self.problem, self.model(), &present)?;
@@ -212,7 +212,7 @@ impl<'f> HiddenEffect<'f> {
 
     /// Finds a size with a small but measurable change of an experiment's outputs, and its
     /// prediction.
-    fn small(
+    fn find_small_size(
         &self,
         within: (&Bounds, &[f64]),
         played: &PredictedExperiment<'_>,
@@ -220,11 +220,11 @@ impl<'f> HiddenEffect<'f> {
     ) -> Option<(f64, f64, Prediction)> {
         let mut size = start;
         for _ in 0..TRIALS {
-            let Some(present) = self.predicted(within, played.proposal, size) else {
+            let Some(present) = self.predict_with_effect(within, played.proposal, size) else {
                 size *= 0.1;
                 continue;
             };
-            let moved = self.moved(&played.prediction, &present);
+            let moved = self.change_in_noise(&played.prediction, &present);
             if thresholds::SMALL_EFFECT_FACTORS.clamp(moved) == moved {
                 return Some((size, moved, present));
             }
@@ -234,7 +234,7 @@ impl<'f> HiddenEffect<'f> {
     }
 
     /// The root mean square by which outputs differ, in standard deviations of the noise.
-    fn moved(&self, one: &Prediction, other: &Prediction) -> f64 {
+    fn change_in_noise(&self, one: &Prediction, other: &Prediction) -> f64 {
         let columns = one.records[0]
             .channels
             .iter()
@@ -281,11 +281,11 @@ impl<'f> HiddenEffect<'f> {
         let usual = 1e-3 * self.unknown.scale;
         let (mut first, mut others) = (None, family);
         while let (None, Some((played, rest))) = (&first, others.split_first()) {
-            (first, others) = (self.tried(within, played, usual), rest);
+            (first, others) = (self.try_small_size(within, played, usual), rest);
         }
         let start = first.as_ref().map_or(usual, |first| first.size);
         let others = others.par_iter();
-        let others = others.filter_map(|played| self.tried(within, played, start));
+        let others = others.filter_map(|played| self.try_small_size(within, played, start));
         let others: Vec<Tried<'_>> = others.collect();
         let (tried, left) = self.most_shown(first.into_iter().chain(others).collect())?;
         let Tried {
@@ -301,7 +301,7 @@ impl<'f> HiddenEffect<'f> {
             false => size,
         };
         let refitted = |size: f64| {
-            let prediction = self.predicted(within, proposal, size)?;
+            let prediction = self.predict_with_effect(within, proposal, size)?;
             let separation =
                 self.without
                     .compute_separation(self.problem, self.model(), &prediction)?;

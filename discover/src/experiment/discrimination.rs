@@ -73,7 +73,7 @@ impl Members<'_> {
         family: &[Proposal],
     ) -> Result<Discrimination, NoExperiment> {
         let promised: Vec<Result<Vec<f64>, Exclusion>> = (family.par_iter())
-            .map(|proposal| self.promised(bounds, times, proposal))
+            .map(|proposal| self.predict_distances(bounds, times, proposal))
             .collect();
         let count = self.pairs().len();
         let mut most = vec![0.0_f64; count];
@@ -102,12 +102,12 @@ impl Members<'_> {
         ranking.truncate(thresholds::MAX_REFITTED_EXPERIMENTS);
         let refitted = ranking
             .iter()
-            .filter_map(|(_, place)| self.refitted(bounds, times, (*place, &family[*place])));
+            .filter_map(|(_, place)| self.refit_members(bounds, times, (*place, &family[*place])));
         let best = refitted.max_by(|a, b| {
             let least = |of: &Discrimination| least(&|pair| of.pairs[pair].smaller_separation());
             least(a).total_cmp(&least(b))
         });
-        best.ok_or_else(|| excluded(&promised))
+        best.ok_or_else(|| describe_exclusions(&promised))
     }
 
     /// All pairs of members.
@@ -133,7 +133,7 @@ impl Members<'_> {
     }
 
     /// Returns the linearised distance of the members of each pair.
-    fn promised(
+    fn predict_distances(
         &self,
         bounds: &Bounds,
         times: &[f64],
@@ -153,7 +153,7 @@ impl Members<'_> {
     }
 
     /// The same with rivals fitted anew; none where one cannot be followed.
-    fn refitted(
+    fn refit_members(
         &self,
         bounds: &Bounds,
         times: &[f64],
@@ -181,7 +181,7 @@ impl Members<'_> {
 }
 
 /// Why no experiment is left: what most of them leave.
-fn excluded<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
+fn describe_exclusions<T>(promised: &[Result<T, Exclusion>]) -> NoExperiment {
     let mut left: Vec<(&str, usize)> = Vec::new();
     for of in promised {
         let Err(Exclusion::LeavesLimits(name)) = of else {

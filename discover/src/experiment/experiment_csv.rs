@@ -23,7 +23,7 @@ pub(super) fn write_experiment_csv(
         .zip(&proposal.values)
         .step_by(bounds.samples_per_value)
     {
-        text += &format!("{}", rounded(played.time.from_si(*t)));
+        text += &format!("{}", round_to_twelve_digits(played.time.from_si(*t)));
         for place in &driven {
             let own = match *place == proposal.input_index {
                 true => *value,
@@ -35,7 +35,7 @@ pub(super) fn write_experiment_csv(
             };
             let unit = played.inputs[*place].as_ref();
             let own = unit.map_or(own, |unit| unit.from_si(own));
-            text += &format!(",{}", rounded(own));
+            text += &format!(",{}", round_to_twelve_digits(own));
         }
         text.push('\n');
     }
@@ -43,7 +43,7 @@ pub(super) fn write_experiment_csv(
 }
 
 /// Rounds to twelve digits, which removes rounding errors of differences of times.
-fn rounded(value: f64) -> f64 {
+fn round_to_twelve_digits(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }

@@ -95,7 +95,7 @@ struct Plan<'r> {
 
 impl Plan<'_> {
     /// Returns an experiment that states the reason if the rig can run none.
-    fn none(&self) -> Option<NextExperiment> {
+    fn explain_no_experiment(&self) -> Option<NextExperiment> {
         let reason = match (&self.impossible, self.family.is_empty()) {
             (Some(reason), _) => reason.clone(),
             (None, true) => NoExperiment::NoInput.to_string(),
@@ -112,7 +112,7 @@ impl Plan<'_> {
         files: &mut Vec<ExperimentFile>,
     ) -> NextExperiment {
         let accepted = &found.accepted[effect];
-        if let Some(none) = self.none() {
+        if let Some(none) = self.explain_no_experiment() {
             return none;
         }
         (self.context.progress)(&format!(
@@ -148,13 +148,13 @@ impl Plan<'_> {
             rivals: rivals.collect(),
         };
         match members.find_best_experiment(&self.bounds, &self.times, &self.family) {
-            Ok(best) => self.told(&at, left_out, best, files),
+            Ok(best) => self.tell_members_apart(&at, left_out, best, files),
             Err(reason) => NextExperiment::without_experiment(&reason.to_string(), &self.bounds),
         }
     }
 
     /// An experiment of a class as a result; a file if it separates some.
-    fn told(
+    fn tell_members_apart(
         &self,
         at: &[ClassMember],
         left_out: Vec<ClassMember>,
@@ -174,7 +174,7 @@ impl Plan<'_> {
         let least =
             counted.min_by(|a, b| a.smaller_separation().total_cmp(&b.smaller_separation()));
         let file = least.filter(|_| is_enough).map(|least| {
-            self.written(
+            self.write_experiment(
                 proposal,
                 least.members.map(|member| at[member].label()),
                 [
@@ -209,7 +209,7 @@ impl Plan<'_> {
     }
 
     /// The file of an input, written if it is not yet: of several uses the first is drawn.
-    fn written(
+    fn write_experiment(
         &self,
         proposal: &Proposal,
         members: [String; 2],
@@ -255,7 +255,7 @@ impl Plan<'_> {
             }
         }
         wanted.truncate(thresholds::MAX_DETECTION_SEARCHES);
-        if let Some(none) = self.none() {
+        if let Some(none) = self.explain_no_experiment() {
             for place in &wanted {
                 experiments.for_rejected[*place] = Some(none.clone());
             }
@@ -281,7 +281,9 @@ impl Plan<'_> {
         for (place, sought) in wanted.into_iter().zip(sought) {
             let candidate = &found.rejected[place].candidate;
             let next = match sought {
-                Ok((hidden, best)) => self.shown(&hidden, candidate, best, &mut experiments.files),
+                Ok((hidden, best)) => {
+                    self.find_detecting(&hidden, candidate, best, &mut experiments.files)
+                }
                 Err(error) => NextExperiment::without_experiment(&error.to_string(), &self.bounds),
             };
             experiments.for_rejected[place] = Some(next);
@@ -315,7 +317,7 @@ impl Plan<'_> {
     }
 
     /// Returns the experiment that detects an effect best.
-    fn shown(
+    fn find_detecting(
         &self,
         hidden: &HiddenEffect<'_>,
         candidate: &Candidate,
@@ -330,7 +332,7 @@ impl Plan<'_> {
         let is_enough = best.separation.rms_in_noise >= thresholds::MIN_LINEAR_SEPARATION;
         let file = is_enough.then(|| {
             let label = ClassMember::from_candidate(candidate).label();
-            self.written(
+            self.write_experiment(
                 proposal,
                 [format!("with {label}"), "without it".to_owned()],
                 [
@@ -348,7 +350,7 @@ impl Plan<'_> {
             pairs: Vec::new(),
             failed_members: Vec::new(),
             detectable: is_enough
-                .then(|| self.smallest(candidate, hidden.value_at_size(best.size)))
+                .then(|| self.smallest_detectable(candidate, hidden.value_at_size(best.size)))
                 .flatten(),
             reason: None,
             bounds_source: self.bounds.sources.clone(),
@@ -356,7 +358,7 @@ impl Plan<'_> {
     }
 
     /// Returns the quantity that scales an effect and its smallest detectable value, in its unit.
-    fn smallest(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
+    fn smallest_detectable(&self, candidate: &Candidate, value: f64) -> Option<DetectableSize> {
         let shown = |what: &str, from: f64, unit: &str| {
             Some(DetectableSize {
                 parameter: what.to_owned(),

@@ -99,7 +99,7 @@ impl<'a> Predictor<'a> {
             .shooting
             .apply_sensors(&output_times, &self.sensors, &outputs);
         Ok(Prediction {
-            records: vec![recorded(times, inputs, &seen, bounds.channels.len())],
+            records: vec![write_record(times, inputs, &seen, bounds.channels.len())],
             states: output_times.at_samples(states),
         })
     }
@@ -130,7 +130,7 @@ impl<'a> Predictor<'a> {
 }
 
 /// A record of these columns.
-fn recorded(times: &[f64], inputs: HeldInputs, seen: &[f64], channels: usize) -> Record {
+fn write_record(times: &[f64], inputs: HeldInputs, seen: &[f64], channels: usize) -> Record {
     let column = |channel: usize| seen.iter().skip(channel).step_by(channels).copied();
     Record {
         is_continued: false,

@@ -47,8 +47,8 @@ impl Proposal {
                             form.describe(),
                             100.0 * size
                         ),
-                        values: held(
-                            &played(&shape, size, input, bounds),
+                        values: hold_values(
+                            &play_shape(&shape, size, input, bounds),
                             bounds.samples_per_value,
                             times.len(),
                         ),
@@ -81,7 +81,7 @@ pub fn rest_value(range: Interval) -> f64 {
 }
 
 /// A form on an input, so much of its range to either side of rest and no faster than it may be.
-fn played(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec<f64> {
+fn play_shape(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec<f64> {
     let Interval { low, high } = input.range;
     let rest = rest_value(input.range);
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -100,7 +100,7 @@ fn played(shape: &[f64], size: f64, input: &InputBounds, bounds: &Bounds) -> Vec
 }
 
 /// Each value so many times, `count` in all.
-fn held(values: &[f64], times: usize, count: usize) -> Vec<f64> {
+fn hold_values(values: &[f64], times: usize, count: usize) -> Vec<f64> {
     let held = values.iter().flat_map(|v| std::iter::repeat_n(*v, times));
     held.take(count).collect()
 }

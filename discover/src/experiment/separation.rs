@@ -50,7 +50,7 @@ pub struct Separation {
 impl<'f> Rival<'f> {
     /// Uses the information of the records of a fit.
     pub fn with_records(problem: &EstimationProblem<'_>, fit: &'f Fit) -> Self {
-        Self::with(fit, compute_fit_information(problem, fit))
+        Self::with_information(fit, compute_fit_information(problem, fit))
     }
 
     /// Uses only the declared priors of a fit. A large effect would have changed the information of
@@ -59,10 +59,10 @@ impl<'f> Rival<'f> {
         let sd = |unknown: &Unknown| unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         let weights = fit.unknowns.iter().map(|unknown| 1.0 / sd(unknown));
         let weights = DVector::from_iterator(fit.unknowns.len(), weights);
-        Self::with(fit, DMatrix::from_diagonal(&weights))
+        Self::with_information(fit, DMatrix::from_diagonal(&weights))
     }
 
-    fn with(fit: &'f Fit, information: DMatrix<f64>) -> Self {
+    fn with_information(fit: &'f Fit, information: DMatrix<f64>) -> Self {
         let without_prior = |unknown: &Unknown| Unknown {
             prior: None,
             ..unknown.clone()
@@ -113,7 +113,7 @@ impl<'f> Rival<'f> {
         of: impl FnOnce(&Shooting<'_>, &Beginning, &Estimate) -> Option<f64>,
     ) -> Option<f64> {
         let windows = Windows::split_records(&prediction.records, problem.dataset.window);
-        let begin = self.begin(problem, truth, prediction, &windows);
+        let begin = self.begin_windows(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
         let theta = self.theta().to_vec();
         let present = evaluate_cost(&shooting, &begin.prior, theta, begin.states.clone());
@@ -130,9 +130,9 @@ impl<'f> Rival<'f> {
         prediction: &Prediction,
     ) -> Option<Separation> {
         let windows = Windows::split_records(&prediction.records, problem.dataset.window);
-        let begin = self.begin(problem, truth, prediction, &windows);
+        let begin = self.begin_windows(problem, truth, prediction, &windows);
         let shooting = self.shooting(problem, &windows, &begin);
-        let fitted = self.fitted(&shooting, &begin)?;
+        let fitted = self.fit_windows(&shooting, &begin)?;
         let residuals = Residuals::compute(&shooting, fitted).or_infinite();
         let sizes = residuals.normalised_rms.iter().copied().enumerate();
         let (channel, size) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -170,7 +170,7 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the initial states of the windows: those of the prediction.
-    fn begin(
+    fn begin_windows(
         &self,
         problem: &EstimationProblem<'_>,
         truth: &EstimationModel,
@@ -204,10 +204,10 @@ impl<'f> Rival<'f> {
     }
 
     /// Fits to windows and to the information from its records.
-    fn fitted(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
+    fn fit_windows(&self, shooting: &Shooting<'_>, begin: &Beginning) -> Option<Estimate> {
         let Beginning { states, prior, .. } = begin;
         let total = |estimate: &Estimate| {
-            estimate.cost + (&self.information * self.change(estimate)).norm_squared()
+            estimate.cost + (&self.information * self.deviation(estimate)).norm_squared()
         };
         let mut present = evaluate_cost(shooting, prior, self.theta().to_vec(), states.clone());
         for _ in 0..thresholds::MAX_REFIT_STEPS {
@@ -240,7 +240,7 @@ impl<'f> Rival<'f> {
     }
 
     /// Returns the difference between an estimate and the fit to its records.
-    fn change(&self, estimate: &Estimate) -> DVector<f64> {
+    fn deviation(&self, estimate: &Estimate) -> DVector<f64> {
         let pairs = estimate.theta.iter().zip(self.theta());
         DVector::from_iterator(self.unknowns.len(), pairs.map(|(a, b)| a - b))
     }
@@ -252,7 +252,7 @@ impl<'f> Rival<'f> {
         let mut rows = DMatrix::zeros(count, count + 1);
         rows.view_mut((0, 0), (count, count))
             .copy_from(&self.information);
-        rows.set_column(count, &(&self.information * self.change(present)));
+        rows.set_column(count, &(&self.information * self.deviation(present)));
         let empty = DMatrix::zeros(count + 1, count + 1);
         let factor = compute_triangular_factor(&empty, &rows);
         let windows = blocks.iter().flatten();

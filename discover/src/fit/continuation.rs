@@ -54,10 +54,12 @@ pub fn run_continuation(
     steps: usize,
 ) -> ContinuationResult {
     let mut path = Continuation::new(shooting, follow);
-    let guessed = guesses.iter().map(|theta| path.at(theta.clone(), None));
+    let guessed = guesses
+        .iter()
+        .map(|theta| path.evaluate(theta.clone(), None));
     let best = guessed.min_by(|a, b| a.estimate.cost.total_cmp(&b.estimate.cost));
     let mut present = best.unwrap_or_default();
-    path.go(&mut present, steps, Derivatives::Tangents);
+    path.make_steps(&mut present, steps, Derivatives::Tangents);
     present
 }
 
@@ -67,7 +69,7 @@ pub fn continue_by_secants(
     present: &mut ContinuationResult,
     follow: &EstimateInitialStates<'_>,
 ) {
-    Continuation::new(shooting, follow).go(
+    Continuation::new(shooting, follow).make_steps(
         present,
         thresholds::MAX_SECANT_STEPS,
         Derivatives::Secants,
@@ -98,7 +100,7 @@ impl<'a> Continuation<'a> {
     }
 
     /// The estimate at these unknowns.
-    fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> ContinuationResult {
+    fn evaluate(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> ContinuationResult {
         let InitialStates {
             prior,
             states: initial_states,
@@ -118,7 +120,12 @@ impl<'a> Continuation<'a> {
     }
 
     /// Makes at most `steps` steps, while they reduce the cost enough.
-    fn go(&mut self, present: &mut ContinuationResult, steps: usize, derivatives: Derivatives) {
+    fn make_steps(
+        &mut self,
+        present: &mut ContinuationResult,
+        steps: usize,
+        derivatives: Derivatives,
+    ) {
         for _ in 0..steps {
             if derivatives == Derivatives::Secants
                 && self.residual_rms(&present.estimate) < thresholds::MAX_FLOOR_RATIO_AT_FLOOR
@@ -156,7 +163,7 @@ impl<'a> Continuation<'a> {
         let change = solve_step(self.shooting, estimate, &windows, 0.0);
         thresholds::STEP_FRACTIONS.iter().find_map(|part| {
             let theta = apply_fraction(self.shooting, estimate, &change, *part);
-            let next = self.at(theta, Some(&estimate.initial_states));
+            let next = self.evaluate(theta, Some(&estimate.initial_states));
             (next.estimate.cost < estimate.cost).then_some(next)
         })
     }
@@ -176,7 +183,7 @@ impl<'a> Continuation<'a> {
                 continue;
             }
             let mut secant = self.secant(estimate, linear, id);
-            let moved = secant.moved();
+            let moved = secant.change_rms();
             if moved > 0.0
                 && !(wanted / thresholds::SECANT_CHANGE_TOLERANCE
                     ..wanted * thresholds::SECANT_CHANGE_TOLERANCE)
@@ -232,7 +239,7 @@ struct Secant {
 
 impl Secant {
     /// The root mean square of all, in standard deviations.
-    fn moved(&self) -> f64 {
+    fn change_rms(&self) -> f64 {
         let all = || self.changes.iter().flatten();
         let count: usize = all().map(DVector::len).sum();
         (all().map(DVector::norm_squared).sum::<f64>() / count.max(1) as f64).sqrt()

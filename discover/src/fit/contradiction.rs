@@ -56,11 +56,11 @@ pub fn describe_contradictions(
         if let UnknownKind::Parameter(name) = &unknown.kind
             && let Some((a, b)) = furthest(&records, place)
         {
-            sentences.push(said(fit, name, place, a, b));
+            sentences.push(describe_shift(fit, name, place, a, b));
         }
     }
     match sentences.is_empty() {
-        true => odd(problem, fit, &records, floor),
+        true => find_odd_records(problem, fit, &records, floor),
         false => sentences,
     }
 }
@@ -119,7 +119,7 @@ impl Oddness {
 }
 
 /// Finds records with large residuals in single fits while most others have small ones.
-fn odd(
+fn find_odd_records(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     alone: &[SingleRecordFit],
@@ -220,7 +220,13 @@ fn furthest(
     pairs.max_by(|(a, b), (c, d)| apart(a, b).0.total_cmp(&apart(c, d).0))
 }
 
-fn said(fit: &Fit, name: &str, place: usize, a: &SingleRecordFit, b: &SingleRecordFit) -> String {
+fn describe_shift(
+    fit: &Fit,
+    name: &str,
+    place: usize,
+    a: &SingleRecordFit,
+    b: &SingleRecordFit,
+) -> String {
     let mut parameters = fit.model.specification().parameters.iter();
     let parameter = parameters.find(|parameter| parameter.name == name);
     let value = |record: &SingleRecordFit| format_estimate(parameter, record.estimates[place]);

@@ -76,13 +76,13 @@ pub fn complete_fit(
         &preliminary.unknowns,
         &preliminary.ranges,
     );
-    let near = near(problem, &all, &preliminary);
+    let near = evaluate_whole_windows(problem, &all, &preliminary);
     let is_followed = near.is_followed;
     let Converged {
         mut prior,
         residuals: mut train,
         is_far,
-    } = converged(problem, &mut all, near, preliminary.max_rms);
+    } = iterate_to_convergence(problem, &mut all, near, preliminary.max_rms);
     let prior_weight = all.prior_weight;
     // A start that is known from the window before depends on these unknowns: it would keep the estimate in
     // place and make it too certain.
@@ -146,7 +146,7 @@ pub fn complete_fit(
 }
 
 /// Evaluates a preliminary fit over whole windows, before they are fitted together.
-fn near(
+fn evaluate_whole_windows(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
     preliminary: &PreliminaryFit,
@@ -197,7 +197,7 @@ fn near(
 
 /// Whole windows fitted, and those followed anew that are better for it, as long as that helps and no more
 /// than `most` standard deviations are left.
-fn converged(
+fn iterate_to_convergence(
     problem: &EstimationProblem<'_>,
     all: &mut Shooting<'_>,
     near: StartingPoint,
@@ -237,7 +237,7 @@ fn converged(
             break;
         }
         let before = found.cost;
-        let (new_prior, found) = refreshed(problem, all, prior, found);
+        let (new_prior, found) = refresh_initial_states(problem, all, prior, found);
         prior = new_prior;
         let is_converged = found.cost > (1.0 - thresholds::MIN_REFRESH_DECREASE) * before;
         residuals = Residuals::compute(all, found);
@@ -288,7 +288,7 @@ fn continued_unknowns(
 }
 
 /// The windows followed anew at an estimate: those that are better for it begin there.
-fn refreshed(
+fn refresh_initial_states(
     problem: &EstimationProblem<'_>,
     shooting: &Shooting<'_>,
     mut prior: InitialStatePrior,

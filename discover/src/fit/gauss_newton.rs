@@ -89,7 +89,7 @@ pub fn evaluate_cost(
 ) -> Estimate {
     let residuals = shooting.compute_residuals(&theta, &initial_states);
     let squares: Vec<f64> = residuals.iter().map(sum_of_squares).collect();
-    totalled(shooting, prior, theta, initial_states, squares)
+    total_costs(shooting, prior, theta, initial_states, squares)
 }
 
 /// Returns the sum of squares of a window; infinite if the simulation failed.
@@ -112,7 +112,7 @@ fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     shooting.prior_weight * terms.sum::<f64>()
 }
 
-fn totalled(
+fn total_costs(
     shooting: &Shooting<'_>,
     prior: &InitialStatePrior,
     theta: Vec<f64>,
@@ -290,7 +290,7 @@ pub(crate) fn follow_unknowns(
         squares,
         ..
     } = best;
-    totalled(shooting, prior, theta, initial_states, squares)
+    total_costs(shooting, prior, theta, initial_states, squares)
 }
 
 /// Corrects the initial states after a long step of the unknowns, with the derivatives at its start
@@ -340,7 +340,7 @@ pub(crate) fn correct_initial_states(
             squares,
             ..
         } = best;
-        best = totalled(shooting, prior, theta, initial_states, squares);
+        best = total_costs(shooting, prior, theta, initial_states, squares);
         if before - best.cost < thresholds::MIN_FINAL_DECREASE * shooting.prior_weight {
             break;
         }

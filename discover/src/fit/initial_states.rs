@@ -46,7 +46,7 @@ pub fn estimate_at_unknowns(
         sd: &prior_sd(ranges),
         sources: &sources(problem, shooting.windows),
     };
-    Ok(followed(shooting, theta, known, horizons, before))
+    Ok(follow_windows(shooting, theta, known, horizons, before))
 }
 
 /// Estimates the initial states of all windows at these unknowns with the procedure of a fit.
@@ -163,7 +163,7 @@ struct Known<'a> {
 /// Initial states followed from window to window: each begins where the one before ended and
 /// is then fitted to its own samples. `before`: those at other unknowns, from which parts of
 /// the records may be followed side by side.
-fn followed(
+fn follow_windows(
     shooting: &Shooting<'_>,
     theta: &[f64],
     known: Known<'_>,
@@ -190,7 +190,7 @@ fn followed(
                 known,
                 horizons,
             };
-            chain.followed(theta, WindowId::range(windows), carried)
+            chain.follow(theta, WindowId::range(windows), carried)
         })
         .collect();
     let followed = followed.into_iter().flatten();
@@ -244,7 +244,7 @@ struct FollowedState {
 
 impl Chain<'_> {
     /// The initial states of some windows. `carried`: what is known of the first.
-    fn followed(
+    fn follow(
         &self,
         theta: &[f64],
         windows: WindowRange,

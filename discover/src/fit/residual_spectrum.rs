@@ -63,7 +63,7 @@ pub fn compute_residual_spectrum(
         .filter(|(_, residual)| !residual.is_empty())
         .map(|(window, residual)| {
             let column = channel_residuals(window, residual, (channel, channels));
-            bridged(&column[compared_samples(column.len())])
+            bridge_gaps(&column[compared_samples(column.len())])
         })
         .collect();
     let length = columns
@@ -87,7 +87,7 @@ pub fn compute_residual_spectrum(
 }
 
 /// A column with straight lines over its missing samples.
-fn bridged(column: &[f64]) -> Vec<f64> {
+fn bridge_gaps(column: &[f64]) -> Vec<f64> {
     let known: Vec<usize> = (0..column.len())
         .filter(|k| column[*k].is_finite())
         .collect();
@@ -135,7 +135,11 @@ mod tests {
 
     /// Returns the peak in the spectrum of `count` windows of a residual with `samples` samples
     /// each.
-    fn found(samples: usize, count: usize, of: impl Fn(f64, f64) -> f64) -> Option<SpectralPeak> {
+    fn find_peak_of(
+        samples: usize,
+        count: usize,
+        of: impl Fn(f64, f64) -> f64,
+    ) -> Option<SpectralPeak> {
         let time = |k: usize| STEP * k as f64;
         let windows: Vec<(Window, Vec<f64>)> = (0..count)
             .map(|number| {
@@ -170,7 +174,7 @@ mod tests {
             // Each window begins at 0 and drifts, as a slow force drives it.
             let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);
             assert_eq!(
-                found(samples, 12, drift),
+                find_peak_of(samples, 12, drift),
                 Some(SpectralPeak::BelowResolution),
                 "{samples}"
             );
@@ -182,7 +186,7 @@ mod tests {
         let line =
             |t: f64, inside: f64| (std::f64::consts::TAU * 7.0 * t).sin() + 0.3 * inside + noise(t);
         for samples in [100, 200, 400] {
-            let Some(SpectralPeak::Frequency(frequency)) = found(samples, 8, line) else {
+            let Some(SpectralPeak::Frequency(frequency)) = find_peak_of(samples, 8, line) else {
                 panic!("{samples}: no line");
             };
             assert!(
@@ -191,7 +195,7 @@ mod tests {
             );
         }
         for count in [1, 8, 40] {
-            assert_eq!(found(200, count, |t, _| noise(t)), None, "{count}");
+            assert_eq!(find_peak_of(200, count, |t, _| noise(t)), None, "{count}");
         }
     }
 }

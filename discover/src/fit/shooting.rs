@@ -222,7 +222,7 @@ impl<'a> Shooting<'a> {
                     column.values[place * channels + channel.index()]
                 } else {
                     let at = times.times[place] - delay;
-                    interpolated(&column, at, place)
+                    interpolate_column(&column, at, place)
                 };
                 seen[sample * channels + channel.index()] = gain * quantity + bias;
             }
@@ -292,7 +292,7 @@ struct Column<'q> {
 }
 
 /// A channel's quantity at a time near one of the others, by the cubic through its four neighbours.
-fn interpolated(column: &Column<'_>, at: f64, near: usize) -> f64 {
+fn interpolate_column(column: &Column<'_>, at: f64, near: usize) -> f64 {
     let times = column.times;
     let last = times.len() - 1;
     let mut before = near.min(last);

@@ -393,7 +393,7 @@ impl EstimationModel {
 
 /// Returns true if the model of a text is linear between switches.
 pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
-    compiled(text, name, order).is_ok_and(|compiled| compiled.piecewise_linear().is_ok())
+    compile_model(text, name, order).is_ok_and(|compiled| compiled.piecewise_linear().is_ok())
 }
 
 /// The linear part of a model whose text is given, if it has the model's states.
@@ -403,7 +403,7 @@ fn linear_part(
     order: Option<usize>,
     model: &EstimationModel,
 ) -> Option<LinearPart> {
-    let part = compiled(text, name, order).ok()?;
+    let part = compile_model(text, name, order).ok()?;
     if part.state_names() != model.states {
         return None;
     }
@@ -417,7 +417,7 @@ fn linear_part(
 }
 
 /// The model of a text.
-fn compiled(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
+fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
     CompiledModel::from_text(name, text, order.map_or(Orders::Declared, Orders::Uniform))
 }
 

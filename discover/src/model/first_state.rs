@@ -20,7 +20,7 @@ pub fn estimate_first_state(
     let mut state = model.initial_state();
     match initial {
         // Information on the initial state does not apply to a later part.
-        _ if record.is_continued => measured(model, record, channels, state),
+        _ if record.is_continued => apply_measurements(model, record, channels, state),
         Initial::Rest => state,
         Initial::Values(values) => {
             for (name, value) in values {
@@ -31,12 +31,12 @@ pub fn estimate_first_state(
             }
             state
         }
-        Initial::Estimate => measured(model, record, channels, state),
+        Initial::Estimate => apply_measurements(model, record, channels, state),
     }
 }
 
 /// Replaces parts of a state by the measurements at the beginning of a record.
-fn measured(
+fn apply_measurements(
     model: &EstimationModel,
     record: &Record,
     channels: &[Channel],
@@ -44,7 +44,7 @@ fn measured(
 ) -> Vec<f64> {
     let degrees = model.degrees_of_freedom();
     for (channel, column) in channels.iter().zip(&record.channels) {
-        let (value, slope) = begin(&record.times, column);
+        let (value, slope) = fit_first_samples(&record.times, column);
         match channel.quantity {
             Quantity::Coordinate(coordinate) => {
                 state[coordinate] = value;
@@ -64,7 +64,7 @@ fn measured(
 
 /// Returns value and slope at the first time of the parabola through a column's first samples. A
 /// line would give the slope at their middle, and this delay would look like that of a sensor.
-fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
+fn fit_first_samples(times: &[f64], column: &[f64]) -> (f64, f64) {
     let points: Vec<(f64, f64)> = (times.iter().zip(column))
         .filter(|(_, value)| value.is_finite())
         .take(thresholds::INITIAL_SLOPE_SAMPLES)
@@ -94,12 +94,12 @@ pub fn compute_state_ranges(
     let Ok(mut simulation) = model.create_simulation(values) else {
         return vec![1.0; model.state_count()];
     };
-    let moved = moved(&mut simulation, records, initial);
+    let moved = measure_ranges(&mut simulation, records, initial);
     // A state that no channel depends on is given a range of one unit.
     let mut of = |(state, range): (usize, f64)| match range > 0.0 {
         true => range,
         false => (records.first())
-            .and_then(|record| unmoved(&mut simulation, record, initial, noise, state))
+            .and_then(|record| find_unmoved(&mut simulation, record, initial, noise, state))
             .unwrap_or(1.0),
     };
     moved.into_iter().enumerate().map(&mut of).collect()
@@ -107,7 +107,11 @@ pub fn compute_state_ranges(
 
 /// The range of each state in the records, or in the longest beginnings of them that can be followed; 0
 /// if it does not move.
-fn moved(simulation: &mut Simulation<'_>, records: &[Record], initial: &[f64]) -> Vec<f64> {
+fn measure_ranges(
+    simulation: &mut Simulation<'_>,
+    records: &[Record],
+    initial: &[f64],
+) -> Vec<f64> {
     for halving in 0..=thresholds::MAX_RECORD_HALVINGS {
         let motions = records.iter().filter_map(|record| {
             let count = record.times.len() >> halving;
@@ -136,7 +140,7 @@ fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
 }
 
 /// The change of a state that moves the outputs by [`thresholds::UNMOVED_STATE_IN_NOISE`]; none if none does.
-fn unmoved(
+fn find_unmoved(
     simulation: &mut Simulation<'_>,
     record: &Record,
     initial: &[f64],

@@ -107,7 +107,7 @@ mod tests {
 
     /// The rig with such teeth, integrated, and its text, a record of its torque, its channels and
     /// a state in the middle of the play, as the teeth see it.
-    fn integrated() -> (EstimationModel, String, Record, [Channel; 1], Vec<f64>) {
+    fn simulate_rig() -> (EstimationModel, String, Record, [Channel; 1], Vec<f64>) {
         let (rig, with) = texts();
         let channels = [Channel {
             name: "x_sp".to_owned(),
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn teeth_touch_where_the_whole_model_says() {
-        let (integrated, with, record, channels, initial) = integrated();
+        let (integrated, with, record, channels, initial) = simulate_rig();
         let solved =
             EstimationModel::derive_equations(&with, "rig", Some(4), &channels).expect("a model");
         let states = |model: &EstimationModel| {
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn neighbours_feel_what_is_beyond_the_linear_part() {
-        let (integrated, _, record, _, initial) = integrated();
+        let (integrated, _, record, _, initial) = simulate_rig();
         let mut simulation = integrated
             .create_simulation(&integrated.values)
             .expect("a simulation");

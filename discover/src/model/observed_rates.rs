@@ -94,7 +94,7 @@ side = "sign(x)"
     }
 
     /// The quantity of such a channel at a state with these inputs.
-    fn measured(name: &str, times: u8, state: &[f64], inputs: &[f64]) -> f64 {
+    fn measure_output(name: &str, times: u8, state: &[f64], inputs: &[f64]) -> f64 {
         let channel = [channel(name, times)];
         let model = EstimationModel::derive_equations(SUPPORTED, "supported", None, &channel);
         let model = model.expect("a model");
@@ -131,7 +131,7 @@ side = "sign(x)"
             ("size", 1, v),
         ];
         for (name, times, right) in right {
-            let found = measured(name, times, &state, &inputs);
+            let found = measure_output(name, times, &state, &inputs);
             assert!(
                 (found - right).abs() < 1e-12,
                 "{name} {times}: {found} {right}"

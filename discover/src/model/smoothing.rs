@@ -12,7 +12,7 @@ pub fn smooth_column(times: &[f64], column: &[f64]) -> Vec<f64> {
         .len()
         .saturating_sub(1)
         .min((3.0 / thresholds::SMOOTHING_CUT_OFF) as usize);
-    let mut padded = reflected(&values, padding);
+    let mut padded = reflect_ends(&values, padding);
     low_pass(&mut padded);
     padded.reverse();
     low_pass(&mut padded);
@@ -56,7 +56,7 @@ pub fn fill_missing(times: &[f64], column: &[f64]) -> Vec<f64> {
 
 /// Returns the column with both ends reflected through their end points, so that the filter starts
 /// on a smooth continuation.
-fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
+fn reflect_ends(values: &[f64], padding: usize) -> Vec<f64> {
     let last = values.len() - 1;
     let before = (1..=padding).rev().map(|k| 2.0 * values[0] - values[k]);
     let after = (1..=padding).map(|k| 2.0 * values[last] - values[last - k]);

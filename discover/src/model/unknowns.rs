@@ -104,7 +104,7 @@ impl Unknown {
 
     /// Returns an unknown of the null model, bounded to some standard deviations around its
     /// declared value. A larger deviation is an effect.
-    fn declared(
+    fn within_declared(
         (what, label): (UnknownKind, String),
         prior: NormalPrior,
         limits: Interval,
@@ -142,7 +142,7 @@ pub fn list_null_unknowns(
         let what = (UnknownKind::Parameter(name.clone()), format!("`{name}`"));
         let limits = bounds_with_sign(parameter, *value);
         let prior = NormalPrior { mean: *value, sd };
-        unknowns.push(Unknown::declared(what, prior, limits));
+        unknowns.push(Unknown::within_declared(what, prior, limits));
     }
     for (name, value) in values {
         let Some((input, fault, expected)) = find_declared(&dataset.inputs, name) else {
@@ -161,7 +161,7 @@ pub fn list_null_unknowns(
             sd: expected.sd,
         };
         let what = (UnknownKind::Parameter(name.clone()), label);
-        unknowns.push(Unknown::declared(what, prior, limits));
+        unknowns.push(Unknown::within_declared(what, prior, limits));
     }
     let step = dataset
         .train
@@ -190,7 +190,7 @@ fn of_input_delay(dataset: &Dataset, model: &Model, step: f64) -> Option<Unknown
     };
     (expected.sd > 0.0).then(|| Unknown {
         bounds_without_prior: Interval::new(mean.min(0.0), late.high),
-        ..Unknown::declared(what, prior, late)
+        ..Unknown::within_declared(what, prior, late)
     })
 }
 
@@ -238,12 +238,12 @@ pub fn list_sensor_unknowns(
     let called =
         |what: UnknownKind, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     let unknowns = [
-        Unknown::declared(
+        Unknown::within_declared(
             called(UnknownKind::Gain(id), "gain"),
             prior(expected.gain, gain),
             free,
         ),
-        Unknown::declared(
+        Unknown::within_declared(
             called(UnknownKind::Bias(id), "bias"),
             prior(expected.bias, bias),
             free,
@@ -251,7 +251,7 @@ pub fn list_sensor_unknowns(
         // A delay without a prior is positive: no sensor measures ahead of time.
         Unknown {
             bounds_without_prior: Interval::new(expected.delay.min(0.0), late.high),
-            ..Unknown::declared(
+            ..Unknown::within_declared(
                 called(UnknownKind::Delay(id), "delay"),
                 prior(expected.delay, delay),
                 late,

@@ -177,7 +177,7 @@ fn found_effect(
         .collect();
     if candidate.dropped_prior.is_some()
         && let Some(id) = effect.unknowns.first()
-        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*id].kind)
+        && let Some((name, per_si, unit)) = name_unknown(problem, fit, &fit.unknowns[*id].kind)
     {
         let value = per_si * theta[*id];
         let sd = per_si * sd(id);
@@ -221,7 +221,7 @@ fn found_effect(
 pub(crate) fn list_nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
     let of = |(id, unknown): (UnknownId, &Unknown)| {
         let prior = unknown.prior?;
-        let (name, per_si, unit) = named(problem, fit, &unknown.kind)?;
+        let (name, per_si, unit) = name_unknown(problem, fit, &unknown.kind)?;
         let (of, fault) = match &unknown.kind {
             UnknownKind::Parameter(_) | UnknownKind::InverseParameter(_) => {
                 match find_declared(&problem.dataset.inputs, &name) {
@@ -271,7 +271,7 @@ pub(crate) fn describe_bounds(nuisances: &[Nuisance]) -> Vec<String> {
 
 /// Returns the name of an unknown of the null model, the number of its units in one SI unit, and
 /// the unit.
-fn named(
+fn name_unknown(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     what: &UnknownKind,

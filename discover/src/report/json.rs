@@ -56,9 +56,9 @@ impl Discovery {
         let effects: Vec<Value> = (self.effects.iter())
             .map(|of| effect(of, &self.experiments))
             .collect();
-        let rejected = self.rejected.iter().map(|r| rejected(r, None));
+        let rejected = self.rejected.iter().map(|r| write_rejected(r, None));
         let not_testable = self.untestable.iter();
-        let not_testable = not_testable.map(|r| self::rejected(r, Some(&self.experiments)));
+        let not_testable = not_testable.map(|r| write_rejected(r, Some(&self.experiments)));
         document["verdict"] = json!(self.verdict.name());
         document["summary"] = json!(Summary::from_discovery(self).to_text());
         document["effects"] = json!(effects);
@@ -129,13 +129,13 @@ pub(crate) fn sensors_to_json(of: &BTreeMap<String, SensorEstimate>) -> Value {
     Value::Object(entries.collect())
 }
 
-fn at(of: &EffectSite) -> Value {
+fn write_site(of: &EffectSite) -> Value {
     json!({"effect": of.effect, "on": of.site})
 }
 
 /// Writes a rejected effect. `files` are the experiments for effects that the records cannot show.
-fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
-    let mut entry = at(&of.at);
+fn write_rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
+    let mut entry = write_site(&of.at);
     entry["reason"] = json!(of.reason);
     entry["p_value"] = json!(of.p_values.map(|(own, _)| own));
     entry["p_value_adjusted"] = json!(of.p_values.map(|(_, all)| all));
@@ -148,9 +148,9 @@ fn rejected(of: &RejectedEffect, files: Option<&[ExperimentFile]>) -> Value {
 }
 
 fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
-    let mut entry = at(&of.at);
+    let mut entry = write_site(&of.at);
     entry["status"] = json!(of.status.name());
-    entry["equivalent"] = of.equivalents.iter().map(at).collect();
+    entry["equivalent"] = of.equivalents.iter().map(write_site).collect();
     entry["parameters"] = estimates_to_json(&of.parameters);
     entry["term"] = json!(of.term);
     entry["evidence"] = json!({

@@ -14,7 +14,7 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
     let channels = ChannelId::first(problem.noise.len()).zip(channels);
     let inputs = channels.filter(|(_, channel)| matches!(channel.quantity, Quantity::Input(_)));
     let note = |(id, channel): (ChannelId, &eomgen_records::dataset::Channel)| {
-        let found = noise::estimate_noise(&computed(problem, fit, id))?;
+        let found = noise::estimate_noise(&compute_channel(problem, fit, id))?;
         (found > channel.noise).then(|| {
             format!(
                 "noise of the motion causes noise of {found:.1e} {unit} in the computed `{}`, and its declared \
@@ -30,7 +30,7 @@ pub(crate) fn note_motion_noise(problem: &EstimationProblem<'_>, fit: &Fit) -> V
 
 /// Returns the computed values of a channel along the first training record, SI, and NaN for
 /// samples that are not compared.
-fn computed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
+fn compute_channel(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Vec<f64> {
     let count = problem.noise.len();
     let windows = problem
         .train

@@ -63,7 +63,7 @@ impl RemainingGap {
             format!(
                 "the training residual is {} noise floors, the held-out residual {}: the missing effect hardly \
                  acts in the training records; add a record that shows it to `train`",
-                counted(self.training),
+                format_floors(self.training),
                 self.describe()
             )
         })
@@ -76,11 +76,11 @@ impl RemainingGap {
             floors if floors.is_infinite() => {
                 return "infinitely many noise floors (the simulation fails)".to_owned();
             }
-            floors => counted(floors),
+            floors => format_floors(floors),
         };
         let of_training =
             match self.floors <= thresholds::MAX_FLOORS_FOR_CERTAINTY && self.is_large() {
-                true => format!(", {} on the training records", counted(self.training)),
+                true => format!(", {} on the training records", format_floors(self.training)),
                 false => String::new(),
             };
         match self.is_only {
@@ -98,7 +98,7 @@ impl RemainingGap {
     }
 }
 
-fn counted(floors: f64) -> String {
+fn format_floors(floors: f64) -> String {
     match floors < 10.0 {
         true => format!("{floors:.1}"),
         false => format_number(floors, 2),

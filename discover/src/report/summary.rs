@@ -34,7 +34,7 @@ impl Summary {
                 ),
             },
             false => Self {
-                headline: explained(&comparison.compared.nuisances, "."),
+                headline: summarise_no_gap(&comparison.compared.nuisances, "."),
                 details: format!("Its residual is {left}, the level of a correct model."),
             },
         }
@@ -47,7 +47,7 @@ impl Summary {
             .map(|stage| RemainingGap::from_channels(gap, stage));
         let answer = match discovery.verdict {
             Verdict::NoSignificantGap => Self {
-                headline: explained(
+                headline: summarise_no_gap(
                     &discovery.compared.nuisances,
                     "; they show no missing effect.",
                 ),
@@ -63,7 +63,7 @@ impl Summary {
                     after.describe()
                 ),
             },
-            Verdict::EffectsFound => found(discovery, &before, &after),
+            Verdict::EffectsFound => summarise_effects(discovery, &before, &after),
         };
         match (&discovery.unfinished, discovery.verdict) {
             (None, _) => answer,
@@ -94,7 +94,7 @@ fn at_bounds(nuisances: &[Nuisance]) -> Option<String> {
 }
 
 /// The first sentence of a model that explains the records: how it ends where nothing is at its bounds.
-fn explained(nuisances: &[Nuisance], end: &str) -> String {
+fn summarise_no_gap(nuisances: &[Nuisance], end: &str) -> String {
     let end = match at_bounds(nuisances) {
         None => end.to_owned(),
         Some(at_bounds) => format!(" only {at_bounds}; a missing effect may be the cause."),
@@ -103,8 +103,15 @@ fn explained(nuisances: &[Nuisance], end: &str) -> String {
 }
 
 /// Of a search that found something: where that is not sure, this is said first.
-fn found(discovery: &Discovery, before: &RemainingGap, after: &RemainingGap) -> Summary {
-    let (found, closed) = (listed(&discovery.effects), closed(discovery.closure));
+fn summarise_effects(
+    discovery: &Discovery,
+    before: &RemainingGap,
+    after: &RemainingGap,
+) -> Summary {
+    let (found, closed) = (
+        list_effects(&discovery.effects),
+        describe_closure(discovery.closure),
+    );
     let at_bounds = at_bounds(&discovery.compared.nuisances);
     let held = at_bounds
         .as_ref()
@@ -133,7 +140,7 @@ fn found(discovery: &Discovery, before: &RemainingGap, after: &RemainingGap) -> 
 }
 
 /// Describes the fraction of the gap that is closed on held-out records.
-fn closed(closure: TrainTest<Option<f64>>) -> String {
+fn describe_closure(closure: TrainTest<Option<f64>>) -> String {
     match closure.test {
         Some(part) if part > 0.0 => format!(
             "closes {} of the gap between model and measurement on held-out records",
@@ -145,8 +152,8 @@ fn closed(closure: TrainTest<Option<f64>>) -> String {
 }
 
 /// Effects in a sentence.
-fn listed(effects: &[FoundEffect]) -> String {
-    let named: Vec<String> = effects.iter().map(named).collect();
+fn list_effects(effects: &[FoundEffect]) -> String {
+    let named: Vec<String> = effects.iter().map(name_effect).collect();
     match &named[..] {
         [all @ .., last] if !all.is_empty() => format!("{} and {last}", all.join(", ")),
         all => all.concat(),
@@ -154,7 +161,7 @@ fn listed(effects: &[FoundEffect]) -> String {
 }
 
 /// Describes an effect with its size and the effects that the records cannot distinguish from it.
-fn named(effect: &FoundEffect) -> String {
+fn name_effect(effect: &FoundEffect) -> String {
     let sizes = effect.parameters.iter();
     let sizes =
         sizes.map(|(name, of)| format!("{name} = {}", format_estimate(of.value, of.sd, &of.unit)));

@@ -21,7 +21,7 @@ pub(crate) fn note_wrong_units(
             Some(format!("`{channel}` is {factor}; check its unit"))
         }
         UnknownKind::Parameter(name) => {
-            let factor = value / declared(&found.null_fit, name)?;
+            let factor = value / declared_value(&found.null_fit, name)?;
             let factor = describe_unit_factor(factor, "the value in the specification")?;
             Some(format!(
                 "the estimate of `{name}` is {factor}; check all units"
@@ -38,7 +38,7 @@ pub(crate) fn note_wrong_units(
 }
 
 /// The value of a parameter in the specification as it was, SI; none if it is not there, or an expression.
-fn declared(null: &Fit, name: &str) -> Option<f64> {
+fn declared_value(null: &Fit, name: &str) -> Option<f64> {
     let mut parameters = null.model.specification().parameters.iter();
     match parameters.find(|parameter| parameter.name == name)?.value {
         ParameterValue::Number(value) => Some(value),

@@ -162,7 +162,7 @@ impl BasisFamily {
             ForceArgument::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
             ForceArgument::Position => bent(&self.knots, operating_point.position, out),
             ForceArgument::Time => bent(&self.knots, operating_point.time, out),
-            ForceArgument::Turn => turned(&self.knots, operating_point.position, out),
+            ForceArgument::Turn => write_periodic(&self.knots, operating_point.position, out),
             ForceArgument::Rate => {
                 let half = self.knots.len() / 2;
                 let (negative, positive) = out.split_at_mut(half);
@@ -192,7 +192,7 @@ fn bent(bends: &[f64], at: f64, out: &mut [f64]) {
 }
 
 /// The same for one that closes after a turn.
-fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
+fn write_periodic(bends: &[f64], at: f64, out: &mut [f64]) {
     let step = TAU / bends.len() as f64;
     let at = at.rem_euclid(TAU) / step;
     let before = (at as usize).min(bends.len() - 1);

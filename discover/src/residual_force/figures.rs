@@ -39,7 +39,7 @@ pub fn draw_profiles(
         .iter()
         .map(|picture| {
             let of = |(role, force): &(SeriesRole, &ResidualForce)| {
-                let most = most((picture.of)(before));
+                let most = largest_sd((picture.of)(before));
                 (*role, points((picture.of)(force), picture.is_line, most))
             };
             (picture, forces.iter().map(of).collect::<Vec<_>>())
@@ -47,7 +47,7 @@ pub fn draw_profiles(
         // The remaining force means nothing without the force before.
         .filter(|(picture, _)| {
             let profile = (picture.of)(before);
-            let most = most(profile);
+            let most = largest_sd(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
             let is_drawn = known.count() >= thresholds::MIN_DRAWN_POINTS;
             let is_told =
@@ -144,7 +144,7 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
 type Points = (Vec<f64>, Vec<f64>);
 
 /// Returns the largest standard deviation to draw, from the force before.
-fn most(profile: &Profile) -> f64 {
+fn largest_sd(profile: &Profile) -> f64 {
     let known = profile.values.iter().zip(&profile.sd);
     let largest = known
         .filter(|(value, sd)| **sd > 0.0 && value.abs() > 2.0 * **sd)

@@ -92,7 +92,8 @@ impl<'s> SteppedWindow<'s> {
                 continue;
             };
             for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
-                let Some(seen) = self.change(start, (&own.measured, force), part * usual) else {
+                let Some(seen) = self.output_change(start, (&own.measured, force), part * usual)
+                else {
                     part /= thresholds::FORCE_REDUCTION_FACTOR;
                     continue;
                 };
@@ -166,7 +167,7 @@ impl<'s> SteppedWindow<'s> {
     }
 
     /// Returns the change of the outputs for a force of this size, in standard deviations per unit.
-    fn change(
+    fn output_change(
         &mut self,
         start: &[f64],
         (own, force): (&[f64], &Force),
@@ -245,7 +246,7 @@ impl<'s> SteppedWindow<'s> {
                 state: &state,
                 inputs: inputs.last_sample(*t),
             };
-            let added = force.map(|(size, force)| (size, force.at(place, forced)));
+            let added = force.map(|(size, force)| (size, force.derivatives_at(place, forced)));
             self.measure(at, added, &mut measured);
             if let Some(visited) = &mut visited {
                 visited.states.push(state.clone());
@@ -271,7 +272,7 @@ impl<'s> SteppedWindow<'s> {
 
 impl Force {
     /// The changes at an output time; empty if no accelerations are measured.
-    fn at(&self, place: usize, forced: usize) -> &[f64] {
+    fn derivatives_at(&self, place: usize, forced: usize) -> &[f64] {
         let own = place * forced..(place + 1) * forced;
         self.at_times.get(own).unwrap_or_default()
     }

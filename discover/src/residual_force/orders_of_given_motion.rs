@@ -34,7 +34,10 @@ pub(crate) fn find_orders(
     angles
         .map(|(place, coordinate)| {
             let along = Along::of(problem, fit, place);
-            (coordinate.name.clone(), along.best(problem, fit))
+            (
+                coordinate.name.clone(),
+                along.find_best_orders(problem, fit),
+            )
         })
         .collect()
 }
@@ -72,7 +75,7 @@ impl Along {
     }
 
     /// The orders whose waves explain most.
-    fn best(&self, problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<u32> {
+    fn find_best_orders(&self, problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<u32> {
         let step = typical_step(&problem.dataset.train[0].times);
         let is_seen = |order: &u32| {
             let order = f64::from(*order);
@@ -81,7 +84,7 @@ impl Along {
         };
         let orders = (1..=thresholds::MAX_SHAFT_ORDER).filter(is_seen);
         let mut explained: Vec<(f64, u32)> = orders
-            .map(|order| (self.explained(problem, fit, order), order))
+            .map(|order| (self.explained_by_order(problem, fit, order), order))
             .collect();
         explained.sort_by(|a, b| b.0.total_cmp(&a.0));
         explained.truncate(thresholds::MAX_SPECTRUM_ORDERS);
@@ -89,7 +92,7 @@ impl Along {
     }
 
     /// Returns the reduction of the sum of squares of the residuals of all channels by a wave.
-    fn explained(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
+    fn explained_by_order(&self, problem: &EstimationProblem<'_>, fit: &Fit, order: u32) -> f64 {
         let channels = problem.noise.len();
         let of_channel = |channel: usize| {
             let (mut products, mut sums) = (Matrix3::zeros(), Vector3::zeros());

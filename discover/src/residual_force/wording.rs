@@ -14,7 +14,7 @@ pub fn describe_residual_force(force: &ResidualForce) -> String {
     let mut text = format!(
         "The residual is best explained by a force on {}: {}; it explains {:.0} % of the squares.",
         equation.name,
-        shape(force, kind),
+        describe_shape(force, kind),
         100.0 * force.explained_fraction
     );
     let own = |ranking: &crate::residual_force::types::RankedEquation| match kind {
@@ -51,7 +51,7 @@ pub fn describe_remaining_force(force: &ResidualForce) -> String {
     }
 }
 
-fn shape(force: &ResidualForce, kind: &ForceKind) -> String {
+fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
     let equation = &force.equations[force.best_equation];
     match kind {
         ForceKind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),

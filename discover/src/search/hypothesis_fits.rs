@@ -69,7 +69,7 @@ pub fn run_full_fits(
     };
     let fitted = |(hypothesis, preliminary): (Hypothesis, PreliminaryFit)| {
         let new = full_fit::complete_fit(pool.context.problem, preliminary);
-        let tested = new.map(|new| tested(pool, &hypothesis, new, held_out.as_ref()));
+        let tested = new.map(|new| test_fit(pool, &hypothesis, new, held_out.as_ref()));
         let outcome = match &tested {
             Ok(fitted) => fitted.to_string(),
             Err(error) => error.to_string(),
@@ -82,7 +82,7 @@ pub fn run_full_fits(
 }
 
 /// A hypothesis judged by its fit in full.
-fn tested(
+fn test_fit(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
     fit: Fit,

@@ -16,7 +16,7 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
     let mut known: Vec<ResponseId> = Vec::new();
     let mut preliminaries = Vec::new();
     for pair in pairs {
-        let Some(half) = needed(pool, pair) else {
+        let Some(half) = necessary_half(pool, pair) else {
             continue;
         };
         let response = pair.responses[half.index()];
@@ -32,7 +32,7 @@ pub fn fit_halves(pool: &CandidatePool<'_>, pairs: &[FittedHypothesis]) -> Vec<F
 }
 
 /// Returns the only necessary half of a pair, if the other one is superfluous.
-fn needed(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
+fn necessary_half(pool: &CandidatePool<'_>, pair: &FittedHypothesis) -> Option<EffectId> {
     let little = thresholds::MAX_FLOOR_RATIO_TO_STOP * pool.context.floor;
     let has_terms = |response: &ResponseId| {
         let response = &pool.screening.responses[*response];

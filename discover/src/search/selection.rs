@@ -52,7 +52,7 @@ pub fn select_hypothesis(
     context: RoundContext<'_>,
     tested: TestedPool,
 ) -> Option<SelectedHypothesis> {
-    let selected = best(context, with_other_halves(context, tested))?;
+    let selected = select_best(context, with_other_halves(context, tested))?;
     let [candidate] = &selected.candidates[..] else {
         return Some(selected);
     };
@@ -75,7 +75,7 @@ pub fn select_hypothesis(
             screening,
             fitted_hypotheses: better,
         };
-        return best(context, better);
+        return select_best(context, better);
     }
     let of =
         |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
@@ -129,7 +129,7 @@ fn with_other_halves(context: RoundContext<'_>, tested: TestedPool) -> TestedPoo
 /// Hypotheses that the records cannot distinguish are ordered: first those that contradict no
 /// declared prior of a sensor, then by the number of unknowns, then by the deviation of a declared
 /// parameter.
-fn best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothesis> {
+fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothesis> {
     let TestedPool {
         candidates,
         screening,
@@ -144,7 +144,7 @@ fn best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothe
     };
     let is_simpler = |id: &FittedId| {
         let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
-        let is_less_off = match (off(other), off(least)) {
+        let is_less_off = match (declared_deviation(other), declared_deviation(least)) {
             (Some(other), Some(least)) => other < least,
             _ => false,
         };
@@ -161,7 +161,7 @@ fn best(context: RoundContext<'_>, tested: TestedPool) -> Option<SelectedHypothe
         (
             contradicts_sensor(context, &fitted_hypotheses[*id]),
             fitted_hypotheses[*id].effect_unknowns.len(),
-            off(&fitted_hypotheses[*id]).unwrap_or(0.0),
+            declared_deviation(&fitted_hypotheses[*id]).unwrap_or(0.0),
         )
     };
     let best = simpler
@@ -209,7 +209,7 @@ fn contradicts_sensor(context: RoundContext<'_>, fitted: &FittedHypothesis) -> b
 
 /// Returns the deviation from declared values, in standard deviations of their priors, or `None` if
 /// an unknown has no declared value.
-fn off(fitted: &FittedHypothesis) -> Option<f64> {
+fn declared_deviation(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
     let of =
         |own: &EffectUnknown| Some((theta[own.unknown] - own.base).abs() / own.dropped_prior_sd?);

@@ -16,7 +16,7 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
         let (count, best) = (ranking.len(), pool.candidate(*best).label());
         (pool.context.progress)(&format!("{count} candidates worth fitting; best: {best}"));
     }
-    let mut preliminaries = run_preliminary_fits(pool, chosen(pool, &ranking));
+    let mut preliminaries = run_preliminary_fits(pool, choose_hypotheses(pool, &ranking));
     if !pool
         .context
         .fit
@@ -69,13 +69,16 @@ pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<Fitted
     });
     similar.sort_by(|a, b| similarity(b).total_cmp(&similarity(a)));
     similar.truncate(thresholds::MAX_FULL_FITS_PER_ROUND);
-    run_full_fits(pool, run_preliminary_fits(pool, chosen(pool, &similar)))
+    run_full_fits(
+        pool,
+        run_preliminary_fits(pool, choose_hypotheses(pool, &similar)),
+    )
 }
 
 /// Selects the candidates for a preliminary fit. Candidates that repeat with an angle are so many
 /// that some fit by chance, so half as many of them are selected, and the two best orders of one
 /// effect at one place.
-fn chosen(pool: &CandidatePool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
+fn choose_hypotheses(pool: &CandidatePool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
     let (mut plain, mut repeating) = (Vec::new(), Vec::new());
     for response in ranking {
         let of = pool.candidate(*response);

@@ -85,13 +85,13 @@ pub fn integrate_responses(
                 _ => window.columns(columns.start, columns.len()).into_owned(),
             })
             .collect();
-        found[of.candidate] = Some(sized(&mut of.candidate_unknowns, blocks, at.level));
+        found[of.candidate] = Some(scale_to_level(&mut of.candidate_unknowns, blocks, at.level));
     }
     found
 }
 
 /// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
-fn sized(
+fn scale_to_level(
     candidate_unknowns: &mut [CandidateUnknown],
     blocks: Vec<DMatrix<f64>>,
     level: f64,
@@ -208,7 +208,7 @@ fn ready(
             values
         };
         let start = candidate_unknown.unknown.scale;
-        let Some(size) = small(&model, &at, (points, start)) else {
+        let Some(size) = find_small_size(&model, &at, (points, start)) else {
             return Some(Err(DiscoverError::NotExcited));
         };
         moved.push(MovedValues {
@@ -232,7 +232,7 @@ fn ready(
 
 /// The size of a parameter that changes accelerations, or rates of states of first order, by a small part;
 /// none if none does.
-fn small(
+fn find_small_size(
     model: &EstimationModel,
     at: &dyn Fn(f64) -> Vec<f64>,
     (points, start): (&Points, f64),
@@ -241,7 +241,7 @@ fn small(
     let mut found = None;
     for _ in 0..thresholds::MAX_SIZE_ATTEMPTS {
         let mut evaluator = model.create_evaluator(&at(size));
-        let change = change(&mut evaluator, points);
+        let change = acceleration_rms(&mut evaluator, points);
         let factor = if change == 0.0 {
             thresholds::MAX_SIZE_FACTOR
         } else if !change.is_finite() {
@@ -264,7 +264,7 @@ fn small(
 }
 
 /// The largest part by which any acceleration or rate of a state of first order differs, root mean square.
-fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
+fn acceleration_rms(evaluator: &mut Evaluator, points: &Points) -> f64 {
     let program = evaluator.program();
     let (first, states) = (program.degrees_of_freedom(), program.states());
     let mut sums = vec![0.0; states - first];

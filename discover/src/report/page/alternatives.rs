@@ -103,7 +103,7 @@ pub(super) fn list_rejected(list: &[RejectedEffect]) -> Markup {
                     count => { (count) " other effects and sites were tested." }
                 }
             }
-            (folded(&groups, &["effect", "reason"], row))
+            (write_folded(&groups, &["effect", "reason"], row))
         },
     )
 }
@@ -121,13 +121,17 @@ pub(super) fn list_untestable(list: &[RejectedEffect], files: &[ExperimentFile])
         "Effects that these records cannot show",
         &html! {
             p { "These effects may be present or not; the records do not show the difference." }
-            (folded(&groups, &["effect", "why", "experiment"], row))
+            (write_folded(&groups, &["effect", "why", "experiment"], row))
         },
     )
 }
 
 /// A table of which a long rest is behind a summary.
-fn folded(groups: &[Group<'_>], headings: &[&str], row: impl Fn(&Group<'_>) -> Markup) -> Markup {
+fn write_folded(
+    groups: &[Group<'_>],
+    headings: &[&str],
+    row: impl Fn(&Group<'_>) -> Markup,
+) -> Markup {
     let (first, rest) = groups.split_at(groups.len().min(SHOWN));
     let rows = |groups: &[Group<'_>]| html! { @for group in groups { (row(group)) } };
     html! {

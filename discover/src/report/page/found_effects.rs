@@ -28,7 +28,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
     html! {
         h3 { (prose(&describe_effect(&effect.at))) }
         p {
-            @if !effect.description.is_empty() { (prose(&capitalised(&effect.description))) ". " }
+            @if !effect.description.is_empty() { (prose(&capitalise(&effect.description))) ". " }
             @match effect.status {
                 EffectStatus::Named => { "No other tested effect has the same response." },
                 EffectStatus::Provisional => {
@@ -84,7 +84,7 @@ fn probability(p: f64) -> String {
 }
 
 /// With a capital at its beginning.
-fn capitalised(text: &str) -> String {
+fn capitalise(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string());
     first.unwrap_or_default() + letters.as_str()

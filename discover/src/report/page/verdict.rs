@@ -7,14 +7,14 @@ use crate::report::result::{Comparison, Discovery};
 use crate::report::summary::Summary;
 
 pub(super) fn write_comparison_verdict(comparison: &Comparison) -> Markup {
-    shown(&Summary::from_comparison(comparison))
+    write_summary(&Summary::from_comparison(comparison))
 }
 
 pub(super) fn write_discovery_verdict(discovery: &Discovery) -> Markup {
-    shown(&Summary::from_discovery(discovery))
+    write_summary(&Summary::from_discovery(discovery))
 }
 
-fn shown(summary: &Summary) -> Markup {
+fn write_summary(summary: &Summary) -> Markup {
     html! {
         p.verdict {
             strong { (prose(&summary.headline)) }

@@ -43,7 +43,7 @@ pub(super) fn check_reproduces_fit(
     let mut counts = vec![0.0; channels];
     let mut steps = 0;
     for piece in &stretch.windows {
-        let (seen, own) = seen(problem, best, model, stretch, piece)?;
+        let (seen, own) = simulate_outputs(problem, best, model, stretch, piece)?;
         steps += own;
         if steps > MOST_STEPS {
             return Err(format!(
@@ -104,7 +104,7 @@ fn explain(error: &SolveError, states: &[String], surfaces: &[Surface]) -> Strin
 
 /// Returns the sensor values of a window and the number of steps, or the reason why explicit steps cannot
 /// simulate it.
-fn seen(
+fn simulate_outputs(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
