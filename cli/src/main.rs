@@ -16,6 +16,7 @@ mod document;
 mod emission;
 mod engines;
 mod error;
+mod event_log;
 mod field_shapes;
 mod figures;
 mod fmu;

@@ -32,12 +32,8 @@ impl Destination {
     /// # Errors
     /// Those of [`Destination::for_output`], the path of `--out`, and another format than SVG.
     pub fn for_figure(figure: &Path, output: Option<&Path>, json: bool) -> Result<Self> {
-        let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if output.is_some_and(|other| place(other) == place(figure)) && !is_device(figure) {
-            let shown = figure.display();
-            return Err(Error::input(format!(
-                "--out {shown} and --plot {shown} are the same file: give --plot another name"
-            )));
+        if let Some(output) = output {
+            check_distinct("--plot", figure, ("--out", output))?;
         }
         let ending = figure.extension().filter(|_| !is_device(figure));
         if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("svg")) {
@@ -47,6 +43,30 @@ impl Destination {
             )));
         }
         Self::resolve("--plot", figure, json)
+    }
+
+    /// Returns the destination of `--events`, a CSV file. `others` are the other outputs, each with its option.
+    ///
+    /// # Errors
+    /// Those of [`Destination::for_output`], the path of another output, and stdout.
+    pub fn for_events(path: &Path, others: &[(&str, &Path)]) -> Result<Self> {
+        const OPTION: &str = "--events";
+        if path == Path::new("-") {
+            return Err(Error::input(format!(
+                "{OPTION} -: stdout is for --out: give {OPTION} the name of a file"
+            )));
+        }
+        for other in others {
+            check_distinct(OPTION, path, *other)?;
+        }
+        let ending = path.extension().filter(|_| !is_device(path));
+        if ending.is_some_and(|ending| !ending.eq_ignore_ascii_case("csv")) {
+            return Err(Error::input(format!(
+                "{OPTION} {}: the event log is a CSV file: give a name that ends in .csv",
+                path.display()
+            )));
+        }
+        Self::resolve(OPTION, path, false)
     }
 
     fn resolve(option: &str, path: &Path, json: bool) -> Result<Self> {
@@ -88,6 +108,18 @@ impl Destination {
             _ => print_text(summary),
         }
     }
+}
+
+/// Rejects an output with the path of another one.
+fn check_distinct(option: &str, path: &Path, (other_option, other): (&str, &Path)) -> Result {
+    let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if place(other) != place(path) || is_device(path) {
+        return Ok(());
+    }
+    let shown = path.display();
+    Err(Error::input(format!(
+        "{other_option} {shown} and {option} {shown} are the same file: give {option} another name"
+    )))
 }
 
 /// Returns whether a path is a device such as `/dev/null`. Pipes are excluded, because they may never be read.

@@ -6,7 +6,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for b in [0.0, 50e-6, 100e-6] {
         let run = model.with_parameters(&[("b_sp", b), ("b_pr", b)])?; // in the units of the file
         let motion = run.simulate(run.initial_state(), &times, &run.default_inputs(), Solver::Auto)?;
-        let (switches, by) = (motion.trajectory.switches.len(), motion.solver);
+        let (switches, by) = (motion.trajectory.events.len(), motion.solver);
         println!("b = {b:e} m: {switches} switches, solver {by}");
     }
     Ok(())

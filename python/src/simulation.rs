@@ -18,7 +18,7 @@ use crate::model::Model;
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
-/// observables, a row for each sample; number of switches; warnings.
+/// observables, a row for each sample; events; warnings.
 type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
@@ -26,8 +26,18 @@ type SimulationTuple<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray2<f64>>,
     Bound<'py, PyArray2<f64>>,
-    usize,
+    Vec<EventTuple>,
     Vec<String>,
+);
+
+/// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
+type EventTuple = (
+    f64,
+    String,
+    &'static str,
+    &'static str,
+    &'static str,
+    Vec<f64>,
 );
 
 /// Simulates from an initial state over ascending times (s). Inputs hold from each of their times to the next, or
@@ -98,6 +108,7 @@ pub fn simulate<'py>(
     let states: Vec<f64> = trajectory.states.concat();
     let width = observables.len() / rows.max(1);
     let choice = motion.solver_choice.as_ref().map(describe_choice);
+    let events = list_events(model, &motion);
     let stopped = motion.early_stop.map(|stopped| (stopped.t, stopped.reason));
     Ok((
         motion.solver.name(),
@@ -108,7 +119,7 @@ pub fn simulate<'py>(
             .to_pyarray(py)
             .reshape([rows, request.initial.len()])?,
         observables.to_pyarray(py).reshape([rows, width])?,
-        trajectory.switches.len(),
+        events,
         warnings,
     ))
 }
@@ -148,6 +159,20 @@ fn follow(
     let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
     let warnings = warnings.collect();
     Ok((motion, observables, warnings))
+}
+
+/// Returns the event log of a motion.
+fn list_events(model: &Model, motion: &Motion) -> Vec<EventTuple> {
+    let degrees = model.compiled().program().degrees_of_freedom();
+    let log = motion.event_log(degrees).into_iter();
+    let events = log.map(|event| {
+        let (before, after) = event
+            .modes
+            .map_or(("", ""), |(from, to)| (from.name(), to.name()));
+        let (surface, kind) = (event.surface.to_owned(), event.kind.name());
+        (event.t, surface, kind, before, after, event.jump.to_vec())
+    });
+    events.collect()
 }
 
 /// Returns the reason for the selection of a solver.

@@ -88,7 +88,7 @@
 //! let none = HeldInputs::zero(0);
 //! let exact = propagator.simulate(&initial, span, &samples, &none, &mut |_| {})?;
 //!
-//! assert_eq!(exact.switches.len(), located.switches.len());
+//! assert_eq!(exact.events.len(), located.events.len());
 //! for (exact, located) in exact.states.iter().zip(&located.states) {
 //!     assert!((exact[0] - located[0]).abs() < 1e-8);
 //! }

@@ -93,7 +93,7 @@ fn print_peers(arm: &mut Exact, problem: &Problem, found: &[(Peer, f64, f64)]) {
 fn print_switches(orders: &mut [Exact]) {
     println!("{:<26}{:>10}{:>12}", "exact", "switches", "us/switch");
     for arm in orders {
-        let switches = arm.simulate_cached(&[]).switches.len();
+        let switches = arm.simulate_cached(&[]).events.len();
         let times = (0..ROUNDS).map(|_| seconds(|| arm.simulate_cached(&[])));
         let each = 1e6 * times.fold(f64::INFINITY, f64::min) / switches as f64;
         println!(

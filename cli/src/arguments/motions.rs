@@ -48,6 +48,9 @@ pub struct Simulate {
     /// Figure (SVG) of the coordinates and observables.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Event log (CSV): time, surface, kind, mode before and after, and jumps of the rates.
+    #[arg(long, value_name = "FILE.csv")]
+    pub events: Option<PathBuf>,
     /// Exit with status 1 if the energy changes without work, or if bodies overlap.
     #[arg(long)]
     pub strict: bool,

@@ -10,6 +10,7 @@ use crate::audit::AuditResult;
 use crate::count::count;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
+use crate::event_log;
 use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, describe_work, follow, table};
@@ -28,6 +29,7 @@ pub fn run(options: &Simulate) -> Result {
         .as_deref()
         .map(|plot| Destination::for_figure(plot, Some(&options.out), options.output.json));
     let figure = figure.transpose()?;
+    let log = event_log_destination(options)?;
     let (compiled, inputs) = driven_model(options)?;
     let times = times(options, &inputs)?;
     if options.integration.solver == Solver::Exact && options.integration.tolerance.is_some() {
@@ -57,6 +59,9 @@ pub fn run(options: &Simulate) -> Result {
     audited.warn();
     let table = table(&run, &motion)?;
     destination.write(&table.encode(&options.out)?)?;
+    if let Some(log) = log {
+        log.write(&event_log::encode(&run, &motion)?)?;
+    }
     if let Some(figure) = figure {
         figure.write(history::figure(&compiled, &table)?.as_bytes())?;
     }
@@ -70,6 +75,16 @@ pub fn run(options: &Simulate) -> Result {
         None if !is_finite || (options.strict && audited.has_failed()) => Err(Error::Failed),
         None => Ok(()),
     }
+}
+
+/// Returns the destination of the event log.
+fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
+    let Some(path) = &options.events else {
+        return Ok(None);
+    };
+    let mut others = vec![("--out", options.out.as_path())];
+    others.extend(options.plot.as_deref().map(|plot| ("--plot", plot)));
+    Destination::for_events(path, &others).map(Some)
 }
 
 /// Returns the model and its inputs. Inputs with steps are held between these if the exact solver applies then;
@@ -124,7 +139,7 @@ fn summary(
     audited: &AuditResult<'_>,
 ) -> String {
     let file = options.out.display();
-    let (rows, switches) = (table.rows(), motion.trajectory.switches.len());
+    let (rows, switches) = (table.rows(), motion.trajectory.events.len());
     let work = motion.trajectory.statistics;
     if options.output.json {
         let document = json!({

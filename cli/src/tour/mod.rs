@@ -130,7 +130,7 @@ pub fn run(out: &Path) -> Result<TourResult> {
     Ok(TourResult {
         page: path,
         certificate,
-        switches: motion.trajectory.switches.len(),
+        switches: motion.trajectory.events.len(),
     })
 }
 
@@ -233,7 +233,7 @@ fn page_text(compiled: &CompiledModel, parts: &Parts<'_>, watch: &Stopwatch) -> 
     let summary = format!(
         "From rest over {UNTIL} s at order {ORDER}, with the paper's values and assumed values for undisclosed ones: \
          {} between contact and separation of the teeth, {}.",
-        count(motion.trajectory.switches.len(), "switch"),
+        count(motion.trajectory.events.len(), "switch"),
         describe_work(motion)
     );
     let found = rediscovery.sentence();

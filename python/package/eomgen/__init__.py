@@ -15,12 +15,13 @@ from .equilibrium import Equilibrium
 from .linearisation import Linearisation
 from .model import Model, SpecificationWarning, load
 from .records import record_to_csv
-from .trajectory import Trajectory
+from .trajectory import Event, Trajectory
 
 __all__ = [
     "Discovery",
     "DiscoveryError",
     "Equilibrium",
+    "Event",
     "Linearisation",
     "Model",
     "SimulationError",

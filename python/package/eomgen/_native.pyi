@@ -79,7 +79,7 @@ def simulate(
     _Array,
     _Array,
     _Array,
-    int,
+    List[Tuple[float, str, str, str, str, List[float]]],
     List[str],
 ]: ...
 def discover(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from decimal import Decimal
-from typing import TYPE_CHECKING, Any, Callable, List, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,24 +27,47 @@ MAX_VALUES = 10**8
 DEFAULT_INTERVALS = 1000
 
 
+class Event(NamedTuple):
+    """Event of a motion.
+
+    t: time, s. surface: name of the contact, or formula whose sign changes; empty if the rates jump with an input.
+    kind: crossing, stick, slip, impact, contact, separation, corner, reflection or input. before, after: modes of the
+    surface. jump: jump of the rate of each coordinate, SI; empty without a jump. Events at one instant share it.
+    """
+
+    t: float
+    surface: str
+    kind: str
+    before: str
+    after: str
+    jump: Mapping[str, float]
+
+
 class Trajectory:
     """Samples of a motion, in SI.
 
     t: times, (n,), s. states: (n, states). observables: (n, observables). `r["tip"]` is the column of an
     observable or of a state; observables take precedence. solver: name of the solver. reason: why "auto"
-    selected it; None for a requested solver. switches: number of crossings of a
-    switching surface.
+    selected it; None for a requested solver.
+    switches: number of events at surfaces.
     """
 
     def __init__(
         self,
         names: Tuple[Tuple[str, ...], Tuple[str, ...]],
         units: Mapping[str, str],
-        found: Tuple[str, Optional[str], Any, Array, Array, Array, int, List[str]],
+        found: Tuple[str, Optional[str], Any, Array, Array, Array, List[Any], List[str]],
     ):
-        self.solver, self.reason, _, self.t, self.states, self.observables, self.switches = found[:7]
+        self.solver, self.reason, _, self.t, self.states, self.observables, events = found[:7]
         self.state_names, self.observable_names = names
+        self._events = events
+        self.switches = sum(event[2] != "input" for event in events)
         self._units = units
+
+    @property
+    def events(self) -> List[Event]:
+        """Events in order of time."""
+        return [Event(*event[:5], dict(zip(self.state_names, event[5]))) for event in self._events]
 
     @property
     def names(self) -> Tuple[str, ...]:

@@ -7,7 +7,9 @@ use std::cell::{RefCell, RefMut};
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{ObservedStep, Surface, System, jacobian_by_differences};
+use eomgen_sim::ode::{
+    ObservedStep, Surface, SurfaceKind, SurfaceMode, System, jacobian_by_differences,
+};
 
 use crate::audit::{Audit, Auditor, EnergyAndPower};
 use crate::contacts::Contacts;
@@ -231,19 +233,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             .zip(here.iter().zip(&there))
             .map(|((formula, moves), (here, there))| Surface {
                 formula: formula.clone(),
-                is_speed: moves && here == there,
+                kind: match moves && here == there {
+                    true => SurfaceKind::Speed,
+                    false => SurfaceKind::Function,
+                },
             });
         let contacts = self.contacts.iter();
-        let names = contacts.flat_map(|contacts| contacts.borrow().guard_names());
-        let impacts = names.map(|formula| Surface {
-            formula,
-            is_speed: false,
-        });
+        let impacts = contacts.flat_map(|contacts| contacts.borrow().surfaces());
         let sliding = self.sliding.iter();
         let discs = sliding.flat_map(|sliding| sliding.borrow().disc_formulas());
         let discs = discs.map(|formula| Surface {
             formula,
-            is_speed: true,
+            kind: SurfaceKind::Speed,
         });
         own.chain(impacts).chain(discs).collect()
     }
@@ -459,27 +460,31 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
-    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        let mut changed = Vec::new();
+    fn update_modes(&self, t: f64, y: &[f64]) {
         let given = self.inputs.borrow();
         if let Some(corners) = &self.corners {
-            let mut corners = corners.borrow_mut();
-            corners.update((t, y), &given.evaluate(t));
-            changed = corners.take_returned();
+            corners.borrow_mut().update((t, y), &given.evaluate(t));
         }
         if let Some(contacts) = &self.contacts {
-            let (mut contacts, inputs) = (contacts.borrow_mut(), &given.evaluate(t));
-            let (state, mut evaluator) = (y, self.evaluator());
-            let first = evaluator.guard_count();
-            let updated = contacts.update_friction(&mut evaluator, Point { t, state, inputs });
-            changed.extend(updated.into_iter().map(|guard| (first + guard, true)));
+            self.evaluate_at(t, y, |evaluator, point| {
+                contacts.borrow_mut().update_friction(evaluator, point);
+            });
         }
         if let Some(sliding) = &self.sliding {
             let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));
             let mut sliding = sliding.borrow_mut();
-            changed.extend(sliding.update((t, y), (earlier.as_ref(), inputs.as_ref())));
+            sliding.update((t, y), (earlier.as_ref(), inputs.as_ref()));
         }
-        changed
+    }
+
+    fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        let own = self.evaluator().guard_count();
+        if let Some(contacts) = &self.contacts {
+            contacts.borrow().write_modes(&mut modes[own..]);
+        }
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow().write_modes(modes);
+        }
     }
 
     fn is_observing(&self) -> bool {

@@ -9,6 +9,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::contacts::Start;
 use crate::driven_model::DrivenModel;
@@ -79,8 +80,19 @@ impl Instance<'_> {
             singularity_watch: RefCell::new(SingularityWatch::new(rows, names)),
             positive_rate_model: at(LARGE_RATE_PER_S)?,
             negative_rate_model: at(-LARGE_RATE_PER_S)?,
+            unmoved_sizes: self.unmoved_sizes(),
             stabilisation_rate: self.value(STABILISATION_RATE).unwrap_or(0.0),
         }))
+    }
+
+    /// Returns the largest size of an unmoved coordinate and of an unmoved rate.
+    fn unmoved_sizes(&self) -> [f64; 2] {
+        let degrees = self.model().program().degrees_of_freedom();
+        let sizes = self.model().typical_sizes();
+        [0, 1].map(|kind| {
+            let sizes = sizes[kind * degrees..(kind + 1) * degrees].iter();
+            UNMOVED_SIZE_FRACTION * sizes.fold(f64::MIN_POSITIVE, |most, size| most.max(*size))
+        })
     }
 
     /// Returns the state nearest to `state` in the norm of the kinetic energy at which the

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::Trajectory;
+use eomgen_sim::ode::{Surface, Trajectory};
 
 use crate::audit::Audit;
 use crate::error::Error;
@@ -55,6 +55,8 @@ impl fmt::Display for Solver {
 pub struct Motion {
     /// States at the samples, number of events and solver statistics.
     pub trajectory: Trajectory,
+    /// Switching surfaces of the events, by the index of their functions.
+    pub surfaces: Vec<Surface>,
     /// Inputs of the motion.
     pub inputs: HeldInputs,
     /// Solver that computed the motion; never [`Solver::Auto`].

@@ -34,6 +34,8 @@ pub(crate) struct Projection {
     pub negative_rate_model: RefCell<Evaluator>,
     /// Stabilisation rate of the model itself, 1/s.
     pub stabilisation_rate: f64,
+    /// Sizes of coordinates and of rates that have not moved.
+    pub unmoved_sizes: [f64; 2],
     /// Detector of singular positions along the motion.
     pub singularity_watch: RefCell<SingularityWatch>,
 }
@@ -72,9 +74,11 @@ impl Projection {
                 self.positive_rate_model.borrow_mut().rates(point, plus);
                 self.negative_rate_model.borrow_mut().rates(point, minus);
             }
-            let [largest, largest_rate] = [0, degrees].map(|first| {
-                let entries = state[first..first + degrees].iter();
-                entries.fold(f64::MIN_POSITIVE, |most, entry| most.max(entry.abs()))
+            let [largest, largest_rate] = [0, 1].map(|kind| {
+                let entries = state[kind * degrees..(kind + 1) * degrees].iter();
+                entries.fold(self.unmoved_sizes[kind], |most, entry| {
+                    most.max(entry.abs())
+                })
             });
             let mut relative = 0.0_f64;
             let [here, plus, minus] = &mut rates;

@@ -152,16 +152,12 @@ impl Instance<'_> {
             )
         });
         let audit = auditor.map(|auditor| auditor.audit().clone());
+        let surfaces = DrivenModel::new(&evaluator, request.inputs).surfaces();
         let Err(error) = ended else {
             let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
-            return Ok(new_motion(
-                trajectory,
-                request,
-                Solver::Exact,
-                (choice, audit),
-            ));
+            let found = (trajectory, surfaces);
+            return Ok(new_motion(found, request, Solver::Exact, (choice, audit)));
         };
-        let surfaces = DrivenModel::new(&evaluator, request.inputs).surfaces();
         let reason = self.format_named((&surfaces, Solver::Exact), |names| {
             error.format_named(names)
         });
@@ -171,8 +167,9 @@ impl Instance<'_> {
         }
         let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
         let t = error.time();
-        let so_far = new_motion(trajectory, request, Solver::Exact, (choice, audit));
         let cause = self.exact_stop_cause(&error, &surfaces);
+        let found = (trajectory, surfaces);
+        let so_far = new_motion(found, request, Solver::Exact, (choice, audit));
         with_early_stop(so_far, EarlyStop { t, reason, cause })
     }
 
@@ -264,13 +261,18 @@ impl Instance<'_> {
         let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
         let so_far = Motion {
             initial_changes: moved,
-            ..new_motion(trajectory, request, solver, (choice, system.audit()))
+            ..new_motion(
+                (trajectory, system.surfaces()),
+                request,
+                solver,
+                (choice, system.audit()),
+            )
         };
         match ended {
             Ok(()) => Ok(so_far),
             Err(error) => {
-                let (t, surfaces) = (SolveError::time(&error), system.surfaces());
-                let cause = self.cause(&error, &surfaces);
+                let (t, surfaces) = (SolveError::time(&error), &so_far.surfaces);
+                let cause = self.cause(&error, surfaces);
                 let ended_at = t.unwrap_or(request.time_span().0);
                 let may_be = matches!(cause, StopCause::NotFinite | StopCause::Limit);
                 let passed = system.projection().filter(|_| may_be);
@@ -298,7 +300,7 @@ impl Instance<'_> {
                     }
                     (None, Some(reason)) => reason,
                     (None, None) => {
-                        self.format_named((&surfaces, solver), |names| error.format_named(names))
+                        self.format_named((surfaces, solver), |names| error.format_named(names))
                     }
                 };
                 with_early_stop(so_far, EarlyStop { t, reason, cause })
@@ -405,13 +407,14 @@ const STICKING_EXCLUSION: &str =
     "during sticking, the model does not give the power of the force that holds the motion";
 
 fn new_motion(
-    trajectory: Trajectory,
+    (trajectory, surfaces): (Trajectory, Vec<Surface>),
     request: &Request<'_>,
     solver: Solver,
     (choice, audit): (Option<SolverChoice>, Option<Audit>),
 ) -> Motion {
     Motion {
         trajectory,
+        surfaces,
         inputs: request.inputs.clone(),
         solver,
         solver_choice: choice,

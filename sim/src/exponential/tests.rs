@@ -58,7 +58,7 @@ fn integration_matches_exact_motion_through_events() {
     let wanted = propagator
         .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
         .expect("a motion");
-    assert!(wanted.switches.len() > 20);
+    assert!(wanted.events.len() > 20);
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let found = run(&mut integrator, &initial, &times, &inputs);
@@ -312,7 +312,7 @@ fn release_within_step_is_located() {
     let wanted = propagator
         .simulate(&[0.0; 4], span, &times, &inputs, &mut |_| {})
         .expect("a motion");
-    assert!(wanted.switches.len() >= 5);
+    assert!(wanted.events.len() >= 5);
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 2e-3, 1.0).expect("can be integrated");
     let found = run(&mut integrator, &[0.0; 4], &times, &inputs);
@@ -442,7 +442,7 @@ impact = { on = "alpha", value = "-d*dot(alpha)*above(alpha - beta - g)" }
                 .simulate(&initial, span, &times, &inputs, &mut |_| {})
                 .expect("a motion")
         };
-        assert!(motion(&values).switches.len() >= 5, "{name}");
+        assert!(motion(&values).events.len() >= 5, "{name}");
         for place in 0..values.len() {
             let step = 1e-7 * values[place];
             let [after, before] = [step, -step].map(|change| {

@@ -8,6 +8,7 @@ use super::bernstein::BernsteinBasis;
 use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::event_search::Crossing;
+use super::events::{Event, Jump, SurfaceMode};
 use super::magnitudes::Magnitudes;
 use super::radau::Radau;
 use super::request;
@@ -16,7 +17,7 @@ use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::stiffness::Pace;
 use super::system::{Interior, System};
-use super::trajectory::{Switch, Trajectory};
+use super::trajectory::Trajectory;
 use super::watch::WatchedSystem;
 
 /// The first step, relative to the span; the error estimate corrects it at once.
@@ -107,9 +108,12 @@ fn run<S: System + ?Sized, M: Stepper>(
         resolution: Resolution::new(settings.tolerance),
         basis: BernsteinBasis::new(),
         projected: None,
+        modes: Vec::new(),
+        earlier_modes: Vec::new(),
         rebounds: Vec::new(),
         trajectory,
     };
+    watched.write_modes(&mut driver.modes);
     driver.sample_start();
     let ended = driver.go_to_the_end(system, progress);
     driver.finish();
@@ -144,6 +148,9 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     pub(super) basis: BernsteinBasis,
     /// The state here brought back onto what the motion keeps, if that moves it.
     projected: Option<Vec<f64>>,
+    /// Modes of the surfaces here, and those before the last event.
+    pub(super) modes: Vec<SurfaceMode>,
+    earlier_modes: Vec<SurfaceMode>,
     /// Surfaces that returned the motion in the last step over them.
     pub(super) rebounds: Vec<usize>,
     pub(super) trajectory: &'a mut Trajectory,
@@ -308,6 +315,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let is_changed = self.watched.has_breakpoint_at(point.t)
             && self.watched.apply_breakpoint(point.t, &mut point.y);
         if is_changed {
+            let before = self.stepper.current_point().y.clone();
+            self.record_jump(point.t, &before, &point.y);
             let step = self.stepper.step();
             self.stepper.restart(point, step);
         }
@@ -333,35 +342,34 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.samples.get(self.trajectory.times.len()).copied()
     }
 
-    /// Records the surfaces that began or ceased to hold the motion, and the switching functions
-    /// that changed sign.
+    /// Records the jump of the state at an event, unless it is below the tolerance.
+    pub(super) fn record_jump(&mut self, t: f64, before: &[f64], after: &[f64]) {
+        let magnitudes = self.stepper.magnitudes();
+        let changes = before.iter().zip(after).map(|(a, b)| b - a);
+        let change = magnitudes.round_to_tolerance(changes, after);
+        if change.iter().any(|entry| *entry != 0.0) {
+            self.trajectory.jumps.push(Jump { t, change });
+        }
+    }
+
+    /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.stepper.current_point();
         let t = here.t;
-        let mut changed = self.watched.update_sticking(t, &here.y);
-        for guard in self.watched.enter_regime(t, &here.y) {
-            if changed.iter().all(|(known, _)| *known != guard) {
-                changed.push((guard, self.watched.is_positive(guard)));
+        self.watched.update_modes(t, &here.y);
+        self.watched.enter_regime(t, &here.y);
+        std::mem::swap(&mut self.modes, &mut self.earlier_modes);
+        self.watched.write_modes(&mut self.modes);
+        let rebounds = std::mem::take(&mut self.rebounds);
+        for guard in 0..self.modes.len() {
+            let (from, to) = (self.earlier_modes[guard], self.modes[guard]);
+            let has_changed = from != to && from != SurfaceMode::Unknown;
+            if has_changed || rebounds.contains(&guard) {
+                self.trajectory.events.push(Event { t, guard, from, to });
             }
-        }
-        for guard in std::mem::take(&mut self.rebounds) {
-            let is_known = changed.iter().any(|(known, _)| *known == guard);
-            if !is_known {
-                let to_positive = self.watched.is_positive(guard);
-                self.trajectory.switches.push(Switch {
-                    t,
-                    guard,
-                    to_positive,
-                });
+            if has_changed {
+                self.check_switch_rate(t, guard)?;
             }
-        }
-        for (guard, to_positive) in changed {
-            self.trajectory.switches.push(Switch {
-                t,
-                guard,
-                to_positive,
-            });
-            self.check_switch_rate(t, guard)?;
         }
         // Rates that lead back from beyond a surface must not keep trials from getting there.
         self.watched.fix_sides(true);

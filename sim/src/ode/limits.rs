@@ -54,15 +54,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// switches. A surface that sticks and releases between the switches of another one does not
     /// chatter.
     fn rarest(&self) -> usize {
-        let mut counts = vec![
-            0;
-            self.trajectory
-                .switches
-                .iter()
-                .map(|switch| switch.guard + 1)
-                .max()
-                .unwrap_or(1)
-        ];
+        let mut counts = vec![0; self.modes.len()];
         for (_, guard) in &self.recent {
             counts[*guard] += 1;
         }

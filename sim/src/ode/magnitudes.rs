@@ -86,6 +86,16 @@ impl Magnitudes {
         })
     }
 
+    /// Returns changes of a state `y`, those within the tolerance as 0.
+    pub fn round_to_tolerance(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> Vec<f64> {
+        let changes = changes.zip(self.allowed(y));
+        let rounded = changes.map(|(change, allowed)| match change.abs() > allowed {
+            true => change,
+            false => 0.0,
+        });
+        rounded.collect()
+    }
+
     /// Returns the largest error of a component at `y`, as a multiple of its tolerance. NaN if an error is NaN.
     pub fn max_norm(&self, errors: &[f64], y: &[f64]) -> f64 {
         let errors = errors.iter().zip(self.allowed(y));

@@ -28,6 +28,7 @@ mod dormand_prince;
 mod driver;
 mod error;
 mod event_search;
+mod events;
 mod examination;
 mod grazing;
 mod history;
@@ -52,7 +53,8 @@ mod watch;
 
 pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
-pub use names::{Names, Surface, UnsupportedSticking};
+pub use events::{Event, Jump, SurfaceMode};
+pub use names::{Names, Surface, SurfaceKind, UnsupportedSticking};
 pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
-pub use trajectory::{SolverStatistics, Switch, Trajectory};
+pub use trajectory::{SolverStatistics, Trajectory};

@@ -5,8 +5,19 @@
 pub struct Surface {
     /// Formula that changes its sign.
     pub formula: String,
-    /// True if the formula is a speed, as for dry friction.
-    pub is_speed: bool,
+    /// Quantity that the formula is.
+    pub kind: SurfaceKind,
+}
+
+/// Quantity whose sign a switching surface depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceKind {
+    /// A function of the state.
+    Function,
+    /// A speed, as for dry friction.
+    Speed,
+    /// The distance of a contact.
+    Distance,
 }
 
 /// Reason why a solver does not support sticking.
@@ -52,8 +63,8 @@ impl Names<'_> {
     /// Returns reason and cure if a motion does not leave a surface, as far as the surface is
     /// known.
     pub(crate) fn sticking_reason(&self, index: usize) -> String {
-        match self.surfaces.get(index).map(|surface| surface.is_speed) {
-            Some(true) => {
+        match self.surfaces.get(index).map(|surface| surface.kind) {
+            Some(SurfaceKind::Speed) => {
                 let (reason, cure) = match self.unsupported_sticking {
                     UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
                     UnsupportedSticking::Impacts => ("for a model with impacts", ""),
@@ -63,7 +74,7 @@ impl Names<'_> {
                 };
                 format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
             }
-            Some(false) => CHATTERING.to_owned(),
+            Some(SurfaceKind::Function | SurfaceKind::Distance) => CHATTERING.to_owned(),
             None => "replace the jump by a steep smooth function".to_owned(),
         }
     }

@@ -2,6 +2,7 @@
 
 use eomgen_codegen::program::evaluator::Enclosure;
 
+use super::events::SurfaceMode;
 use super::settings::difference_step;
 
 /// An accepted step, for observers. Reading it does not change the motion.
@@ -100,13 +101,12 @@ pub trait System {
     /// short and only as accurate as the tolerance.
     fn fix_sides(&self, _sides: Option<&[f64]>) {}
 
-    /// Updates sticking at `t` and `y`, where inputs may jump. Returns the switching functions
-    /// whose surfaces began or ceased to hold the motion since the last call. The boolean is true
-    /// if the motion came from the negative side, or leaves to the positive side. The sign of such
-    /// a function need not change.
-    fn update_sticking(&self, _t: f64, _y: &[f64]) -> Vec<(usize, bool)> {
-        Vec::new()
-    }
+    /// Updates the modes of the surfaces at `t` and `y`, where inputs may jump: rest ends if a force exceeds its limit.
+    fn update_modes(&self, _t: f64, _y: &[f64]) {}
+
+    /// Replaces the modes of the surfaces, [`System::guard_count`] entries that follow from their sides, by those in which
+    /// the motion is: held or closed.
+    fn write_modes(&self, _modes: &mut [SurfaceMode]) {}
 
     /// Returns true if the solver must call [`System::observe_step`].
     fn is_observing(&self) -> bool {
@@ -174,8 +174,12 @@ impl<S: System + ?Sized> System for &S {
         (**self).fix_sides(sides);
     }
 
-    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        (**self).update_sticking(t, y)
+    fn update_modes(&self, t: f64, y: &[f64]) {
+        (**self).update_modes(t, y);
+    }
+
+    fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        (**self).write_modes(modes);
     }
 
     fn is_observing(&self) -> bool {

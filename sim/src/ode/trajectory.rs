@@ -1,15 +1,6 @@
 //! Results of a simulation.
 
-/// An event: the crossing of a switching surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Switch {
-    /// Time, s.
-    pub t: f64,
-    /// Index of the switching function.
-    pub guard: usize,
-    /// True if the function is positive after the event.
-    pub to_positive: bool,
-}
+use super::events::{Event, Jump};
 
 /// Solver statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,7 +25,9 @@ pub struct Trajectory {
     /// State at the end of the simulated time.
     pub final_state: Vec<f64>,
     /// Events, in order of time.
-    pub switches: Vec<Switch>,
+    pub events: Vec<Event>,
+    /// Jumps of the state, in order of time. Events at the same time caused them; without any, inputs that jump did.
+    pub jumps: Vec<Jump>,
     /// Solver statistics.
     pub statistics: SolverStatistics,
 }

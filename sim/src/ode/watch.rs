@@ -5,6 +5,7 @@ use std::cell::{Cell, RefCell};
 
 use eomgen_codegen::program::evaluator::Enclosure;
 
+use super::events::SurfaceMode;
 use super::point::Point;
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
@@ -181,22 +182,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.side(guard) * value < 0.0
     }
 
-    /// Sets the regime to that of `t` and `y`, and returns the functions that changed sign. A
-    /// function that is exactly 0 keeps its side.
-    pub fn enter_regime(&self, t: f64, y: &[f64]) -> Vec<usize> {
+    /// Sets the regime to that of `t` and `y`. A function that is exactly 0 keeps its side.
+    pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
         let mut regime = self.regime.borrow_mut();
-        let mut changed = Vec::new();
-        for (index, (side, guard)) in regime.iter_mut().zip(guards).enumerate() {
-            if guard == 0.0 || guard.is_nan() {
-                continue;
-            }
-            if *side * guard < 0.0 {
-                changed.push(index);
-            }
+        let sides = regime.iter_mut().zip(guards);
+        for (side, guard) in sides.filter(|(_, guard)| guard.abs() > 0.0) {
             *side = guard.signum();
         }
-        changed
     }
 
     /// Applies the jumps of an event between a point just before a surface and one just beyond it.
@@ -240,10 +233,17 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         releases
     }
 
-    /// Returns the switching functions whose surfaces began or ceased to hold the motion; see
-    /// [`System::update_sticking`].
-    pub fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        self.system.update_sticking(t, y)
+    /// Updates the modes of the surfaces; see [`System::update_modes`].
+    pub fn update_modes(&self, t: f64, y: &[f64]) {
+        self.system.update_modes(t, y);
+    }
+
+    /// Writes the modes of the surfaces in the present regime.
+    pub fn write_modes(&self, modes: &mut Vec<SurfaceMode>) {
+        modes.clear();
+        let regime = self.regime.borrow();
+        modes.extend(regime.iter().map(|side| SurfaceMode::from_side(*side)));
+        self.system.write_modes(modes);
     }
 
     /// Returns true if the system observes steps.
@@ -275,10 +275,5 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         let all = 0..y.len();
         all.max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
             .unwrap_or(0)
-    }
-
-    /// Returns true if the switching function `guard` is positive in the present regime.
-    pub fn is_positive(&self, guard: usize) -> bool {
-        self.side(guard) > 0.0
     }
 }

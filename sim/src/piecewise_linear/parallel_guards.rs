@@ -3,6 +3,7 @@
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::event_function::{Limits, Linear};
+use crate::ode::{Event, SurfaceMode};
 
 /// Parallel switching surfaces: thresholds of one linear function.
 #[derive(Clone, Debug)]
@@ -87,6 +88,30 @@ impl ParallelGuards {
                 sides[*guard] = side;
             }
         }
+    }
+
+    /// Returns the mode of the surfaces at a rank.
+    pub fn mode(&self, cell: Cell, rank: usize) -> SurfaceMode {
+        let is_positive = match cell {
+            Cell::On(on) | Cell::Bearing(on, _) if on == rank => return SurfaceMode::Held,
+            Cell::Between(above) => rank < above,
+            Cell::On(on) | Cell::Bearing(on, _) => rank < on,
+        };
+        SurfaceMode::from_side(if is_positive { 1.0 } else { -1.0 })
+    }
+
+    /// Returns the surfaces whose mode differs between two cells at a time (s), with the modes in both.
+    pub fn mode_changes(&self, from: Cell, to: Cell, t: f64) -> impl Iterator<Item = Event> {
+        let guards = self.ranks.iter().enumerate();
+        let guards =
+            guards.flat_map(|(rank, guards)| guards.iter().map(move |guard| (rank, *guard)));
+        let events = guards.map(move |(rank, guard)| Event {
+            t,
+            guard,
+            from: self.mode(from, rank),
+            to: self.mode(to, rank),
+        });
+        events.filter(|event| event.from != event.to)
     }
 
     /// The function whose thresholds the surfaces are.

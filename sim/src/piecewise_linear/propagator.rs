@@ -20,7 +20,7 @@ use super::switching::switched_rate;
 use super::transition::{Limit, Transition};
 use super::visited_regimes::VisitedRegime;
 use crate::inputs::HeldInputs;
-use crate::ode::{SolveError, Switch};
+use crate::ode::SolveError;
 
 /// Switches in one instant before the motion is moved on by the shortest step.
 const AT_ONCE: u32 = 16;
@@ -137,8 +137,11 @@ pub(super) struct Change<'a> {
     pub explicit_rate: f64,
     /// u of the saltation matrix I + u grad g, if that is constant.
     pub saltation: Option<&'a DVector<f64>>,
-    /// The first of the surfaces that were reached, and whether it is positive from here on.
-    pub switch: Switch,
+    /// Time, s.
+    pub t: f64,
+    /// The families of surfaces, and the cell of each in both regimes.
+    pub families: &'a [ParallelGuards],
+    pub cells: (&'a [Cell], &'a [Cell]),
 }
 
 impl Motion {
@@ -380,7 +383,7 @@ impl Propagator {
             saltation,
             moves_others,
         } = self.transition(&limit, standing)?;
-        let (rank, to_positive) = limit.rank(self.regimes[before].cells[family]);
+        let rank = limit.rank(self.regimes[before].cells[family]);
         let phases = &motion.phases;
         let guard = self.families[family].ranks[rank][0];
         let function = &self.regimes[before].regime.event_functions[event_function].linear;
@@ -393,11 +396,9 @@ impl Propagator {
             state: &motion.state,
             inputs: values,
             phases,
-            switch: Switch {
-                t: motion.time(),
-                guard,
-                to_positive,
-            },
+            t: motion.time(),
+            families: &self.families,
+            cells: (&self.regimes[before].cells, &self.regimes[after].cells),
         });
         motion.regime = after;
         self.let_go(motion, before);

@@ -5,7 +5,7 @@ use super::flow::Flow;
 use super::follow::Samples;
 use super::propagator::{Change, Follow, Propagator, Segment};
 use crate::inputs::HeldInputs;
-use crate::ode::{ObservedStep, Switch, Trajectory};
+use crate::ode::{Event, ObservedStep, Trajectory};
 
 /// Observer of the steps of the exact solver; the boolean is true if a surface holds the motion.
 pub type StepObserver<'o> = dyn FnMut(&mut ObservedStep<'_>, bool) + 'o;
@@ -62,7 +62,7 @@ impl Propagator {
         let mut motion = self.start(span.0, initial, inputs)?;
         let mut recorder = Recorder {
             samples,
-            switches: Vec::new(),
+            events: Vec::new(),
             progress,
             observer,
         };
@@ -74,7 +74,7 @@ impl Propagator {
         }
         trajectory.times = recorder.samples.times;
         trajectory.states = recorder.samples.states;
-        trajectory.switches = recorder.switches;
+        trajectory.events = recorder.events;
         trajectory.final_state = motion.state().to_vec();
         trajectory.statistics.steps = motion.effort.steps;
         trajectory.statistics.trial_steps = motion.effort.newton;
@@ -82,10 +82,10 @@ impl Propagator {
     }
 }
 
-/// Takes samples and notes switches.
+/// Takes samples and records events.
 struct Recorder<'s, 'o> {
     samples: Samples<'s>,
-    switches: Vec<Switch>,
+    events: Vec<Event>,
     progress: &'s mut dyn FnMut(f64),
     observer: Option<&'s mut StepObserver<'o>>,
 }
@@ -121,6 +121,11 @@ impl Follow for Recorder<'_, '_> {
     }
 
     fn switched(&mut self, change: &Change<'_>) {
-        self.switches.push(change.switch);
+        let (before, after) = change.cells;
+        let cells = change.families.iter().zip(before.iter().zip(after));
+        for (family, (from, to)) in cells.filter(|(_, (from, to))| from != to) {
+            self.events
+                .extend(family.mode_changes(*from, *to, change.t));
+        }
     }
 }

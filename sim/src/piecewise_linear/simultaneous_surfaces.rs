@@ -36,7 +36,7 @@ impl Propagator {
     /// Returns the surfaces that a motion is on at a limit.
     pub(super) fn surfaces_at_limit(&self, limit: &Limit) -> Vec<SurfaceContact> {
         let visited = &self.regimes[limit.before];
-        let rank = limit.rank(visited.cells[limit.family]).0;
+        let rank = limit.rank(visited.cells[limit.family]);
         let is_held = matches!(visited.cells[limit.family], Cell::On(_));
         let mut met = vec![SurfaceContact {
             family: limit.family,

@@ -36,13 +36,12 @@ pub(super) struct Transition {
 }
 
 impl Limit {
-    /// The rank of the threshold, given the cell of its family, and whether its surfaces are
-    /// positive beyond.
-    pub fn rank(&self, cell: Cell) -> (usize, bool) {
+    /// The rank of the threshold, given the cell of its family.
+    pub fn rank(&self, cell: Cell) -> usize {
         match (cell, self.upper) {
-            (Cell::Between(above), true) => (above, true),
-            (Cell::Between(above), false) => (above - 1, false),
-            (Cell::On(rank) | Cell::Bearing(rank, _), upper) => (rank, upper),
+            (Cell::Between(above), true) => above,
+            (Cell::Between(above), false) => above - 1,
+            (Cell::On(rank) | Cell::Bearing(rank, _), _) => rank,
         }
     }
 
@@ -97,7 +96,7 @@ impl Propagator {
             let slack = self.rate_rounding(adjacent.regime, family, state);
             if there * limit.outward() < -slack && here * limit.outward() > -slack {
                 let mut cells = self.regimes[before].cells.clone();
-                cells[family] = Cell::On(limit.rank(cells[family]).0);
+                cells[family] = Cell::On(limit.rank(cells[family]));
                 transition.after = self.regime(&cells, limit.t)?;
                 transition.saltation = None;
                 transition.moves_others = true;
@@ -115,7 +114,7 @@ impl Propagator {
         let family = limit.family;
         let cells = self.regimes[limit.before].cells.clone();
         let outline = self.outline(&cells);
-        let rank = limit.rank(cells[family]).0;
+        let rank = limit.rank(cells[family]);
         let crossing = Crossing {
             family,
             function: self.outlines[outline].functions[family].clone(),

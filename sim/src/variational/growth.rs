@@ -215,7 +215,7 @@ impl<'a, S: System + ?Sized> MotionWithTangent<'a, S> {
         let work = motion.statistics;
         let steps = work.steps + work.rejected_steps + work.trial_steps;
         self.settings.max_steps = self.settings.max_steps.saturating_sub(steps);
-        self.switches += motion.switches.len() as u64;
+        self.switches += motion.events.len() as u64;
         motion.final_state
     }
 }

@@ -76,7 +76,7 @@ fn contact_shorter_than_step_is_detected() {
             let until = f64::from(SWINGS) * period(wall, stiffness);
             let motion = swing(method, tolerance, wall, stiffness, until);
             let case = format!("{method:?} at {tolerance:e}, {depth:e} beyond the wall");
-            assert_eq!(motion.switches.len(), 2 * SWINGS as usize, "{case}");
+            assert_eq!(motion.events.len(), 2 * SWINGS as usize, "{case}");
             let off = motion.final_state[0].abs();
             assert!(tolerance > 1e-12 || off < 1e-6, "{case}: {off:e}");
         }
@@ -100,7 +100,7 @@ fn grazing_contact_conserves_energy() {
                 let depth = (x - wall).max(0.0);
                 let energy = 0.5 * (v * v + x * x + stiffness * depth * depth);
                 let errors = motion.statistics.steps as f64
-                    + 2.0 * motion.switches.len() as f64 * stiffness.sqrt();
+                    + 2.0 * motion.events.len() as f64 * stiffness.sqrt();
                 assert!(
                     (energy - 0.5).abs() < errors * tolerance,
                     "{method:?}, wall at {wall:?}, stiffness {stiffness:e}: {energy:e} J"
@@ -118,7 +118,7 @@ fn swing_short_of_wall_has_no_contact() {
         for gap in [1e-2, 1e-4, 1e-6] {
             let motion = swing(method, 1e-9, 1.0 + gap, 1e6, until);
             let case = format!("{method:?}, {gap:e} before the wall");
-            assert!(motion.switches.is_empty(), "{case}");
+            assert!(motion.events.is_empty(), "{case}");
             assert!(
                 (motion.final_state[0] - free.final_state[0]).abs() < 1e-7,
                 "{case}"

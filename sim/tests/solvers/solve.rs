@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use super::systems::{FixedSides, Functions, dead_zone, dry_friction, smooth, smooth_between};
 use eomgen_sim::ode::{
-    Method, Names, Settings, SolveError, Surface, System, Trajectory, simulate, simulate_into,
+    Method, Names, Settings, SolveError, Surface, SurfaceKind, SurfaceMode, System, Trajectory,
+    simulate, simulate_into,
 };
 
 fn run(
@@ -94,9 +95,9 @@ fn dead_zone_oscillator_keeps_its_period() {
         1e-12,
     )
     .expect("a trajectory");
-    assert_eq!(trajectory.switches.len(), 800);
-    let first = trajectory.switches[0];
-    assert!(first.guard == 0 && first.to_positive);
+    assert_eq!(trajectory.events.len(), 800);
+    let first = trajectory.events[0];
+    assert!(first.guard == 0 && first.to == SurfaceMode::Positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
     // A few thousand steps of 1e-12, as a drift of the speed over the whole time.
@@ -117,7 +118,7 @@ fn dead_zone_oscillator_keeps_its_period() {
 fn dry_friction_reduces_amplitude_equally_per_half_cycle() {
     let trajectory = run(&dry_friction(0.05), &[1.0, 0.0], 4.0 * PI, 1e-11).expect("a trajectory");
     // Turning points at multiples of pi, each closer to the middle by twice the friction.
-    let turns: Vec<f64> = trajectory.switches.iter().map(|switch| switch.t).collect();
+    let turns: Vec<f64> = trajectory.events.iter().map(|switch| switch.t).collect();
     assert!((3..=4).contains(&turns.len()), "{turns:?}");
     for (number, turn) in (1..).zip(turns) {
         assert!(
@@ -141,9 +142,9 @@ fn sticking_without_support_is_an_error() {
         panic!("{error:?}")
     };
     assert!((t - 2.0 * PI).abs() < 1e-6, "{t}");
-    let surface = |is_speed| Surface {
+    let surface = |kind| Surface {
         formula: "v".to_owned(),
-        is_speed,
+        kind,
     };
     let said = |surface: Surface| {
         error.format_named(&Names {
@@ -151,11 +152,14 @@ fn sticking_without_support_is_an_error() {
             ..Names::default()
         })
     };
-    assert!(said(surface(true)).contains("on which `v` is zero: it sticks"));
+    assert!(said(surface(SurfaceKind::Speed)).contains("on which `v` is zero: it sticks"));
     // Only users of adams see its name.
-    assert!(!said(surface(true)).contains("adams"));
+    assert!(!said(surface(SurfaceKind::Speed)).contains("adams"));
     // A position is no friction.
-    assert!(said(surface(false)).contains("chatters") && !said(surface(false)).contains("tanh"));
+    assert!(
+        said(surface(SurfaceKind::Function)).contains("chatters")
+            && !said(surface(SurfaceKind::Function)).contains("tanh")
+    );
     assert!(!error.to_string().contains("friction"));
 }
 

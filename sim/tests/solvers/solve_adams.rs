@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::systems::{dead_zone, dry_friction, smooth, smooth_between};
-use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate};
+use eomgen_sim::ode::{Method, Settings, SolveError, SurfaceMode, System, Trajectory, simulate};
 
 fn adams(tolerance: f64) -> Settings {
     Settings {
@@ -80,9 +80,9 @@ fn dead_zone_oscillator_keeps_its_period() {
     let trajectory =
         run(&system, &[0.0, speed], cycles * period, &adams(1e-12)).expect("a trajectory");
     println!("{:?} {:?}", trajectory.final_state, trajectory.statistics);
-    assert_eq!(trajectory.switches.len(), 200);
-    let first = trajectory.switches[0];
-    assert!(first.guard == 0 && first.to_positive);
+    assert_eq!(trajectory.events.len(), 200);
+    let first = trajectory.events[0];
+    assert!(first.guard == 0 && first.to == SurfaceMode::Positive);
     // The free flight is exact up to rounding.
     assert!((first.t - b / speed).abs() < 1e-12 * first.t, "{first:?}");
     // About ten thousand steps of 1e-12, as a drift of the speed over the whole time.
@@ -95,7 +95,7 @@ fn dead_zone_oscillator_keeps_its_period() {
 fn dry_friction_turns_at_known_points_until_it_sticks() {
     let trajectory =
         run(&dry_friction(0.05), &[1.0, 0.0], 3.5 * PI, &adams(1e-11)).expect("a trajectory");
-    let turns: Vec<f64> = trajectory.switches.iter().map(|switch| switch.t).collect();
+    let turns: Vec<f64> = trajectory.events.iter().map(|switch| switch.t).collect();
     assert_eq!(turns.len(), 3);
     for (number, turn) in (1..).zip(turns) {
         let error = turn - PI * f64::from(number);

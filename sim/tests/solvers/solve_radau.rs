@@ -318,10 +318,10 @@ fn nearly_rigid_contact_conserves_energy() {
     let period = 2.0 * speed / g + contact;
     let system = falls_on(frequency * frequency, 0.0);
     let found = run(&system, &[height, 0.0], &[10.0 * period], &radau(1e-10)).expect("an end");
-    assert_eq!(found.switches.len(), 20);
+    assert_eq!(found.events.len(), 20);
     let error = (found.final_state[0] / height - 1.0).abs();
     assert!(error < 1e-6, "{error:e}");
-    let first = found.switches[0].t * g / speed - 1.0;
+    let first = found.events[0].t * g / speed - 1.0;
     assert!(first.abs() < 1e-12, "{first:e}");
 }
 
@@ -405,9 +405,9 @@ fn event_times_match_runge_kutta() {
     let by_radau = run(&system, &[0.0, 0.7], &times, &radau(1e-10)).expect("a motion");
     let settings = Settings::with_tolerance(1e-12);
     let by_runge_kutta = run(&system, &[0.0, 0.7], &times, &settings).expect("a motion");
-    assert_eq!(by_radau.switches.len(), by_runge_kutta.switches.len());
-    assert!(!by_radau.switches.is_empty());
-    for (one, other) in by_radau.switches.iter().zip(&by_runge_kutta.switches) {
+    assert_eq!(by_radau.events.len(), by_runge_kutta.events.len());
+    assert!(!by_radau.events.is_empty());
+    for (one, other) in by_radau.events.iter().zip(&by_runge_kutta.events) {
         assert!((one.t - other.t).abs() < 1e-8 && one.guard == other.guard);
     }
     for (one, other) in by_radau.states.iter().zip(&by_runge_kutta.states) {

@@ -188,7 +188,7 @@ fn exact(equations: &PiecewiseLinear, drive: &Drive, until: f64) -> (Vec<f64>, u
     let none = HeldInputs::zero(0);
     let found = propagator.simulate(&[0.0; 4], (0.0, until), &[], &none, &mut |_| {});
     let found = found.unwrap_or_else(|error| panic!("{drive:?}: {error}"));
-    (found.final_state, found.switches.len())
+    (found.final_state, found.events.len())
 }
 
 /// Asserts that the time stepping converges to the exact motion. The largest difference, relative

@@ -129,7 +129,7 @@ fn sliding_block_comes_to_rest_in_place_and_time() {
             );
             assert!(state[2].abs() < 1e-15, "{solver}: {state:?}");
         }
-        let switch = motion.trajectory.switches[0].t;
+        let switch = motion.trajectory.events[0].t;
         assert!((switch - stop).abs() < 1e-9, "{solver}: {switch}");
     }
 }
@@ -263,7 +263,7 @@ fn sliding_ball_begins_to_roll() {
             (state[3] - 5.0 / 7.0 * v).abs() < 1e-9,
             "{solver}: {state:?}"
         );
-        let switch = motion.trajectory.switches[0].t;
+        let switch = motion.trajectory.events[0].t;
         assert!(
             (switch - begins).abs() < 1e-9,
             "{solver}: {switch} {begins}"
@@ -361,7 +361,7 @@ fn box_at_rest_on_two_edges_of_a_slope_stays_without_switches() {
         let motion = simulate(&model, &[("mu", 0.16)], (&initial, &[0.0, 50.0]), solver);
         let state = &motion.trajectory.final_state;
         assert!(state[0].abs() < 1e-12, "{solver}: {state:?}");
-        let switches = motion.trajectory.switches.len();
+        let switches = motion.trajectory.events.len();
         assert!(switches <= 2, "{solver}: {switches} switches");
     }
 }

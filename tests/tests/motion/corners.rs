@@ -77,7 +77,7 @@ fn wire_with_corner_keeps_energy() {
         let motion = simulate(&text, 2.0, solver);
         let speed = 0.5_f64.sqrt();
         assert_near(last(&motion), &[speed, speed], 1e-9, "corner");
-        assert_eq!(motion.trajectory.switches.len(), 1);
+        assert_eq!(motion.trajectory.events.len(), 1);
     }
 }
 

@@ -278,7 +278,7 @@ fn audit_does_not_change_the_motion() {
                     .trajectory
             });
             assert_eq!(with.states, without.states);
-            assert_eq!(with.switches, without.switches);
+            assert_eq!(with.events, without.events);
         }
     }
 }

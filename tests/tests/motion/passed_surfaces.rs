@@ -124,7 +124,7 @@ fn no_throw_passes_through_disc() {
                     "{case}: {:?}",
                     motion.early_stop
                 );
-                let first = motion.trajectory.switches.first().map(|switch| switch.t);
+                let first = motion.trajectory.events.first().map(|switch| switch.t);
                 match (throw.contact, first) {
                     (None, None) => {}
                     (Some(expected), Some(t)) => {

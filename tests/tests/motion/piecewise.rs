@@ -96,7 +96,7 @@ fn ball_on_floor_defined_by_minimum_matches_general_solver() {
     ];
     for pad in pads {
         let motion = compare_and_simulate(&ball(pad), 2.0);
-        assert_eq!(motion.switches.len(), 6, "{pad}");
+        assert_eq!(motion.events.len(), 6, "{pad}");
         assert!(
             (motion.final_state[0] - 0.2426).abs() < 5e-5,
             "{pad}: {}",
@@ -119,7 +119,7 @@ fn preloaded_springs_and_one_sided_stops_hold_at_rest() {
         "-k*y - F0*above(y) - c*above(-y)*dot(y)",
     ] {
         let motion = compare_and_simulate(&driven_mass(force), 3.0);
-        assert!(motion.switches.len() > 1, "{force}");
+        assert!(motion.events.len() > 1, "{force}");
     }
 }
 
@@ -140,7 +140,7 @@ fn friction_that_starts_at_a_speed_holds_the_mass_at_it() {
         .iter()
         .filter(|y| (y[1].abs() - 0.2).abs() < 1e-9);
     assert!(held.count() > 1);
-    assert!(exact.switches.len() < 100, "{}", exact.switches.len());
+    assert!(exact.events.len() < 100, "{}", exact.events.len());
 }
 
 /// An input held at zero has sign zero.
@@ -329,7 +329,7 @@ fn compare_motions(subject: &TestMotion, place: &str, tally: &mut Tally) {
     assert!(found < MAX_DIFFERENCE, "{found:e}\n{place}");
     tally.worst_motion = tally.worst_motion.max(found);
     tally.motions += 1;
-    tally.switches += exact.switches.len();
+    tally.switches += exact.events.len();
 }
 
 fn emit_kernels(subject: &TestMotion) -> String {

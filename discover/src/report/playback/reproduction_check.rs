@@ -164,13 +164,15 @@ fn simulate_outputs(
 
 #[cfg(test)]
 mod tests {
+    use eomgen_sim::ode::SurfaceKind;
+
     use super::*;
 
     #[test]
     fn motion_at_rest_is_the_reason_of_a_failed_simulation() {
         let surfaces = [Surface {
             formula: "dot(x)".to_owned(),
-            is_speed: true,
+            kind: SurfaceKind::Speed,
         }];
         let error = SolveError::Sticking { t: 0.25, guard: 0 };
         let reason = explain(&error, &["x".to_owned()], &surfaces);

@@ -21,6 +21,9 @@ use std::collections::VecDeque;
 use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Point, Stretch};
 
+use eomgen_sim::contact_friction::ContactMode;
+use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode};
+
 use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
@@ -104,11 +107,17 @@ impl Contacts {
         self
     }
 
-    /// Returns the name of each guard: those of the distances, then those of friction.
-    pub fn guard_names(&self) -> Vec<String> {
-        let tangents = self.tangents.iter();
-        let slips = tangents.map(|tangent| format!("slip of {}", self.names[tangent.place]));
-        self.names.iter().cloned().chain(slips).collect()
+    /// Returns the surface of each guard: the distances, then the slips of the contacts with friction.
+    pub fn surfaces(&self) -> Vec<Surface> {
+        let distances = self.names.iter().map(|name| Surface {
+            formula: name.clone(),
+            kind: SurfaceKind::Distance,
+        });
+        let slips = self.tangents.iter().map(|tangent| Surface {
+            formula: format!("slip of {}", self.names[tangent.place]),
+            kind: SurfaceKind::Speed,
+        });
+        distances.chain(slips).collect()
     }
 
     /// Returns the number of guards.
@@ -248,25 +257,36 @@ impl Contacts {
     }
 
     /// Notes that the motion ends if there are no contact forces.
-    fn note_forces<T>(&mut self, found: Result<T, (usize, Overlap)>) -> Option<T> {
-        found
-            .map_err(|cause| {
-                self.overlap = Some(cause);
-                self.has_no_forces = true;
-            })
-            .ok()
+    fn note_forces(&mut self, found: Result<(), (usize, Overlap)>) {
+        if let Err(cause) = found {
+            self.overlap = Some(cause);
+            self.has_no_forces = true;
+        }
     }
 
-    /// Updates the modes of friction at a point between steps, where inputs may jump. Returns the guards of
-    /// friction that changed.
-    pub fn update_friction(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<usize> {
+    /// Updates the modes of friction at a point between steps, where inputs may jump.
+    pub fn update_friction(&mut self, own: &mut Evaluator, point: Point<'_>) {
         let degrees = own.program().degrees_of_freedom();
         let rounding = distance_rounding(point.state, degrees, point.t);
         let updated = self.update_modes(own, point, rounding);
-        let changed = self.note_forces(updated).unwrap_or_default();
-        let tangents = self.tangents.iter().enumerate();
-        let changed = tangents.filter(|(_, tangent)| changed.contains(&tangent.place));
-        changed.map(|(index, _)| self.names.len() + index).collect()
+        self.note_forces(updated);
+    }
+
+    /// Writes the modes of closed contacts and of friction.
+    pub fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        for place in &self.closed {
+            modes[*place] = SurfaceMode::Closed;
+        }
+        let slips = &mut modes[self.names.len()..];
+        for (slot, tangent) in slips.iter_mut().zip(&self.tangents) {
+            *slot = match tangent.mode {
+                _ if !self.closed.contains(&tangent.place) => SurfaceMode::Open,
+                ContactMode::Open => SurfaceMode::Open,
+                ContactMode::Sticks => SurfaceMode::Held,
+                ContactMode::Slides(_) if tangent.bears => SurfaceMode::Held,
+                ContactMode::Slides(side) => SurfaceMode::from_side(side),
+            };
+        }
     }
 
     /// The forces of the closed contacts, in which their distances do not accelerate.

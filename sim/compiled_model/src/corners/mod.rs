@@ -30,9 +30,6 @@ pub(crate) struct Corners {
     guards: Vec<f64>,
     /// Cause of a stop.
     failure: Option<String>,
-    /// Surfaces from which the motion returned, by their guards, with the side that it is on; not yet
-    /// reported.
-    returned: Vec<(usize, bool)>,
 }
 
 /// Energy at a corner, in J.
@@ -57,7 +54,6 @@ impl Corners {
             sides: vec![None; sides(&evaluator)],
             guards: vec![0.0; evaluator.guard_count()],
             failure: None,
-            returned: Vec::new(),
             evaluator,
         }
     }
@@ -65,12 +61,6 @@ impl Corners {
     /// Returns the cause if the motion stopped at a corner.
     pub fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
-    }
-
-    /// Returns the surfaces from which the motion returned since the last call: the guard, and true if the
-    /// motion stays on the positive side.
-    pub fn take_returned(&mut self) -> Vec<(usize, bool)> {
-        std::mem::take(&mut self.returned)
     }
 
     /// Records on which sides the motion is.
@@ -119,9 +109,6 @@ impl Corners {
                 for place in crossed {
                     let side = outcome.sides[place];
                     self.sides[place] = Some(side);
-                    if side == from[place] {
-                        self.returned.push((self.guard(place), side > 0.0));
-                    }
                 }
                 energy
             }

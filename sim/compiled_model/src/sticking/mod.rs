@@ -20,7 +20,7 @@ pub use sided_model::SidedModel;
 
 use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_sim::friction_discs::DiscArrival;
-use eomgen_sim::ode::difference_step;
+use eomgen_sim::ode::{SurfaceMode, difference_step};
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
 
 use discs::{Disc, DiscState, norm, unit_vector};
@@ -107,8 +107,6 @@ pub(crate) struct SurfaceStates {
     /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     kept: Option<Vec<f64>>,
     known: KnownSides,
-    /// Surfaces that began or ceased to hold, not yet reported.
-    changes: Vec<(usize, bool)>,
 }
 
 impl SurfaceStates {
@@ -123,7 +121,6 @@ impl SurfaceStates {
             begin: None,
             kept: None,
             known: KnownSides::Nothing,
-            changes: Vec::new(),
             sided,
         }
     }
@@ -141,6 +138,25 @@ impl SurfaceStates {
     /// Returns true if the signs of the functions do not determine the rates.
     pub fn is_active(&self) -> bool {
         self.kept.is_some() || !self.discs.is_empty() || !self.is_free()
+    }
+
+    /// Writes the modes of the surfaces that hold or release the motion.
+    pub fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut modes[self.sided.guard_index(surface)];
+            match place {
+                SurfaceState::Free => {}
+                SurfaceState::Holding { .. } | SurfaceState::Bearing { .. } => {
+                    *slot = SurfaceMode::Held;
+                }
+                SurfaceState::Leaving { side, .. } => *slot = SurfaceMode::from_side(*side),
+            }
+        }
+        let discs = &mut modes[self.sided.guard_count()..];
+        let holding = discs.iter_mut().zip(&self.discs);
+        for (slot, _) in holding.filter(|(_, disc)| disc.is_holding()) {
+            *slot = SurfaceMode::Held;
+        }
     }
 
     /// Returns true if the motion is on no surface and has left all surfaces.
@@ -371,10 +387,6 @@ impl SurfaceStates {
             let value = functions[surface];
             let allowed = roundings[surface] + MAX_DRIFT_FRACTION * self.sizes[surface];
             if *place != SurfaceState::Free && value.abs() > allowed {
-                if place.is_on() {
-                    self.changes
-                        .push((self.sided.guard_index(surface), value > 0.0));
-                }
                 *place = SurfaceState::Free;
             }
         }
@@ -467,15 +479,10 @@ impl SurfaceStates {
     }
 
     /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
-    /// motion if an input moves a surface away or a force exceeds its limit. Returns the surfaces
-    /// that began or ceased to hold since the last call.
-    pub fn update(
-        &mut self,
-        at: (f64, &[f64]),
-        (earlier, inputs): (&[f64], &[f64]),
-    ) -> Vec<(usize, bool)> {
+    /// motion if an input moves a surface away or a force exceeds its limit.
+    pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
         if !self.may_hold {
-            return Vec::new();
+            return;
         }
         self.sided.fix_other_sides(None);
         self.known = KnownSides::Nothing;
@@ -493,12 +500,10 @@ impl SurfaceStates {
                     moved.zip(allowed).map(|(a, b)| a > b).collect()
                 }
             };
-            for (index, disc) in self.discs.iter_mut().enumerate() {
+            for disc in &mut self.discs {
                 if disc.is_holding() && disc.rows.clone().any(|row| jumps[row]) {
                     disc.state = DiscState::Sliding;
                     self.known = KnownSides::Nothing;
-                    let guard = self.sided.guard_count() + index;
-                    self.changes.push((guard, true));
                 }
             }
             for (surface, place) in self.places.iter_mut().enumerate() {
@@ -508,10 +513,6 @@ impl SurfaceStates {
                     _ => jumps[surface],
                 };
                 if has_left && *place != SurfaceState::Free {
-                    if place.is_on() {
-                        self.changes
-                            .push((self.sided.guard_index(surface), value > 0.0));
-                    }
                     *place = SurfaceState::Free;
                     self.known = KnownSides::Nothing;
                 }
@@ -542,7 +543,6 @@ impl SurfaceStates {
         for disc in &mut self.discs {
             disc.floor = MAX_DRIFT_FRACTION * norm(disc.velocity(&self.sizes));
         }
-        std::mem::take(&mut self.changes)
     }
 
     /// Starts a motion: surfaces on which it is may hold it.
@@ -570,7 +570,6 @@ impl SurfaceStates {
             let reached = (&touching[..], &arrivals[..], &discs[..]);
             self.decide_states(at, inputs, reached, &functions);
         }
-        self.changes.clear();
     }
 
     /// Returns the surfaces whose force exceeds its limit, with the side.
@@ -612,8 +611,6 @@ impl SurfaceStates {
                 let disc = &mut self.discs[*index];
                 disc.state = DiscState::Sliding;
                 disc.along.clone_from(&arrival.along);
-                let guard = self.sided.guard_count() + index;
-                self.changes.push((guard, true));
             }
             return;
         };
@@ -626,13 +623,8 @@ impl SurfaceStates {
         }
         for ((index, _), verdict) in discs.iter().zip(&vectors) {
             let disc = &mut self.discs[*index];
-            let was_holding = disc.is_holding();
             let rounding = norm(disc.velocity(&roundings));
             disc.enter(verdict, at.0, &functions, rounding);
-            if disc.is_holding() != was_holding {
-                let guard = self.sided.guard_count() + index;
-                self.changes.push((guard, was_holding));
-            }
         }
         for (surface, verdict) in touching.iter().zip(verdicts) {
             let old = self.places[*surface];
@@ -663,12 +655,6 @@ impl SurfaceStates {
             if let Some(kept) = &mut self.kept {
                 kept[*surface] = verdict.sign().signum();
             }
-            let guard = self.sided.guard_index(*surface);
-            if old.is_on() && !new.is_on() {
-                self.changes.push((guard, verdict.sign() > 0.0));
-            } else if new.is_on() && !old.is_on() {
-                self.changes.push((guard, from < 0.0));
-            }
         }
     }
 
@@ -685,10 +671,6 @@ impl SurfaceStates {
                 left.0.push(*surface);
                 left.1.push(*arrival);
                 continue;
-            }
-            if self.places[*surface].is_on() {
-                let guard = self.sided.guard_index(*surface);
-                self.changes.push((guard, arrival.side > 0.0));
             }
             self.places[*surface] = SurfaceState::Free;
             if let Some(kept) = &mut self.kept {

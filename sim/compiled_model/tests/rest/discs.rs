@@ -74,7 +74,7 @@ fn puck_stops_at_its_closed_form() {
             let mut times = grid(2.0, 20);
             times.insert(8, stop);
             let motion = simulated(&model, &[], &times, solver);
-            let switches = &motion.trajectory.switches;
+            let switches = &motion.trajectory.events;
             assert_eq!(switches.len(), 1, "{solver}: {switches:?}");
             assert!(
                 (switches[0].t - stop).abs() < 1e-9,
@@ -121,7 +121,7 @@ f = { on = "[x, y, z]", value = "-R*[dot(x), dot(y), dot(z)]/norm([dot(x), dot(y
         let motion = simulated(&model, &[], &grid(2.0, 20), solver);
         let (stop, distance) = (3.0 * 2.0 / 5.0, 9.0 * 2.0 / (2.0 * 5.0));
         assert!(
-            (motion.trajectory.switches[0].t - stop).abs() < 1e-9,
+            (motion.trajectory.events[0].t - stop).abs() < 1e-9,
             "{solver}"
         );
         let last = &motion.trajectory.final_state;

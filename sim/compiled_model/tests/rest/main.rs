@@ -12,6 +12,7 @@ use std::path::Path;
 
 use eomgen_compiled_model::{CompiledModel, Motion, Orders, Solver};
 use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::SurfaceMode;
 use time_stepping::{Machine, Rubbing};
 
 /// Solvers with time steps that support sticking.
@@ -151,7 +152,7 @@ fn turning_points_and_rest_of_pendulum_match_energy() {
         let model = of_text(&text.replace("initial = 1,", &format!("{initial},")));
         for solver in GENERAL {
             let motion = simulated(&model, &[("T_c", level)], &[0.0, 30.0], solver);
-            let (last, switches) = (&motion.trajectory.final_state, &motion.trajectory.switches);
+            let (last, switches) = (&motion.trajectory.final_state, &motion.trajectory.events);
             let stop = turns.last().copied().unwrap_or(0.0);
             assert!(
                 (last[0] - stop).abs() < 1e-7,
@@ -211,7 +212,7 @@ fn belt_with_falling_friction_sticks_and_slips() {
     let motion = simulated(&model, &[], &grid(20.0, 20), Solver::Auto);
     assert_eq!(motion.solver, Solver::Rk);
     // It sticks and is released once per period of 0.907 s.
-    let switches = &motion.trajectory.switches;
+    let switches = &motion.trajectory.events;
     assert!(switches.len() > 40, "{}", switches.len());
 }
 
@@ -291,7 +292,7 @@ fn drive_breaks_away_a_thousand_times_at_known_times() {
     let model = of_text(SLED);
     for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
         let motion = simulated(&model, &[], &grid(until, 1000), solver);
-        let switches = &motion.trajectory.switches;
+        let switches = &motion.trajectory.events;
         assert_eq!(switches.len(), 2000, "{solver}");
         for (turn, pair) in switches.chunks(2).enumerate() {
             let late = pair[0].t - away(turn);
@@ -300,7 +301,20 @@ fn drive_breaks_away_a_thousand_times_at_known_times() {
                 "{solver} {turn}: {late:e}"
             );
             assert!(pair[1].t > pair[0].t && pair[1].t < away(turn + 1));
-            assert_eq!(pair[0].to_positive, turn % 2 == 0, "{solver} {turn}");
+            let to = match turn % 2 {
+                0 => SurfaceMode::Positive,
+                _ => SurfaceMode::Negative,
+            };
+            assert_eq!(
+                (pair[0].from, pair[0].to),
+                (SurfaceMode::Held, to),
+                "{solver} {turn}"
+            );
+            assert_eq!(
+                (pair[1].from, pair[1].to),
+                (to, SurfaceMode::Held),
+                "{solver} {turn}"
+            );
         }
         // After every period it rests at the same position.
         let states = &motion.trajectory.states;
@@ -395,7 +409,7 @@ pull = { on = "x", value = "u" }
                 "{solver}: {state:?} {wanted}"
             );
         }
-        let changes = motion.trajectory.switches.len();
+        let changes = motion.trajectory.events.len();
         assert!(changes >= 4, "{solver}: {changes}");
     }
 }
@@ -515,7 +529,7 @@ rub = { on = "x", value = "-F*sign(dot(x))" }
     let exact = run
         .simulate(run.initial_state(), &samples, &inputs, Solver::Exact)
         .unwrap();
-    assert!(exact.trajectory.switches.len() >= 3);
+    assert!(exact.trajectory.events.len() >= 3);
     for solver in [Solver::Rk, Solver::Radau] {
         let motion = run
             .simulate(run.initial_state(), &samples, &inputs, solver)

@@ -125,7 +125,7 @@ fn random_rows_match_exact_solver() {
             }
             assert!(worst < 1e-6, "{seed} {solver}: {worst:e}\n{text}");
         }
-        held += exact.trajectory.switches.len();
+        held += exact.trajectory.events.len();
     }
     println!("{compared} rows, {held} switches");
     assert!(compared >= 25 && held > 300, "{compared} {held}");

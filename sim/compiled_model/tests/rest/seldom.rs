@@ -35,7 +35,7 @@ fn force_slightly_above_friction_breaks_away_every_period() {
         for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
             let settings = [("A", a), ("omega", omega)];
             let motion = simulated(&model, &settings, &[0.0, until], solver);
-            let switches = &motion.trajectory.switches;
+            let switches = &motion.trajectory.events;
             // It breaks away and sticks twice per period.
             assert_eq!(switches.len(), 4 * turns as usize, "{solver} {a} {omega}");
             for (turn, pair) in switches.chunks(2).enumerate() {

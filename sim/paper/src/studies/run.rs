@@ -61,7 +61,7 @@ impl Run {
         let none = HeldInputs::zero(0);
         let span = (self.end(), end);
         let trajectory = propagator.simulate(state, span, &times, &none, &mut |_| {})?;
-        self.switches += trajectory.switches.len();
+        self.switches += trajectory.events.len();
         self.times.extend(trajectory.times);
         self.states.extend(trajectory.states);
         Ok(())

@@ -8,7 +8,7 @@ use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_model_spec::assignment::{Assignment, QuantityReader};
 use eomgen_model_spec::diagnostic::Diagnostics;
-use eomgen_sim::ode::{Settings, SolveError, System, simulate};
+use eomgen_sim::ode::{Settings, SolveError, SurfaceMode, System, simulate};
 
 use super::quantity::state_index;
 use super::rotation::{MotionSamples, is_periodic_angle};
@@ -320,7 +320,13 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.fix_sides(others.map(|(_, others)| others));
     }
 
-    fn update_sticking(&self, t: f64, y: &[f64]) -> Vec<(usize, bool)> {
-        self.system.update_sticking(t, y)
+    fn update_modes(&self, t: f64, y: &[f64]) {
+        self.system.update_modes(t, y);
+    }
+
+    fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        if let Some((_, others)) = modes.split_last_mut() {
+            self.system.write_modes(others);
+        }
     }
 }

@@ -47,7 +47,7 @@ fn arm_follows_the_reference_trajectory() {
         "x_sp within {:e} m, tip within {:e} m, {} switches, {:?}",
         worst[0],
         worst[1],
-        trajectory.switches.len(),
+        trajectory.events.len(),
         trajectory.statistics
     );
     // Required accuracy of a simulation at this tolerance.
@@ -69,15 +69,15 @@ fn adams_matches_runge_kutta_on_the_arm() {
     let with_adams = run(Method::Adams);
     let with_runge_kutta = run(Method::DormandPrince853);
     let guards = |trajectory: &Trajectory| -> Vec<usize> {
-        trajectory.switches.iter().map(|s| s.guard).collect()
+        trajectory.events.iter().map(|s| s.guard).collect()
     };
     println!(
         "{:?} {:?}",
         with_adams.statistics, with_runge_kutta.statistics
     );
-    assert!(with_adams.switches.len() > 20);
+    assert!(with_adams.events.len() > 20);
     assert_eq!(guards(&with_adams), guards(&with_runge_kutta));
-    let times = with_adams.switches.iter().zip(&with_runge_kutta.switches);
+    let times = with_adams.events.iter().zip(&with_runge_kutta.events);
     for (one, other) in times {
         // Deflections agree to 1e-9 m, and surfaces are crossed at about 0.01 m/s.
         assert!((one.t - other.t).abs() < 1e-7, "{one:?} {other:?}");

@@ -162,7 +162,7 @@ fn sample(
         .observables(&motion)
         .map_err(|error| error.to_string())?;
     Ok(Sampled {
-        switches: motion.trajectory.switches.iter().map(|s| s.t).collect(),
+        switches: motion.trajectory.events.iter().map(|s| s.t).collect(),
         energies: rows.iter().map(|row| row[place]).collect(),
         states: motion.trajectory.states,
     })

@@ -61,7 +61,7 @@ fn page_motion_matches_simulate() {
                 spec.display()
             );
         }
-        let switches = motion.trajectory.switches.len() as f64;
+        let switches = motion.trajectory.events.len() as f64;
         let seen = shown["switches"].as_f64().expect("a number");
         assert!(
             (seen - switches).abs() <= 0.02 * switches,

@@ -59,7 +59,7 @@ fn assert_matches_general_solver(name: &str, subject: &TestMotion, until: f64) -
     let found = difference(&exact.states, &general.states, SMALLEST);
     println!(
         "{name}: {found:.1e}, general {doubt:.1e}, {} switches",
-        exact.switches.len()
+        exact.events.len()
     );
     // The bound is ten times the change with the tolerance, plus rounding over these switches: the
     // forces are differences of nearly equal numbers.
@@ -67,7 +67,7 @@ fn assert_matches_general_solver(name: &str, subject: &TestMotion, until: f64) -
         found < 10.0 * doubt + 1e-9,
         "{name}: difference {found:e}, uncertainty {doubt:e}"
     );
-    exact.switches.len()
+    exact.events.len()
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn grazing_initial_rates_match_general_solver() {
     let (until, times) = (0.004, grid(0.004, 64));
     let from = |rate: f64| moving_arm(2, &values, [0.0, 26e-6], [rate, 0.0]);
     let first = |rate: f64| {
-        let switches = from(rate).simulate_exactly((0.0, until), &times).switches;
+        let switches = from(rate).simulate_exactly((0.0, until), &times).events;
         switches.iter().filter(|s| s.guard == 0).count()
     };
     let (mut low, mut high) = (0.0, 0.05);
@@ -349,10 +349,10 @@ fn lossless_arm_conserves_energy() {
         });
         println!(
             "S = {order}, b = {b:e}: {worst:.1e}, {} switches",
-            motion.switches.len()
+            motion.events.len()
         );
         assert!(
-            motion.switches.len() > 500 && worst < 2e-14 * motion.switches.len() as f64,
+            motion.events.len() > 500 && worst < 2e-14 * motion.events.len() as f64,
             "{worst:e}"
         );
     }

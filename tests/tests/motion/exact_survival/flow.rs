@@ -52,17 +52,14 @@ fn continued_motion_equals_whole_motion() {
                 part.states[0], part.final_state,
                 "the sample at the end is the last state"
             );
-            switches += part.switches.len();
+            switches += part.events.len();
             parts.push(part.final_state);
         }
         let found = difference(&parts, &whole.states, 1e-6);
-        println!("{name}: {found:.1e}, {} switches", whole.switches.len());
+        println!("{name}: {found:.1e}, {} switches", whole.events.len());
         assert!(found < tolerance, "{name}: {found:e}");
         // A sticking mass may leave and stick again in the same instant.
-        assert!(
-            name == "rough" || switches == whole.switches.len(),
-            "{name}"
-        );
+        assert!(name == "rough" || switches == whole.events.len(), "{name}");
         assert_eq!(whole.states.last(), Some(&whole.final_state));
     }
 }
@@ -72,7 +69,7 @@ fn sampling_does_not_change_the_motion() {
     for subject in [arm(4, 25e-6), rough_system()] {
         let none = subject.simulate_exactly((0.0, 0.1), &[]);
         let many = subject.simulate_exactly((0.0, 0.1), &grid(0.1, 1000));
-        assert_eq!(none.switches, many.switches);
+        assert_eq!(none.events, many.events);
         assert_eq!(none.final_state, many.final_state);
     }
 }
@@ -166,7 +163,7 @@ fn tangent_vectors_match_difference_quotients() {
         let half = initial.len() / 2;
         (initial[0], initial[1], initial[half], initial[half + 1]) = (2e-5, -1.7e-5, 0.01, -0.02);
         let subject = subject.with_initial_state(&initial);
-        let count = subject.simulate_exactly((0.0, until), &[]).switches.len();
+        let count = subject.simulate_exactly((0.0, until), &[]).events.len();
         let (vector, apart) =
             growth_of_difference_and_tangent(&subject, until, step, &arm_felt(order));
         println!("S = {order}, b = {b:e}, {until} s: {vector} and {apart}, {count} switches");
@@ -180,7 +177,7 @@ fn tangent_vectors_match_difference_quotients() {
     // Sticking removes a direction, permanently.
     let subject = rough_system();
     for until in [0.05, 0.2, 0.5, 1.0, 2.0] {
-        let count = subject.simulate_exactly((0.0, until), &[]).switches.len();
+        let count = subject.simulate_exactly((0.0, until), &[]).events.len();
         let (vector, apart) =
             growth_of_difference_and_tangent(&subject, until, 1e-7, &[0, 1, 2, 3]);
         println!("rough, {until} s: {vector} and {apart}, {count} switches");

@@ -35,7 +35,7 @@ fn sticking_block_stays_at_rest() {
             "{state:?}"
         );
     }
-    assert!((motion.switches[0].t - 1.0).abs() < 1e-14);
+    assert!((motion.events[0].t - 1.0).abs() < 1e-14);
 }
 
 fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
@@ -76,7 +76,7 @@ fn pushed_block_slides_and_sticks_as_closed_form() {
         let times = grid(8.0 * turn, 333);
         let motion = pushed_block(force, [0.0, 0.0]).simulate_exactly((0.0, 8.0 * turn), &times);
         // Leaving and sticking again within rounding is not a motion.
-        let mut switches = motion.switches.clone();
+        let mut switches = motion.events.clone();
         switches.dedup_by(|a, b| (a.t - b.t).abs() < 1e-9);
         for (k, switch) in switches.iter().enumerate() {
             let base = if k % 2 == 0 { leaves } else { rests };
@@ -155,12 +155,12 @@ fn block_on_belt_matches_closed_form() {
     let motion = subject([0.0, 0.0]).simulate_exactly((0.0, 6.0), &times);
     let wanted: Vec<Vec<f64>> = times.iter().map(|t| closed(*t)).collect();
     let error = difference(&motion.states, &wanted, 0.0);
-    println!("from rest: {error:.1e}, {} switches", motion.switches.len());
+    println!("from rest: {error:.1e}, {} switches", motion.events.len());
     assert!(error < 1e-12, "{error:e}");
-    assert!((motion.switches[0].t - caught).abs() < 1e-14);
-    assert!((motion.switches[1].t - free).abs() < 1e-13);
+    assert!((motion.events[0].t - caught).abs() < 1e-14);
+    assert!((motion.events[1].t - free).abs() < 1e-13);
     let riding = subject([0.0, belt]).simulate_exactly((0.0, 0.15), &[0.15]);
-    assert!(riding.switches.is_empty() && (riding.final_state[0] - 0.015).abs() < 1e-16);
+    assert!(riding.events.is_empty() && (riding.final_state[0] - 0.015).abs() < 1e-16);
     assert_eq!(riding.final_state[1], belt);
 }
 
@@ -218,7 +218,7 @@ fn two_joints_can_stick_at_once() {
         let found = difference(&exact.states, &general.states, 0.1);
         println!(
             "{levels:?} {force}: {found:.1e}, {} switches",
-            exact.switches.len()
+            exact.events.len()
         );
         // Steep friction creeps by eps = 1e-5 m/s for up to 2 s; speeds reach 0.5 m/s.
         assert!(found < 2e-4, "{levels:?} {force}: {found:e}");
@@ -257,7 +257,7 @@ fn chain_of_blocks_comes_to_rest_block_by_block() {
     let found = difference(&exact.states, &general.states, 1e-2);
     println!(
         "chain: {found:.1e}, {} switches, at last {:?}",
-        exact.switches.len(),
+        exact.events.len(),
         exact.final_state
     );
     assert!(found < 1e-3, "{found:e}");
@@ -295,7 +295,7 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
             "{found:e} {:e}",
             held.final_state[0]
         );
-        assert!(held.switches.is_empty());
+        assert!(held.events.is_empty());
         // A hub that slides and sticks, compared with steep friction.
         for level in [0.05, 0.5, 2.0] {
             let dry = hub_with_force("(-T_c*sign(dot(theta)))", &[("T_c", level)], order)
@@ -307,7 +307,7 @@ fn friction_in_hub_of_beam_matches_steep_friction() {
             let found = difference(&dry.states, &steep.states, 1e-3);
             println!(
                 "order {order}, {level} N m: {found:.1e}, {} switches",
-                dry.switches.len()
+                dry.events.len()
             );
             // Steep friction creeps: the bound is its slope over the level, relative to the motion.
             assert!(found < 2e-3, "order {order}, {level}: {found:e}");
@@ -351,7 +351,7 @@ fn friction_at_tip_of_beam_matches_steep_friction() {
         let found = difference(&dry.states, &steep.states, 1e-3);
         println!(
             "order {order}, {level} N: {found:.1e}, {} switches",
-            dry.switches.len()
+            dry.events.len()
         );
         assert!(found < 2e-3, "order {order}, {level}: {found:e}");
     }

@@ -52,7 +52,7 @@ fn rig_driven_by_record_matches_general_solver() {
         let found = difference(&exact.states, &general.states, 1e-6);
         println!(
             "S = {order}, b = {b:e}: {found:.1e}, {} switches",
-            exact.switches.len()
+            exact.events.len()
         );
         assert!(found < 1e-8, "S = {order}, b = {b:e}: {found:e}");
     }
@@ -147,8 +147,8 @@ fn input_jump_moves_a_stop() {
         let found = difference(&exact.states, &general.states, 1e-6);
         println!(
             "moved stops, c = {damped}: {found:.1e}, {} and {} switches",
-            exact.switches.len(),
-            general.switches.len()
+            exact.events.len(),
+            general.events.len()
         );
         assert!(found < 1e-10, "{found:e}");
     }

@@ -43,7 +43,7 @@ fn assert_matches_general_solver(force: &str) {
             .simulate_generally((0.0, 1.0), &times, 1e-12)
             .expect("a motion");
         worst = worst.max(difference(&exact.states, &general.states, 1e-4));
-        switches += exact.switches.len();
+        switches += exact.events.len();
     }
     println!("{force}: {worst:.1e}, {switches} switches");
     assert!(worst < 1e-9, "{force}: {worst:e}");

@@ -42,7 +42,7 @@ fn bouncing_ball_matches_closed_form() {
                 state[0]
             );
         }
-        assert_eq!(motion.switches.len(), 20, "{height:e}");
+        assert_eq!(motion.events.len(), 20, "{height:e}");
     }
 }
 
@@ -83,7 +83,7 @@ fn ball_touching_ceiling_matches_closed_form() {
         // The time of a shallow contact is the root of a small number.
         let rounding = 1e-14 * speed * speed / hit;
         assert!(x.abs() < 1e-12 + speed * rounding && (v + speed).abs() < 1e-12 + g * rounding);
-        assert_eq!(motion.switches.len(), 2);
+        assert_eq!(motion.events.len(), 2);
     }
 }
 
@@ -157,10 +157,10 @@ fn grazing_a_stop_conserves_energy() {
         let error = difference(&motion.states, &wanted, 0.0);
         println!(
             "{more:e} above: {error:.1e}, {} switches",
-            motion.switches.len()
+            motion.events.len()
         );
         assert!(error < 1e-12, "{more:e}: {error:e}");
-        assert!(more > -1e-14 || motion.switches.is_empty());
+        assert!(more > -1e-14 || motion.events.is_empty());
     }
     for more in [0.0, 3e-16, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3] {
         // Without damping the energy is conserved.
@@ -178,12 +178,12 @@ fn grazing_a_stop_conserves_energy() {
             .fold(0.0, f64::max);
         println!(
             "{more:e} beyond: energy {worst:.1e}, {} switches",
-            motion.switches.len()
+            motion.events.len()
         );
         assert!(worst < 1e-12, "{more:e}: {worst:e}");
         // 15 half periods per second with two switches each; 16 if the stop is stiff.
         assert!(
-            more < 1e-14 || (30..=34).contains(&motion.switches.len()),
+            more < 1e-14 || (30..=34).contains(&motion.events.len()),
             "{more:e}"
         );
         // The contacts are so short that damping has this small an effect.
@@ -223,7 +223,7 @@ fn million_switches_match_closed_form() {
         x - 0.5 * b,
         speed - v
     );
-    assert_eq!(motion.switches.len(), 1_000_000);
+    assert_eq!(motion.events.len(), 1_000_000);
     // Each half period has the same rounding error, so the errors add up.
     assert!((x - 0.5 * b).abs() < 1e-6 * b && (speed - v).abs() < 1e-10);
     // At most two steps per switch.
@@ -275,7 +275,7 @@ fn accumulating_switches_end() {
             "dry {dry}: {:?}",
             ended
                 .as_ref()
-                .map(|m| (m.final_state.clone(), m.switches.len(), m.statistics))
+                .map(|m| (m.final_state.clone(), m.events.len(), m.statistics))
         );
         match ended {
             Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-9)),
@@ -301,7 +301,7 @@ fn accumulating_switches_end() {
         "damper: {:?}",
         ended
             .as_ref()
-            .map(|m| (m.final_state.clone(), m.switches.len(), m.statistics))
+            .map(|m| (m.final_state.clone(), m.events.len(), m.statistics))
     );
     match ended {
         Ok(motion) => assert!(motion.final_state.iter().all(|y| y.abs() < 1e-4)),
@@ -342,7 +342,7 @@ fn samples_at_a_switch_match_closed_form() {
         }
     }
     let all = subject.simulate_exactly((0.0, 30.0), &[]);
-    let times: Vec<f64> = all.switches.iter().map(|s| s.t).collect();
+    let times: Vec<f64> = all.events.iter().map(|s| s.t).collect();
     assert!(times.len() > 20);
     let motion = subject.simulate_exactly((0.0, 30.0), &times);
     for state in &motion.states {

@@ -17,7 +17,7 @@ const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
     /// Changes the modes of closed contacts if a guard of theirs is negative: contacts that no longer push open,
-    /// sliding ends at zero slip, and rest ends at the limit of friction. Returns the contacts that changed.
+    /// sliding ends at zero slip, and rest ends at the limit of friction.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -26,9 +26,9 @@ impl Contacts {
         own: &mut Evaluator,
         point: Point<'_>,
         rounding: f64,
-    ) -> Result<Vec<usize>, (usize, Overlap)> {
+    ) -> Result<(), (usize, Overlap)> {
         if !self.has_friction() || self.closed.is_empty() {
-            return Ok(Vec::new());
+            return Ok(());
         }
         own.impacts(point, &mut self.at);
         let places = self.closed.clone();
@@ -47,7 +47,7 @@ impl Contacts {
         // Before the guards are NaN the forces may have grown beyond bounds.
         let is_finite = forces.normal.iter().all(|force| force.is_finite());
         if excluded.is_empty() && is_finite {
-            return Ok(Vec::new());
+            return Ok(());
         }
         let roundings = self.slip_roundings(own, point);
         let slipping = self.slip_directions(&roundings, &excluded);
@@ -57,9 +57,7 @@ impl Contacts {
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
         self.enter_modes(&places, &decision, &roundings, rounding);
-        let changed = places.iter().zip(modes.iter().zip(&decision.modes));
-        let changed = changed.filter(|(_, (before, after))| before != after);
-        Ok(changed.map(|(place, _)| *place).collect())
+        Ok(())
     }
 
     /// Returns the known directions of the slips; `None` for contacts that do not slip.
