@@ -487,6 +487,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
+    fn add_rate_roundings(&self, out: &mut [f64]) {
+        if let Some(contacts) = &self.contacts {
+            let degrees = self.evaluator().program().degrees_of_freedom();
+            contacts.borrow().add_rate_roundings(&mut out[degrees..]);
+        }
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow().add_rate_roundings(out);
+        }
+    }
+
     fn is_observing(&self) -> bool {
         self.auditor.is_some()
     }

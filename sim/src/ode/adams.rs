@@ -111,6 +111,10 @@ impl Stepper for Adams {
         &self.magnitudes
     }
 
+    fn magnitudes_mut(&mut self) -> &mut Magnitudes {
+        &mut self.magnitudes
+    }
+
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.now.point.y);
         if is_projected {

@@ -88,6 +88,10 @@ impl Stepper for DormandPrince853 {
         &self.magnitudes
     }
 
+    fn magnitudes_mut(&mut self) -> &mut Magnitudes {
+        &mut self.magnitudes
+    }
+
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
         if is_projected {

@@ -110,6 +110,7 @@ fn run<S: System + ?Sized, M: Stepper>(
         projected: None,
         modes: Vec::new(),
         earlier_modes: Vec::new(),
+        has_roundings: false,
         rebounds: Vec::new(),
         trajectory,
     };
@@ -151,6 +152,8 @@ pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
     /// Modes of the surfaces here, and those before the last event.
     pub(super) modes: Vec<SurfaceMode>,
     earlier_modes: Vec<SurfaceMode>,
+    /// True if the scales of the errors have roundings of a motion at rest.
+    has_roundings: bool,
     /// Surfaces that returned the motion in the last step over them.
     pub(super) rebounds: Vec<usize>,
     pub(super) trajectory: &'a mut Trajectory,
@@ -181,6 +184,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         loop {
             self.limit_step();
             self.watched.restore_sides();
+            self.set_roundings();
             if self.step_is_too_short() {
                 return self.cross_at_once();
             }
@@ -200,6 +204,25 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if self.stepper.step() > self.settings.max_step {
             self.stepper.set_step(self.settings.max_step);
         }
+    }
+
+    /// Sets the rounding of the next step at rest, and resets it if the motion is not at rest any more.
+    fn set_roundings(&mut self) {
+        let is_at_rest =
+            |mode: &SurfaceMode| matches!(mode, SurfaceMode::Held | SurfaceMode::Closed);
+        let is_resting = self.modes.iter().any(is_at_rest);
+        if !is_resting && !self.has_roundings {
+            return;
+        }
+        self.has_roundings = is_resting;
+        let mut rates = vec![0.0; self.stepper.current_point().y.len()];
+        if is_resting {
+            self.watched.add_rate_roundings(&mut rates);
+        }
+        let length = self.stepper.step();
+        self.stepper
+            .magnitudes_mut()
+            .set_rate_roundings(&rates, length);
     }
 
     /// Shows the last step to a system that observes steps.

@@ -19,6 +19,8 @@ pub struct Magnitudes {
     /// Largest magnitude of any component so far.
     most: f64,
     tolerance: f64,
+    /// Rounding of each component in a step, which is no error.
+    roundings: Vec<f64>,
 }
 
 impl Magnitudes {
@@ -37,6 +39,7 @@ impl Magnitudes {
             smallest,
             most: y.iter().fold(0.0, |most, y| most.max(y.abs())),
             tolerance,
+            roundings: vec![0.0; y.len()],
         }
     }
 
@@ -52,12 +55,20 @@ impl Magnitudes {
             smallest: self.smallest.clone(),
             most: self.most,
             tolerance: self.tolerance,
+            roundings: self.roundings.clone(),
         }
     }
 
     /// The relative tolerance.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// Sets the rounding of each component in a step of `length` s, given those of the rates.
+    pub fn set_rate_roundings(&mut self, rates: &[f64], length: f64) {
+        for (slot, rate) in self.roundings.iter_mut().zip(rates) {
+            *slot = ROUNDING * length * rate;
+        }
     }
 
     /// Takes note of a state reached.
@@ -114,8 +125,8 @@ impl Magnitudes {
 
     /// Returns the error allowed to each component at `y`, in its own unit.
     fn allowed(&self, y: &[f64]) -> impl Iterator<Item = f64> {
-        let sizes = self.largest.iter().zip(y);
-        sizes.map(|(largest, y)| self.tolerance * (largest + y.abs()))
+        let sizes = self.largest.iter().zip(y).zip(&self.roundings);
+        sizes.map(|((largest, y), rounding)| self.tolerance * (largest + y.abs()) + rounding)
     }
 }
 

@@ -109,6 +109,10 @@ impl Stepper for Radau {
         &self.magnitudes
     }
 
+    fn magnitudes_mut(&mut self) -> &mut Magnitudes {
+        &mut self.magnitudes
+    }
+
     fn settle(&mut self, is_projected: bool) {
         self.magnitudes.raise(&self.here.y);
         if is_projected {

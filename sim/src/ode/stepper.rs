@@ -53,6 +53,9 @@ pub trait Stepper: Sized {
     /// [`Stepper::settle`].
     fn magnitudes(&self) -> &Magnitudes;
 
+    /// Scales of the errors, to set the rounding of the next step.
+    fn magnitudes_mut(&mut self) -> &mut Magnitudes;
+
     /// Adds the state here, which enters the trajectory, to the scales of the errors. A step that is
     /// taken back leaves no trace in them. A state that `is_projected` onto constraints has the rounding of
     /// all its components.

@@ -108,6 +108,10 @@ pub trait System {
     /// the motion is: held or closed.
     fn write_modes(&self, _modes: &mut [SurfaceMode]) {}
 
+    /// Adds the roundings of the rates by forces that balance others at rest, as those of surfaces that hold, to `out`,
+    /// [`System::state_count`] entries in the units of the rates.
+    fn add_rate_roundings(&self, _out: &mut [f64]) {}
+
     /// Returns true if the solver must call [`System::observe_step`].
     fn is_observing(&self) -> bool {
         false
@@ -180,6 +184,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn write_modes(&self, modes: &mut [SurfaceMode]) {
         (**self).write_modes(modes);
+    }
+
+    fn add_rate_roundings(&self, out: &mut [f64]) {
+        (**self).add_rate_roundings(out);
     }
 
     fn is_observing(&self) -> bool {

@@ -246,6 +246,11 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.system.write_modes(modes);
     }
 
+    /// Adds the roundings of the rates at rest to `out`; see [`System::add_rate_roundings`].
+    pub fn add_rate_roundings(&self, out: &mut [f64]) {
+        self.system.add_rate_roundings(out);
+    }
+
     /// Returns true if the system observes steps.
     pub fn is_observing(&self) -> bool {
         self.system.is_observing()

@@ -186,6 +186,16 @@ impl Contacts {
         self.add_forces(&self.closed, &forces, &mut rates[degrees..]);
     }
 
+    /// Adds the roundings of the accelerations by the forces of closed contacts.
+    pub fn add_rate_roundings(&self, accelerations: &mut [f64]) {
+        let normal = self.forces().normal;
+        for (place, force) in self.closed.iter().zip(normal) {
+            for (slot, entry) in accelerations.iter_mut().zip(&self.at[*place].column) {
+                *slot += f64::EPSILON * (entry * force).abs();
+            }
+        }
+    }
+
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
     pub fn overlap(&self) -> Option<String> {
         let (place, cause) = self.overlap?;

@@ -159,6 +159,13 @@ impl SurfaceStates {
         }
     }
 
+    /// Adds the roundings of the rates by the forces that hold the motion.
+    pub fn add_rate_roundings(&self, out: &mut [f64]) {
+        for row in self.holding_rows() {
+            self.sided.add_rate_rounding(row, out);
+        }
+    }
+
     /// Returns true if the motion is on no surface and has left all surfaces.
     pub fn is_free(&self) -> bool {
         self.places.iter().all(|place| *place == SurfaceState::Free)

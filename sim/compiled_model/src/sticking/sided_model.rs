@@ -384,6 +384,15 @@ impl SidedModel {
         }
     }
 
+    /// Adds the rounding of the rates by a surface's own force, as last evaluated.
+    pub(super) fn add_rate_rounding(&self, row: usize, out: &mut [f64]) {
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let columns = self.at.get(row).into_iter().flat_map(|at| &at.column);
+        for (slot, column) in out[degrees..].iter_mut().zip(columns) {
+            *slot += f64::EPSILON * column.abs();
+        }
+    }
+
     /// Returns the rate of a surface's function due to its own force, as last evaluated.
     pub(super) fn own_force_rate(&self, surface: usize) -> f64 {
         let at = self.at.get(surface);
