@@ -200,6 +200,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
+    fn degrees_of_freedom(&self) -> usize {
+        self.evaluator().program().degrees_of_freedom()
+    }
+
     fn evaluator(&self) -> RefMut<'_, Evaluator> {
         self.evaluator.borrow().borrow_mut()
     }
@@ -489,7 +493,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn add_rate_roundings(&self, out: &mut [f64]) {
         if let Some(contacts) = &self.contacts {
-            let degrees = self.evaluator().program().degrees_of_freedom();
+            let degrees = self.degrees_of_freedom();
             contacts.borrow().add_rate_roundings(&mut out[degrees..]);
         }
         if let Some(sliding) = &self.sliding {
@@ -506,6 +510,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             return;
         };
         let mut auditor = auditor.borrow_mut();
+        if self.is_sticking_active() || self.has_closed_contacts() {
+            let mut rates = vec![0.0; step.end.1.len()];
+            self.add_rate_roundings(&mut rates);
+            let (length, degrees) = (step.end.0 - step.start.0, self.degrees_of_freedom());
+            for place in 0..degrees {
+                rates[place] = length * rates[degrees + place];
+            }
+            auditor.raise_to_roundings(&rates, length);
+        }
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
         match auditor.driven_contacts().map(str::to_owned) {
             Some(reason) if self.has_closed_contacts() => {

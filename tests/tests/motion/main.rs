@@ -5,6 +5,7 @@ mod contact_friction;
 mod corners;
 mod drawn_motion;
 mod energy_audit;
+mod event_log;
 mod exact_properties;
 mod exact_reference;
 mod exact_survival;

@@ -96,7 +96,10 @@ fn ball_on_floor_defined_by_minimum_matches_general_solver() {
     ];
     for pad in pads {
         let motion = compare_and_simulate(&ball(pad), 2.0);
-        assert_eq!(motion.events.len(), 6, "{pad}");
+        let mut times: Vec<f64> = motion.events.iter().map(|event| event.t).collect();
+        // Functions that coincide change their sign together.
+        times.dedup();
+        assert_eq!(times.len(), 6, "{pad}");
         assert!(
             (motion.final_state[0] - 0.2426).abs() < 5e-5,
             "{pad}: {}",

@@ -24,6 +24,9 @@ const MAX_RESOLVED_PANELS: usize = 16;
 /// Rounding of an energy, relative to its magnitude.
 const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// Factor on the rounding of rates at rest. Solvers count ten times this rounding as no error.
+const RATE_ROUNDING_FACTOR: f64 = 10.0;
+
 const EXACT_TOLERANCE: f64 = 1e-9;
 
 /// Energy auditor of a motion in progress.
@@ -279,6 +282,13 @@ impl Auditor {
     ) -> EnergyAndPower {
         self.audit.evaluations += 1;
         energies(t, state)
+    }
+
+    /// Raises the sizes of the states to what rounding of these rates changes in a step of `length` s.
+    pub fn raise_to_roundings(&mut self, rates: &[f64], length: f64) {
+        for (size, rate) in self.sizes.iter_mut().zip(rates) {
+            *size = size.max(RATE_ROUNDING_FACTOR * length * rate / self.tolerance);
+        }
     }
 
     fn raise_sizes(&mut self, state: &[f64]) {

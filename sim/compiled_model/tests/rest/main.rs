@@ -2,6 +2,7 @@
 //! regimes and events; its friction impulses stay within their bounds and bring the speeds as near
 //! to zero as possible), with closed forms, and with the exact solver if it supports the motion.
 
+mod constrained;
 mod discs;
 mod domain;
 mod rows;
@@ -10,7 +11,7 @@ mod time_stepping;
 
 use std::path::Path;
 
-use eomgen_compiled_model::{CompiledModel, Motion, Orders, Solver};
+use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::SurfaceMode;
 use time_stepping::{Machine, Rubbing};
@@ -560,4 +561,29 @@ fn adams_stops_with_message_at_sticking() {
         said.contains("it sticks, as a body at rest under dry friction"),
         "{said}"
     );
+}
+
+#[test]
+fn sticking_costs_few_steps_at_tight_tolerances() {
+    let model = example("cart_pole");
+    let run = model.with_declared_parameters().unwrap();
+    for solver in GENERAL {
+        let evaluations = [1e-9, 1e-12].map(|tolerance| {
+            let request = Request {
+                initial: run.initial_state(),
+                times: &[0.0, 10.0],
+                inputs: &run.default_inputs(),
+                solver,
+                tolerance,
+                max_step: f64::INFINITY,
+                audit: false,
+            };
+            let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
+            assert!(motion.early_stop.is_none(), "{solver}");
+            motion.trajectory.statistics.evaluations
+        });
+        // Without rounding, orders 8 and 5 need 2.4 and 4 times as many.
+        let [coarse, tight] = evaluations;
+        assert!(tight < 8 * coarse, "{solver}: {evaluations:?}");
+    }
 }
