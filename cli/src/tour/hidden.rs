@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_compiled_model::{Request, Solver};
+use eomgen_discover::catalogue::effect::effect_in_words;
 use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
@@ -238,7 +239,7 @@ fn micrometres(value: &Value) -> String {
 
 /// Describes an effect with its first parameter.
 fn effect(entry: &Value) -> String {
-    let word = |key: &str| entry[key].as_str().unwrap_or_default().replace('_', " ");
+    let word = |key: &str| effect_in_words(entry[key].as_str().unwrap_or_default());
     let parameter = entry["parameters"]
         .as_object()
         .and_then(|p| p.values().next());

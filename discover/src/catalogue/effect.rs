@@ -25,6 +25,12 @@ pub struct Effect {
     pub is_user_defined: bool,
 }
 
+/// Returns names of effects in words, such as `Coulomb friction` for `coulomb_friction`.
+pub fn effect_in_words(name: &str) -> String {
+    let name = name.replace("coulomb_", "Coulomb ");
+    name.replace("stribeck_", "Stribeck ").replace('_', " ")
+}
+
 /// Placeholder of the term of a damper in edits that replace it.
 pub const DAMPER_PLACEHOLDER: &str = "damper";
 

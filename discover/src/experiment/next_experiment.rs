@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::catalogue::candidate::Candidate;
+use crate::catalogue::effect::effect_in_words;
 use crate::experiment::bounds::Bounds;
 use crate::experiment::discrimination::NoExperiment;
 
@@ -48,7 +49,7 @@ impl ClassMember {
 
     /// Returns effect and site as words.
     pub fn label(&self) -> String {
-        format!("{} on {}", self.effect.replace('_', " "), self.site)
+        format!("{} on {}", effect_in_words(&self.effect), self.site)
     }
 }
 

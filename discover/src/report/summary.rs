@@ -1,6 +1,7 @@
 //! Summary of a result for the page, the document and the terminal: first the result and its
 //! certainty, then the evidence.
 
+use crate::catalogue::effect::effect_in_words;
 use crate::report::quantity::{format_estimate, format_percent};
 use crate::report::remaining_gap::{ModelStage, RemainingGap};
 use crate::report::result::{
@@ -182,5 +183,5 @@ fn name_effect(effect: &FoundEffect) -> String {
 
 /// Returns name and site of an effect as words.
 pub(crate) fn describe_effect(at: &EffectSite) -> String {
-    format!("{} on {}", at.effect.replace('_', " "), at.site)
+    format!("{} on {}", effect_in_words(&at.effect), at.site)
 }

@@ -160,7 +160,7 @@ class Page {
 
   /** Updates the status and the clock. */
   note() {
-    if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
+    if (this.playing && this.pace < 0.8) return `Slower than selected: ${shown(this.pace * this.speed, 2)} s per second.`;
     if (this.projected === "moved" && this.motion.t < NOTED) return "The initial state was moved onto the constraints.";
     return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
   }

@@ -73,7 +73,7 @@ fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
         div data-signal data-place=(value.place) data-rates=(rates.join(" ")) {
             (value.control("value"))
             div.form {
-                label for=(form) { "course" }
+                label for=(form) { "signal" }
                 select id=(form) {
                     option value="constant" selected[!is_sine] { "constant" }
                     option value="sine" selected[is_sine] { "sine" }

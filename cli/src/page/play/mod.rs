@@ -163,7 +163,7 @@ fn note_of_rest(quantities: &Quantities<'_>) -> Markup {
             html! {
                 p.note {
                     "Without inputs this machine stays at rest. Its input " (symbol)
-                    " therefore starts as a sine; choose another course under Inputs."
+                    " therefore starts as a sine; choose another signal under Inputs."
                 }
             }
         }

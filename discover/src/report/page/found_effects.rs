@@ -3,6 +3,7 @@
 use eomgen_page::{prose, section, table};
 use maud::{Markup, html};
 
+use crate::catalogue::effect::effect_in_words;
 use crate::experiment::next_experiment::ExperimentFile;
 use crate::report::experiment::describe_experiment;
 use crate::report::quantity::{format_estimate, format_number, format_percent, format_readable};
@@ -32,8 +33,8 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             @match effect.status {
                 EffectStatus::Named => { "No other tested effect has the same response." },
                 EffectStatus::Provisional => {
-                    "It may be a substitute for another effect: a large residual remains, or a nuisance is at "
-                    "the bound of the fit."
+                    "It may be a substitute for another effect: a large residual remains, or a refitted parameter or "
+                    "sensor is at the bound of the fit."
                 },
                 EffectStatus::Class => {
                     "The records do not separate it from "
@@ -115,7 +116,7 @@ fn step_table(steps: &[SearchStep]) -> Markup {
             tr {
                 td {
                     @if step.added.is_empty() { "original model" }
-                    @else { "with " (step.added.join(", ").replace('_', " ")) }
+                    @else { "with " (effect_in_words(&step.added.join(", "))) }
                 }
                 td.number { (format_number(step.test_rms, 3)) }
             }

@@ -14,7 +14,7 @@ pub(super) fn list_nuisances(compared: &CommonResult) -> Markup {
     let far = all.iter().filter(|of| of.is_at_bound()).count();
     let rows = html! { @for of in all { (row(of)) } };
     section(
-        "Fitted nuisances",
+        "Refitted parameters and sensors",
         &html! {
             @if far > 0 {
                 p.warning {

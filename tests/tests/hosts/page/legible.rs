@@ -49,7 +49,7 @@ fn tour_is_legible_and_moves() {
         "nothing moves at the top"
     );
     assert!(
-        opening.contains("eomgen found coulomb friction of 1"),
+        opening.contains("eomgen found Coulomb friction of 1"),
         "{opening}"
     );
     for raw in ["nesting_bias", "regime_kernels", "train[0]", "e-5 m", "+-"] {

@@ -60,7 +60,7 @@ fn report_slider_moves_found_friction() {
     }
     assert!(page.contains("default-src 'none'"));
     assert!(
-        page.contains("Found: coulomb friction on q, <code>T_c</code> = "),
+        page.contains("Found: Coulomb friction on q, <code>T_c</code> = "),
         "the page does not print the verdict"
     );
     assert!(page.len() < 600_000, "{} bytes", page.len());
