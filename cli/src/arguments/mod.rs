@@ -113,7 +113,7 @@ pub enum Command {
     Compare(Compare),
     /// Find the effects that a model lacks, add them, and report the remaining residual.
     #[command(
-        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record\nto the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
+        after_help = "Examples:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1\n  eomgen discover my_machine.toml dataset.toml --out found --limit 60\nIf the records cannot separate two effects, found/experiment.csv is an input that does: apply it to the machine, add its record to the dataset file, and run the command again. Its bounds are described in docs/discovery.md."
     )]
     Discover(Discover),
     /// Measure the motion over a grid or over random samples of parameters.
