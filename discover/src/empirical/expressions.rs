@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_is_in_no_term() {
+    fn constant_quantities_are_in_no_term() {
         let scales = Scales {
             rate: 1.0,
             position: 0.0,

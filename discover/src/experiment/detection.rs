@@ -22,9 +22,9 @@ use crate::thresholds;
 /// Trials of a size, until it moves the outputs as wanted.
 const TRIALS: usize = 8;
 
-/// Corrections of the size that separates, each by at most this, until it is so close.
-const CORRECTIONS: usize = 4;
-const CORRECTED: Interval = Interval::new(0.2, 5.0);
+/// Maximum number of corrections of the detectable size, and range of the factor of each.
+const MAX_CORRECTIONS: usize = 4;
+const CORRECTION_RANGE: Interval = Interval::new(0.2, 5.0);
 const CLOSE_ENOUGH: Interval = Interval::new(0.9, 1.1);
 
 /// An experiment with the prediction of a fit.
@@ -308,15 +308,15 @@ impl<'f> HiddenEffect<'f> {
             Some((prediction, separation))
         };
         let (mut prediction, mut separation) = refitted(size)?;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             let off = thresholds::MIN_SEPARATION_IN_NOISE / separation.rms_in_noise;
             if !is_own || CLOSE_ENOUGH.clamp(off) == off {
                 break;
             }
-            let Some(found) = refitted(size * CORRECTED.clamp(off)) else {
+            let Some(found) = refitted(size * CORRECTION_RANGE.clamp(off)) else {
                 break;
             };
-            size *= CORRECTED.clamp(off);
+            size *= CORRECTION_RANGE.clamp(off);
             (prediction, separation) = found;
         }
         Some(Detection {

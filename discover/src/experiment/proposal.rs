@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_played_less_often_than_predicted_is_held() {
+    fn slow_inputs_are_held_between_their_samples() {
         let bounds = Bounds {
             samples_per_value: 5,
             ..bounds(-1.0, 1.0, 1e3)
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_is_proposed_stays_within_its_range_and_its_rate() {
+    fn proposals_stay_within_range_and_rate() {
         for (low, high, rate) in [(-1.0, 2.0, 3.0), (0.0, 5.0, 1e3), (2.0, 4.0, 0.1)] {
             let bounds = bounds(low, high, rate);
             let times = bounds.sample_times();

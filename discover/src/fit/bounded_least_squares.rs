@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_moves_nothing() {
+    fn non_finite_entries_give_zero() {
         let a = DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 0.0, 1.0]);
         let b = DVector::from_vec(vec![1.0, f64::INFINITY]);
         let x = solve_least_squares(

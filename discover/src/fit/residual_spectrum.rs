@@ -10,8 +10,8 @@ use crate::thresholds;
 use eomgen_records::samples::typical_step;
 use eomgen_records::windows::{Window, compared_samples};
 
-/// The fewest samples of a window that has a spectrum.
-const FEWEST: usize = 16;
+/// Minimum number of samples of a window with a spectrum.
+const MIN_SAMPLES: usize = 16;
 
 /// Peak of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub fn compute_residual_spectrum(
         .iter()
         .map(Vec::len)
         .max()
-        .filter(|length| *length >= FEWEST)?;
+        .filter(|length| *length >= MIN_SAMPLES)?;
     let step = typical_step(&windows.first()?.0.times);
     let mut mean = PowerSpectrum::default();
     let mut count = 0;
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_drifts_through_windows_of_any_length_is_no_line() {
+    fn drift_is_no_spectral_line() {
         for samples in [50, 100, 200] {
             // Each window begins at 0 and drifts, as a slow force drives it.
             let drift = |t: f64, inside: f64| (0.5 * t).sin() * inside * inside + 1e-3 * noise(t);

@@ -12,11 +12,11 @@ use crate::model::problem::EstimationProblem;
 use crate::report::location::find_worst_window;
 use crate::report::pictures::{name_record, responsive_figure, stage_label};
 
-/// The part of a record that is drawn once more, larger.
-const STRETCH: f64 = 0.1;
+/// Fraction of a record that the enlarged figure shows.
+const ENLARGED_FRACTION: f64 = 0.1;
 
-/// The fewest samples of that part.
-const FEWEST: usize = 40;
+/// Minimum number of samples in the enlarged figure.
+const MIN_ENLARGED_SAMPLES: usize = 40;
 
 /// Draws both figures for the original model and, if effects were found, for the extended model.
 pub(crate) fn draw_overlays(
@@ -128,10 +128,10 @@ impl Seen {
         let samples = self.times.len();
         let first = self.times.partition_point(|t| *t < window.times[0]);
         let inside = first..(first + window.times.len()).min(samples);
-        let most = ((STRETCH * samples as f64) as usize)
-            .max(FEWEST)
+        let most = ((ENLARGED_FRACTION * samples as f64) as usize)
+            .max(MIN_ENLARGED_SAMPLES)
             .min(samples);
-        let length = inside.len().clamp(FEWEST.min(samples), most);
+        let length = inside.len().clamp(MIN_ENLARGED_SAMPLES.min(samples), most);
         let off = |sample: usize| {
             let of = |channel: &Channel| {
                 let difference = channel.simulated[0].1[sample] - channel.measured[sample];

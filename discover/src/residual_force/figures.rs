@@ -11,8 +11,8 @@ use crate::thresholds;
 const TICK: f64 = 0.008;
 const MARGIN: f64 = 0.02;
 
-/// Ticks keep from each other by twice this part of the range.
-const APART: f64 = 0.003;
+/// Half the minimum distance between ticks, as a fraction of the range.
+const TICK_GAP: f64 = 0.003;
 
 /// Description of a figure of one profile of a force.
 struct Picture {
@@ -183,7 +183,7 @@ fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
     let (mut over, mut values) = (vec![first - MARGIN * width], vec![f64::NAN]);
     let gap = |pair: &[f64]| match pair {
         // A plot closes gaps that are narrower than its lines.
-        [before, after] => (0.5 * (after - before) - APART * width).clamp(0.0, TICK * width),
+        [before, after] => (0.5 * (after - before) - TICK_GAP * width).clamp(0.0, TICK * width),
         _ => TICK * width,
     };
     for (number, at) in profile.arguments.iter().enumerate() {

@@ -527,7 +527,7 @@ mod tests {
     }
 
     #[test]
-    fn what_of_many_parameters_holds_what_of_one_looks_like_it() {
+    fn similarity_of_one_to_many_parameters_is_their_projection() {
         // Two parameters with responses x and y, at their best size x only; one with 3 x + 4 y, one
         // with z.
         let columns = DMatrix::from_row_slice(

@@ -7,14 +7,14 @@ use super::slopes::Slopes;
 use super::surfaces::Side;
 use super::types::{ExponentialIntegrator, Motion, Options};
 
-/// Derivatives are found anew after each switch and once in so many times: they change with the
-/// place, of which little passes in between.
-const ANEW: usize = 4;
+/// Number of steps between differentiations; each switch also causes one. The derivatives vary with
+/// the position, which changes little in between.
+const DIFFERENTIATION_INTERVAL: usize = 4;
 
 /// Change of a state for a difference, as a fraction of its displacement in a step or of itself,
 /// whichever is more.
-const OF_MOVE: f64 = 1e-3;
-const OF_ITSELF: f64 = 1e-8;
+const DISPLACEMENT_FRACTION: f64 = 1e-3;
+const VALUE_FRACTION: f64 = 1e-8;
 
 /// And by no less than this part of its typical size: states at rest at 0.
 const OF_TYPICAL_SIZE: f64 = 1e-10;
@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-10;
 
 impl ExponentialIntegrator {
     /// Advances the neighbours by their outstanding steps to the present time of the motion.
-    pub(super) fn bring(
+    pub(super) fn advance_neighbours(
         &mut self,
         motion: &Motion,
         t: f64,
@@ -53,7 +53,7 @@ impl ExponentialIntegrator {
         force: &mut dyn Force,
         slopes: &mut Slopes,
     ) -> Result<(), String> {
-        let is_due = slopes.asked.is_multiple_of(ANEW);
+        let is_due = slopes.asked.is_multiple_of(DIFFERENTIATION_INTERVAL);
         slopes.asked += 1;
         if !is_due && slopes.is_known[0] {
             slopes.keep();
@@ -129,7 +129,7 @@ impl ExponentialIntegrator {
 
     /// By how much a state with a rate is changed.
     fn difference(&self, place: usize, x: f64, rate: f64) -> f64 {
-        let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
+        let size = (DISPLACEMENT_FRACTION * (rate * self.step).abs()).max(VALUE_FRACTION * x.abs());
         size.max(OF_TYPICAL_SIZE * self.typical_sizes[place])
     }
 
@@ -147,7 +147,7 @@ impl ExponentialIntegrator {
         functions.zip(both).any(|(function, (before, after))| {
             let here = function.evaluate(&motion.state, &motion.given);
             let there = here + size * function.state[place];
-            Side::of(here + before) != Side::of(there + after)
+            Side::from_value(here + before) != Side::from_value(there + after)
         })
     }
 }

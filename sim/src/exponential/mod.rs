@@ -47,9 +47,9 @@ pub use tangents::{Directions, DrivingAccelerations, NoDrives, Tangents};
 use types::Motion;
 pub use types::{ExponentialIntegrator, Options, SampleCallback, UnsupportedModel};
 
-/// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
-/// knows where a surface is crossed to a hundredth, and finds it from there.
-const TURN: f64 = 1.5;
+/// Angle of the fastest mode in a step, rad. The cubic through a step's ends then locates a
+/// crossing to a hundredth of the step, as a start for the refinement.
+const MAX_TURN_RAD: f64 = 1.5;
 
 /// Steps from sample to sample at least: forces that are held over a step follow a motion
 /// that the samples show.
@@ -73,7 +73,7 @@ impl ExponentialIntegrator {
         sample: f64,
         refinement: f64,
     ) -> Result<Self, UnsupportedModel> {
-        let surfaces = Surfaces::of(&mut evaluator).ok_or(UnsupportedModel::UnsupportedTerms)?;
+        let surfaces = Surfaces::new(&mut evaluator).ok_or(UnsupportedModel::UnsupportedTerms)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
         if !system.phases.is_empty()
             || !evaluator.half_widths_are_right()
@@ -81,7 +81,7 @@ impl ExponentialIntegrator {
         {
             return Err(UnsupportedModel::UnsupportedTerms);
         }
-        let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / TURN;
+        let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / MAX_TURN_RAD;
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;
         if steps.is_nan() || steps > MOST_STEPS {
             return Err(UnsupportedModel::TooManySteps(steps));
@@ -134,7 +134,7 @@ impl ExponentialIntegrator {
     }
 
     /// The rates that forces act on: accelerations, and rates of states of first order.
-    fn forced(&self) -> usize {
+    fn forced_states(&self) -> usize {
         self.states - self.degrees
     }
 
@@ -196,9 +196,9 @@ impl ExponentialIntegrator {
             given,
             base: Vec::new(),
             event_values: Vec::new(),
-            remainder: Remainder::zero(self.forced(), count),
+            remainder: Remainder::zero(self.forced_states(), count),
             next: Vec::new(),
-            later: Remainder::zero(self.forced(), count),
+            later: Remainder::zero(self.forced_states(), count),
             change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
@@ -212,7 +212,7 @@ impl ExponentialIntegrator {
         let distances: Vec<f64> = functions
             .map(|(row, moved)| row.evaluate(initial, &motion.given) + moved)
             .collect();
-        let sides = distances.iter().map(|distance| Side::of(*distance));
+        let sides = distances.iter().map(|distance| Side::from_value(*distance));
         motion.sides = sides.collect();
         motion.regime = self.regime(&motion.sides)?;
         let alone = &mut Options {
@@ -233,7 +233,7 @@ impl ExponentialIntegrator {
         if let Some(tangents) = &mut options.tangents {
             tangents.begin(&self.regimes[motion.regime], (t, &motion.state, values));
             if options.force.is_some() {
-                tangents.slopes = Some(Slopes::new(self.states, self.forced(), count));
+                tangents.slopes = Some(Slopes::new(self.states, self.forced_states(), count));
             }
         }
         Ok(motion)
@@ -303,7 +303,7 @@ impl ExponentialIntegrator {
                 self.parts(motion, length, end, inputs, options)?;
             }
         }
-        self.bring(motion, until, options)
+        self.advance_neighbours(motion, until, options)
     }
 
     /// Prepares for steps in the present regime with the present inputs.
@@ -396,7 +396,7 @@ impl ExponentialIntegrator {
             }
         }
         if options.tangents.as_deref_mut().is_some_and(Tangents::step) {
-            self.bring(motion, end, options)?;
+            self.advance_neighbours(motion, end, options)?;
         }
         Ok(true)
     }

@@ -3,7 +3,7 @@
 use super::crossing::first_crossing;
 use super::release::Release;
 use super::remainder::Remainder;
-use super::remainder_search::AHEAD;
+use super::remainder_search::OFFSET_STEPS;
 use super::surfaces::{Row, Side, dot};
 use super::tangents::{ReachedSurface, add_exponential_series};
 use super::types::{ExponentialIntegrator, Motion, Options};
@@ -14,9 +14,9 @@ const MOST_CROSSINGS: usize = 12;
 /// The motion itself is right to this part of its size.
 const ROUNDING: f64 = 1e-16;
 
-/// A motion is released so much later, in parts of the step, than its share reaches its bound: there
-/// it moves away from the surface by more than rounding.
-const RELEASED: f64 = 1e-6;
+/// Delay of a release after the share reaches its bound, in steps: the motion then leaves the
+/// surface by more than rounding.
+const RELEASE_DELAY_STEPS: f64 = 1e-6;
 
 /// Event within a step.
 enum Event {
@@ -40,7 +40,7 @@ impl Event {
 }
 
 /// Smallest rate of a function that leads back, as a fraction of its size.
-const LEADS_BACK: f64 = 1e-9;
+const MIN_RETURN_RATE: f64 = 1e-9;
 
 impl ExponentialIntegrator {
     /// Makes a step in parts, from surface to surface.
@@ -53,7 +53,7 @@ impl ExponentialIntegrator {
         options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         let mut rest = length;
-        self.bring(motion, end - length, options)?;
+        self.advance_neighbours(motion, end - length, options)?;
         for _ in 0..MOST_CROSSINGS {
             self.evaluate_events(motion);
             let begin = (motion.event_values.clone(), motion.state.clone());
@@ -67,11 +67,11 @@ impl ExponentialIntegrator {
             let first = self.first_event(motion, (&begin, &remainder), rest);
             motion.remainder = remainder;
             let Some(event) = first else {
-                return self.ended(motion, rest, end, inputs, options);
+                return self.end_step(motion, rest, end, inputs, options);
             };
             motion.event_values = before;
             motion.state.copy_from_slice(&begin.1);
-            let tau = self.polished(motion, &event, rest, &begin.1);
+            let tau = self.refine_time(motion, &event, rest, &begin.1);
             rest -= tau;
             let t = end - rest;
             self.accompany(motion, tau, (t, true), inputs, options)?;
@@ -95,19 +95,19 @@ impl ExponentialIntegrator {
             }
         }
         self.part(motion, rest);
-        self.ended(motion, rest, end, inputs, options)?;
+        self.end_step(motion, rest, end, inputs, options)?;
         // If surfaces follow each other too fast, signs decide.
         let regime = &self.regimes[motion.regime];
         let functions = regime.functions.iter().zip(&motion.remainder.moved);
         for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
             if *side != Side::Held {
-                *side = Side::of(function.evaluate(&motion.state, &motion.given) + moved);
+                *side = Side::from_value(function.evaluate(&motion.state, &motion.given) + moved);
             }
         }
         motion.regime = self.regime(&motion.sides)?;
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
-        self.find_remainder_beside(motion, (end, AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (end, OFFSET_STEPS), &rates, options)?;
         self.prepare(motion);
         Ok(())
     }
@@ -168,7 +168,7 @@ impl ExponentialIntegrator {
 
     /// Goes from `begin` to an event, by one step of Newton's method from its first estimate; returns
     /// when that is, s.
-    fn polished(&self, motion: &mut Motion, event: &Event, most: f64, begin: &[f64]) -> f64 {
+    fn refine_time(&self, motion: &mut Motion, event: &Event, most: f64, begin: &[f64]) -> f64 {
         let regime = &self.regimes[motion.regime];
         let (row, offset, slope): (&Row, f64, f64) = match event {
             Event::Crossing { surface, slope, .. } => {
@@ -189,7 +189,7 @@ impl ExponentialIntegrator {
         let rate = dot(&row.state, &rates[..self.states]) + slope;
         let late = match event {
             Event::Crossing { .. } => 0.0,
-            Event::Release(_) => RELEASED * self.step,
+            Event::Release(_) => RELEASE_DELAY_STEPS * self.step,
         };
         let better = (tau - value / rate + late).clamp(0.0, most);
         if !better.is_finite() || better == tau {
@@ -201,7 +201,7 @@ impl ExponentialIntegrator {
     }
 
     /// After a part that reached the step's end.
-    fn ended(
+    fn end_step(
         &mut self,
         motion: &mut Motion,
         tau: f64,
@@ -251,7 +251,7 @@ impl ExponentialIntegrator {
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
         // On this side of a surface that was reached.
-        self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, -OFFSET_STEPS), &rates, options)?;
         let degrees = self.degrees;
         for (place, before) in before.iter().enumerate() {
             let change = 0.5 * tau * (motion.remainder.force[place] - before);
@@ -275,7 +275,7 @@ impl ExponentialIntegrator {
         let before = motion.regime;
         let mut rates = vec![0.0; self.regimes[before].matrix.rows];
         self.rates(motion, &mut rates);
-        self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, -OFFSET_STEPS), &rates, options)?;
         self.rates(motion, &mut rates);
         let (beyond, outward) = match motion.sides[surface] {
             Side::Above => (Side::Below, -1.0),
@@ -284,7 +284,7 @@ impl ExponentialIntegrator {
         let old = motion.sides[surface];
         motion.sides[surface] = beyond;
         motion.regime = self.regime(&motion.sides)?;
-        self.find_remainder_beside(motion, (t, AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)?;
         let mut after = rates.clone();
         self.rates(motion, &mut after);
         let function = self.regimes[before].functions[surface].state.clone();
@@ -297,19 +297,19 @@ impl ExponentialIntegrator {
             dot(&function, &rates) + slope,
             dot(&function, &after) + slope,
         );
-        if there * outward < -LEADS_BACK * size && here * outward > 0.0 {
+        if there * outward < -MIN_RETURN_RATE * size && here * outward > 0.0 {
             motion.sides[surface] = Side::Held;
             match self.known_regime(&motion.sides) {
                 Some(held) => motion.regime = held,
                 None => motion.sides[surface] = beyond,
             }
-            self.find_remainder_beside(motion, (t, AHEAD), &rates, options)?;
+            self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)?;
             self.rates(motion, &mut after);
         } else if old == Side::Below && here == 0.0 && there <= 0.0 {
             // It only touches.
             motion.sides[surface] = old;
             motion.regime = before;
-            self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
+            self.find_remainder_beside(motion, (t, -OFFSET_STEPS), &rates, options)?;
             return Ok(());
         }
         if let Some(tangents) = &mut options.tangents {

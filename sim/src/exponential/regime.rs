@@ -15,7 +15,7 @@ use super::surfaces::{Row, Side, Surfaces, dot};
 
 /// Distance from a holding surface at which a model is evaluated on one side, as a fraction of the
 /// effect of the jump on the surface's function in one step.
-const ASIDE: f64 = 1e-6;
+const OFFSET_IN_JUMPS: f64 = 1e-6;
 
 /// A regime.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ impl Regime {
                     share_rate: along(&share, &rates),
                     share,
                     across: across(&functions[surface].state),
-                    distance: ASIDE * step * jump.abs(),
+                    distance: OFFSET_IN_JUMPS * step * jump.abs(),
                 }
             })
             .collect();
@@ -227,7 +227,7 @@ pub fn fastest_rate(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64
         };
         let sides: Vec<Side> = (0..count).map(side).collect();
         let system = evaluator.system(&surfaces.guard_sides(&sides, |_| 0.0));
-        let rates = Rates::of(&system);
+        let rates = Rates::new(&system);
         if rates.state.iter().all(|entry| entry.is_finite()) {
             // A matrix whose iteration does not end has no steps that are short enough.
             let balanced = scale_matrix(&rates.state, &state_scale(&rates.state));

@@ -8,8 +8,9 @@ use crate::balancing::{MAX_ENTRY_PER_S, balance, scale_matrix};
 
 use super::surfaces::{Row, Side, Surfaces};
 
-/// Forces on the two sides of a surface that differ by less than this part do not.
-const SAME: f64 = 1e-9;
+/// Smallest relative difference between the forces on the two sides of a surface. Smaller ones are
+/// rounding.
+const MIN_RELATIVE_JUMP: f64 = 1e-9;
 
 /// Terms of a series for a part of a step: a step turns no mode by more than about one
 /// radian, and 1/14! is rounding's size.
@@ -43,7 +44,7 @@ impl Rates {
         whole
     }
 
-    pub fn of(system: &AffineSystem) -> Self {
+    pub fn new(system: &AffineSystem) -> Self {
         let n = system.states;
         let inputs = system.rates.inputs.len() / n.max(1);
         Self {
@@ -63,7 +64,7 @@ pub(super) fn held_rates(
     sides: &[Side],
 ) -> Option<(Rates, Vec<Row>, HeldRates)> {
     let system = evaluator.system(&surfaces.guard_sides(sides, |_| 0.0));
-    let mut rates = Rates::of(&system);
+    let mut rates = Rates::new(&system);
     let functions = surfaces.rows(&system);
     let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
     Some((rates, functions, held))
@@ -102,10 +103,10 @@ fn hold(
     let scale = state_scale(&rates.state);
     for (column, held) in places.iter().enumerate() {
         let numbers = surfaces.guard_sides(sides, |place| f64::from(u8::from(place == *held)));
-        let other = Rates::of(&evaluator.system(&numbers));
+        let other = Rates::new(&evaluator.system(&numbers));
         let difference = scale_matrix(&(&other.state - &rates.state), &scale);
         let sizes = [&other, rates].map(|rates| scale_matrix(&rates.state, &scale).amax());
-        if difference.amax() > SAME * sizes[0].max(sizes[1]) {
+        if difference.amax() > MIN_RELATIVE_JUMP * sizes[0].max(sizes[1]) {
             return None;
         }
         jumps.set_column(column, &(other.given.column(0) - rates.given.column(0)));

@@ -3,7 +3,7 @@
 
 use super::crossing::first_crossing;
 use super::remainder::Remainder;
-use super::remainder_search::AHEAD;
+use super::remainder_search::OFFSET_STEPS;
 use super::surfaces::{Side, dot};
 use super::types::{ExponentialIntegrator, Motion, Options};
 
@@ -88,7 +88,7 @@ impl ExponentialIntegrator {
         motion.regime = self.regime(&motion.sides)?;
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
-        self.find_remainder_beside(motion, (t, AHEAD), &rates, options)
+        self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)
     }
 
     /// Lets the motion go from surfaces that no longer hold it, because an input has changed.
@@ -105,13 +105,13 @@ impl ExponentialIntegrator {
             .filter_map(|(held, borne)| {
                 let share = held.share.evaluate(&motion.state, &motion.given) + borne;
                 let is_held = (0.0..=1.0).contains(&share);
-                (!is_held).then(|| (held.surface, Side::of(share - 1.0)))
+                (!is_held).then(|| (held.surface, Side::from_value(share - 1.0)))
             })
             .collect();
         if released.is_empty() {
             return Ok(());
         }
-        self.bring(motion, t, options)?;
+        self.advance_neighbours(motion, t, options)?;
         self.release_motion(motion, t, &released, options)?;
         self.prepare(motion);
         Ok(())

@@ -69,7 +69,7 @@ pub struct RegimeDifference {
 }
 
 impl RegimeDifference {
-    pub fn of(
+    pub fn new(
         a: &Regime,
         b: &Regime,
         (states, degrees): (usize, usize),

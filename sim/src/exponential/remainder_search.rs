@@ -9,7 +9,7 @@ use super::types::{ExponentialIntegrator, Motion, Options};
 
 /// Distance from a crossed surface, in steps, at which a model is evaluated on either side: on the
 /// surface itself rounding errors decide the side.
-pub const AHEAD: f64 = 1e-4;
+pub const OFFSET_STEPS: f64 = 1e-4;
 
 impl ExponentialIntegrator {
     /// Computes the nonlinear remainder at the present state of a motion.
@@ -79,7 +79,7 @@ impl ExponentialIntegrator {
         self.own.extend_from_slice(sides);
         for ((side, function), moved) in self.own.iter_mut().zip(functions).zip(&remainder.moved) {
             if *moved != 0.0 && *side != Side::Held {
-                *side = Side::of(function.evaluate(state, given));
+                *side = Side::from_value(function.evaluate(state, given));
             }
         }
         if self.own == sides {
@@ -91,7 +91,7 @@ impl ExponentialIntegrator {
         }
         let pair = (self.last_own.1, here);
         if self.apart.pair != pair {
-            self.apart = RegimeDifference::of(
+            self.apart = RegimeDifference::new(
                 &self.regimes[pair.0],
                 &self.regimes[pair.1],
                 (self.states, self.degrees),

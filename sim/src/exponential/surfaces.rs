@@ -15,7 +15,7 @@ pub enum Side {
 
 impl Side {
     /// Returns the side of a surface with this value of its function.
-    pub fn of(value: f64) -> Self {
+    pub fn from_value(value: f64) -> Self {
         if value > 0.0 {
             Self::Above
         } else {
@@ -77,7 +77,7 @@ fn row(system: &AffineSystem, guard: usize) -> Row {
 impl Surfaces {
     /// Returns the surfaces of a model, or `None` if one may move with the side of another, or
     /// depends only on inputs.
-    pub fn of(evaluator: &mut AffineEvaluator) -> Option<Self> {
+    pub fn new(evaluator: &mut AffineEvaluator) -> Option<Self> {
         let count = evaluator.guard_count();
         if evaluator.guards_rest().contains(&true) {
             return None;

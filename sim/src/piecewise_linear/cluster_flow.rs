@@ -109,7 +109,7 @@ impl ClusterFlow {
 
     /// Adds how far the cluster has moved the state at `tau`.
     pub fn add_state(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64, out: &mut [f64]) {
-        let values = self.at(cluster, phases, tau) - &self.zeta;
+        let values = self.evaluate(cluster, phases, tau) - &self.zeta;
         for (slot, row) in out.iter_mut().zip(cluster.columns.row_iter()) {
             *slot += row
                 .iter()
@@ -120,7 +120,7 @@ impl ClusterFlow {
     }
 
     /// The cluster's coordinates at `tau`.
-    fn at(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64) -> DVector<Complex<f64>> {
+    fn evaluate(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64) -> DVector<Complex<f64>> {
         let exponents = self.exponents(cluster, phases);
         let orders = DERIVATIVES + cluster.terms;
         let integrals: Vec<Vec<Complex<f64>>> = exponents

@@ -9,8 +9,8 @@ use nalgebra::Complex;
 /// separate modes they would respond to a constant force with a large amplitude that cancels.
 const NEAR_ZERO: f64 = 1e-5;
 
-/// Eigenvalues closer than this, relative, always share a part.
-const EQUAL: f64 = 1e-9;
+/// Eigenvalues with a smaller relative distance always share a part.
+const MIN_RELATIVE_DISTANCE: f64 = 1e-9;
 
 /// Imaginary parts below this part of the largest eigenvalue count as zero.
 pub(super) const REAL: f64 = 1e-11;
@@ -47,7 +47,9 @@ pub(super) fn clusters(
         for b in a + 1..eigenvalues.len() {
             let (x, y) = (eigenvalues[a], eigenvalues[b]);
             let distance = 2.0 * (x - y).norm() / (x.norm() + y.norm());
-            if (distance <= EQUAL || share(a, b, distance)) && cluster[a] != cluster[b] {
+            if (distance <= MIN_RELATIVE_DISTANCE || share(a, b, distance))
+                && cluster[a] != cluster[b]
+            {
                 let (kept, gone) = (cluster[a], cluster[b]);
                 for place in &mut cluster {
                     if *place == gone {

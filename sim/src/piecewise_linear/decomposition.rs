@@ -15,12 +15,12 @@ use super::schur::SchurForm;
 /// and eigenvalues are both wrong by it: four digits of sixteen at most.
 const WELL_CONDITIONED: f64 = 100.0;
 
-/// Two eigenvalues that nearly share an eigenvector are as sensitive as one over their
-/// relative distance, up to about this factor; what is more sensitive has other reasons.
-const SHARED: f64 = 3.0;
+/// Bound on the sensitivity of two eigenvalues with nearly equal eigenvectors, times their relative
+/// distance. A higher sensitivity has other causes.
+const SENSITIVITY_FACTOR: f64 = 3.0;
 
-/// Sensitive beyond all use: then distances up to the second number count as near.
-const HOPELESS: (f64, f64) = (1e6, 1e-2);
+/// Sensitivity of unusable eigenvectors, and the relative distance that then counts as close.
+const EXTREME_SENSITIVITY: (f64, f64) = (1e6, 1e-2);
 
 /// A part of a matrix: A columns = columns (centre + matrix).
 #[derive(Clone, Debug)]
@@ -97,7 +97,7 @@ impl Decomposition {
                 return Ok(found.in_full_state(&outer, &pure, &felt));
             }
             found = found
-                .merged(&schur, &refinement.inseparable)
+                .merge(&schur, &refinement.inseparable)
                 .ok_or(DecompositionError::NotConverged)?;
         }
         Err(DecompositionError::NotConverged)
@@ -152,8 +152,8 @@ fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
     let sensitivity = first.sensitivity.clone();
     let shared = |a: usize, b: usize, distance: f64| {
         let least = sensitivity[a].min(sensitivity[b]);
-        let explained = least > WELL_CONDITIONED && least * distance <= SHARED;
-        explained || (least > HOPELESS.0 && distance <= HOPELESS.1)
+        let explained = least > WELL_CONDITIONED && least * distance <= SENSITIVITY_FACTOR;
+        explained || (least > EXTREME_SENSITIVITY.0 && distance <= EXTREME_SENSITIVITY.1)
     };
     let second = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, shared));
     if second.condition() < 0.5 * first.condition() {
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     /// Returns the sum of the parts and the sum of their projections.
-    fn composed(found: &Decomposition) -> (DMatrix<f64>, DMatrix<f64>) {
+    fn compose(found: &Decomposition) -> (DMatrix<f64>, DMatrix<f64>) {
         let integrals = &found.integrals;
         let mut matrix = &integrals.columns * &integrals.matrix * &integrals.rows;
         let mut identity = &integrals.columns * &integrals.rows;
@@ -184,7 +184,7 @@ mod tests {
     fn check(matrix: &DMatrix<f64>, tolerance: f64) -> Decomposition {
         let found =
             Decomposition::decompose(matrix, matrix.nrows() / 2, 0.0, 0.0).expect("decomposes");
-        let (back, identity) = composed(&found);
+        let (back, identity) = compose(&found);
         let size = matrix.nrows();
         assert!((identity - DMatrix::identity(size, size)).norm() < tolerance);
         assert!((back - matrix).norm() < tolerance * matrix.norm().max(1.0));

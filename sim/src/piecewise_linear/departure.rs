@@ -11,7 +11,7 @@ use super::propagator::{Motion, Propagator};
 impl Propagator {
     /// Puts the motion, after a change from the regime `before`, onto every surface that holds it
     /// now or held it before. The motion departs from those that held it only before.
-    pub(super) fn let_go(&self, motion: &mut Motion, before: usize) {
+    pub(super) fn release_surfaces(&self, motion: &mut Motion, before: usize) {
         let (before, after) = (&self.regimes[before], &self.regimes[motion.regime]);
         for (family, pair) in before.cells.iter().zip(&after.cells).enumerate() {
             if pair.0 == pair.1 {

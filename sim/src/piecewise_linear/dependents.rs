@@ -50,7 +50,7 @@ impl Propagator {
             let before = cells.to_vec();
             for family in 0..cells.len() {
                 if self.dependent[family] || matches!(asking, DecisionCause::Start) {
-                    cells[family] = self.decided(family, cells, asking, standing);
+                    cells[family] = self.decide_cell(family, cells, asking, standing);
                 }
             }
             if cells == before {
@@ -94,7 +94,7 @@ impl Propagator {
         (0..cells.len()).any(|other| !below.same_function(above, other))
     }
 
-    fn decided(
+    fn decide_cell(
         &mut self,
         family: usize,
         cells: &[Cell],
@@ -115,7 +115,7 @@ impl Propagator {
                     return present;
                 }
                 if let Some((rank, _)) = coincident_rank(outline, family, crossing) {
-                    return self.led(family, rank, cells, standing);
+                    return self.follow_rates(family, rank, cells, standing);
                 }
                 Some(crossing.outline)
             }
@@ -136,14 +136,20 @@ impl Propagator {
         });
         match tied {
             Some(rank) if before.is_some() && is_beside(present, rank) => present,
-            Some(rank) => self.led(family, rank, cells, standing),
+            Some(rank) => self.follow_rates(family, rank, cells, standing),
             None => outline.cell_at(family, value),
         }
     }
 
     /// Returns the cell into which the rates on both sides of a threshold lead a function that is
     /// on it.
-    fn led(&mut self, family: usize, rank: usize, cells: &[Cell], standing: StateAt<'_>) -> Cell {
+    fn follow_rates(
+        &mut self,
+        family: usize,
+        rank: usize,
+        cells: &[Cell],
+        standing: StateAt<'_>,
+    ) -> Cell {
         let mut with = |cell: Cell| {
             let mut cells = cells.to_vec();
             cells[family] = cell;

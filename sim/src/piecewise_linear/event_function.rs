@@ -219,7 +219,7 @@ fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
 
 /// The same in SIMD vectors.
 fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
-    let parts = SplitComplex::of(values);
+    let parts = SplitComplex::new(values);
     let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
     let pairs = parts.re.iter().zip(&parts.im).zip(pack(&sizes));
     pairs

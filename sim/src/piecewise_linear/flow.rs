@@ -20,18 +20,18 @@ use super::step_table::Step;
 
 /// Amplitudes may be followed back by at most this multiple of the shortest decay time, as this
 /// magnifies their rounding errors.
-const BACK: f64 = 1.0;
+const MAX_DECAY_TIMES_BACK: f64 = 1.0;
 
-/// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
-/// of a difference to their logarithm.
-const DECAYED: f64 = 0.25;
+/// Change of the logarithm of the fastest decaying amplitude after which the magnitudes are
+/// computed again.
+const MAX_LOG_DECAY: f64 = 0.25;
 
 /// Error of a rate that vanishes at the release of a motion, in rounding errors of all its terms:
 /// the place of the release is known as accurately.
-const OF_A_DEPARTURE: f64 = 16.0;
+const DEPARTURE_ROUNDINGS: f64 = 16.0;
 
-/// A function has left its limit when it is this many times farther than rounding can bring it.
-const GONE: f64 = 4.0;
+/// Distance, in rounding errors, at which a function has left its limit.
+const DEPARTED_ROUNDINGS: f64 = 4.0;
 
 /// A motion in one regime. Its memory is used again for the next one.
 #[derive(Clone, Debug, Default)]
@@ -154,7 +154,7 @@ impl Flow {
     /// Advances by any time, which may be negative.
     #[inline(always)]
     pub fn shift<S: Simd>(&mut self, simd: S, regime: &Regime, time: f64) {
-        if -time * regime.modes.damping > BACK {
+        if -time * regime.modes.damping > MAX_DECAY_TIMES_BACK {
             // From the start: what has decayed below the rounding of that would grow again out of rounding.
             let tau = self.tau + time;
             self.rewind(regime);
@@ -235,7 +235,7 @@ impl Flow {
     #[inline(always)]
     fn measure<S: Simd>(&mut self, simd: S, regime: &Regime) {
         let decayed = (self.tau - self.measured_at) * regime.modes.damping;
-        if (0.0..DECAYED).contains(&decayed) {
+        if (0.0..MAX_LOG_DECAY).contains(&decayed) {
             return;
         }
         self.measured_at = self.tau;
@@ -296,7 +296,7 @@ impl Flow {
         let limits = regime.event_functions[place].limits;
         let (above, below) = ((value - limits.low).abs(), (limits.high - value).abs());
         let inward = if above <= below { rate } else { -rate };
-        let noise = OF_A_DEPARTURE * self.start_rate_noise(regime, place);
+        let noise = DEPARTURE_ROUNDINGS * self.start_rate_noise(regime, place);
         if inward <= noise {
             let distance = above.min(below);
             self.evaluations[place].slack = Some([2.0 * distance, 2.0 * rate.abs() + noise]);
@@ -324,7 +324,7 @@ impl Flow {
             let limits = regime.event_functions[place].limits;
             let now = self.evaluations[place].value;
             let distance = (now - limits.low).abs().min((limits.high - now).abs());
-            if distance > GONE * (value + rate * self.tau) {
+            if distance > DEPARTED_ROUNDINGS * (value + rate * self.tau) {
                 self.evaluations[place].slack = None;
             }
         }
@@ -369,13 +369,13 @@ impl Flow {
         if self.clusters.is_empty() && !self.departs {
             make(&local)
         } else {
-            make(&self.completed(local, regime, place, step))
+            make(&self.add_clusters(local, regime, place, step))
         }
     }
 
     /// Adds the parts of the clusters and the uncertainty after a departure.
     #[cold]
-    fn completed(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
+    fn add_clusters(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
         if let Some([value, rate]) = self.evaluations[place].slack {
             local.noise += value + rate * self.tau;
             local.rate_noise += rate;

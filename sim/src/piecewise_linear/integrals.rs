@@ -15,17 +15,17 @@ use super::kernels;
 use super::modes::Forcing;
 use super::simd_vectors::{SimdVector, numbers, pack, simd_vectors};
 
-/// A sinusoid that turns by more than this within the series' reach is a fast one, rad.
-const FAST: f64 = 4.0;
+/// Angle of a sinusoid within the range of the series above which it is fast, rad.
+const FAST_TURN_RAD: f64 = 4.0;
 
-/// A slow one turns by no more than this: the reach is cut accordingly, rad.
-const SLOW: f64 = 1.0;
+/// Largest angle of a slow sinusoid, rad; it limits the range of the series.
+const MAX_SLOW_TURN_RAD: f64 = 1.0;
 
 /// Terms of the series that are below this part of the largest are left out.
 const REMAINDER: f64 = 1e-19;
 
-/// Times up to this part of the window are near: there fewer powers of time count.
-const NEAR: f64 = 1.0 / 32.0;
+/// Fraction of the window that is near. Fewer powers of time are needed there.
+const NEAR_FRACTION: f64 = 1.0 / 32.0;
 
 /// More are never needed: arguments are below 1.
 const MOST_TERMS: usize = 24;
@@ -103,11 +103,11 @@ impl Integrals {
             let force = [&rows * &pair[0], &rows * &pair[1]];
             let mut answer = [DVector::zeros(size), DVector::zeros(size)];
             let acts = force.iter().flat_map(|f| f.iter()).any(|f| *f != 0.0);
-            if size > 0 && frequency.abs() * longest > FAST {
+            if size > 0 && frequency.abs() * longest > FAST_TURN_RAD {
                 answer = forced_coordinates(&matrix, &force, frequency);
             } else if acts {
-                if frequency.abs() * window > SLOW {
-                    window = SLOW / frequency.abs();
+                if frequency.abs() * window > MAX_SLOW_TURN_RAD {
+                    window = MAX_SLOW_TURN_RAD / frequency.abs();
                 }
                 sinusoids.push(phase);
                 felt.extend(force);
@@ -135,7 +135,7 @@ impl Integrals {
             orders: 1 + inner + terms(fastest * window),
             by_cause: Vec::new(),
             near_powers: Vec::new(),
-            near: NEAR * window,
+            near: NEAR_FRACTION * window,
             columns,
             rows,
             sinusoids,
@@ -175,7 +175,7 @@ impl Integrals {
 
     /// Returns the number of coordinates that affect others, which is the number of causes in a
     /// free motion.
-    pub fn felt(&self) -> usize {
+    pub fn cause_count(&self) -> usize {
         self.size - self.pure
     }
 
@@ -263,8 +263,8 @@ impl Integrals {
         let mut near_powers = 0;
         for column in &mut coefficients {
             let sizes: Vec<f64> = column[1..].iter().map(|c| c.abs()).collect();
-            column.truncate(1 + needed(&sizes, window));
-            near_powers = near_powers.max(1 + needed(&sizes, NEAR * window));
+            column.truncate(1 + terms_needed(&sizes, window));
+            near_powers = near_powers.max(1 + terms_needed(&sizes, NEAR_FRACTION * window));
         }
         let powers = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         let factors = (0..powers).map(|k| {
@@ -301,7 +301,7 @@ impl Integrals {
     /// Returns the same for each known quantity at a motion's start: the state, a unit constant and
     /// the inputs (`units`), and sine and cosine of each phase.
     pub fn rate_sizes_by_start(&self, weights: &[f64], units: usize) -> Vec<f64> {
-        let (states, felt) = (self.rows.ncols(), self.felt());
+        let (states, felt) = (self.rows.ncols(), self.cause_count());
         let by_cause = self.rate_sizes(weights);
         let mut sizes = vec![0.0; states + units + 2 * self.forced.len()];
         for (place, size) in by_cause[..felt].iter().enumerate() {
@@ -340,10 +340,11 @@ impl Integrals {
         }
         for cause in 0..self.rates.ncols() {
             let sizes: Vec<f64> = by_order.iter().map(|b| b.column(cause).amax()).collect();
-            let orders = by_order[..needed(&sizes, window)].iter();
+            let orders = by_order[..terms_needed(&sizes, window)].iter();
             let factors = orders.flat_map(|b| pack(b.column(cause).clone_owned().as_slice()));
             self.by_cause.push(factors.collect());
-            self.near_powers.push(needed(&sizes, NEAR * window));
+            self.near_powers
+                .push(terms_needed(&sizes, NEAR_FRACTION * window));
         }
     }
 }
@@ -409,7 +410,7 @@ fn falling(k: usize, factors: usize) -> f64 {
 
 /// Returns the number of coefficients of these magnitudes needed within a window, from the first
 /// power of time on.
-fn needed(sizes: &[f64], window: f64) -> usize {
+fn terms_needed(sizes: &[f64], window: f64) -> usize {
     let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
     for (order, size) in sizes.iter().enumerate() {
         power *= window;

@@ -66,7 +66,7 @@ impl Found {
 
     /// The same with these pairs of blocks made one; nothing if there are none, or if what is
     /// near zero would have to join.
-    pub fn merged(self, schur: &SchurForm, pairs: &[(usize, usize)]) -> Option<Self> {
+    pub fn merge(self, schur: &SchurForm, pairs: &[(usize, usize)]) -> Option<Self> {
         let mut sorted = self.numbers.clone();
         sorted.sort_unstable();
         let mut numbers = self.numbers;

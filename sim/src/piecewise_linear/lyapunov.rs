@@ -243,15 +243,15 @@ fn product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Follow for Frame {
-    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
-        self.tangents.flowed(segment, flow);
+    fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        self.tangents.observe_segment(segment, flow);
         // Vectors that shrink fast would turn into the first one.
         if self.tangents.vectors.len() > 1 {
             self.orthonormalise();
         }
     }
 
-    fn switched(&mut self, change: &Change<'_>) {
-        self.tangents.switched(change);
+    fn observe_switch(&mut self, change: &Change<'_>) {
+        self.tangents.observe_switch(change);
     }
 }

@@ -91,7 +91,7 @@ impl Modes {
                 }
             }
         }
-        modes.rates = SplitComplex::of(&modes.rate);
+        modes.rates = SplitComplex::new(&modes.rate);
         let damping = |rate: &Complex<f64>| {
             if rate.re > 0.0 {
                 f64::INFINITY

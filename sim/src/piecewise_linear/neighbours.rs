@@ -72,7 +72,7 @@ impl Carrier<'_> {
 }
 
 impl Follow for Carrier<'_> {
-    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+    fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         // Inputs change at samples: the last sample of a segment is usually at its end.
         let mut at_end = false;
         while let Some(after) = self.samples.next_in(segment) {
@@ -91,7 +91,7 @@ impl Follow for Carrier<'_> {
         }
     }
 
-    fn switched(&mut self, change: &Change<'_>) {
+    fn observe_switch(&mut self, change: &Change<'_>) {
         self.tangents.switch(change);
     }
 }

@@ -27,7 +27,7 @@ const AT_ONCE: u32 = 16;
 
 /// Decays slower than the switching by this factor are treated as polynomials: as modes they would
 /// have large amplitudes that cancel.
-const SLOW: f64 = 1e-2;
+const SLOW_DECAY_RATIO: f64 = 1e-2;
 
 /// A motion that would need more steps than this, hours of them, is not begun.
 const MOST_STEPS: f64 = 1e8;
@@ -105,10 +105,10 @@ impl Jumped {
 /// Observer of a motion.
 pub(super) trait Follow {
     /// Called after a segment in one regime. `flow` is at its end and may be moved.
-    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow);
+    fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow);
 
     /// The motion changed from one regime to another at a switching surface.
-    fn switched(&mut self, change: &Change<'_>);
+    fn observe_switch(&mut self, change: &Change<'_>);
 }
 
 /// A motion within one regime.
@@ -191,7 +191,7 @@ impl Propagator {
             states: evaluator.states(),
             phases: system.phases.clone(),
             saltations: Vec::new(),
-            slow: SLOW * switched_rate(&mut evaluator, &system),
+            slow: SLOW_DECAY_RATIO * switched_rate(&mut evaluator, &system),
             max_switch_rate: crate::ode::Settings::default().max_switch_rate,
             evaluator,
         })
@@ -224,7 +224,7 @@ impl Propagator {
             visited.step = 0;
         }
         let clock = Clock::new(t);
-        let regime = self.regime_at(clock, state, held(inputs, t, self.inputs))?;
+        let regime = self.regime_at(clock, state, held_inputs(inputs, t, self.inputs))?;
         Ok(Motion {
             clock,
             state: state.to_vec(),
@@ -261,7 +261,7 @@ impl Propagator {
         let target = breakpoint.unwrap_or(end);
         let remaining = motion.clock.time_until(target);
         self.check_window(motion, remaining)?;
-        let values = held(inputs, now, self.inputs);
+        let values = held_inputs(inputs, now, self.inputs);
         let VisitedRegime {
             regime,
             step,
@@ -304,7 +304,7 @@ impl Propagator {
             tau,
             is_held: cells.iter().any(|cell| matches!(cell, Cell::On(_))),
         };
-        follow.flowed(&segment, flow);
+        follow.observe_segment(&segment, flow);
         if found == Found::Nothing && breakpoint.is_some() {
             self.take_inputs(motion, inputs)?;
         }
@@ -344,7 +344,7 @@ impl Propagator {
         let before = self.outline(&cells);
         let standing = StateAt {
             state: &motion.state,
-            inputs: held(inputs, motion.time(), self.inputs),
+            inputs: held_inputs(inputs, motion.time(), self.inputs),
             phases: &motion.phases,
         };
         self.settle(&mut cells, DecisionCause::Jump(before), standing);
@@ -361,7 +361,7 @@ impl Propagator {
         follow: &mut dyn Follow,
     ) -> Result<(), ExactError> {
         let before = motion.regime;
-        let values = held(inputs, motion.time(), self.inputs);
+        let values = held_inputs(inputs, motion.time(), self.inputs);
         let standing = StateAt {
             state: &motion.state,
             inputs: values,
@@ -387,7 +387,7 @@ impl Propagator {
         let phases = &motion.phases;
         let guard = self.families[family].ranks[rank][0];
         let function = &self.regimes[before].regime.event_functions[event_function].linear;
-        follow.switched(&Change {
+        follow.observe_switch(&Change {
             before: &self.regimes[before].regime,
             after: &self.regimes[after].regime,
             function,
@@ -401,7 +401,7 @@ impl Propagator {
             cells: (&self.regimes[before].cells, &self.regimes[after].cells),
         });
         motion.regime = after;
-        self.let_go(motion, before);
+        self.release_surfaces(motion, before);
         if by_jump {
             // A jump may have led over more than one limit.
             motion.jumped = Some(Jumped::Any);
@@ -469,7 +469,7 @@ fn go_on<S: Simd>(
 }
 
 /// The inputs in force from a time on, as many as the model has.
-fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
+fn held_inputs(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
     let all = inputs.last_sample(t);
     &all[..count.min(all.len())]
 }

@@ -19,15 +19,15 @@ const ROUNDS: usize = 5;
 /// equal eigenvalues cannot be separated, and need not be.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Subspaces are apart, and corrected by roundings too, if an error turns them by no more than
-/// this many times its part of the eigenvalues.
-const APART: f64 = 1e3;
+/// Subspaces are separate, and also corrected by rounding errors, if an error rotates them by at
+/// most this multiple of its fraction of the eigenvalues.
+const MAX_ROTATION_PER_ERROR: f64 = 1e3;
 
-/// A vector turned by more than this is beyond first order, and left as it is.
-const TURN: f64 = 0.1;
+/// Larger rotations of a vector exceed first order, and are not applied.
+const MAX_ROTATION: f64 = 0.1;
 
 /// A decomposition with a remaining error above this fraction of the eigenvalues is unreliable.
-const HOPELESS: f64 = 1e-9;
+const MAX_REMAINING_ERROR: f64 = 1e-9;
 
 /// A matrix by invariant subspaces, D being block-diagonal.
 pub(super) struct Subspaces {
@@ -64,7 +64,7 @@ impl Subspaces {
         }
         self.refine_rows();
         Refinement {
-            converged: wrong <= HOPELESS,
+            converged: wrong <= MAX_REMAINING_ERROR,
             inseparable,
         }
     }
@@ -105,10 +105,10 @@ impl Subspaces {
                     wrong.max(relative)
                 };
                 let solved = sylvester(&self.block(rows), &self.block(columns), &found);
-                let is_apart = solved.norm() <= APART * relative;
-                if is_apart || (relative > ROUNDING && solved.norm() <= TURN) {
+                let is_apart = solved.norm() <= MAX_ROTATION_PER_ERROR * relative;
+                if is_apart || (relative > ROUNDING && solved.norm() <= MAX_ROTATION) {
                     turn.view_mut(place, shape).copy_from(&solved);
-                } else if relative > HOPELESS {
+                } else if relative > MAX_REMAINING_ERROR {
                     inseparable.push((i, j));
                 }
             }

@@ -76,7 +76,7 @@ impl Regime {
         let frequencies: Vec<f64> = system.phases.iter().map(|phase| phase[0]).collect();
         let highest = frequencies.iter().map(|f| f.abs()).fold(0.0, f64::max);
         let decomposition = Decomposition::decompose(&matrix, system.degrees, highest, slow)?;
-        let forcing = Forcing::of(&system);
+        let forcing = Forcing::new(&system);
         if !forcing.is_finite() || frequencies.iter().any(|f| !f.is_finite()) {
             return Err(DecompositionError::NotFinite);
         }
@@ -115,7 +115,7 @@ impl Regime {
                 EventFunction::new(linear, limits, &modes, integrals, &clusters)
             })
             .collect();
-        let layout = Layout::of(&modes, &integrals);
+        let layout = Layout::new(&modes, &integrals);
         Ok(Self {
             coordinates: layout.coordinates(&modes, &integrals),
             states: layout.states(&modes, &integrals, &still_states(&system)),
@@ -168,7 +168,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(modes: &Modes, integrals: &Integrals) -> Self {
+    fn new(modes: &Modes, integrals: &Integrals) -> Self {
         Self {
             modes: 4 * modes.simd_vectors(),
             vectors: 2 * modes.simd_vectors() + integrals.simd_vectors(),
@@ -219,7 +219,7 @@ impl Layout {
                 columns.push(column);
             }
         }
-        PackedMatrix::of(4 * self.vectors, columns.len(), |row, column| {
+        PackedMatrix::new(4 * self.vectors, columns.len(), |row, column| {
             columns[column][row]
         })
     }
@@ -229,7 +229,7 @@ impl Layout {
     fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> PackedMatrix {
         let states = modes.columns.nrows();
         let width = 2 * self.modes + integrals.size;
-        PackedMatrix::of(states, width, |state, column| {
+        PackedMatrix::new(states, width, |state, column| {
             let (kind, place) = (column / self.modes.max(1), column % self.modes.max(1));
             match kind {
                 _ if still[state] => 0.0,
@@ -264,7 +264,7 @@ fn still_states(system: &AffineSystem) -> Vec<bool> {
 }
 
 impl Forcing {
-    fn of(system: &AffineSystem) -> Self {
+    fn new(system: &AffineSystem) -> Self {
         let rates = &system.rates;
         let column = |block: &[f64], width: usize, place: usize| {
             DVector::from_fn(system.states, |row, _| block[row * width + place])

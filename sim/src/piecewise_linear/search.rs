@@ -16,12 +16,12 @@ use super::event_function::Limits;
 use super::flow::Flow;
 use super::regime::Regime;
 
-/// Newton steps towards a crossing; two or three are usual.
-const POLISHING: usize = 60;
+/// Maximum Newton steps to a crossing. Two or three are usual.
+const MAX_NEWTON_STEPS: usize = 60;
 
 /// Largest error of a step to the zero of a cubic, relative to the bound on the rounding error of
 /// the function, which is mostly pessimistic.
-const REST: f64 = 1e-3;
+const ROOT_TOLERANCE_ROUNDINGS: f64 = 1e-3;
 
 /// A function that is beyond its limit by more than this many times its rounding has jumped.
 const JUMP: f64 = 64.0;
@@ -184,7 +184,7 @@ fn step<S: Simd>(
         }
         if !flow.is_summed_up(event_function) {
             flow.sum_up(simd, regime, event_function);
-            if let Some(found) = reached(flow, regime, event_function) {
+            if let Some(found) = find_reached_limit(flow, regime, event_function) {
                 return Outcome::Limit(found);
             }
         }
@@ -271,7 +271,7 @@ fn first_of_all<S: Simd>(
 }
 
 /// A limit that a function has reached here already.
-fn reached(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found> {
+fn find_reached_limit(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found> {
     let limits = &regime.event_functions[event_function].limits;
     if flow.is_between(event_function, limits.low, limits.high) {
         return None;
@@ -346,7 +346,7 @@ fn polish<S: Simd>(
     newton: &mut u64,
 ) {
     let [mut near, mut far] = crossing.within;
-    for _ in 0..POLISHING {
+    for _ in 0..MAX_NEWTON_STEPS {
         *newton += 1;
         let here = distance(simd, flow, regime, crossing.event_function, crossing.upper);
         // A motion that comes nearer no more has not turned back yet.
@@ -369,7 +369,7 @@ fn polish<S: Simd>(
         // The residual of the cubic and its truncation error are below rounding.
         let squared = shift * shift;
         let rest = here.cubic(shift).abs() + here.fourth * squared * squared / 24.0;
-        if settled || rest <= REST * here.noise {
+        if settled || rest <= ROOT_TOLERANCE_ROUNDINGS * here.noise {
             return;
         }
     }

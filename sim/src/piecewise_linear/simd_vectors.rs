@@ -123,7 +123,7 @@ pub(super) struct PackedMatrix {
 
 impl PackedMatrix {
     /// A matrix from its entries.
-    pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let entries = (0..simd_vectors(rows)).flat_map(|simd_vector| {
             let entry = &entry;
             (0..columns).map(move |column| {
@@ -156,7 +156,7 @@ pub(super) struct SplitComplex {
 
 impl SplitComplex {
     /// Complex numbers in SIMD vectors.
-    pub fn of(values: &[Complex<f64>]) -> Self {
+    pub fn new(values: &[Complex<f64>]) -> Self {
         let part = |of: fn(&Complex<f64>) -> f64| {
             let parts: Vec<f64> = values.iter().map(of).collect();
             pack(&parts)
@@ -170,7 +170,7 @@ impl SplitComplex {
     /// exp(rate time) - 1 of each rate.
     pub fn expm1(rates: &[Complex<f64>], time: f64) -> Self {
         let expm1: Vec<Complex<f64>> = rates.iter().map(|rate| expm1(rate * time)).collect();
-        Self::of(&expm1)
+        Self::new(&expm1)
     }
 }
 
@@ -209,7 +209,7 @@ mod tests {
             Complex::new(0.0, 63.0),
             Complex::new(-9.0, 0.0),
         ];
-        let pairs = SplitComplex::of(&rates);
+        let pairs = SplitComplex::new(&rates);
         for argument in [
             1e-5,
             1e-4,
@@ -250,7 +250,7 @@ mod tests {
     fn packed_matrices_multiply() {
         for (rows, columns) in [(1, 3), (4, 2), (7, 5), (9, 1), (12, 4), (3, 0)] {
             let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
-            let packed = PackedMatrix::of(rows, columns, entry);
+            let packed = PackedMatrix::new(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
             let mut out = vec![SimdVector::new([1.0; 4]); simd_vectors(rows)];
             dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));

@@ -112,7 +112,7 @@ impl Recorder<'_, '_> {
 }
 
 impl Follow for Recorder<'_, '_> {
-    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+    fn observe_segment(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
         self.observe(segment, flow);
         while let Some(after) = self.samples.next_in(segment) {
             self.samples.take_in(segment, after, flow);
@@ -120,7 +120,7 @@ impl Follow for Recorder<'_, '_> {
         (self.progress)(segment.start.advanced_by(segment.tau).time());
     }
 
-    fn switched(&mut self, change: &Change<'_>) {
+    fn observe_switch(&mut self, change: &Change<'_>) {
         let (before, after) = change.cells;
         let cells = change.families.iter().zip(before.iter().zip(after));
         for (family, (from, to)) in cells.filter(|(_, (from, to))| from != to) {

@@ -16,10 +16,10 @@ use super::transition::Limit;
 use crate::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
 
 /// Largest residual of a function that follows from others, and of its threshold, relative.
-const FOLLOWS: f64 = 1e-10;
+const DEPENDENCE_TOLERANCE: f64 = 1e-10;
 
 /// Largest residual of rates that are the sum of contributions of the surfaces' sides, relative.
-const ADDS_UP: f64 = 1e-9;
+const SUPERPOSITION_TOLERANCE: f64 = 1e-9;
 
 /// A surface's contribution to a rate is rounding below this fraction of the rate's terms.
 const ROUNDING: f64 = 1e-12;
@@ -74,7 +74,7 @@ impl Propagator {
             if known.iter().any(|on| on.family == family) {
                 continue;
             }
-            let Some(factors) = combined(&functions, &coefficients(&visited.functions[family]))
+            let Some(factors) = express_by(&functions, &coefficients(&visited.functions[family]))
             else {
                 continue;
             };
@@ -88,7 +88,8 @@ impl Propagator {
             });
             let ranks = above.saturating_sub(1)..(above + 1).min(self.families[family].ranks.len());
             let met_at = |rank: &usize| {
-                (threshold(family, *rank) - value).abs() <= FOLLOWS * size.max(value.abs())
+                (threshold(family, *rank) - value).abs()
+                    <= DEPENDENCE_TOLERANCE * size.max(value.abs())
             };
             if let Some(rank) = ranks.clone().find(met_at) {
                 let side = if above == rank { 1.0 } else { -1.0 };
@@ -189,9 +190,9 @@ impl Propagator {
             .fold(DVector::from_vec(below.values), |sum, jump| sum + jump);
         let states = sum.iter().zip(above.values.iter().zip(&above.sizes));
         let mut states = states.zip(&below.sizes);
-        if !states
-            .all(|((sum, (value, size)), other)| (sum - value).abs() <= ADDS_UP * (size + other))
-        {
+        if !states.all(|((sum, (value, size)), other)| {
+            (sum - value).abs() <= SUPERPOSITION_TOLERANCE * (size + other)
+        }) {
             return None;
         }
         let middle = jumps
@@ -225,7 +226,7 @@ fn coefficients(function: &Linear) -> DVector<f64> {
 }
 
 /// The factors with which some functions add up to another, if they do.
-fn combined(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
+fn express_by(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector<f64>> {
     let count = functions.len();
     let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));
     let right = DVector::from_fn(count, |i, _| functions[i].dot(wanted));
@@ -234,5 +235,5 @@ fn combined(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVector
     let rest = terms.fold(wanted.clone(), |rest, (function, factor)| {
         rest - function * *factor
     });
-    (rest.amax() <= FOLLOWS * wanted.amax()).then_some(factors)
+    (rest.amax() <= DEPENDENCE_TOLERANCE * wanted.amax()).then_some(factors)
 }

@@ -14,11 +14,11 @@ use crate::sliding_modes::MIN_SINGULAR_VALUE_FRACTION;
 const ROUNDING: f64 = 1e-11;
 
 /// Largest residual of the rate of a held function, relative.
-const HELD: f64 = 1e-9;
+const HELD_RATE_TOLERANCE: f64 = 1e-9;
 
 /// A state is the pivot of a function if its factor is at least this fraction of the function's
 /// largest factor.
-const ALONE: f64 = 1e-6;
+const MIN_PIVOT_RATIO: f64 = 1e-6;
 
 /// A regime held on surfaces.
 pub(super) struct Sliding {
@@ -105,7 +105,7 @@ fn jump(
 fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -> Option<Sliding> {
     let held = rows.len();
     let projected = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
-    let (inverse, are_dependent) = inverted(&projected)?;
+    let (inverse, are_dependent) = invert(&projected)?;
     // parts = -inverse rows f_below.
     let weights = DMatrix::from_fn(held, below.states, |i, state| {
         -(0..held)
@@ -165,7 +165,7 @@ fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -
 
 /// Returns the inverse of the jumps' effect on the held functions and false, or the pseudoinverse
 /// and true if some functions follow from others.
-fn inverted(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
+fn invert(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     if projected.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
@@ -189,7 +189,7 @@ fn is_held(system: &AffineSystem, below: &AffineSystem, row: &DVector<f64>) -> b
             let rate: f64 = (0..row.len())
                 .map(|state| row[state] * block[state * width + column])
                 .sum();
-            rate.abs() <= HELD * size
+            rate.abs() <= HELD_RATE_TOLERANCE * size
         })
     })
 }
@@ -223,7 +223,7 @@ fn hold(system: &mut AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]
             .iter()
             .copied()
             .max_by(|a, b| row[*a].abs().total_cmp(&row[*b].abs()));
-        let Some(state) = largest.filter(|state| row[*state].abs() > ALONE * size) else {
+        let Some(state) = largest.filter(|state| row[*state].abs() > MIN_PIVOT_RATIO * size) else {
             continue;
         };
         let row = row.map(|entry| {

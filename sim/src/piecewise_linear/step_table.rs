@@ -4,14 +4,14 @@
 use super::modes::Modes;
 use super::simd_vectors::SplitComplex;
 
-/// The longest step times the fastest rate.
-const LONGEST: f64 = 1024.0;
+/// The longest step, times the fastest rate.
+const LONGEST_STEP: f64 = 1024.0;
 
-/// The shortest step times the fastest rate.
-const SHORTEST: f64 = 1.0 / 65536.0;
+/// The shortest step, times the fastest rate.
+const SHORTEST_STEP: f64 = 1.0 / 65536.0;
 
-/// Modes that turn by more than this within a step are bounded by their amplitudes.
-const TURN: f64 = 2.5;
+/// Modes that turn by more within a step are bounded by their amplitudes, rad.
+const MAX_TURN_RAD: f64 = 2.5;
 
 /// A step of one length.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub(super) struct Step {
 }
 
 /// Minimum number of steps if no mode limits their length.
-const FEWEST: usize = 25;
+const MIN_STEPS: usize = 25;
 
 /// Steps from the longest to the shortest.
 #[derive(Clone, Debug)]
@@ -43,7 +43,7 @@ impl StepTable {
     /// The longest step with this fastest rate, s.
     pub fn longest(fastest: f64) -> f64 {
         if fastest > 0.0 {
-            (LONGEST / fastest).min(1e6)
+            (LONGEST_STEP / fastest).min(1e6)
         } else {
             1.0
         }
@@ -54,7 +54,7 @@ impl StepTable {
         // A power of two: sums of steps are then exact.
         let mut length = window.log2().floor().exp2();
         let mut steps = Vec::new();
-        while steps.len() < FEWEST || (length * fastest > SHORTEST && steps.len() < 80) {
+        while steps.len() < MIN_STEPS || (length * fastest > SHORTEST_STEP && steps.len() < 80) {
             steps.push(Step::new(modes, length));
             length *= 0.5;
         }
@@ -75,7 +75,7 @@ impl Step {
             .fold(1.0, f64::max);
         let slow = modes
             .magnitude
-            .partition_point(|rate| rate * length <= TURN);
+            .partition_point(|rate| rate * length <= MAX_TURN_RAD);
         Self {
             length,
             expm1: SplitComplex::expm1(&modes.rate, length),

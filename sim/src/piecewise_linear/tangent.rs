@@ -45,7 +45,7 @@ impl Tangents {
         dispatch!(Level::new(), simd => {
             let transition = &mut neighbour.transition;
             let integrals = &regime.integrals;
-            integrals.transition(simd, tau, integrals.felt(), transition);
+            integrals.transition(simd, tau, integrals.cause_count(), transition);
             for vector in vectors {
                 neighbour.carry(simd, regime, &expm1, tau, vector);
             }
@@ -85,11 +85,11 @@ impl Tangents {
 }
 
 impl Follow for Tangents {
-    fn flowed(&mut self, segment: &Segment<'_>, _flow: &mut Flow) {
+    fn observe_segment(&mut self, segment: &Segment<'_>, _flow: &mut Flow) {
         self.advance(segment.regime, segment.tau);
     }
 
-    fn switched(&mut self, change: &Change<'_>) {
+    fn observe_switch(&mut self, change: &Change<'_>) {
         self.switch(change);
     }
 }

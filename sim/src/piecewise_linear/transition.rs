@@ -131,7 +131,7 @@ impl Propagator {
         if matches!(cells[family], Cell::Between(_))
             && self.leads_back(limit, &crossing, &after, standing)
         {
-            let held = self.held(limit, &crossing, &cells, standing);
+            let held = self.find_held_cells(limit, &crossing, &cells, standing);
             let (t, guard) = (limit.t, self.families[family].ranks[rank][0]);
             let held = held.ok_or(ExactError::Sticking { t, guard })?;
             return self.regime(&held, limit.t);
@@ -156,7 +156,7 @@ impl Propagator {
 
     /// Returns the cells held on the surface whose rates lead back: the crossed one or, of those
     /// that coincide with it, the outermost one whose side has this effect by itself.
-    fn held(
+    fn find_held_cells(
         &mut self,
         limit: &Limit,
         crossing: &Crossing,

@@ -191,7 +191,7 @@ fn hidden_characters_are_escaped_and_the_policy_forbids_scripts() {
 }
 
 #[test]
-fn what_leaves_much_is_said_to_be_uncertain_first() {
+fn large_remaining_gap_is_uncertain_in_the_summary() {
     let mut found = discovery("x");
     found.effects[0].status = EffectStatus::Named;
     found.closure.test = Some(0.6);
@@ -250,7 +250,7 @@ fn a_nuisance_at_its_bound_is_said_where_nothing_else_is_missing() {
 }
 
 #[test]
-fn nothing_refers_to_the_outside() {
+fn page_has_no_external_reference() {
     let page = discovery("x").to_html();
     for forbidden in [
         "http:", "https:", "//", "<script", "<link", "src=", "url(", "href",

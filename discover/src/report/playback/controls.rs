@@ -11,7 +11,7 @@ use crate::model::unknowns::UnknownKind;
 use crate::search::search_result::AcceptedEffect;
 
 /// Range of a sensor's control around the result, as a fraction of it.
-const AROUND: f64 = 2.0;
+const SENSOR_RANGE_FACTOR: f64 = 2.0;
 
 /// Writes the sliders and the reset button.
 pub(super) fn write_controls(
@@ -37,7 +37,7 @@ fn control(
 ) -> Markup {
     let value = best.train.estimate.theta[id];
     let of_sensor = |channel: usize, fault: &str, neutral: f64, unit: &str| {
-        let reach = (AROUND * (value - neutral).abs()).max(f64::MIN_POSITIVE);
+        let reach = (SENSOR_RANGE_FACTOR * (value - neutral).abs()).max(f64::MIN_POSITIVE);
         Slider {
             name: format!("{fault}_{}", problem.dataset.channels[channel].name),
             unit: format_unit(unit),

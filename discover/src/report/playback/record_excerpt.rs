@@ -11,8 +11,8 @@ const SAMPLES: usize = 3000;
 /// The most numbers in all columns: 260 kB as text.
 const NUMBERS: usize = 24_000;
 
-/// The fewest samples of a window that is cut short.
-const FEWEST: usize = 32;
+/// Minimum number of samples of a window that is cut short.
+const MIN_SAMPLES: usize = 32;
 
 /// Consecutive windows of the first test record.
 pub(super) struct RecordExcerpt {
@@ -63,7 +63,7 @@ impl RecordExcerpt {
         for (place, window) in all.filter(|(_, window)| window.record == 0) {
             let whole = window.times.len();
             let samples = whole.min(most - stretch.times.len());
-            if samples < whole && (samples < FEWEST || place > 0) {
+            if samples < whole && (samples < MIN_SAMPLES || place > 0) {
                 stretch.is_complete = false;
                 break;
             }

@@ -24,7 +24,7 @@ const MOST_STEPS: u64 = 400_000;
 /// to a small fraction of the noise, with different methods; the fit stops at `MAX_STEP_ERROR`. If
 /// impacts amplify this difference, the motion is not reproducible and the page would contradict
 /// the report.
-const DIFFERENT: f64 = 0.05;
+const MAX_RELATIVE_DIFFERENCE: f64 = 0.05;
 
 /// Checks that explicit steps reproduce the residuals of the fit, with the numbers of the extended
 /// specification.
@@ -66,7 +66,7 @@ pub(super) fn check_reproduces_fit(
     for (channel, ((sum, count), [_, fitted])) in problem.dataset.channels.iter().zip(left) {
         let left = f64::sqrt(sum / f64::max(*count, 1.0));
         // NaN fails the comparison.
-        let agree = (left - fitted).abs() <= DIFFERENT * fitted;
+        let agree = (left - fitted).abs() <= MAX_RELATIVE_DIFFERENCE * fitted;
         if !agree {
             let [left, fitted] =
                 [left, *fitted].map(|left| format_quantity(left, 3, &channel.unit));
