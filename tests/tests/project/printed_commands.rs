@@ -34,7 +34,7 @@ const REDUCED: [(&str, &str); 2] = [
         "--vary b_sp,b_pr=0:100e-6:3 --vary omega=10:60:2",
     ),
     (
-        "--vary b_sp,b_pr=0:100e-6:100 --vary omega=10:60:100",
+        "--vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50",
         "--vary b_sp,b_pr=0:100e-6:3 --vary omega=10:60:2",
     ),
 ];
