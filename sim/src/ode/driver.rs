@@ -38,8 +38,8 @@ const MANY: usize = 2;
 ///
 /// # Errors
 /// An invalid request, a rate that is not finite, or a limit of `settings`; see [`SolveError`].
-pub fn simulate<S: System + ?Sized>(
-    system: &S,
+pub fn simulate(
+    system: &dyn System,
     initial: &[f64],
     span: (f64, f64),
     samples: &[f64],
@@ -57,18 +57,18 @@ pub fn simulate<S: System + ?Sized>(
 ///
 /// # Errors
 /// Same as [`simulate`].
-pub fn simulate_into<S: System + ?Sized>(
+pub fn simulate_into(
     trajectory: &mut Trajectory,
-    system: &S,
+    system: &dyn System,
     (initial, span, samples): (&[f64], (f64, f64), &[f64]),
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(), SolveError> {
     request::check(system, initial, span, samples, settings)?;
     let run = match settings.method {
-        Method::DormandPrince853 => run::<S, DormandPrince853>,
-        Method::Adams => run::<S, Adams>,
-        Method::Radau => run::<S, Radau>,
+        Method::DormandPrince853 => run::<DormandPrince853>,
+        Method::Adams => run::<Adams>,
+        Method::Radau => run::<Radau>,
     };
     run(
         trajectory,
@@ -79,10 +79,10 @@ pub fn simulate_into<S: System + ?Sized>(
     )
 }
 
-/// The simulation with one method.
-fn run<S: System + ?Sized, M: Stepper>(
+/// Simulates with one method. The system is a trait object, so that each method is compiled once.
+fn run<M: Stepper>(
     trajectory: &mut Trajectory,
-    system: &S,
+    system: &dyn System,
     (initial, span, samples): (&[f64], (f64, f64), &[f64]),
     settings: &Settings,
     progress: &mut dyn FnMut(f64),

@@ -59,8 +59,8 @@ impl From<SolveError> for GrowthError {
 /// # Errors
 /// A motion that cannot be simulated, neighbouring motions that do not remain close, invalid
 /// times, or no state with an influence.
-pub fn measure_growth<S: System + ?Sized>(
-    system: &S,
+pub fn measure_growth(
+    system: &dyn System,
     initial: &[f64],
     felt: &[bool],
     stretches: &MeasurementTimes,
@@ -97,8 +97,8 @@ pub fn measure_growth<S: System + ?Sized>(
 }
 
 /// A motion with a tangent vector of length 1.
-struct MotionWithTangent<'a, S: System + ?Sized> {
-    system: &'a S,
+struct MotionWithTangent<'a> {
+    system: &'a dyn System,
     felt: &'a [bool],
     settings: Settings,
     t: f64,
@@ -109,10 +109,10 @@ struct MotionWithTangent<'a, S: System + ?Sized> {
     switches: u64,
 }
 
-impl<'a, S: System + ?Sized> MotionWithTangent<'a, S> {
+impl<'a> MotionWithTangent<'a> {
     /// Starts with the first unit vector of the states that count, turned slightly towards the
     /// others.
-    fn new(system: &'a S, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
+    fn new(system: &'a dyn System, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
         let mut turned = std::iter::once(1.0).chain((2..).map(|k: u32| 0.1 / f64::from(k)));
         let mut entry = |felt: &bool| {
             if *felt {

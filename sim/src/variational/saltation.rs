@@ -9,13 +9,13 @@ const DIFFERENCE_FRACTION: f64 = 1e-3;
 /// Largest relative difference of times that belong to the same surface, written twice.
 const MAX_TIME_DIFFERENCE_FRACTION: f64 = 1e-6;
 
-pub(super) struct Surfaces<'a, S: System + ?Sized> {
-    pub system: &'a S,
+pub(super) struct Surfaces<'a> {
+    pub system: &'a dyn System,
     /// Sizes of the states for finite differences; 0 if unknown.
     pub sizes: &'a [f64],
 }
 
-impl<S: System + ?Sized> Surfaces<'_, S> {
+impl Surfaces<'_> {
     fn evaluate(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
         self.system.guards(t, y, &mut guards);
@@ -55,8 +55,8 @@ impl<S: System + ?Sized> Surfaces<'_, S> {
 /// Returns the delay (s) with which the neighbour at the distance `v` reaches the surface between
 /// two points; `from` are the rates on the near side. `None` if there are several surfaces with
 /// different delays, or if the motion only touches the surface.
-pub(super) fn find_delay<S: System + ?Sized>(
-    surfaces: &Surfaces<'_, S>,
+pub(super) fn find_delay(
+    surfaces: &Surfaces<'_>,
     (before, near): (f64, &[f64]),
     (t, beyond): (f64, &[f64]),
     from: &[f64],

@@ -22,8 +22,8 @@ const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
 ///
 /// (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
 /// Springer 2004, section 7.3). The derivatives of g are finite differences.
-pub struct TangentSystem<'s, S: System + ?Sized> {
-    system: &'s S,
+pub struct TangentSystem<'s> {
+    system: &'s dyn System,
     sizes: Vec<f64>,
     jacobian: RefCell<Vec<f64>>,
     /// Fixed sides of the switching functions.
@@ -32,10 +32,10 @@ pub struct TangentSystem<'s, S: System + ?Sized> {
     together: Cell<Option<f64>>,
 }
 
-impl<'s, S: System + ?Sized> TangentSystem<'s, S> {
+impl<'s> TangentSystem<'s> {
     /// Adds a tangent vector to a system. `sizes` are magnitudes of its states for finite
     /// differences, 0 if unknown.
-    pub fn new(system: &'s S, sizes: Vec<f64>) -> Self {
+    pub fn new(system: &'s dyn System, sizes: Vec<f64>) -> Self {
         let states = system.state_count();
         Self {
             system,
@@ -60,7 +60,7 @@ impl<'s, S: System + ?Sized> TangentSystem<'s, S> {
     }
 }
 
-impl<S: System + ?Sized> System for TangentSystem<'_, S> {
+impl System for TangentSystem<'_> {
     fn state_count(&self) -> usize {
         2 * self.system.state_count()
     }
