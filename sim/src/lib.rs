@@ -105,5 +105,6 @@ pub mod ode;
 pub mod piecewise_linear;
 #[cfg(test)]
 mod random_numbers;
+mod registers;
 pub mod sliding_modes;
 pub mod variational;

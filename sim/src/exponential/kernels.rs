@@ -1,6 +1,6 @@
 //! Products of small matrices with vectors, compiled for the widest registers there are.
 
-use fearless_simd::{Level, dispatch};
+use crate::registers::dispatch_registers;
 
 /// Rows are filled up to a multiple of this.
 pub const LANES: usize = 8;
@@ -37,14 +37,14 @@ impl Columns {
     /// Adds the product with a vector; `out` has as many numbers as there are rows.
     pub fn add_product(&self, vector: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);
-        dispatch!(Level::new(), _simd => add_product(entries, rows, vector, out));
+        dispatch_registers!(_simd => add_product(entries, rows, vector, out));
     }
 
     /// Adds the products with many vectors, stored one after the other with the padding of the
     /// rows. The first `inner` numbers of each are used.
     pub fn add_products(&self, inner: usize, vectors: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);
-        dispatch!(Level::new(), _simd => {
+        dispatch_registers!(_simd => {
             for (vector, out) in vectors.chunks_exact(rows).zip(out.chunks_exact_mut(rows)) {
                 add_product(entries, rows, &vector[..inner], out);
             }

@@ -5,7 +5,9 @@
 //! nearly cancel. A flow advances by a step of the step table or by any time, and returns the
 //! values and derivatives of the regime's functions and the state at its present time.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
+
+use crate::registers::dispatch_registers;
 use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
@@ -204,7 +206,7 @@ impl Flow {
 
     /// The state a time after the start, s.
     pub fn state_at(&mut self, regime: &Regime, tau: f64, out: &mut [f64]) {
-        dispatch!(Level::new(), simd => {
+        dispatch_registers!(simd => {
             self.advance_to(simd, regime, tau);
             self.state(simd, regime, out);
         });

@@ -4,7 +4,9 @@
 use std::collections::HashMap;
 
 use eomgen_codegen::program::affine::AffineEvaluator;
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
+
+use crate::registers::dispatch_registers;
 use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
@@ -272,7 +274,7 @@ impl Propagator {
         let flow = &mut self.flow;
         let length = remaining.min(regime.step_table.window);
         let start = motion.clock;
-        let (found, by_jump) = dispatch!(Level::new(), simd => {
+        let (found, by_jump) = dispatch_registers!(simd => {
             go_on(simd, flow, (regime, cells), motion, (values, length), step)
         });
         let reached = match found {

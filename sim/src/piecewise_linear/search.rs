@@ -8,7 +8,9 @@
 //! rounding crosses it only if its rate leads outward. Otherwise two surfaces within 1e-11 s of
 //! each other would be entered and left for ever.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
+
+use crate::registers::dispatch_registers;
 
 use super::bounds::{Verdict, classify_step};
 use super::event_evaluation::Local;
@@ -115,7 +117,7 @@ struct Crossing {
 /// rounding: what grazes a limit there neither reaches nor leaves it.
 #[cold]
 fn search_grazing(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
-    dispatch!(Level::new(), simd => search_grazing_by(simd, flow, regime, end, effort))
+    dispatch_registers!(simd => search_grazing_by(simd, flow, regime, end, effort))
 }
 
 #[inline(always)]

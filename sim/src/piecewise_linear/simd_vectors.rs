@@ -198,7 +198,7 @@ pub(super) fn terms_of_expm1(argument: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
+    use crate::registers::dispatch_registers;
 
     use super::*;
 
@@ -229,7 +229,7 @@ mod tests {
                 now: &mut now,
             };
             let terms = terms_of_expm1(argument.abs());
-            dispatch!(Level::new(), simd => kernels::advance_little(simd, &pairs, time, terms, amplitudes));
+            dispatch_registers!(simd => kernels::advance_little(simd, &pairs, time, terms, amplitudes));
             let [re, im] = moved;
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.to_array()[place], im.to_array()[place]);
@@ -253,7 +253,7 @@ mod tests {
             let packed = PackedMatrix::new(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
             let mut out = vec![SimdVector::new([1.0; 4]); simd_vectors(rows)];
-            dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));
+            dispatch_registers!(simd => packed.add_product(simd, &vector, &mut out));
             for row in 0..rows {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();
                 // Small integers and halves have no rounding.

@@ -1,7 +1,9 @@
 //! Neighbouring motions to first order: tangent vectors carried along a motion, through the
 //! flow exactly and through switches by the saltation matrix.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Simd;
+
+use crate::registers::dispatch_registers;
 use nalgebra::{Complex, DVector};
 
 use super::event_function::monomials;
@@ -42,7 +44,7 @@ impl Tangents {
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
         let expm1 = SplitComplex::expm1(&regime.modes.rate, tau);
         let (neighbour, vectors) = (&mut self.neighbour, &mut self.vectors);
-        dispatch!(Level::new(), simd => {
+        dispatch_registers!(simd => {
             let transition = &mut neighbour.transition;
             let integrals = &regime.integrals;
             integrals.transition(simd, tau, integrals.cause_count(), transition);
