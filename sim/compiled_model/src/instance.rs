@@ -175,6 +175,14 @@ impl<'m> Instance<'m> {
         self.model.sided_model(&self.parameters)
     }
 
+    /// Returns [`CompiledModel::holding_model`] at these parameters.
+    ///
+    /// # Errors
+    /// Same as [`CompiledModel::sided_model`].
+    pub(crate) fn holding_model(&self) -> Result<Option<SidedModel>, Error> {
+        self.model.holding_model(&self.parameters)
+    }
+
     /// Returns the corners of the motion at these parameters; `None` if no momenta can jump.
     ///
     /// # Errors
@@ -219,7 +227,7 @@ impl<'m> Instance<'m> {
         let mut observables = vec![0.0; evaluator.program().observables.len()];
         let trajectory = &motion.trajectory;
         let mut observed =
-            ObservedMotion::new(evaluator, self.sided_model()?, trajectory, &motion.inputs);
+            ObservedMotion::new(evaluator, self.holding_model()?, trajectory, &motion.inputs);
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
             let inputs = &motion.inputs.evaluate(t);
             observed.observables(Point { t, state, inputs }, &mut observables);

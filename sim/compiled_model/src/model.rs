@@ -63,9 +63,6 @@ impl Orders<'_> {
     }
 }
 
-/// Program whose rates take the sides of surfaces as inputs, and its machine code.
-type SidedProgram = (Program, Option<Arc<dyn MachineCode>>);
-
 /// A derived model, independent of parameter values. Machine code, Jacobians and the
 /// piecewise-linear form are made at their first use and kept. Threads may share the model.
 pub struct CompiledModel {
@@ -77,7 +74,9 @@ pub struct CompiledModel {
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
     tangents: OnceLock<Result<JacobianProgram, Diagnostics>>,
-    sided: OnceLock<Result<Option<SidedProgram>, Diagnostics>>,
+    /// Program whose rates take the sides of surfaces as inputs, and its machine code.
+    sided: OnceLock<Result<Option<Program>, Diagnostics>>,
+    sided_code: OnceLock<Option<Arc<dyn MachineCode>>>,
     corners: OnceLock<Result<Option<Program>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
     typical_sizes: OnceLock<Vec<f64>>,
@@ -137,6 +136,7 @@ impl CompiledModel {
             tangents: OnceLock::new(),
             corners: OnceLock::new(),
             sided: OnceLock::new(),
+            sided_code: OnceLock::new(),
             constraints: OnceLock::new(),
             typical_sizes: OnceLock::new(),
         }
@@ -266,19 +266,29 @@ impl CompiledModel {
     /// # Errors
     /// Parameter values that are not admissible.
     pub fn sided_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
-        let made = self.sided.get_or_init(|| {
-            let may_hold = self.model.impacts.is_empty();
-            let program = lower_with_sides(&self.model, &self.equations, may_hold)?;
-            Ok(program.map(|program| {
-                let code = eomgen_jit::code(&program);
-                (program, code)
-            }))
-        });
-        let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
-        let sided = made.as_ref().map(|(program, code)| {
+        let sided = self.sided_program()?.map(|program| {
+            let code = self.sided_code.get_or_init(|| eomgen_jit::code(program));
             SidedModel::new(prepare_evaluator(program, code.as_ref(), parameters))
         });
         Ok(sided)
+    }
+
+    /// Returns [`CompiledModel::sided_model`] if its surfaces can hold the motion. Otherwise it
+    /// compiles nothing.
+    pub(crate) fn holding_model(&self, parameters: &[f64]) -> Result<Option<SidedModel>, Error> {
+        match self.sided_program()? {
+            Some(program) if !program.outputs.sliding.is_empty() => self.sided_model(parameters),
+            _ => Ok(None),
+        }
+    }
+
+    fn sided_program(&self) -> Result<Option<&Program>, Error> {
+        let made = self.sided.get_or_init(|| {
+            let may_hold = self.model.impacts.is_empty();
+            lower_with_sides(&self.model, &self.equations, may_hold)
+        });
+        let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
+        Ok(made.as_ref())
     }
 
     /// Returns the corners of a motion at these values of the independent parameters, SI. `None` if

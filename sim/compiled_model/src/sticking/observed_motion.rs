@@ -26,7 +26,7 @@ pub(crate) struct ObservedMotion {
 }
 
 impl ObservedMotion {
-    /// Combines an evaluator with the model with sides, if surfaces can hold the motion.
+    /// Combines an evaluator with the model with sides if surfaces can hold the motion.
     pub fn new(
         own: Evaluator,
         sided: Option<SidedModel>,
@@ -36,9 +36,7 @@ impl ObservedMotion {
         let motion = (&trajectory.times[..], &trajectory.states[..]);
         Self {
             own,
-            rest: sided
-                .filter(SidedModel::can_hold_motion)
-                .map(|sided| StickingMotion::new(sided, motion, inputs)),
+            rest: sided.map(|sided| StickingMotion::new(sided, motion, inputs)),
         }
     }
 
