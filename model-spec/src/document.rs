@@ -9,12 +9,14 @@ use crate::entries::{
     read_force, read_frame, read_impact, read_input, read_line, read_observable, read_parameter,
     read_point, read_sensor, read_state, term, to_name,
 };
-use crate::keys;
+use crate::quantity::{Name, Quantity};
 use crate::raw::{Document, RawDrawing, RawInput};
+use crate::record::Record;
+use crate::sections;
 use crate::source::Source;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::{Entry, Name, Quantity, entries};
+use crate::table::{Entry, entries};
 use crate::toml_file::grammar_error;
 
 /// Largest number of entries in a section.
@@ -96,7 +98,7 @@ impl<'d> Reader<'d> {
                     &entry.name,
                     self.section("fields").is_some(),
                 ));
-            } else if keys::sections().all(|known| known != name) {
+            } else if sections::SECTIONS.names().all(|known| known != name) {
                 self.found.push_with(|| unknown_section(&entry.name));
             }
         }
@@ -133,13 +135,16 @@ impl<'d> Reader<'d> {
             );
             return None;
         };
-        let known = [&keys::MODEL[..], &["order"]].concat();
-        let has_fields = self.section("fields").is_some();
-        let record = entry.record(&known, "{ name = \"my_machine\" }", &mut self.found)?;
-        if let Some(order) = record.get("order") {
+        let entries = entry.table(&sections::MODEL.example());
+        let entries = self.found.push_error(entries)?;
+        let is_order = |entry: &Entry<'d>| entry.name.text == "order";
+        let (orders, entries): (Vec<_>, Vec<_>) = entries.into_iter().partition(is_order);
+        for order in orders {
+            let has_fields = self.section("fields").is_some();
             self.found.push(misplaced_order(&order.name, has_fields));
         }
-        let named = record.require("name", "write name = \"my_machine\"", &mut self.found)?;
+        let record = Record::new(entry.name, entries, &sections::MODEL, &mut self.found);
+        let named = record.require("name", &mut self.found)?;
         let name = to_name(self.found.push_error(named.written())?);
         let title = record.text("title", &mut self.found);
         Some((name, title))
@@ -176,8 +181,7 @@ impl<'d> Reader<'d> {
 
     fn drawing(&mut self) -> Option<RawDrawing> {
         let entry = self.section("drawing").cloned()?;
-        let example = "{ } or [drawing.points]";
-        let record = entry.record(&keys::DRAWING, example, &mut self.found)?;
+        let record = Record::read(&entry, &sections::DRAWING, &mut self.found)?;
         let mut drawing = RawDrawing {
             points: Vec::new(),
             lines: Vec::new(),
@@ -218,7 +222,7 @@ impl<'d> Reader<'d> {
 }
 
 fn unknown_section(name: &Name) -> Diagnostic {
-    let known: Vec<&str> = keys::sections().collect();
+    let known: Vec<&str> = sections::SECTIONS.names().collect();
     let listed = format!("the sections are {}", known.join(", "));
     Diagnostic::error(format!("unknown section {}", quote(&name.text)))
         .with_span(name.span, "not known")

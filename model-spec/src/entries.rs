@@ -1,29 +1,21 @@
 //! Reads one entry of each section: the required keys and the kinds of their values.
 
+use crate::bases;
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
-use crate::keys;
 use crate::model::Basis;
+use crate::quantity::{Name, Quantity, StringValue};
 use crate::raw::{
     RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawContactFriction, RawCoordinate,
     RawField, RawFrame, RawImpact, RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor,
     RawState, RawTerm, RawUncertainty,
 };
+use crate::record::{Record, unknown_key_error};
+use crate::sections;
 use crate::suggest::did_you_mean;
-use crate::table::{Entry, Name, Quantity, Record, StringValue, unknown_key_error};
+use crate::table::Entry;
 
-const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
-const UNCERTAINTY_EXAMPLE: &str = "{ relative = 0.02 }";
-const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
-const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
-const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
-const CONSTRAINT_EXAMPLE: &str = "{ zero = \"x^2 + y^2 - l^2\" }";
 const SLIP_HELP: &str =
     "give the tangential velocity of the contact: slip = \"dot(x) - r*dot(phi)\"";
-const IMPACT_EXAMPLE: &str = "{ when = \"y\", restitution = 0.8 }";
-const FRAME_EXAMPLE: &str = "{ in = \"link_1\", rotation = \"rotation_z(q_2)\" }";
-const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
-const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
-                             coordinates = \"q\", order = 4, unit = \"m\" }";
 
 pub fn to_name(written: StringValue) -> Name {
     Name {
@@ -33,9 +25,8 @@ pub fn to_name(written: StringValue) -> Name {
 }
 
 pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
-    let record = entry.record(&keys::PARAMETER, PARAMETER_EXAMPLE, found)?;
-    let help = "give a number in the declared unit, or an expression of other parameters";
-    let value = record.require("value", help, found)?.quantity();
+    let record = Record::read(entry, &sections::PARAMETER, found)?;
+    let value = record.require("value", found)?.quantity();
     Some(RawParameter {
         name: entry.name.clone(),
         unit: record.written("unit", found),
@@ -50,9 +41,9 @@ pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawP
 
 fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncertainty> {
     let entry = record.get("uncertainty")?;
-    let record = entry.record(&keys::UNCERTAINTY, UNCERTAINTY_EXAMPLE, found)?;
-    let given: Vec<&Entry<'_>> = keys::UNCERTAINTY
-        .iter()
+    let record = Record::read(entry, &sections::UNCERTAINTY, found)?;
+    let given: Vec<&Entry<'_>> = sections::UNCERTAINTY
+        .names()
         .filter_map(|key| record.get(key))
         .collect();
     let [one] = given[..] else {
@@ -60,7 +51,10 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
         found.push(
             Diagnostic::error(message)
                 .with_span(entry.span(), "expected one of relative, sd, between")
-                .with_help(format!("write uncertainty = {UNCERTAINTY_EXAMPLE}")),
+                .with_help(format!(
+                    "write uncertainty = {}",
+                    sections::UNCERTAINTY.example()
+                )),
         );
         return None;
     };
@@ -84,7 +78,7 @@ fn uncertainty(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawUncert
 }
 
 pub fn read_coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
-    let record = entry.record(&keys::COORDINATE, COORDINATE_EXAMPLE, found)?;
+    let record = Record::read(entry, &sections::COORDINATE, found)?;
     Some(RawCoordinate {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
@@ -104,13 +98,12 @@ fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
 }
 
 fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<StringValue> {
-    let help = "give the SI unit, for example unit = \"m\" or unit = \"rad\"";
-    let unit = record.require("unit", help, found)?.written();
+    let unit = record.require("unit", found)?.written();
     found.push_error(unit)
 }
 
 pub fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
-    let record = entry.record(&keys::INPUT, "{ unit = \"N m\" }", found)?;
+    let record = Record::read(entry, &sections::INPUT, found)?;
     Some(RawInput {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
@@ -142,10 +135,9 @@ fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
 }
 
 pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
-    let record = entry.record(&keys::STATE, STATE_EXAMPLE, found)?;
+    let record = Record::read(entry, &sections::STATE, found)?;
     let unit = required_unit(&record, found);
-    let help = "give its time derivative: rate = \"(k*x - z)/tau\"";
-    let rate = record.require("rate", help, found)?.quantity();
+    let rate = record.require("rate", found)?.quantity();
     Some(RawState {
         name: entry.name.clone(),
         unit,
@@ -157,9 +149,8 @@ pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState
 }
 
 pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
-    let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
-    let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
-    let zero = record.require("zero", help, found)?.scalar_or_vector();
+    let record = Record::read(entry, &sections::CONSTRAINT, found)?;
+    let zero = record.require("zero", found)?.scalar_or_vector();
     Some(RawTerm {
         name: entry.name.clone(),
         value: found.push_error(zero)?,
@@ -169,11 +160,9 @@ pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Raw
 }
 
 pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawImpact> {
-    let record = entry.record(&keys::IMPACT, IMPACT_EXAMPLE, found)?;
-    let help = "give the distance that crosses zero at the impact: when = \"y\"";
-    let when = record.require("when", help, found).map(Entry::quantity);
-    let help = "give the coefficient of restitution, from 0 to 1: restitution = 0.8";
-    let restitution = record.require("restitution", help, found);
+    let record = Record::read(entry, &sections::IMPACT, found)?;
+    let when = record.require("when", found).map(Entry::quantity);
+    let restitution = record.require("restitution", found);
     let restitution = restitution.map(Entry::quantity);
     let friction = read_contact_friction(&record, found);
     let distance = RawTerm {
@@ -234,23 +223,13 @@ fn read_contact_friction(
 }
 
 pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
-    let record = entry.record(&keys::FIELD, FIELD_EXAMPLE, found)?;
-    let along = record
-        .require("along", "name the position: along = \"x\"", found)
-        .cloned();
-    let from = record
-        .require("from", "give the start of the domain: from = 0", found)
-        .cloned();
-    let to = record
-        .require("to", "give the end of the domain: to = \"l\"", found)
-        .cloned();
-    let help = "give the mode shapes: basis = \"clamped_free\"";
-    let basis = record.require("basis", help, found).cloned();
-    let help = "name the mode coordinates: coordinates = \"q\"";
-    let coordinates = record.require("coordinates", help, found).cloned();
-    let order = record
-        .require("order", "give the number of modes: order = 4", found)
-        .cloned();
+    let record = Record::read(entry, &sections::FIELD, found)?;
+    let along = record.require("along", found).cloned();
+    let from = record.require("from", found).cloned();
+    let to = record.require("to", found).cloned();
+    let basis = record.require("basis", found).cloned();
+    let coordinates = record.require("coordinates", found).cloned();
+    let order = record.require("order", found).cloned();
     Some(RawField {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
@@ -267,9 +246,8 @@ pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField
 fn read_basis(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
     let written = found.push_error(basis.written())?;
     let table = record.get("table");
-    if written.text == keys::TABLE {
-        let help = "name the file with the shapes: table = \"modes.csv\"";
-        let table = table.or_else(|| record.require("table", help, found))?;
+    if written.text == bases::TABLE {
+        let table = table.or_else(|| record.require("table", found))?;
         return found.push_error(table.written()).map(RawBasis::Table);
     }
     let named = found.push_error(parse_basis(&written))?;
@@ -285,14 +263,14 @@ fn read_basis(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -
 }
 
 fn parse_basis(written: &StringValue) -> Result<Basis, Diagnostic> {
-    let meant = keys::BASES.iter().find(|(name, _)| *name == written.text);
+    let meant = bases::BASES.iter().find(|(name, _)| *name == written.text);
     meant.map(|(_, basis)| basis.clone()).ok_or_else(|| {
         let unknown = Diagnostic::error(format!("unknown basis {}", quote(&written.text)))
             .with_span(written.span, "not known");
-        let names = keys::BASES
+        let names = bases::BASES
             .iter()
             .map(|(name, _)| *name)
-            .chain([keys::TABLE]);
+            .chain([bases::TABLE]);
         unknown.with_help(did_you_mean(&written.text, names).unwrap_or_else(|| {
             "a beam is named by its ends at `from` and `to`: clamped, pinned, free or guided, as \
              pinned_clamped; the others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string, \
@@ -326,14 +304,13 @@ fn named_expression<'d>(
             origin: String::new(),
         });
     }
-    let record = entry.record(&keys::TERM, "\"1/2*m*dot(x)^2\"", found)?;
+    let record = Record::read(entry, &sections::TERM, found)?;
     read_term(&record, read, found)
 }
 
 /// Reads a named expression from a table with at least `value`.
 fn read_term<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
-    let help = "give an expression: value = \"...\"";
-    let value = read(record.require("value", help, found)?);
+    let value = read(record.require("value", found)?);
     Some(RawTerm {
         name: record.owner().clone(),
         value: found.push_error(value)?,
@@ -344,11 +321,8 @@ fn read_term<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -
 
 /// Reads an entry of `[forces]` and the quantity it acts on.
 pub fn read_force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
-    let record = entry.record(&keys::FORCE, FORCE_EXAMPLE, found)?;
-    let help = "give the coordinate or displacement the force acts on: on = \"theta\"";
-    let on = record
-        .require("on", help, found)
-        .map(Entry::scalar_or_vector);
+    let record = Record::read(entry, &sections::FORCE, found)?;
+    let on = record.require("on", found).map(Entry::scalar_or_vector);
     let term = read_term(&record, Entry::scalar_or_vector, found);
     Some((term?, found.push_error(on?)?))
 }
@@ -361,13 +335,13 @@ pub fn read_observable(
     if !entry.is_table() {
         return Some((read_definition(entry, found)?, None));
     }
-    let record = entry.record(&keys::OBSERVABLE, "\"at(w, l)\"", found)?;
+    let record = Record::read(entry, &sections::OBSERVABLE, found)?;
     let unit = record.written("unit", found);
     Some((read_term(&record, Entry::scalar_or_vector, found)?, unit))
 }
 
 pub fn read_frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
-    let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
+    let record = Record::read(entry, &sections::FRAME, found)?;
     let origin = record.get("origin");
     let origin = origin.map(|entry| entry.vector("[0, 0, \"d\"]"));
     Some(RawFrame {
@@ -380,7 +354,7 @@ pub fn read_frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame
 }
 
 pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
-    let record = entry.record(&keys::BODY, BODY_EXAMPLE, found)?;
+    let record = Record::read(entry, &sections::BODY, found)?;
     let mut list = |key: &str, counts: &[usize], example: &str| {
         let list = record.get(key)?.quantities(counts, example);
         found.push_error(list)
@@ -389,8 +363,7 @@ pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> 
     let centre = record.get("centre");
     let centre = centre.map(|entry| entry.vector("[0, 0, \"c\"]"));
     let centre = centre.and_then(|centre| found.push_error(centre));
-    let help = "name the frame it is fixed to: frame = \"link_1\"";
-    let frame = record.require("frame", help, found).map(Entry::written);
+    let frame = record.require("frame", found).map(Entry::written);
     let frame = frame.and_then(|frame| found.push_error(frame));
     let mass = match (record.get("mass"), record.get("inertia")) {
         (None, None) => {
@@ -427,8 +400,7 @@ pub fn read_coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ra
             doc: String::new(),
         });
     }
-    let example = "{ of = \"x_c\", by = \"dot(x_c)\" }";
-    let record = entry.record(&keys::COEFFICIENT, example, found)?;
+    let record = Record::read(entry, &sections::COEFFICIENT, found)?;
     Some(RawCoefficient {
         name,
         kind: coefficient_kind(&record, found)?,
@@ -452,10 +424,8 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
             .push_error(value.quantity())
             .map(RawCoefficientKind::Value);
     }
-    let help =
-        "give `of` (the coordinate of the equation) and `by` (the quantity multiplied), or `value`";
-    let of = record.require("of", help, found)?.quantity();
-    let by = record.require("by", help, found)?.quantity();
+    let of = record.require("of", found)?.quantity();
+    let by = record.require("by", found)?.quantity();
     let times = record.quantity("times", found);
     Some(RawCoefficientKind::Factor(
         found.push_error(of)?,
@@ -465,7 +435,7 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
 }
 
 pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
-    let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
+    let record = Record::read(entry, &sections::SENSOR, found)?;
     let observable = record.written("observable", found);
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
@@ -478,10 +448,9 @@ pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSens
 }
 
 pub fn read_point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
-    let record = entry.record(&keys::POINT, "{ x = \"tip_x\", y = \"tip_y\" }", found)?;
-    let help = "give a number in m, or the name of an observable or a coordinate in m";
-    let x = record.require("x", help, found).map(Entry::quantity);
-    let y = record.require("y", help, found).map(Entry::quantity);
+    let record = Record::read(entry, &sections::POINT, found)?;
+    let x = record.require("x", found).map(Entry::quantity);
+    let y = record.require("y", found).map(Entry::quantity);
     let (x, y) = (
         x.and_then(|x| found.push_error(x)),
         y.and_then(|y| found.push_error(y)),

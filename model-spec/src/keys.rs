@@ -1,104 +1,140 @@
-//! Sections of a specification and the keys of their entries, for the reader and for the JSON
-//! schema.
+//! Description of the keys of a table: the reader checks a file against it, and messages, JSON
+//! schema and reference page contain it.
 
-use crate::model::{Basis, End};
-
-pub const MODEL: [&str; 3] = ["name", "title", "gravity"];
-pub const PARAMETER: [&str; 7] = [
-    "value",
-    "unit",
-    "doc",
-    "source",
-    "min",
-    "max",
-    "uncertainty",
-];
-/// Keys of the `uncertainty` of a parameter; an entry has one of them.
-pub const UNCERTAINTY: [&str; 3] = ["relative", "sd", "between"];
-pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
-pub const INPUT: [&str; 4] = ["unit", "rates", "doc", "range"];
-pub const STATE: [&str; 5] = ["unit", "rate", "initial", "range", "doc"];
-pub const FIELD: [&str; 9] = [
-    "along",
-    "from",
-    "to",
-    "basis",
-    "table",
-    "coordinates",
-    "order",
-    "unit",
-    "doc",
-];
-pub const FRAME: [&str; 4] = ["in", "origin", "rotation", "doc"];
-pub const BODY: [&str; 6] = ["frame", "mass", "centre", "inertia", "doc", "source"];
-/// Keys of a definition, an energy term or a dissipation term.
-pub const TERM: [&str; 3] = ["value", "doc", "source"];
-pub const FORCE: [&str; 4] = ["on", "value", "doc", "source"];
-pub const CONSTRAINT: [&str; 3] = ["zero", "doc", "source"];
-pub const IMPACT: [&str; 6] = ["when", "restitution", "friction", "slip", "doc", "source"];
-pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
-pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"];
-pub const SENSOR: [&str; 4] = ["observable", "gain", "bias", "delay"];
-
-pub const DRAWING: [&str; 2] = ["points", "lines"];
-pub const POINT: [&str; 2] = ["x", "y"];
-
-/// Sections with the keys of their entries; for `[model]` and `[drawing]`, the keys of the
-/// section.
-pub const SECTIONS: [(&str, &[&str]); 19] = [
-    ("model", &MODEL),
-    ("parameters", &PARAMETER),
-    ("coordinates", &COORDINATE),
-    ("inputs", &INPUT),
-    ("states", &STATE),
-    ("fields", &FIELD),
-    ("definitions", &TERM),
-    ("frames", &FRAME),
-    ("bodies", &BODY),
-    ("kinetic", &TERM),
-    ("potential", &TERM),
-    ("dissipation", &TERM),
-    ("forces", &FORCE),
-    ("constraints", &CONSTRAINT),
-    ("impacts", &IMPACT),
-    ("observables", &OBSERVABLE),
-    ("coefficients", &COEFFICIENT),
-    ("sensors", &SENSOR),
-    ("drawing", &DRAWING),
-];
-
-pub fn sections() -> impl Iterator<Item = &'static str> {
-    SECTIONS.iter().map(|(name, _)| *name)
+/// Keys of a table.
+#[derive(Debug)]
+pub struct Keys {
+    /// The keys, in the order of the reference page.
+    pub list: &'static [Key],
+    /// Sets of keys that exclude each other; an entry has one set.
+    pub one_of: &'static [&'static [&'static str]],
+    /// Keys of which an entry has at least one.
+    pub any_of: &'static [&'static str],
+    /// Kind of a value that replaces the table, if permitted.
+    pub shorthand: Option<&'static str>,
 }
 
-/// Name of the basis with shapes from a file.
-pub const TABLE: &str = "table";
+/// Key of a table.
+#[derive(Debug)]
+pub struct Key {
+    /// Name in the file.
+    pub name: &'static str,
+    /// Kind of its value.
+    pub kind: Kind,
+    /// Value, as written in the file.
+    pub example: &'static str,
+    /// Meaning, as a noun phrase; a condition follows a semicolon.
+    pub doc: &'static str,
+    /// True if every table has it.
+    pub is_required: bool,
+    /// Heading of the reference page with the details; empty if there is none.
+    pub heading: &'static str,
+}
 
-/// All other bases. Rods and strings share the sines and cosines of pinned and guided beams.
-pub static BASES: [(&str, Basis); 21] = [
-    ("clamped_free", beam(End::Clamped, End::Free)),
-    ("clamped_free_printed", Basis::ClampedFreePrinted),
-    ("clamped_clamped", beam(End::Clamped, End::Clamped)),
-    ("clamped_pinned", beam(End::Clamped, End::Pinned)),
-    ("clamped_guided", beam(End::Clamped, End::Guided)),
-    ("pinned_clamped", beam(End::Pinned, End::Clamped)),
-    ("pinned_pinned", beam(End::Pinned, End::Pinned)),
-    ("pinned_free", beam(End::Pinned, End::Free)),
-    ("pinned_guided", beam(End::Pinned, End::Guided)),
-    ("free_clamped", beam(End::Free, End::Clamped)),
-    ("free_pinned", beam(End::Free, End::Pinned)),
-    ("free_free", beam(End::Free, End::Free)),
-    ("free_guided", beam(End::Free, End::Guided)),
-    ("guided_clamped", beam(End::Guided, End::Clamped)),
-    ("guided_pinned", beam(End::Guided, End::Pinned)),
-    ("guided_free", beam(End::Guided, End::Free)),
-    ("guided_guided", beam(End::Guided, End::Guided)),
-    ("rod_fixed_free", beam(End::Pinned, End::Guided)),
-    ("rod_fixed_fixed", beam(End::Pinned, End::Pinned)),
-    ("rod_free_free", beam(End::Guided, End::Guided)),
-    ("string", beam(End::Pinned, End::Pinned)),
-];
+/// Kind of a value.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// Number, text or list, by its name in the schema.
+    Value(&'static str),
+    /// Table with these keys.
+    Table(&'static Keys),
+    /// Table of named entries with these keys.
+    Entries(&'static Keys),
+}
 
-const fn beam(from: End, to: End) -> Basis {
-    Basis::Beam { from, to }
+impl Keys {
+    /// Creates keys that are independent of each other.
+    pub const fn new(list: &'static [Key]) -> Self {
+        Self {
+            list,
+            one_of: &[],
+            any_of: &[],
+            shorthand: None,
+        }
+    }
+
+    /// Permits a value of this kind instead of the table.
+    pub const fn or_value(mut self, kind: &'static str) -> Self {
+        self.shorthand = Some(kind);
+        self
+    }
+
+    /// Returns the names of the keys.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.list.iter().map(|key| key.name)
+    }
+
+    /// Returns a table with the necessary keys, as an example; with the first key if none is
+    /// necessary.
+    pub fn example(&self) -> String {
+        let chosen = self.one_of.first().copied().unwrap_or(self.any_of);
+        let is_shown = |key: &&Key| key.is_required || chosen.contains(&key.name);
+        let shown: Vec<&Key> = self.list.iter().filter(is_shown).collect();
+        let shown = match shown.is_empty() {
+            true => self.list.iter().take(1).collect(),
+            false => shown,
+        };
+        let shown = shown.iter().map(|key| key.assignment());
+        format!("{{ {} }}", shown.collect::<Vec<_>>().join(", "))
+    }
+}
+
+impl Key {
+    /// Creates an optional key with a value of this kind.
+    pub const fn new(
+        name: &'static str,
+        kind: &'static str,
+        example: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            kind: Kind::Value(kind),
+            example,
+            doc,
+            is_required: false,
+            heading: "",
+        }
+    }
+
+    /// Creates an optional key with a table.
+    pub const fn nested(
+        name: &'static str,
+        kind: Kind,
+        heading: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            kind,
+            heading,
+            ..Self::new(name, "", "", doc)
+        }
+    }
+
+    /// Returns the key as a required one.
+    pub const fn required(mut self) -> Self {
+        self.is_required = true;
+        self
+    }
+
+    /// Adds the heading of the reference page with the details.
+    pub const fn explained(mut self, heading: &'static str) -> Self {
+        self.heading = heading;
+        self
+    }
+
+    /// Returns the help of a message for a missing key.
+    pub fn help(&self) -> String {
+        let meaning = self.doc.split(';').next().unwrap_or_default();
+        format!("give the {meaning}: {}", self.assignment())
+    }
+
+    /// Returns `name = example`.
+    pub fn assignment(&self) -> String {
+        match self.kind {
+            Kind::Value(_) => format!("{} = {}", self.name, self.example),
+            Kind::Table(keys) => format!("{} = {}", self.name, keys.example()),
+            Kind::Entries(keys) => format!("{} = {{ NAME = {} }}", self.name, keys.example()),
+        }
+    }
 }

@@ -33,13 +33,14 @@
 //! Further modules: [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
 //! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
 //! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
-//! [`interval`] (bounds of expressions), [`toml_file`] and [`mod@table`] (other TOML files,
-//! with positions), [`models`] (shipped specifications). The derivation of equations is in the
+//! [`interval`] (bounds of expressions), [`mod@keys`] and [`sections`] (table of the sections and keys), [`toml_file`], [`mod@table`], [`record`] and
+//! [`quantity`] (TOML files with positions), [`models`] (shipped specifications). The derivation of equations is in the
 //! crate `codegen`.
 
 mod adjacent_file;
 pub mod assignment;
 pub mod ast;
+mod bases;
 mod checks;
 mod constants;
 pub mod diagnostic;
@@ -56,7 +57,7 @@ mod id_set;
 pub mod ids;
 mod infer;
 pub mod interval;
-mod keys;
+pub mod keys;
 pub mod lexer;
 mod load;
 pub mod model;
@@ -66,12 +67,16 @@ mod names;
 mod observed_rate;
 mod order;
 pub mod parser;
+pub mod quantity;
 mod rate_order;
 mod raw;
+pub mod record;
 mod resolve;
 pub mod rigid_tree;
 mod scale;
 pub mod schema;
+#[rustfmt::skip]
+pub mod sections;
 pub mod shape_table;
 pub mod source;
 mod space;

@@ -9,9 +9,9 @@ use crate::ids::{
     CoefficientId, ConstraintId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId, StateId,
 };
 use crate::model::{MULTIPLIER, RESIDUAL};
+use crate::quantity::Name;
 use crate::raw::Document;
 use crate::span::Span;
-use crate::table::Name;
 
 /// Longest name accepted, in characters.
 pub const MAX_NAME: usize = 64;

@@ -2,8 +2,8 @@
 //! resolved and nothing parsed. Written by `document` and `entries`, read by `resolve`.
 
 use crate::model::{Basis, STABILISATION_RATE};
+use crate::quantity::{Name, Number, Quantity, StringValue};
 use crate::span::Span;
-use crate::table::{Name, Number, Quantity, StringValue};
 
 #[derive(Debug)]
 pub struct Document {

@@ -1,125 +1,180 @@
 //! JSON schema of the language, for completion and checks in editors. It covers sections, keys
 //! and kinds of values; only [`crate::check`] checks names, expressions and units.
 
-/// The schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older drafts: it
-/// uses only keywords with one meaning in all drafts since 6, and no constraints next to a
-/// `$ref`, which older drafts ignore.
-pub const SCHEMA: &str = include_str!("schema.json");
+use serde_json::{Map, Value, json};
 
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
+use crate::bases;
+use crate::document::MAX_ENTRIES;
+use crate::keys::{Key, Keys, Kind};
+use crate::model::MAX_ORDER;
+use crate::names::MAX_NAME;
+use crate::sections::SECTIONS;
 
-    use serde_json::Value;
+/// Returns the schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older
+/// drafts: it uses only keywords with one meaning in all drafts since 6, and no constraints next to
+/// a `$ref`, which older drafts ignore.
+pub fn schema() -> Value {
+    let mut schema = table(&SECTIONS);
+    let has_entries = |section: &str| json!({ "required": [section], "properties": { section: { "minProperties": 1 } } });
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("A specification of eomgen");
+    schema["description"] =
+        json!("Mechanical system, described by its energies, forces and geometry.");
+    schema["anyOf"] = json!([has_entries("coordinates"), has_entries("fields")]);
+    schema["allOf"] = json!([{ "anyOf": [has_entries("kinetic"), { "required": ["bodies"] }] }]);
+    schema["$defs"] = json!(kinds());
+    schema
+}
 
-    use super::SCHEMA;
-    use crate::document::MAX_ENTRIES;
-    use crate::keys;
-    use crate::model::MAX_ORDER;
-    use crate::names::MAX_NAME;
+/// Returns the kinds of values by name, with a description.
+pub fn kinds() -> Map<String, Value> {
+    let expression = || reference("expression");
+    let number = || json!({ "type": "number" });
+    let list = |element, least: usize, most: usize| json!({ "type": "array", "items": element, "minItems": least, "maxItems": most });
+    let unit = || json!({ "type": "string", "maxLength": MAX_NAME });
+    let bases = bases::BASES.iter().map(|(name, _)| *name);
+    let bases: Vec<&str> = bases.chain([bases::TABLE]).collect();
+    let kinds = [
+        (
+            "name",
+            "a letter, then letters, digits and underscores",
+            json!({
+                "type": "string",
+                "pattern": "^[A-Za-z][A-Za-z0-9_]*$",
+                "maxLength": MAX_NAME
+            }),
+        ),
+        ("text", "a string", json!({ "type": "string" })),
+        ("number", "a number", number()),
+        (
+            "positive_number",
+            "a number greater than 0",
+            json!({ "type": "number", "exclusiveMinimum": 0 }),
+        ),
+        (
+            "fraction",
+            "a number between 0 and 1",
+            json!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }),
+        ),
+        ("pair_of_numbers", "two numbers", list(number(), 2, 2)),
+        (
+            "expression",
+            "a number, or an expression in quotes",
+            json!({ "type": ["number", "string"] }),
+        ),
+        (
+            "scalar_or_vector",
+            "an expression, or the components of a vector",
+            json!({ "anyOf": [expression(), list(expression(), 2, 3)] }),
+        ),
+        (
+            "components",
+            "expressions along x, y and z",
+            list(expression(), 3, 3),
+        ),
+        (
+            "vector",
+            "expressions along x, y and z, or one expression of a vector",
+            json!({ "anyOf": [reference("components"), { "type": "string" }] }),
+        ),
+        (
+            "inertia",
+            "I_xx, I_yy, I_zz, or also I_xy, I_yz, I_xz",
+            list(expression(), 3, 6),
+        ),
+        (
+            "range",
+            "lower and upper end, in SI, as expressions of parameters",
+            list(expression(), 2, 2),
+        ),
+        ("unit", "a unit, such as \"kg m^2\" or \"N s/mm\"", unit()),
+        (
+            "coherent_unit",
+            "an SI unit without a prefix, such as \"N m\"",
+            unit(),
+        ),
+        ("rate_count", "2", json!({ "const": 2 })),
+        (
+            "basis",
+            "mode shapes of a beam, a rod or a string, or \"table\"",
+            json!({ "enum": bases }),
+        ),
+        (
+            "mode_count",
+            "a whole number",
+            json!({ "type": "integer", "minimum": 0, "maximum": MAX_ORDER }),
+        ),
+        (
+            "ordinate",
+            "a number in m, or the name of an observable or a coordinate in m",
+            json!({ "type": ["number", "string"] }),
+        ),
+        (
+            "lines",
+            "a table of lists of names",
+            entries(json!({ "type": "array", "minItems": 2, "items": { "type": "string" } })),
+        ),
+    ];
+    let described = |(name, text, schema)| (String::from(name), describe(schema, text));
+    kinds.into_iter().map(described).collect()
+}
 
-    fn schema() -> Value {
-        serde_json::from_str(SCHEMA).expect("a JSON document")
+/// Returns the schema of a table.
+fn table(keys: &Keys) -> Value {
+    let properties = keys.list.iter().map(|key| (key.name, value(key)));
+    let properties: Map<String, Value> = properties
+        .map(|(name, schema)| (name.to_owned(), schema))
+        .collect();
+    let required = keys.list.iter().filter(|key| key.is_required);
+    let required: Vec<&str> = required.map(|key| key.name).collect();
+    let mut schema = json!({
+        "type": "object",
+        "additionalProperties": false,
+        "required": required,
+        "properties": properties
+    });
+    let demand = |names: &[&str]| json!({ "required": names });
+    if !keys.one_of.is_empty() {
+        let sets = keys.one_of.iter().map(|names| demand(names));
+        schema["oneOf"] = sets.collect();
     }
-
-    /// Returns the target of a `$ref`, or the schema itself.
-    fn followed<'s>(whole: &'s Value, part: &'s Value) -> &'s Value {
-        match part["$ref"].as_str() {
-            Some(place) => whole
-                .pointer(place.trim_start_matches('#'))
-                .unwrap_or_else(|| panic!("no schema at {place}")),
-            None => part,
-        }
+    if !keys.any_of.is_empty() {
+        schema["anyOf"] = keys.any_of.iter().map(|name| demand(&[name])).collect();
     }
-
-    /// Returns the keys of all tables that a value may be.
-    fn keys_of<'s>(whole: &'s Value, part: &'s Value) -> BTreeSet<&'s str> {
-        let part = followed(whole, part);
-        let own = part["properties"].as_object();
-        let own = own.into_iter().flat_map(|keys| keys.keys());
-        let kinds = part["anyOf"].as_array().into_iter().flatten();
-        let of_kinds = kinds.flat_map(|kind| keys_of(whole, kind));
-        own.map(String::as_str).chain(of_kinds).collect()
+    match keys.shorthand {
+        Some(kind) => json!({ "anyOf": [reference(kind), schema] }),
+        None => schema,
     }
+}
 
-    #[test]
-    fn schema_lists_the_sections_and_keys_of_the_reader() {
-        let schema = schema();
-        let sections = schema["properties"].as_object().expect("sections");
-        assert_eq!(
-            sections.keys().map(String::as_str).collect::<BTreeSet<_>>(),
-            keys::sections().collect()
-        );
-        for (name, known) in keys::SECTIONS {
-            let section = &sections[name];
-            let entry = match name {
-                "model" | "drawing" => section,
-                _ => &section["additionalProperties"],
-            };
-            let known: BTreeSet<&str> = known.iter().copied().collect();
-            assert_eq!(keys_of(&schema, entry), known, "{name}");
-        }
-    }
+fn value(key: &Key) -> Value {
+    let schema = match key.kind {
+        Kind::Value(kind) => reference(kind),
+        Kind::Table(keys) => table(keys),
+        Kind::Entries(keys) => entries(table(keys)),
+    };
+    describe(
+        schema,
+        &format!("{}. Example: {}", key.doc, key.assignment()),
+    )
+}
 
-    #[test]
-    fn tables_of_the_schema_reject_unknown_keys() {
-        fn look(part: &Value, place: &str) {
-            if let Some(keys) = part.as_object() {
-                // The alternatives at the top only require one of two sections.
-                if keys.contains_key("properties") && !place.starts_with("/anyOf") {
-                    assert_eq!(keys["additionalProperties"], false, "{place}");
-                }
-                for (key, value) in keys.iter().filter(|(key, _)| *key != "properties") {
-                    look(value, &format!("{place}/{key}"));
-                }
-                let inner = keys.get("properties").and_then(Value::as_object);
-                for (key, value) in inner.into_iter().flatten() {
-                    look(value, &format!("{place}/{key}"));
-                }
-            }
-            for (index, value) in part.as_array().into_iter().flatten().enumerate() {
-                look(value, &format!("{place}/{index}"));
-            }
-        }
-        look(&schema(), "");
-    }
+fn entries(entry: Value) -> Value {
+    json!({
+        "type": "object",
+        "propertyNames": reference("name"),
+        "maxProperties": MAX_ENTRIES,
+        "additionalProperties": entry
+    })
+}
 
-    #[test]
-    fn references_have_only_descriptions_next_to_them() {
-        fn look(part: &Value) {
-            if let Some(keys) = part.as_object() {
-                let words = ["$ref", "description", "default"];
-                let beside = |key: &String| !words.contains(&key.as_str());
-                assert!(
-                    !(keys.contains_key("$ref") && keys.keys().any(beside)),
-                    "{part}"
-                );
-                keys.values().for_each(look);
-            }
-            part.as_array().into_iter().flatten().for_each(look);
-        }
-        look(&schema());
-    }
+fn reference(kind: &str) -> Value {
+    json!({ "$ref": format!("#/$defs/{kind}") })
+}
 
-    #[test]
-    fn schema_has_the_limits_of_the_reader() {
-        let schema = schema();
-        let defined = &schema["$defs"];
-        assert_eq!(defined["name"]["maxLength"], MAX_NAME);
-        let of_entries = keys::sections().filter(|name| !["model", "drawing"].contains(name));
-        for section in of_entries {
-            assert_eq!(schema["properties"][section]["maxProperties"], MAX_ENTRIES);
-        }
-        let drawing = &schema["properties"]["drawing"]["properties"];
-        for part in keys::DRAWING {
-            assert_eq!(drawing[part]["maxProperties"], MAX_ENTRIES);
-        }
-        let point = keys_of(&schema, &drawing["points"]["additionalProperties"]);
-        assert_eq!(point, BTreeSet::from(keys::POINT));
-        let field = &defined["field"]["properties"];
-        assert_eq!(field["order"]["maximum"], MAX_ORDER);
-        let mut bases: Vec<&str> = keys::BASES.iter().map(|(name, _)| *name).collect();
-        bases.push(keys::TABLE);
-        assert_eq!(field["basis"]["enum"], serde_json::json!(bases));
-    }
+/// Adds a description, with a capital letter.
+fn describe(mut schema: Value, text: &str) -> Value {
+    let (first, rest) = text.split_at(text.len().min(1));
+    schema["description"] = json!(first.to_uppercase() + rest);
+    schema
 }

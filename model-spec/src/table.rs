@@ -1,124 +1,12 @@
-//! Reads TOML tables with the position of every key and value, and reports values of the wrong
-//! kind. `document` defines the sections and keys of a specification; other TOML files use this
-//! module too.
+//! Entries of TOML tables with the position of every key and value, and errors for values of the
+//! wrong kind. `record` reports unknown keys; `quantity` has the values.
 
 use toml_edit::{Item, Table, TableLike, Value};
 
-use crate::ast::{Syntax, SyntaxKind};
-use crate::diagnostic::{Diagnostic, Diagnostics, quote};
-use crate::lexer::tokenize;
-use crate::parser::parse;
+use crate::diagnostic::{Diagnostic, quote};
+use crate::quantity::{Name, Number, Quantity, StringValue};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-
-/// Key of the file.
-#[derive(Clone, Debug)]
-pub struct Name {
-    /// The key.
-    pub text: String,
-    /// Position of the key.
-    pub span: Span,
-}
-
-/// String value of the file.
-#[derive(Clone, Debug)]
-pub struct StringValue {
-    /// The string, with escapes resolved.
-    pub text: String,
-    /// Position, including the quotes.
-    pub span: Span,
-    /// Offset of the first character, if the string has no escapes: its bytes are then those of the
-    /// file.
-    first: Option<usize>,
-}
-
-/// Finite number of the file.
-#[derive(Clone, Copy, Debug)]
-pub struct Number {
-    /// The value.
-    pub value: f64,
-    /// Position of the number.
-    pub span: Span,
-}
-
-/// Number or expression.
-#[derive(Clone, Debug)]
-pub enum Quantity {
-    /// TOML number.
-    Number(Number),
-    /// TOML string.
-    Expression(StringValue),
-    /// TOML array: a vector from its components.
-    Vector(Vec<Quantity>, Span),
-    /// Expression that replaces a shorthand.
-    Expansion(Box<Syntax>),
-}
-
-impl StringValue {
-    /// Creates a string that the file does not contain; `span` is the place that needs it.
-    pub fn without_text(text: &str, span: Span) -> Self {
-        Self {
-            text: text.to_owned(),
-            span,
-            first: None,
-        }
-    }
-
-    /// Returns the position of the bytes `start..end` of the string, or the whole string if it has
-    /// escapes.
-    pub fn place(&self, start: usize, end: usize) -> Span {
-        match self.first {
-            Some(first) => Span::new(first + start, first + end),
-            None => self.span,
-        }
-    }
-
-    /// Parses the string as an expression.
-    ///
-    /// # Errors
-    /// The first syntax error, at its token.
-    pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
-        let tokens = tokenize(&self.text, |start, end| self.place(start, end))?;
-        let written = self.text.trim_end().len();
-        // An empty span would be invisible: the end is underlined one character wide.
-        let end = self.place(written, written + 1);
-        parse(&tokens, end)
-    }
-}
-
-impl Quantity {
-    /// Parses the expression; a number is a literal.
-    ///
-    /// # Errors
-    /// Those of [`StringValue::syntax`].
-    pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
-        match self {
-            Self::Number(number) => Ok(Syntax {
-                kind: SyntaxKind::Number(number.value),
-                span: number.span,
-            }),
-            Self::Expression(written) => written.syntax(),
-            Self::Vector(components, span) => {
-                let components = components.iter().map(Self::syntax);
-                Ok(Syntax {
-                    kind: SyntaxKind::Vector(components.collect::<Result<_, _>>()?),
-                    span: *span,
-                })
-            }
-            Self::Expansion(syntax) => Ok(syntax.as_ref().clone()),
-        }
-    }
-
-    /// Returns the position.
-    pub fn span(&self) -> Span {
-        match self {
-            Self::Number(number) => number.span,
-            Self::Expression(written) => written.span,
-            Self::Vector(_, span) => *span,
-            Self::Expansion(syntax) => syntax.span,
-        }
-    }
-}
 
 /// One `key = value` of a table.
 #[derive(Clone)]
@@ -136,12 +24,6 @@ enum Node<'d> {
     Item(&'d Item),
     Value(&'d Value),
     Table(&'d Table),
-}
-
-/// Table without unknown keys.
-pub struct Record<'d> {
-    owner: Name,
-    entries: Vec<Entry<'d>>,
 }
 
 /// Returns the entries of a table in the order of the file.
@@ -244,17 +126,6 @@ impl<'d> Entry<'d> {
             Node::Value(value) => value.as_inline_table().map(|t| t as &dyn TableLike),
             Node::Table(table) => Some(table),
         }
-    }
-
-    /// Returns a table as a record, and reports keys that are not `known`.
-    pub fn record(
-        &self,
-        known: &[&str],
-        example: &str,
-        found: &mut Diagnostics,
-    ) -> Option<Record<'d>> {
-        let entries = found.push_error(self.table(example))?;
-        Some(Record::new(self.name.clone(), entries, known, found))
     }
 
     /// Returns true if the value is a table.
@@ -435,77 +306,6 @@ impl<'d> Entry<'d> {
             .with_span(self.span(), format!("this is {article} {kind}"))
             .with_help(format!("write {} = {example}", self.name.text))
     }
-}
-
-impl<'d> Record<'d> {
-    /// Creates a record, and reports keys that are not `known`.
-    pub fn new(
-        owner: Name,
-        entries: Vec<Entry<'d>>,
-        known: &[&str],
-        found: &mut Diagnostics,
-    ) -> Self {
-        let (entries, others): (Vec<_>, Vec<_>) = entries
-            .into_iter()
-            .partition(|entry| known.contains(&entry.name.text.as_str()));
-        for other in others {
-            found.push_with(|| unknown_key_error(&other.name, known));
-        }
-        Self { owner, entries }
-    }
-
-    /// Returns the key of the table.
-    pub fn owner(&self) -> &Name {
-        &self.owner
-    }
-
-    /// Returns the entry of a key, if present.
-    pub fn get(&self, key: &str) -> Option<&Entry<'d>> {
-        self.entries.iter().find(|entry| entry.name.text == key)
-    }
-
-    /// Returns the entry of a key, or reports that it is missing.
-    pub fn require(&self, key: &str, help: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
-        let entry = self.get(key);
-        if entry.is_none() {
-            let owner = quote(&self.owner.text);
-            found.push(
-                Diagnostic::error(format!("{owner} has no `{key}`"))
-                    .with_span(self.owner.span, format!("`{key}` is missing"))
-                    .with_help(help),
-            );
-        }
-        entry
-    }
-
-    /// Returns the string of a key, "" if absent.
-    pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
-        self.written(key, found)
-            .map_or_else(String::new, |w| w.text)
-    }
-
-    /// Returns the string of a key, if present.
-    pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<StringValue> {
-        found.push_error(self.get(key)?.written())
-    }
-
-    /// Returns the number of a key, if present.
-    pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
-        found.push_error(self.get(key)?.number())
-    }
-
-    /// Returns the number or expression of a key, if present.
-    pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
-        found.push_error(self.get(key)?.quantity())
-    }
-}
-
-/// Reports an unknown key, with the nearest known one.
-pub fn unknown_key_error(name: &Name, known: &[&str]) -> Diagnostic {
-    let listed = format!("the keys are {}", known.join(", "));
-    Diagnostic::error(format!("unknown key {}", quote(&name.text)))
-        .with_span(name.span, "unknown here")
-        .with_help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
 }
 
 /// Returns the offset of the first character of a string, if it has no escapes.

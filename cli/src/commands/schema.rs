@@ -1,9 +1,9 @@
 //! `eomgen schema`: the JSON schema of specifications.
 
-use eomgen_model_spec::schema::SCHEMA;
+use eomgen_model_spec::schema::schema;
 
-use crate::error::{Result, print_bytes};
+use crate::error::{Result, print_json};
 
 pub fn run() -> Result {
-    print_bytes(SCHEMA.as_bytes())
+    print_json(&schema())
 }

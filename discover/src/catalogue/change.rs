@@ -2,7 +2,8 @@
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::Section;
-use eomgen_model_spec::table::{Entry, Record};
+use eomgen_model_spec::record::Record;
+use eomgen_model_spec::table::Entry;
 
 use super::effect::{Change, DAMPER_PLACEHOLDER, SiteKind, SubstitutionScope};
 use super::fields::{read_new_name, read_nonempty_list, read_text};
@@ -107,7 +108,7 @@ pub(super) fn read_change(
             substitution(entry, within, placeholders, found)
         }
         _ => {
-            entry.record(&KEYS, "{ add = \"force\", ... }", found);
+            Record::read_with(entry, &KEYS, "{ add = \"force\", ... }", found);
             found.push(
                 Diagnostic::error("an edit needs `add` or `substitute`")
                     .with_span(entry.span(), "expected one of both keys"),
@@ -129,7 +130,7 @@ fn addition(
         Added::Coordinate => &["add", "name", "unit", "doc"],
         Added::State => &["add", "name", "unit", "rate", "doc"],
     };
-    let record = entry.record(known, "{ add = \"force\", ... }", found)?;
+    let record = Record::read_with(entry, known, "{ add = \"force\", ... }", found)?;
     let name = read_new_name(&record, found);
     Some(match what {
         Added::Term(section) => Change::Term {
@@ -188,7 +189,7 @@ fn substitution(
             &["substitute", "find", "replace"]
         }
     };
-    let record = entry.record(known, "{ substitute = \"mesh\", ... }", found)?;
+    let record = Record::read_with(entry, known, "{ substitute = \"mesh\", ... }", found)?;
     // Nothing else fills this one.
     if let Replaced::Dampers = within {
         placeholders.known.push(DAMPER_PLACEHOLDER.to_owned());

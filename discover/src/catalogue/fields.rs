@@ -1,7 +1,9 @@
 //! Readers of texts, lists and new names in a file of effects.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
-use eomgen_model_spec::table::{Entry, Record, StringValue};
+use eomgen_model_spec::quantity::StringValue;
+use eomgen_model_spec::record::Record;
+use eomgen_model_spec::table::Entry;
 
 /// Reads the elements of a list; reports an empty list.
 pub(super) fn read_nonempty_list<'d>(
@@ -10,7 +12,7 @@ pub(super) fn read_nonempty_list<'d>(
     example: &str,
     found: &mut Diagnostics,
 ) -> Option<Vec<Entry<'d>>> {
-    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let entry = record.require_with(key, &format!("write {key} = {example}"), found)?;
     let list = found.push_error(entry.list(example))?;
     if list.is_empty() {
         found.push(
@@ -29,7 +31,7 @@ pub(super) fn read_text(
     example: &str,
     found: &mut Diagnostics,
 ) -> Option<StringValue> {
-    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let entry = record.require_with(key, &format!("write {key} = {example}"), found)?;
     let written = found.push_error(entry.written())?;
     if written.text.trim().is_empty() {
         found.push(

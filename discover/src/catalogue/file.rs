@@ -2,9 +2,11 @@
 //! a specification is checked at each site.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
+use eomgen_model_spec::quantity::{Name, StringValue};
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Name, Record, StringValue};
+use eomgen_model_spec::table::Entry;
 use eomgen_model_spec::toml_file;
 
 use super::change::read_change;
@@ -23,8 +25,8 @@ pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
             text: "the file of effects".to_owned(),
             span: Span::new(0, 0),
         };
-        let top = Record::new(file, entries.to_vec(), &["effect"], found);
-        let list = top.require("effect", "begin each effect with [[effect]]", found)?;
+        let top = Record::with_keys(file, entries.to_vec(), &["effect"], found);
+        let list = top.require_with("effect", "begin each effect with [[effect]]", found)?;
         let list = found.push_error(list.list("[[effect]]"))?;
         Some(
             list.iter()
@@ -45,11 +47,11 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         "parameters",
         "edits",
     ];
-    let record = entry.record(&known, "{ name = \"my_effect\" }", found)?;
+    let record = Record::read_with(entry, &known, "{ name = \"my_effect\" }", found)?;
     let name = read_text(&record, "name", "\"my_effect\"", found);
     let says = read_text(&record, "says", "\"a friction of ...\"", found);
     let experiment = read_text(&record, "experiment", "\"slow motions\"", found);
-    let site = record.require("site", "write site = \"axis\"", found);
+    let site = record.require_with("site", "write site = \"axis\"", found);
     let site = site.cloned().map(|site| site.keyword(&SiteKind::KEYWORDS));
     let site = site.and_then(|site| found.push_error(site));
     let orders = truth(&record, "orders", found);
@@ -147,14 +149,14 @@ fn parameter(
     found: &mut Diagnostics,
 ) -> Option<EffectParameter> {
     let known = ["name", "unit", "sign", "doc", "inverse", "scale", "share"];
-    let record = entry.record(&known, "{ name = \"T_c\", ... }", found)?;
+    let record = Record::read_with(entry, &known, "{ name = \"T_c\", ... }", found)?;
     let name = read_new_name(&record, found);
     let unit = read_text(&record, "unit", "\"{force}\"", found);
     if let Some(unit) = &unit {
         placeholders.check_placeholders(unit, found);
     }
     let doc = read_text(&record, "doc", "\"dry friction\"", found);
-    let sign = record.require(
+    let sign = record.require_with(
         "sign",
         "write sign = \"+\", or \"\" if it may be negative",
         found,

@@ -2,8 +2,9 @@
 //! valid.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
+use eomgen_model_spec::quantity::StringValue;
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::suggest::did_you_mean;
-use eomgen_model_spec::table::{Record, StringValue};
 
 use super::fields::read_text;
 

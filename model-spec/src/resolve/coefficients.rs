@@ -7,8 +7,8 @@ use crate::expression::{Resolver, Scope};
 use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 use crate::names::Symbol;
+use crate::quantity::{Quantity, StringValue};
 use crate::raw::{RawCoefficient, RawCoefficientKind};
-use crate::table::{Quantity, StringValue};
 
 impl Builder {
     pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {

@@ -5,10 +5,10 @@ use super::Builder;
 use crate::diagnostic::{Diagnostic, quote};
 use crate::ids::{CoordinateId, ObservableId, PointId};
 use crate::model::{Drawing, DrawnLine, DrawnPoint, Ordinate};
+use crate::quantity::{Quantity, StringValue};
 use crate::raw::{Document, RawLine, RawPoint};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::{Quantity, StringValue};
 
 /// Name of the point (0, 0), which every drawing has.
 const ORIGIN: &str = "origin";

@@ -17,6 +17,7 @@ use crate::model::{
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, cycle_error, sort_by_references};
+use crate::quantity::{Number, Quantity, StringValue};
 use crate::rate_order::{Expanded, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawImpact, RawInput, RawParameter, RawRange,
@@ -26,7 +27,6 @@ use crate::shape_table::ShapeTable;
 use crate::source::Source;
 use crate::space::{Demands, Inertia};
 use crate::span::Span;
-use crate::table::{Number, Quantity, StringValue};
 use crate::unit::Unit;
 
 /// Model before the check of units; definitions and observables are still dimensionless.

@@ -12,10 +12,10 @@ use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::dimension::Dimension;
 use crate::ids::FrameId;
+use crate::quantity::Quantity;
 use crate::raw::{Document, RawBody, RawTerm};
 use crate::rigid_tree::RigidBody;
 use crate::span::Span;
-use crate::table::Quantity;
 
 /// Pairs of axes of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];

@@ -7,8 +7,8 @@ use super::moving_names::MovingNames;
 use super::scalar::{call, expansion, is_plain, name, negate, number};
 use super::vector::{AXES, Vector};
 use crate::ast::{Syntax, SyntaxKind};
+use crate::quantity::Name;
 use crate::raw::{Document, RawTerm};
-use crate::table::Name;
 
 /// Entry that a definition is generated for; the definition has its position and description.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 
 use crate::ast::Syntax;
 use crate::dimension::Dimension;
+use crate::quantity::{Name, Quantity};
 use crate::rigid_tree::RigidTree;
 use crate::span::Span;
-use crate::table::{Name, Quantity};
 
 #[derive(Default)]
 pub struct Demands {

@@ -12,9 +12,9 @@ use super::vector::{AXES, Vector, component, zero};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quote};
 use crate::dimension::Dimension;
+use crate::quantity::Quantity;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::Quantity;
 
 pub const MEMBERS: [&str; 7] = [
     "origin",

@@ -10,9 +10,9 @@ use super::vector::{AXES, Vector, cross, inner, scale, sum, zero};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, quote};
 use crate::ids::FrameId;
+use crate::quantity::StringValue;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::StringValue;
 
 /// Longest chain of frames; the energies of a longer one would exceed the depth of expressions.
 const MAX_CHAIN: usize = 100;

@@ -1,8 +1,8 @@
 //! Sums and products of expressions; terms that are 0 and factors that are 1 are dropped.
 
 use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::quantity::Quantity;
 use crate::span::Span;
-use crate::table::Quantity;
 
 /// Returns a generated expression as a quantity.
 pub fn expansion(syntax: Syntax) -> Quantity {

@@ -19,8 +19,8 @@ use super::{bodies, terms};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
+use crate::quantity::{Name, Quantity};
 use crate::raw::{Document, RawFrame, RawTerm};
-use crate::table::{Name, Quantity};
 
 pub fn has_vectors(document: &Document) -> bool {
     let has_frames = !document.frames.is_empty() || !document.bodies.is_empty();

@@ -9,9 +9,9 @@ use super::vector::{self, AXES, Vector, cross};
 use crate::ast::Syntax;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::{MULTIPLIER, RESIDUAL};
+use crate::quantity::{Name, Quantity};
 use crate::raw::{Document, RawTerm};
 use crate::span::Span;
-use crate::table::{Name, Quantity};
 
 /// Replaces vectors in all sections other than definitions and frames.
 pub fn expand(document: &mut Document, space: &mut ExpansionState, found: &mut Diagnostics) {

@@ -10,8 +10,8 @@ use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
+use eomgen_model_spec::quantity::{Name, Number};
 use eomgen_model_spec::suggest::did_you_mean;
-use eomgen_model_spec::table::{Name, Number};
 use eomgen_model_spec::unit::Unit;
 
 use crate::dataset::{

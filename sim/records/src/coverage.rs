@@ -3,7 +3,7 @@
 
 use crate::description::Description;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::table::Number;
+use eomgen_model_spec::quantity::Number;
 
 use crate::dataset::Dataset;
 use crate::record::Record;

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::table::StringValue;
+use eomgen_model_spec::quantity::StringValue;
 
 use crate::description::Description;
 use crate::description::records::Stretch;

@@ -164,8 +164,8 @@ mod tests {
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::types::Type;
 
+    use eomgen_model_spec::quantity::StringValue;
     use eomgen_model_spec::span::Span;
-    use eomgen_model_spec::table::StringValue;
 
     use super::{ColumnKey, read_columns};
 

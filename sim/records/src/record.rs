@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
-use eomgen_model_spec::table::Number;
+use eomgen_model_spec::quantity::Number;
 use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;

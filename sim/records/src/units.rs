@@ -1,7 +1,7 @@
 //! Units in a dataset file.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::table::StringValue;
+use eomgen_model_spec::quantity::StringValue;
 use eomgen_model_spec::unit::Unit;
 
 pub fn parse_unit(written: &StringValue, expected: &str) -> Result<Unit, Diagnostic> {

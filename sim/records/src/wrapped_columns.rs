@@ -6,7 +6,7 @@ use std::path::Path;
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::dimension::Dimension;
-use eomgen_model_spec::table::Number;
+use eomgen_model_spec::quantity::Number;
 use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::{Column, Wrap};

@@ -4,5 +4,6 @@ mod broken_specs;
 mod features;
 mod latex;
 mod ranges;
+mod reference_pages;
 mod right_models;
 mod schema;

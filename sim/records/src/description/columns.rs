@@ -1,11 +1,12 @@
 //! Tables `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::quantity::{Name, Number, StringValue};
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Name, Number, Record, StringValue};
+use eomgen_model_spec::table::Entry;
 
 use super::keys;
-use super::required_entry::require_entry;
 
 const DECIMATION_RANGE: std::ops::RangeInclusive<i64> = 1..=1_000_000;
 
@@ -122,8 +123,8 @@ pub struct Prior {
 }
 
 fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
-    let column = require_entry(record, "column", "\"its name in the records\"", found).cloned();
-    let unit = require_entry(record, "unit", "\"m\"", found).cloned();
+    let column = record.require("column", found).cloned();
+    let unit = record.require("unit", found).cloned();
     let column = column.and_then(|entry| read_key(&entry, found));
     let unit = unit.and_then(|entry| found.push_error(entry.written()));
     let wrap = read_wrap(record, found);
@@ -173,7 +174,7 @@ fn read_key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
 }
 
 pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Time> {
-    let record = entry.record(&keys::TIME, "{ column = \"t\", unit = \"s\" }", found)?;
+    let record = Record::read(entry, &keys::TIME, found)?;
     let every = match record.get("every") {
         Some(every) => {
             let (count, span) = found.push_error(every.integer())?;
@@ -201,8 +202,7 @@ pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ti
 }
 
 pub(super) fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputColumn> {
-    let example = "{ column = \"u\", unit = \"N\" }";
-    let record = entry.record(&keys::INPUT, example, found)?;
+    let record = Record::read(entry, &keys::INPUT, found)?;
     if let Some(hold) = record.get("hold") {
         found.push_error(hold.keyword(&[("zero-order", ())]));
     }
@@ -217,7 +217,7 @@ pub(super) fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<I
 }
 
 pub(super) fn read_motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<MotionColumn> {
-    let record = entry.record(&keys::MOTION, "{ column = \"q\", unit = \"rad\" }", found)?;
+    let record = Record::read(entry, &keys::MOTION, found)?;
     let initial = record.number("initial", found);
     Some(MotionColumn {
         name: entry.name.clone(),
@@ -227,9 +227,8 @@ pub(super) fn read_motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<
 }
 
 pub(super) fn read_channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ChannelColumn> {
-    let example = "{ column = \"x\", unit = \"m\", noise = 1e-6 }";
-    let record = entry.record(&keys::CHANNEL, example, found)?;
-    let noise = require_entry(&record, "noise", "1e-6, one standard deviation", found).cloned();
+    let record = Record::read(entry, &keys::CHANNEL, found)?;
+    let noise = record.require("noise", found).cloned();
     let noise = noise.and_then(|noise| found.push_error(noise.number()));
     let observable = record.written("observable", found);
     let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
@@ -248,17 +247,12 @@ fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option
     let Some(entry) = record.get(key) else {
         return Some(None);
     };
-    let record = entry.record(&keys::PRIOR, "{ sd = 0.02 }", found)?;
+    let record = Record::read(entry, &keys::PRIOR, found)?;
     let mean = match record.get("mean") {
         Some(mean) => Some(found.push_error(mean.number())?),
         None => None,
     };
-    let sd = require_entry(
-        &record,
-        "sd",
-        "0.02, one standard deviation, or 0 if it is known",
-        found,
-    )?;
+    let sd = record.require("sd", found)?;
     let sd = found.push_error(sd.number())?;
     if sd.value < 0.0 {
         found.push(

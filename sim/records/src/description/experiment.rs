@@ -1,7 +1,9 @@
 //! Table `[experiment]`: bounds of the next experiment.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::table::{Entry, Name, Number};
+use eomgen_model_spec::quantity::{Name, Number};
+use eomgen_model_spec::record::Record;
+use eomgen_model_spec::table::Entry;
 
 use super::keys;
 
@@ -41,7 +43,7 @@ pub struct NumberRange {
 }
 
 pub(super) fn read_experiment(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Experiment> {
-    let record = entry.record(&keys::EXPERIMENT, "{ duration = 10 }", found)?;
+    let record = Record::read(entry, &keys::EXPERIMENT, found)?;
     let mut experiment = Experiment {
         duration: require_positive(record.number("duration", found), "duration", found),
         sample: require_positive(record.number("sample", found), "sample", found),
@@ -63,8 +65,7 @@ pub(super) fn read_experiment(entry: &Entry<'_>, found: &mut Diagnostics) -> Opt
 }
 
 fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputBounds> {
-    let example = "{ range = [-1, 1], band = [0.1, 10] }";
-    let record = entry.record(&keys::EXPERIMENT_INPUT, example, found)?;
+    let record = Record::read(entry, &keys::EXPERIMENT_INPUT, found)?;
     let mut pair = |key: &str| match record.get(key) {
         Some(entry) => read_range(entry, found).map(Some),
         None => Some(None),

@@ -1,8 +1,9 @@
 //! Table `[format]`: layout of a text file with numbers.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Record};
+use eomgen_model_spec::table::Entry;
 
 use super::keys;
 
@@ -61,7 +62,7 @@ impl Default for Format {
 
 /// Reads the table.
 pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
-    let record = entry.record(&keys::FORMAT, "{ separator = \";\" }", found)?;
+    let record = Record::read(entry, &keys::FORMAT, found)?;
     let usual = Format::default();
     let separator = match record.get("separator") {
         Some(separator) => found.push_error(separator.keyword(&SEPARATORS))?,

@@ -3,17 +3,19 @@
 pub mod columns;
 pub mod experiment;
 pub mod format;
+#[rustfmt::skip]
 pub mod keys;
 pub mod motion;
 pub mod records;
-mod required_entry;
 
 use std::path::Path;
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::quantity::{Name, Number};
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Name, Number, Record};
+use eomgen_model_spec::table::Entry;
 use eomgen_model_spec::toml_file;
 
 use self::columns::{ChannelColumn, ColumnKey, InputColumn, MotionColumn, Time};
@@ -21,7 +23,6 @@ use self::experiment::Experiment;
 use self::format::Format;
 use self::motion::{InitialState, Windows};
 use self::records::Records;
-use self::required_entry::require_entry;
 
 const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
 
@@ -94,20 +95,16 @@ fn read_tables(
         text: "the dataset".to_owned(),
         span: Span::new(0, 0),
     };
-    let top = Record::new(file, entries.to_vec(), &keys::first_level_keys(), found);
+    let top = Record::new(file, entries.to_vec(), &keys::TABLES, found);
     let title = top.text("title", found);
     top.text("source", found);
-    let records = top
-        .require("records", "write [records] with train and test", found)
-        .cloned();
+    let records = top.require("records", found).cloned();
     let records = records.and_then(|entry| records::read_records(&entry, found));
     let format = match top.get("format") {
         Some(entry) => format::read_format(entry, found),
         None => Some(Format::default()),
     };
-    let time = top
-        .require("time", "write [time] with column and unit", found)
-        .cloned();
+    let time = top.require("time", found).cloned();
     let time = time.and_then(|entry| columns::read_time(&entry, found));
     let inputs = read_entries(&top, "inputs", found, columns::read_input);
     let motion = read_entries(&top, "motion", found, columns::read_motion);
@@ -165,8 +162,8 @@ fn check_column_numbers(description: &Description, found: &mut Diagnostics) {
 }
 
 fn read_uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
-    let record = entry.record(&keys::UNCERTAIN, "{ relative = 0.05 }", found)?;
-    let relative = require_entry(&record, "relative", "0.05", found)?;
+    let record = Record::read(entry, &keys::UNCERTAIN, found)?;
+    let relative = record.require("relative", found)?;
     Some((entry.name.clone(), found.push_error(relative.number())?))
 }
 

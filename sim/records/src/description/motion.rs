@@ -1,10 +1,11 @@
 //! Tables `[initial]` and `[windows]`: initial states and windows of the records.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::table::{Entry, Name, Number};
+use eomgen_model_spec::quantity::{Name, Number};
+use eomgen_model_spec::record::Record;
+use eomgen_model_spec::table::Entry;
 
 use super::keys;
-use super::required_entry::require_entry;
 
 /// Table `[initial]`.
 #[derive(Debug)]
@@ -34,8 +35,8 @@ enum InitialWord {
 }
 
 pub(super) fn read_initial(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialState> {
-    let record = entry.record(&keys::INITIAL, "{ state = \"rest\" }", found)?;
-    let state = require_entry(&record, "state", "\"rest\"", found)?.clone();
+    let record = Record::read(entry, &keys::INITIAL, found)?;
+    let state = record.require("state", found)?.clone();
     if state.is_table() {
         return read_values(&state, found);
     }
@@ -87,12 +88,12 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
 }
 
 pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
-    let record = entry.record(&keys::WINDOWS, "{ length = 0.5 }", found)?;
+    let record = Record::read(entry, &keys::WINDOWS, found)?;
     let smoothed = match record.get("start") {
         Some(start) => found.push_error(start.keyword(&[("fitted", false), ("smoothed", true)])),
         None => Some(false),
     };
-    let length = require_entry(&record, "length", "0.5, in s, or \"record\"", found)?;
+    let length = record.require("length", found)?;
     let length = match length.written() {
         Ok(_) => found.push_error(length.keyword(&[("record", None)])),
         Err(_) => found.push_error(length.number()).map(Some),

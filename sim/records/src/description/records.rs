@@ -1,11 +1,12 @@
 //! Table `[records]`: files, or parts of files, for training and testing.
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::quantity::{Number, StringValue};
+use eomgen_model_spec::record::Record;
 use eomgen_model_spec::span::Span;
-use eomgen_model_spec::table::{Entry, Number, StringValue};
+use eomgen_model_spec::table::Entry;
 
 use super::keys;
-use super::required_entry::require_entry;
 
 /// Table `[records]`.
 #[derive(Debug)]
@@ -30,8 +31,7 @@ pub struct Stretch {
 }
 
 pub(super) fn read_records(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Records> {
-    let example = "{ train = [\"train.csv\"], test = [\"test.csv\"] }";
-    let record = entry.record(&keys::RECORDS, example, found)?;
+    let record = Record::read(entry, &keys::RECORDS, found)?;
     let mut files = |key: &str| {
         let Some(entry) = record.get(key) else {
             return Vec::new();
@@ -60,9 +60,8 @@ fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
             to: None,
         });
     }
-    let example = "{ file = \"record.csv\", from = 0, to = 10 }";
-    let record = entry.record(&keys::STRETCH, example, found)?;
-    let file = require_entry(&record, "file", "\"record.csv\"", found)?.written();
+    let record = Record::read(entry, &keys::STRETCH, found)?;
+    let file = record.require("file", found)?.written();
     let [from, to] = ["from", "to"].map(|key| record.number(key, found));
     if let (Some(from), Some(to)) = (from, to)
         && from.value >= to.value

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use eomgen_model_spec::source::Source;
-use eomgen_records::description::keys;
 use eomgen_records::read_dataset;
 
 /// Returns the path of a file in the repository.
@@ -16,59 +15,6 @@ fn project(path: &str) -> PathBuf {
 
 fn text(path: &str) -> String {
     std::fs::read_to_string(project(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
-
-#[test]
-fn reference_lists_every_table_and_key() {
-    let page = text("docs/discovery.md");
-    let (_, reference) = page
-        .split_once("### Tables and keys")
-        .expect("the reference");
-    let reference = reference.split("\n### ").next().unwrap_or_default();
-    let table: Vec<&str> = reference
-        .lines()
-        .filter(|line| line.starts_with('|'))
-        .collect();
-    let mut section = "";
-    let mut documented = std::collections::BTreeSet::new();
-    for line in table.iter().skip(2) {
-        let cells: Vec<&str> = line.split(" | ").collect();
-        let name = cells[0].trim_start_matches('|').trim();
-        if !name.is_empty() {
-            section = name
-                .trim_matches('`')
-                .trim_matches(['[', ']'])
-                .trim_end_matches(".NAME");
-        }
-        let names = cells[1].split('`').skip(1).step_by(2);
-        documented.extend(names.map(|key| (section, key)));
-    }
-    for (table, known) in keys::TABLES {
-        for key in known {
-            let entry = if table == "uncertain" { "NAME" } else { key };
-            assert!(documented.contains(&(table, entry)), "[{table}] {key}");
-        }
-    }
-    for key in keys::STRETCH {
-        assert!(documented.contains(&("records", key)), "{key}");
-    }
-    for key in keys::EXPERIMENT_INPUT {
-        assert!(documented.contains(&("experiment", key)), "{key}");
-    }
-    for key in keys::TEXTS {
-        assert!(documented.contains(&("(none)", key)), "{key}");
-    }
-    let known = |(table, key): &(&str, &str)| match *table {
-        "(none)" => keys::TEXTS.contains(key),
-        "records" => keys::RECORDS.contains(key) || keys::STRETCH.contains(key),
-        "uncertain" => *key == "NAME",
-        "experiment" => keys::EXPERIMENT.contains(key) || keys::EXPERIMENT_INPUT.contains(key),
-        table => keys::TABLES
-            .iter()
-            .any(|(name, keys)| *name == table && keys.contains(key)),
-    };
-    let unknown: Vec<_> = documented.iter().filter(|entry| !known(entry)).collect();
-    assert!(unknown.is_empty(), "{unknown:?}");
 }
 
 #[test]

@@ -1,0 +1,133 @@
+//! Tables of a file without unknown keys.
+
+use crate::diagnostic::{Diagnostic, Diagnostics, quote};
+use crate::keys::{Key, Keys};
+use crate::quantity::{Name, Number, Quantity, StringValue};
+use crate::suggest::did_you_mean;
+use crate::table::Entry;
+
+/// Table without unknown keys.
+pub struct Record<'d> {
+    owner: Name,
+    entries: Vec<Entry<'d>>,
+    keys: Option<&'static Keys>,
+}
+
+impl<'d> Record<'d> {
+    /// Reads the table of an entry, and reports keys that are not in `keys`.
+    pub fn read(entry: &Entry<'d>, keys: &'static Keys, found: &mut Diagnostics) -> Option<Self> {
+        let entries = found.push_error(entry.table(&keys.example()))?;
+        Some(Self::new(entry.name.clone(), entries, keys, found))
+    }
+
+    /// Reads the table of an entry, and reports keys that are not `known`.
+    pub fn read_with(
+        entry: &Entry<'d>,
+        known: &[&str],
+        example: &str,
+        found: &mut Diagnostics,
+    ) -> Option<Self> {
+        let entries = found.push_error(entry.table(example))?;
+        Some(Self::with_keys(entry.name.clone(), entries, known, found))
+    }
+
+    /// Creates a record, and reports keys that are not in `keys`.
+    pub fn new(
+        owner: Name,
+        entries: Vec<Entry<'d>>,
+        keys: &'static Keys,
+        found: &mut Diagnostics,
+    ) -> Self {
+        let known: Vec<&str> = keys.names().collect();
+        Self {
+            keys: Some(keys),
+            ..Self::with_keys(owner, entries, &known, found)
+        }
+    }
+
+    /// Creates a record, and reports keys that are not `known`.
+    pub fn with_keys(
+        owner: Name,
+        entries: Vec<Entry<'d>>,
+        known: &[&str],
+        found: &mut Diagnostics,
+    ) -> Self {
+        let (entries, others): (Vec<_>, Vec<_>) = entries
+            .into_iter()
+            .partition(|entry| known.contains(&entry.name.text.as_str()));
+        for other in others {
+            found.push_with(|| unknown_key_error(&other.name, known));
+        }
+        Self {
+            owner,
+            entries,
+            keys: None,
+        }
+    }
+
+    /// Returns the key of the table.
+    pub fn owner(&self) -> &Name {
+        &self.owner
+    }
+
+    /// Returns the entry of a key, if present.
+    pub fn get(&self, key: &str) -> Option<&Entry<'d>> {
+        self.entries.iter().find(|entry| entry.name.text == key)
+    }
+
+    /// Returns the entry of a key, or reports that it is missing, with the meaning and the example
+    /// of the table of keys.
+    pub fn require(&self, key: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
+        let keys = self.keys.map_or(&[][..], |keys| keys.list);
+        let described = keys.iter().find(|described| described.name == key);
+        self.require_with(key, &described.map(Key::help).unwrap_or_default(), found)
+    }
+
+    /// Returns the entry of a key, or reports that it is missing, with the help.
+    pub fn require_with(
+        &self,
+        key: &str,
+        help: &str,
+        found: &mut Diagnostics,
+    ) -> Option<&Entry<'d>> {
+        let entry = self.get(key);
+        if entry.is_none() {
+            let owner = quote(&self.owner.text);
+            found.push(
+                Diagnostic::error(format!("{owner} has no `{key}`"))
+                    .with_span(self.owner.span, format!("`{key}` is missing"))
+                    .with_help(help),
+            );
+        }
+        entry
+    }
+
+    /// Returns the string of a key, "" if absent.
+    pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
+        self.written(key, found)
+            .map_or_else(String::new, |w| w.text)
+    }
+
+    /// Returns the string of a key, if present.
+    pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<StringValue> {
+        found.push_error(self.get(key)?.written())
+    }
+
+    /// Returns the number of a key, if present.
+    pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
+        found.push_error(self.get(key)?.number())
+    }
+
+    /// Returns the number or expression of a key, if present.
+    pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
+        found.push_error(self.get(key)?.quantity())
+    }
+}
+
+/// Reports an unknown key, with the nearest known one.
+pub fn unknown_key_error(name: &Name, known: &[&str]) -> Diagnostic {
+    let listed = format!("the keys are {}", known.join(", "));
+    Diagnostic::error(format!("unknown key {}", quote(&name.text)))
+        .with_span(name.span, "unknown here")
+        .with_help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
+}
