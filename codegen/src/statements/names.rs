@@ -10,10 +10,10 @@ use crate::program::{Program, ValueId};
 pub struct Words {
     /// Name of the language, for messages.
     pub language: &'static str,
-    /// Keywords of the language.
-    pub keywords: &'static [&'static str],
-    /// Names reserved by the emitted functions.
-    pub taken: &'static [&'static str],
+    /// Keywords of the language, separated by spaces.
+    pub keywords: &'static str,
+    /// Names reserved by the emitted functions, separated by spaces.
+    pub taken: &'static str,
     /// True if the names of functions and constants begin with the model's name and `_`.
     pub prefixed: bool,
 }
@@ -30,7 +30,7 @@ impl Words {
             .is_some_and(|b| b.is_ascii_alphabetic() || b == b'_');
         if starts
             && letters.all(|b| b.is_ascii_alphanumeric() || b == b'_')
-            && !self.keywords.contains(&name)
+            && self.keywords.split(' ').all(|keyword| keyword != name)
         {
             Ok(name)
         } else {
@@ -61,7 +61,7 @@ impl Names {
             let name = jacobian.name.to_uppercase();
             [format!("{name}_NONZEROS"), name]
         });
-        let taken = words.taken.iter().map(|name| (*name).to_owned());
+        let taken = words.taken.split(' ').map(str::to_owned);
         Self {
             words,
             prefix: words.prefixed.then(|| format!("{}_", program.name)),

@@ -5,19 +5,7 @@ use crate::statements::Words;
 /// Rules for names. A module has no keywords.
 pub(super) const WORDS: Words = Words {
     language: "WebAssembly",
-    keywords: &[],
-    taken: &[
-        "t",
-        "state",
-        "inputs",
-        "parameters",
-        "coefficients",
-        "rates",
-        "values",
-        "observables",
-        "i",
-        "j",
-        "k",
-    ],
+    keywords: "",
+    taken: "t state inputs parameters coefficients rates values observables i j k",
     prefixed: false,
 };
