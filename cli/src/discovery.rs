@@ -8,8 +8,8 @@ use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
 use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::{Check, Verdict};
-use eomgen_validate::model_certificate::certify_model;
+use eomgen_validate::certificate::Verdict;
+use eomgen_validate::model_certificate::certify_specification;
 use serde_json::{Value, json};
 
 use crate::error::{Error, Result, warn};
@@ -63,7 +63,13 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     };
     let found = discover_until(specification, dataset, &effects, task.seed, &warn, &stop);
     let mut found = found.map_err(Error::discovery)?;
-    found.validation = validate(&path, &found.extended, order)?;
+    let extended = Source::new(path.as_str(), found.extended.as_str());
+    let certificate = certify_specification(extended, order)?;
+    found.validation = certificate.map(|certificate| Validation {
+        has_passed: certificate.verdict != Verdict::Failed,
+        checks: certificate.run_checks(),
+        failed: certificate.failed_checks(),
+    });
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     let out = task.out;
@@ -82,28 +88,6 @@ fn seconds(limit: f64) -> Result<Duration> {
         .ok()
         .filter(|limit| !limit.is_zero())
         .ok_or_else(|| Error::input(format!("--limit {limit:?}: expected a time in s above 0")))
-}
-
-/// Runs the checks of `validate` on the extended specification. Returns none if its fields have different
-/// orders, for which these checks do not exist.
-fn validate(path: &str, text: &str, order: Option<usize>) -> Result<Option<Validation>> {
-    let checked = eomgen_model_spec::check(Source::new(path, text));
-    let model = checked.map_err(Error::Specification)?.model;
-    let orders = model.orders(order);
-    let orders = orders.map_err(|error| Error::model(&model.source, error))?;
-    if orders.iter().any(|other| *other != orders[0]) {
-        return Ok(None);
-    }
-    let certificate = certify_model(&model, &orders, &[])?;
-    let names = |wanted: fn(&Check) -> bool| -> Vec<String> {
-        let checks = certificate.checks.iter().filter(|check| wanted(check));
-        checks.map(|check| check.name.clone()).collect()
-    };
-    Ok(Some(Validation {
-        has_passed: certificate.verdict != Verdict::Failed,
-        checks: names(|check| check.skipped.is_none()),
-        failed: names(|check| !check.passed && check.skipped.is_none()),
-    }))
 }
 
 /// Reads the specification's text, the truncation order and the dataset.

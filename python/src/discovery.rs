@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use eomgen_compiled_model::{Error, Orders};
 use eomgen_discover::report::result::{Discovery, Validation};
 use eomgen_discover::{Specification, catalogue, discover_until};
 use eomgen_model_spec::hidden_characters::escape_hidden;
 use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::{Check, Verdict};
-use eomgen_validate::model_certificate::certify_model;
+use eomgen_validate::certificate::Verdict;
+use eomgen_validate::model_certificate::certify_specification;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -68,28 +67,11 @@ fn search(
     let mut found = found.map_err(error::discovery)?;
     line.check();
     let extended = Source::new(declared.source.path.clone(), found.extended.as_str());
-    found.validation = validate(extended, model.order()).map_err(error::model)?;
-    Ok(found)
-}
-
-/// Runs the checks of `eomgen validate` on the extended specification. Returns none if its fields have
-/// different orders, for which these checks do not exist.
-fn validate(extended: Source, order: Option<usize>) -> Result<Option<Validation>, Error> {
-    let model = eomgen_model_spec::check(extended)?.model;
-    let orders = order
-        .map_or(Orders::Declared, Orders::Uniform)
-        .resolve(&model)?;
-    if orders.windows(2).any(|pair| pair[0] != pair[1]) {
-        return Ok(None);
-    }
-    let certificate = certify_model(&model, &orders, &[])?;
-    let names = |wanted: fn(&Check) -> bool| {
-        let checks = certificate.checks.iter().filter(|check| wanted(check));
-        checks.map(|check| check.name.clone()).collect()
-    };
-    Ok(Some(Validation {
+    let certificate = certify_specification(extended, model.order()).map_err(error::model)?;
+    found.validation = certificate.map(|certificate| Validation {
         has_passed: certificate.verdict != Verdict::Failed,
-        checks: names(|check| check.skipped.is_none()),
-        failed: names(|check| !check.passed && check.skipped.is_none()),
-    }))
+        checks: certificate.run_checks(),
+        failed: certificate.failed_checks(),
+    });
+    Ok(found)
 }

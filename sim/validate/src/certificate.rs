@@ -130,6 +130,21 @@ pub struct CertificateHeader {
 }
 
 impl Certificate {
+    /// Returns the names of the checks that were run.
+    pub fn run_checks(&self) -> Vec<String> {
+        self.names(|check| check.skipped.is_none())
+    }
+
+    /// Returns the names of the checks that failed.
+    pub fn failed_checks(&self) -> Vec<String> {
+        self.names(|check| !check.passed && check.skipped.is_none())
+    }
+
+    fn names(&self, is_listed: impl Fn(&Check) -> bool) -> Vec<String> {
+        let listed = self.checks.iter().filter(|check| is_listed(check));
+        listed.map(|check| check.name.clone()).collect()
+    }
+
     /// Creates the certificate of `about`. A certificate without checks does not pass.
     pub fn new(about: CertificateHeader, coverage: Option<Coverage>, checks: Vec<Check>) -> Self {
         let verdict = Verdict::from_checks(&checks);

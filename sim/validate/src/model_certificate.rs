@@ -12,6 +12,7 @@ use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant as DerivedVariant;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
@@ -39,6 +40,24 @@ pub fn certify_model(
     let emitted = emit(&variant.program, Packaging::Crate);
     let emitted = emitted.map_err(|error| Error::Request(error.to_string()))?;
     certify_source(model, orders, outputs, emitted)
+}
+
+/// Checks and certifies a specification. Returns `None` if its fields have different orders: a
+/// certificate is for one order.
+///
+/// # Errors
+/// An invalid specification or order, and the errors of [`certify_model`].
+pub fn certify_specification(
+    source: Source,
+    order: Option<usize>,
+) -> Result<Option<Certificate>, Error> {
+    let model = eomgen_model_spec::check(source)?.model;
+    let orders = order.map_or(Orders::Declared, Orders::Uniform);
+    let orders = orders.resolve(&model)?;
+    if orders.windows(2).any(|pair| pair[0] != pair[1]) {
+        return Ok(None);
+    }
+    certify_model(&model, &orders, &[]).map(Some)
 }
 
 /// Certifies an emitted source of `model` with `outputs`.
