@@ -12,5 +12,6 @@ pub mod motions;
 pub mod pages;
 pub mod piecewise;
 pub mod program;
+pub mod random_numbers;
 pub mod smooth_models;
 pub mod taylor;

@@ -11,7 +11,7 @@ use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 use eomgen_model_spec::source::Source;
 
 use crate::error::SimulationError;
-use crate::ids::{ChannelId, ParameterId};
+use crate::ids::ParameterId;
 use crate::model::given_motion::GivenMotion;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::longest_step::LongestStep;
@@ -42,7 +42,6 @@ pub struct EstimationModel {
     ranges: Vec<Option<(f64, f64)>>,
     linear: Option<LinearPart>,
     pub(crate) measured: MeasuredOutputs,
-    channels: Vec<String>,
     /// Expected values of the sensor of each channel.
     pub sensors: Vec<ExpectedSensor>,
     /// Longest Runge-Kutta step of a motion without a linear part; `None` for a solver with error
@@ -128,10 +127,6 @@ impl EstimationModel {
         let parameters = independent.map(|p| p.name.clone()).collect();
         Ok(Self {
             measured: MeasuredOutputs::new(channels, &rates, program),
-            channels: channels
-                .iter()
-                .map(|channel| channel.name.clone())
-                .collect(),
             sensors: channels
                 .iter()
                 .map(|channel| ExpectedSensor::from_channel(channel, compiled.model()))
@@ -207,12 +202,6 @@ impl EstimationModel {
         if let Some(parameter) = self.find_parameter(parameter) {
             values[parameter.index()] = value;
         }
-    }
-
-    /// Returns the index of a measured channel.
-    pub fn find_channel(&self, name: &str) -> Option<ChannelId> {
-        let index = self.channels.iter().position(|channel| channel == name)?;
-        Some(ChannelId::new(index))
     }
 
     /// Returns the number of degrees of freedom. The state begins with this number of coordinates

@@ -28,11 +28,6 @@ impl TipShares {
     pub fn dominant(&self) -> Option<usize> {
         greatest(&self.mean_square)
     }
-
-    /// Returns the mode with the greatest variance, or `None` if all are 0.
-    pub fn dominant_in_vibration(&self) -> Option<usize> {
-        greatest(&self.variance)
-    }
 }
 
 impl BandPower {
@@ -162,7 +157,7 @@ mod tests {
         let (q_1, q_2) = (wave(1e-3, 1e-5, 12.0), wave(0.0, 3e-5, 75.0));
         let shares = tip_shares(&[&q_1, &q_2], &[2.0, -2.0])?;
         assert_eq!(shares.dominant(), Some(0));
-        assert_eq!(shares.dominant_in_vibration(), Some(1));
+        assert_eq!(greatest(&shares.variance), Some(1));
         // Mean square of a + b sin: a^2 + b^2/2; sums over whole periods round to 1e-12.
         let expected = [4.0 * (1e-6 + 0.5e-10), 4.0 * 4.5e-10];
         for (found, expected) in shares.mean_square.iter().zip(expected) {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::{HeldInputs, InputFunction};
 use eomgen_tests::program::{run, run_rejected};
+use eomgen_tests::random_numbers::Numbers;
 
 const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];
 
@@ -234,21 +235,10 @@ fn inclined_potential_step_refracts_and_reflects_in_every_frame() {
     }
 }
 
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    }
-}
-
 /// A machine whose masses, coupling, momenta and potential jump across a curved surface that moves.
 fn random_machine(seed: u64, side: &str) -> String {
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15 ^ (seed * 0x1234_5678_9abc));
-    let mut next = |middle: f64, width: f64| middle + width * numbers.next();
+    let mut next = |middle: f64, width: f64| middle + width * numbers.symmetric();
     let names = ["a", "b", "c", "da", "dc", "k", "h"];
     let ranges = [
         (1.5, 0.5),

@@ -6,18 +6,8 @@ use std::path::Path;
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
 use eomgen_tests::program::run_rejected;
+use eomgen_tests::random_numbers::Numbers;
 use nalgebra::{DMatrix, DVector};
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    }
-}
 
 fn compile_example(name: &str, orders: Orders<'_>) -> CompiledModel {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
@@ -299,24 +289,24 @@ fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
     for case in 0..40 {
         let mut text = String::from("[model]\nname = \"stack\"\n[parameters]\n");
         let (mut coordinates, mut kinetic, mut weight) = (String::new(), Vec::new(), Vec::new());
-        let restitution = (0.5 + 0.5 * numbers.next()).min(0.98);
+        let restitution = (0.5 + 0.5 * numbers.symmetric()).min(0.98);
         let mut impacts = format!("floor = {{ when = \"y0\", restitution = {restitution:?} }}\n");
         let mut height = 1.0;
         for ball in 0..4 {
-            let mass = 10.0_f64.powf(3.0 * numbers.next());
+            let mass = 10.0_f64.powf(3.0 * numbers.symmetric());
             text += &format!("m{ball} = {{ value = {mass:?}, unit = \"kg\" }}\n");
             coordinates += &format!("y{ball} = {{ unit = \"m\", initial = {height:?} }}\n");
             kinetic.push(format!("1/2*m{ball}*dot(y{ball})^2"));
             weight.push(format!("m{ball}*g*y{ball}"));
             if ball > 0 {
                 let below = ball - 1;
-                let restitution = (0.5 + 0.5 * numbers.next()).min(0.98);
+                let restitution = (0.5 + 0.5 * numbers.symmetric()).min(0.98);
                 impacts += &format!(
                     "c{ball} = {{ when = \"y{ball} - y{below}\", restitution = {restitution:?} }}\n"
                 );
             }
             // Some balls touch at the start.
-            height += 0.02 * numbers.next().max(0.0);
+            height += 0.02 * numbers.symmetric().max(0.0);
         }
         text += "g = { value = 9.81, unit = \"m/s^2\" }\n[coordinates]\n";
         text += &coordinates;
@@ -455,7 +445,7 @@ fn box_comes_to_rest_for_all_restitutions_and_widths() {
     let model = compile_example("dropped_box", Orders::Declared);
     let mut numbers = Numbers(0x1234_5678_9abc_def1);
     for _ in 0..60 {
-        let (b, e) = (0.25 + 0.2 * numbers.next(), 0.35 + 0.3 * numbers.next());
+        let (b, e) = (0.25 + 0.2 * numbers.symmetric(), 0.35 + 0.3 * numbers.symmetric());
         let motion = simulate_with(&model, &[("b", b), ("e", e)], &[0.0, 20.0]);
         let state = &motion.trajectory.states[1];
         // The box must lie flat on one of its sides.
@@ -501,7 +491,7 @@ fn assert_matches_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)],
     assert!(count > 0);
     for _ in 0..20 {
         let states = own.program().states();
-        let state: Vec<f64> = (0..states).map(|_| 0.4 * numbers.next()).collect();
+        let state: Vec<f64> = (0..states).map(|_| 0.4 * numbers.symmetric()).collect();
         let point = Point {
             t: 0.3,
             state: &state,
