@@ -1,6 +1,7 @@
 //! Values given as `NAME=EXPR`, and inputs.
 
 use eomgen_model_spec::assignment::Assignment;
+use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
@@ -100,11 +101,7 @@ fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error
 fn messages(error: &EditError, model: &Model) -> String {
     match error {
         EditError::Invalid(found) => {
-            let messages = found.list().iter().map(|one| match &one.help {
-                Some(help) => format!("{} ({help})", one.message),
-                None => one.message.clone(),
-            });
-            let messages: Vec<String> = messages.collect();
+            let messages: Vec<String> = found.list().iter().map(Diagnostic::summary).collect();
             messages.join("; ")
         }
         EditError::MissingTerm { name, .. } => {

@@ -69,6 +69,14 @@ impl DeclarationKind {
 }
 
 impl Diagnostic {
+    /// Returns the message, with the help in parentheses.
+    pub fn summary(&self) -> String {
+        match &self.help {
+            Some(help) => format!("{} ({help})", self.message),
+            None => self.message.clone(),
+        }
+    }
+
     /// Creates an error without a place.
     pub fn error(message: impl Into<String>) -> Self {
         Self {

@@ -4,6 +4,7 @@
 //! such as `N/m s` are rejected.
 
 use num_rational::Ratio;
+use thiserror::Error;
 
 use crate::dimension::{Dimension, Exponent};
 use crate::scale::Scale;
@@ -20,7 +21,8 @@ pub struct Unit {
 }
 
 /// Error of [`Unit::parse`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
 pub struct UnitError {
     /// The cause.
     pub message: String,
@@ -145,14 +147,6 @@ impl UnitError {
         Self::new(format!("the unit `{text}` is out of range"), None)
     }
 }
-
-impl std::fmt::Display for UnitError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for UnitError {}
 
 type Parsed = (Dimension, Scale);
 

@@ -8,6 +8,7 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::ids::{ConstraintId, DefinitionId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
+use thiserror::Error;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;
@@ -19,7 +20,8 @@ use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 
 /// Cause and place of a failed derivation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
 pub struct DeriveError {
     /// Place of the cause in the specification.
     pub span: Span,
@@ -28,14 +30,6 @@ pub struct DeriveError {
     /// Cure, if known.
     pub help: Option<String>,
 }
-
-impl std::fmt::Display for DeriveError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for DeriveError {}
 
 impl DeriveError {
     /// Returns the error as a diagnostic on the model's source.

@@ -1,13 +1,13 @@
 //! Errors of analyses, and shared checks.
 
-use std::fmt;
-
 use nalgebra::DMatrix;
+use thiserror::Error;
 
 /// Reason for a failed analysis. Samples are counted from 0.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AnalysisError {
     /// Too few values.
+    #[error("the series has {given} values; the analysis needs {needed}")]
     TooFew {
         /// Required number of values.
         needed: usize,
@@ -15,11 +15,13 @@ pub enum AnalysisError {
         given: usize,
     },
     /// A value is not finite, or its square overflows.
+    #[error("value {sample} of the series is not finite")]
     NotFinite {
         /// Index of the value.
         sample: usize,
     },
     /// Related slices have different lengths.
+    #[error("a series has {given} values instead of {expected}")]
     LengthMismatch {
         /// Length of the first slice.
         expected: usize,
@@ -27,16 +29,25 @@ pub enum AnalysisError {
         given: usize,
     },
     /// A length, a step or a scale is not positive.
+    #[error("{quantity} must be positive and finite")]
     NotPositive {
         /// Name of the quantity.
         quantity: &'static str,
     },
     /// The eigenvalue iteration did not converge.
+    #[error(
+        "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; look for \
+         a stiffness or a mass in a wrong unit"
+    )]
     NotConverged {
         /// Decades between the smallest and the largest entry of the matrix.
         decades: u32,
     },
     /// A connected part of a machine has too many states for its modes.
+    #[error(
+        "a connected part of the machine has {states} states, more than the limit of {limit} for modes: their \
+         work grows with the cube of this number; divide the machine, or lower the orders of its fields (--order)"
+    )]
     TooManyStates {
         /// Number of states of the part.
         states: usize,
@@ -44,6 +55,9 @@ pub enum AnalysisError {
         limit: usize,
     },
     /// Natural frequencies do not ascend.
+    #[error(
+        "natural frequency {index} is not above the previous one; give them in ascending order"
+    )]
     NotAscending {
         /// Index of a frequency that is not above the previous one.
         index: usize,
@@ -63,41 +77,6 @@ impl AnalysisError {
         }
     }
 }
-
-impl fmt::Display for AnalysisError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFew { needed, given } => {
-                write!(
-                    f,
-                    "the series has {given} values; the analysis needs {needed}"
-                )
-            }
-            Self::NotFinite { sample } => write!(f, "value {sample} of the series is not finite"),
-            Self::LengthMismatch { expected, given } => {
-                write!(f, "a series has {given} values instead of {expected}")
-            }
-            Self::NotPositive { quantity: what } => write!(f, "{what} must be positive and finite"),
-            Self::NotConverged { decades } => write!(
-                f,
-                "the eigenvalues were not found: the entries of the state matrix span {decades} powers of ten; \
-                 look for a stiffness or a mass in a wrong unit"
-            ),
-            Self::TooManyStates { states, limit } => write!(
-                f,
-                "a connected part of the machine has {states} states, more than the limit of {limit} for modes: their \
-                 work grows with the cube of this number; divide the machine, or lower the orders of its fields \
-                 (--order)"
-            ),
-            Self::NotAscending { index } => write!(
-                f,
-                "natural frequency {index} is not above the previous one; give them in ascending order"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for AnalysisError {}
 
 /// Rejects fewer than `needed` values, and values whose squares overflow.
 pub(super) fn check_values(values: &[f64], needed: usize) -> Result<(), AnalysisError> {

@@ -1,19 +1,20 @@
 //! Errors of compiling and running a model.
 
-use std::fmt;
-
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::variant::ModelError;
 use eomgen_sim::piecewise_linear::ExactError;
 
 /// Reason why a model cannot be compiled or run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum Error {
+    #[error(transparent)]
     /// Errors of the specification or of a parameter value, each with its place and cure.
-    Specification(Diagnostics),
+    Specification(#[from] Diagnostics),
+    #[error("{0}")]
     /// A solver that does not support the model, or an invalid request.
     Request(String),
+    #[error("{reason}")]
     /// A simulation or search that stopped early, with the cause and the cure.
     Stopped {
         /// Time reached, s; `None` if the simulation had not started.
@@ -30,23 +31,6 @@ impl Error {
             model.source.clone(),
             error.diagnostic(),
         ))
-    }
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Specification(found) => found.fmt(f),
-            Self::Request(reason) | Self::Stopped { reason, .. } => f.write_str(reason),
-        }
-    }
-}
-
-impl std::error::Error for Error {}
-
-impl From<Diagnostics> for Error {
-    fn from(found: Diagnostics) -> Self {
-        Self::Specification(found)
     }
 }
 

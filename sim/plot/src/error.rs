@@ -1,20 +1,23 @@
 //! Errors of figures, and checks before drawing.
 
-use std::fmt;
+use thiserror::Error;
 
 use super::figure::{Panel, Series, SeriesStyle};
 
 /// Error of a figure. Panels and samples are counted from 0.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PlotError {
     /// A figure without panels.
+    #[error("the figure has no panels")]
     NoPanels,
     /// A panel without series.
+    #[error("panel {panel} of the figure has no series")]
     NoSeries {
         /// Index of the panel.
         panel: usize,
     },
     /// A series without a drawable sample.
+    #[error("the series `{series}` in panel {panel} of the figure has no sample that can be drawn")]
     Empty {
         /// Index of the panel.
         panel: usize,
@@ -22,6 +25,9 @@ pub enum PlotError {
         series: String,
     },
     /// A series with different numbers of values and abscissae.
+    #[error(
+        "the series `{series}` in panel {panel} of the figure has {values} values but {abscissae} abscissae"
+    )]
     Lengths {
         /// Index of the panel.
         panel: usize,
@@ -33,6 +39,10 @@ pub enum PlotError {
         values: usize,
     },
     /// An abscissa that is not finite, or smaller than the previous one.
+    #[error(
+        "the series `{series}` in panel {panel} of the figure: abscissa {sample} is not finite or is smaller \
+         than the previous one"
+    )]
     Abscissa {
         /// Index of the panel.
         panel: usize,
@@ -42,6 +52,7 @@ pub enum PlotError {
         sample: usize,
     },
     /// A map with different numbers of values and cells.
+    #[error("the map has {values} values for {columns} columns and {rows} rows")]
     Cells {
         /// Number of values along the horizontal axis.
         columns: usize,
@@ -51,6 +62,10 @@ pub enum PlotError {
         values: usize,
     },
     /// Values along an axis of a map that do not ascend, or cannot be drawn on it.
+    #[error(
+        "value {index} of `{axis}` along an axis of the map is not greater than the previous one, or cannot be \
+         drawn on the axis"
+    )]
     Grid {
         /// Name of the quantity along the axis.
         axis: String,
@@ -58,61 +73,12 @@ pub enum PlotError {
         index: usize,
     },
     /// A figure that could not be rendered as PNG.
+    #[error("the figure could not be rendered as PNG: {reason}")]
     Encoding {
         /// Message of the renderer or the encoder.
         reason: String,
     },
 }
-
-impl fmt::Display for PlotError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoPanels => write!(f, "the figure has no panels"),
-            Self::NoSeries { panel } => write!(f, "panel {panel} of the figure has no series"),
-            Self::Empty { panel, series } => write!(
-                f,
-                "the series `{series}` in panel {panel} of the figure has no sample that can be drawn"
-            ),
-            Self::Lengths {
-                panel,
-                series,
-                abscissae,
-                values,
-            } => write!(
-                f,
-                "the series `{series}` in panel {panel} of the figure has {values} values \
-                 but {abscissae} abscissae"
-            ),
-            Self::Abscissa {
-                panel,
-                series,
-                sample,
-            } => write!(
-                f,
-                "the series `{series}` in panel {panel} of the figure: abscissa \
-                 {sample} is not finite or is smaller than the previous one"
-            ),
-            Self::Cells {
-                columns,
-                rows,
-                values,
-            } => write!(
-                f,
-                "the map has {values} values for {columns} columns and {rows} rows"
-            ),
-            Self::Grid { axis, index } => write!(
-                f,
-                "value {index} of `{axis}` along an axis of the map is not greater than \
-                 the previous one, or cannot be drawn on the axis"
-            ),
-            Self::Encoding { reason } => {
-                write!(f, "the figure could not be rendered as PNG: {reason}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for PlotError {}
 
 /// Returns true if a value is small enough to compute axes from it without overflow.
 pub(super) fn is_drawable(value: f64) -> bool {

@@ -3,12 +3,15 @@
 use std::path::Path;
 
 use eomgen_model_spec::diagnostic::Diagnostics;
+use thiserror::Error;
 
 /// Error of a dataset: place, cause and cure.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Error)]
 pub enum Refusal {
     /// Error in the dataset file.
-    Description(Diagnostics),
+    #[error(transparent)]
+    Description(#[from] Diagnostics),
+    #[error("{0}")]
     /// Error in a record: a sentence with its file, and with the line if there is one.
     Record(String),
 }
@@ -24,20 +27,3 @@ impl Refusal {
         Self::Record(format!("{}, line {line}: {message}", path.display()))
     }
 }
-
-impl From<Diagnostics> for Refusal {
-    fn from(found: Diagnostics) -> Self {
-        Self::Description(found)
-    }
-}
-
-impl std::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Description(found) => found.fmt(f),
-            Self::Record(message) => f.write_str(message),
-        }
-    }
-}
-
-impl std::error::Error for Refusal {}

@@ -4,13 +4,17 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use thiserror::Error;
+
 const MAX_SHOWN_GAPS: usize = 5;
 
 /// Error of a sweep.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum SweepError {
     /// Invalid request, with cause and cure.
+    #[error("{0}")]
     Request(String),
+    #[error("cannot {action} {}: {reason}", path.display())]
     /// File or folder that could not be read or written.
     File {
         /// Verb of the message: `read`, `write`, ...
@@ -21,18 +25,28 @@ pub enum SweepError {
         reason: String,
     },
     /// Folder with a different sweep.
+    #[error(
+        "{} contains a different sweep (differences: {}); give another --out, or remove that folder",
+        folder.display(),
+        differences.join(", ")
+    )]
     OtherJob {
         /// Path of the folder.
         folder: PathBuf,
         /// Options that differ.
         differences: Vec<&'static str>,
     },
+    #[error("{} belongs to a different sweep; remove it, or give another --out", path.display())]
     /// Finished chunk of a different sweep.
     OtherPart {
         /// Path of the file.
         path: PathBuf,
     },
     /// Invalid description of a job.
+    #[error(
+        "{}: {reason}; expected the unchanged description that `eomgen sweep` wrote",
+        path.display()
+    )]
     Description {
         /// Path of the file.
         path: PathBuf,
@@ -40,6 +54,7 @@ pub enum SweepError {
         reason: String,
     },
     /// Missing chunks.
+    #[error("{}: {}", folder.display(), missing_points(missing, *points))]
     Gaps {
         /// Path of the folder.
         folder: PathBuf,
@@ -60,50 +75,7 @@ impl SweepError {
     }
 }
 
-impl fmt::Display for SweepError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Request(problem) => f.write_str(problem),
-            Self::File {
-                action,
-                path,
-                reason,
-            } => write!(f, "cannot {action} {}: {reason}", path.display()),
-            Self::OtherJob {
-                folder,
-                differences,
-            } => write!(
-                f,
-                "{} contains a different sweep (differences: {}); give another --out, or remove \
-                 that folder",
-                folder.display(),
-                differences.join(", ")
-            ),
-            Self::OtherPart { path } => write!(
-                f,
-                "{} belongs to a different sweep; remove it, or give another --out",
-                path.display()
-            ),
-            Self::Description { path, reason } => write!(
-                f,
-                "{}: {reason}; expected the unchanged description that `eomgen sweep` wrote",
-                path.display()
-            ),
-            Self::Gaps {
-                folder,
-                missing,
-                points,
-            } => write_gaps(f, folder, missing, *points),
-        }
-    }
-}
-
-fn write_gaps(
-    f: &mut fmt::Formatter<'_>,
-    folder: &Path,
-    missing: &[Range<usize>],
-    points: usize,
-) -> fmt::Result {
+fn missing_points(missing: &[Range<usize>], points: usize) -> String {
     let count: usize = missing.iter().map(ExactSizeIterator::len).sum();
     let shown: Vec<String> = missing
         .iter()
@@ -115,13 +87,9 @@ fn write_gaps(
     } else {
         ""
     };
-    write!(
-        f,
-        "{}: {count} of {points} points are missing (counted from 0: {}{more}); run the missing \
+    format!(
+        "{count} of {points} points are missing (counted from 0: {}{more}); run the missing \
          shards, run the sweep again without --shard, or copy the missing files into `parts`",
-        folder.display(),
         shown.join(", ")
     )
 }
-
-impl std::error::Error for SweepError {}

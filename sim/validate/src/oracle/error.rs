@@ -1,18 +1,23 @@
 //! Models, possibly valid, that the oracle does not support.
 
-use std::fmt;
+use thiserror::Error;
 
 /// Reason why the oracle cannot evaluate a model or a state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum OracleError {
+    #[error("{0} contains an acceleration")]
     /// Second time derivative in an expression.
     Acceleration(String),
+    #[error("{0} needs the rate of an input; set `rates` of the input")]
     /// Time derivative of an input without given rates, or kinetic energy that depends on one.
     InputRate(String),
+    #[error("{0} uses a field, a position or a mode outside of `at`, `integral` or `sum`")]
     /// Field, position, mode or shape outside of `at`, `integral` or `sum`.
     MisplacedField(String),
+    #[error("{0} is not a finite number")]
     /// Parameter, domain or position that is not finite.
     NonFiniteConstant(String),
+    #[error("found {found} {what}, expected {expected}")]
     /// Number of parameters, states or inputs that does not match the model.
     WrongLength {
         /// Name of the counted items, in the plural.
@@ -23,27 +28,3 @@ pub enum OracleError {
         found: usize,
     },
 }
-
-impl fmt::Display for OracleError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Acceleration(place) => write!(formatter, "{place} contains an acceleration"),
-            Self::InputRate(place) => write!(
-                formatter,
-                "{place} needs the rate of an input; set `rates` of the input"
-            ),
-            Self::MisplacedField(place) => write!(
-                formatter,
-                "{place} uses a field, a position or a mode outside of `at`, `integral` or `sum`"
-            ),
-            Self::NonFiniteConstant(place) => write!(formatter, "{place} is not a finite number"),
-            Self::WrongLength {
-                what,
-                expected,
-                found,
-            } => write!(formatter, "found {found} {what}, expected {expected}"),
-        }
-    }
-}
-
-impl std::error::Error for OracleError {}

@@ -18,9 +18,8 @@ mod quadrotor_slung_load;
 mod shaft_and_disc;
 mod two_link_arm;
 
-use std::fmt;
-
 use eomgen_model_spec::models::{self, ShippedModel};
+use thiserror::Error;
 
 use crate::references::evaluation::Evaluation;
 
@@ -42,27 +41,18 @@ pub struct StateAndParameters<'a> {
 pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
 
 /// Reason that a closed form does not apply.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotApplicable {
     /// A required parameter is missing.
+    #[error("the closed form needs the parameter {0}")]
     Parameter(&'static str),
     /// The number of entries of the state differs from this number.
+    #[error("the closed form needs a state of {0} entries")]
     State(usize),
     /// The mass matrix is singular.
+    #[error("the closed form's mass matrix is singular")]
     Mass,
 }
-
-impl fmt::Display for NotApplicable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter(name) => write!(f, "the closed form needs the parameter {name}"),
-            Self::State(entries) => write!(f, "the closed form needs a state of {entries} entries"),
-            Self::Mass => write!(f, "the closed form's mass matrix is singular"),
-        }
-    }
-}
-
-impl std::error::Error for NotApplicable {}
 
 /// Shipped models and their closed forms.
 pub const CLOSED_FORMS: [(ShippedModel, ClosedForm); 13] = [
