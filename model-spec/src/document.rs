@@ -144,8 +144,8 @@ impl<'d> Reader<'d> {
             self.found.push(misplaced_order(&order.name, has_fields));
         }
         let record = Record::new(entry.name, entries, &sections::MODEL, &mut self.found);
-        let named = record.require("name", &mut self.found)?;
-        let name = to_name(self.found.push_error(named.written())?);
+        let name = record.required("name", Entry::written, &mut self.found)?;
+        let name = to_name(name);
         let title = record.text("title", &mut self.found);
         Some((name, title))
     }

@@ -26,7 +26,7 @@ pub fn to_name(written: StringValue) -> Name {
 
 pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
     let record = Record::read(entry, &sections::PARAMETER, found)?;
-    let value = record.require("value", found)?.quantity();
+    let value = record.required("value", Entry::quantity, found)?;
     Some(RawParameter {
         name: entry.name.clone(),
         unit: record.written("unit", found),
@@ -35,7 +35,7 @@ pub fn read_parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawP
         min: record.number("min", found),
         max: record.number("max", found),
         uncertainty: uncertainty(&record, found),
-        value: found.push_error(value)?,
+        value,
     })
 }
 
@@ -91,15 +91,13 @@ pub fn read_coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Raw
 
 /// Reads the `range` of a coordinate, an input or a state, if it has one.
 fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
-    let entry = record.get("range")?;
-    let [low, high] = found.push_error(entry.pair())?;
-    let span = entry.span();
+    let [low, high] = record.optional("range", Entry::pair, found)?;
+    let span = record.get("range")?.span();
     Some(RawRange { low, high, span })
 }
 
 fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<StringValue> {
-    let unit = record.require("unit", found)?.written();
-    found.push_error(unit)
+    record.required("unit", Entry::written, found)
 }
 
 pub fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
@@ -116,10 +114,7 @@ pub fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput
 
 /// Reads the number of given rates of an input: 0 or 2, because an energy needs both.
 fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
-    let Some((number, span)) = record
-        .get("rates")
-        .and_then(|entry| found.push_error(entry.integer()))
-    else {
+    let Some((number, span)) = record.optional("rates", Entry::integer, found) else {
         return 0;
     };
     if number != 2 {
@@ -137,11 +132,11 @@ fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
 pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
     let record = Record::read(entry, &sections::STATE, found)?;
     let unit = required_unit(&record, found);
-    let rate = record.require("rate", found)?.quantity();
+    let rate = record.required("rate", Entry::quantity, found)?;
     Some(RawState {
         name: entry.name.clone(),
         unit,
-        rate: found.push_error(rate)?,
+        rate,
         initial: record.quantity("initial", found),
         range: range(&record, found),
         doc: record.text("doc", found),
@@ -150,10 +145,10 @@ pub fn read_state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState
 
 pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
     let record = Record::read(entry, &sections::CONSTRAINT, found)?;
-    let zero = record.require("zero", found)?.scalar_or_vector();
+    let value = record.required("zero", Entry::scalar_or_vector, found)?;
     Some(RawTerm {
         name: entry.name.clone(),
-        value: found.push_error(zero)?,
+        value,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     })
@@ -161,19 +156,18 @@ pub fn read_constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Raw
 
 pub fn read_impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawImpact> {
     let record = Record::read(entry, &sections::IMPACT, found)?;
-    let when = record.require("when", found).map(Entry::quantity);
-    let restitution = record.require("restitution", found);
-    let restitution = restitution.map(Entry::quantity);
+    let when = record.required("when", Entry::quantity, found);
+    let restitution = record.required("restitution", Entry::quantity, found);
     let friction = read_contact_friction(&record, found);
     let distance = RawTerm {
         name: entry.name.clone(),
-        value: found.push_error(when?)?,
+        value: when?,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     };
     Some(RawImpact {
         distance,
-        restitution: found.push_error(restitution?)?,
+        restitution: restitution?,
         friction: friction?,
     })
 }
@@ -224,34 +218,36 @@ fn read_contact_friction(
 
 pub fn read_field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
     let record = Record::read(entry, &sections::FIELD, found)?;
-    let along = record.require("along", found).cloned();
-    let from = record.require("from", found).cloned();
-    let to = record.require("to", found).cloned();
-    let basis = record.require("basis", found).cloned();
-    let coordinates = record.require("coordinates", found).cloned();
-    let order = record.require("order", found).cloned();
+    let along = record.required("along", Entry::written, found);
+    let from = record.required("from", Entry::quantity, found);
+    let to = record.required("to", Entry::quantity, found);
+    let basis = record.required("basis", Entry::written, found);
+    let coordinates = record.required("coordinates", Entry::written, found);
+    let order = record.required("order", Entry::integer, found);
     Some(RawField {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
         doc: record.text("doc", found),
-        along: to_name(found.push_error(along?.written())?),
-        from: found.push_error(from?.quantity())?,
-        to: found.push_error(to?.quantity())?,
+        along: to_name(along?),
+        from: from?,
+        to: to?,
         basis: read_basis(&record, &basis?, found)?,
-        coordinates: to_name(found.push_error(coordinates?.written())?),
-        order: found.push_error(order?.integer())?,
+        coordinates: to_name(coordinates?),
+        order: order?,
     })
 }
 
-fn read_basis(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
-    let written = found.push_error(basis.written())?;
-    let table = record.get("table");
+fn read_basis(
+    record: &Record<'_>,
+    written: &StringValue,
+    found: &mut Diagnostics,
+) -> Option<RawBasis> {
     if written.text == bases::TABLE {
-        let table = table.or_else(|| record.require("table", found))?;
-        return found.push_error(table.written()).map(RawBasis::Table);
+        let table = record.required("table", Entry::written, found);
+        return table.map(RawBasis::Table);
     }
-    let named = found.push_error(parse_basis(&written))?;
-    if let Some(table) = table {
+    let named = found.push_error(parse_basis(written))?;
+    if let Some(table) = record.get("table") {
         found.push(
             Diagnostic::error("`table` is given, but the basis is not \"table\"")
                 .with_span(table.name.span, "this file is not read")
@@ -310,10 +306,10 @@ fn named_expression<'d>(
 
 /// Reads a named expression from a table with at least `value`.
 fn read_term<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -> Option<RawTerm> {
-    let value = read(record.require("value", found)?);
+    let value = record.required("value", read, found)?;
     Some(RawTerm {
         name: record.owner().clone(),
-        value: found.push_error(value)?,
+        value,
         doc: record.text("doc", found),
         origin: record.text("source", found),
     })
@@ -322,9 +318,9 @@ fn read_term<'d>(record: &Record<'d>, read: Read<'d>, found: &mut Diagnostics) -
 /// Reads an entry of `[forces]` and the quantity it acts on.
 pub fn read_force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
     let record = Record::read(entry, &sections::FORCE, found)?;
-    let on = record.require("on", found).map(Entry::scalar_or_vector);
+    let on = record.required("on", Entry::scalar_or_vector, found);
     let term = read_term(&record, Entry::scalar_or_vector, found);
-    Some((term?, found.push_error(on?)?))
+    Some((term?, on?))
 }
 
 /// Reads an entry of `[observables]` and its declared unit.
@@ -342,12 +338,11 @@ pub fn read_observable(
 
 pub fn read_frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
     let record = Record::read(entry, &sections::FRAME, found)?;
-    let origin = record.get("origin");
-    let origin = origin.map(|entry| entry.vector("[0, 0, \"d\"]"));
+    let origin = |entry: &Entry<'_>| entry.vector("[0, 0, \"d\"]");
     Some(RawFrame {
         name: entry.name.clone(),
         parent: record.written("in", found),
-        origin: origin.and_then(|origin| found.push_error(origin)),
+        origin: record.optional("origin", origin, found),
         rotation: record.written("rotation", found),
         doc: record.text("doc", found),
     })
@@ -355,16 +350,11 @@ pub fn read_frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame
 
 pub fn read_body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
     let record = Record::read(entry, &sections::BODY, found)?;
-    let mut list = |key: &str, counts: &[usize], example: &str| {
-        let list = record.get(key)?.quantities(counts, example);
-        found.push_error(list)
-    };
-    let inertia = list("inertia", &[3, 6], "[\"I_x\", \"I_y\", \"I_z\"]");
-    let centre = record.get("centre");
-    let centre = centre.map(|entry| entry.vector("[0, 0, \"c\"]"));
-    let centre = centre.and_then(|centre| found.push_error(centre));
-    let frame = record.require("frame", found).map(Entry::written);
-    let frame = frame.and_then(|frame| found.push_error(frame));
+    let moments = |entry: &Entry<'_>| entry.quantities(&[3, 6], "[\"I_x\", \"I_y\", \"I_z\"]");
+    let inertia = record.optional("inertia", moments, found);
+    let centre = |entry: &Entry<'_>| entry.vector("[0, 0, \"c\"]");
+    let centre = record.optional("centre", centre, found);
+    let frame = record.required("frame", Entry::written, found);
     let mass = match (record.get("mass"), record.get("inertia")) {
         (None, None) => {
             let name = quote(&entry.name.text);
@@ -424,14 +414,12 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
             .push_error(value.quantity())
             .map(RawCoefficientKind::Value);
     }
-    let of = record.require("of", found)?.quantity();
-    let by = record.require("by", found)?.quantity();
+    record.require("of", found)?;
+    record.require("by", found)?;
     let times = record.quantity("times", found);
-    Some(RawCoefficientKind::Factor(
-        found.push_error(of)?,
-        found.push_error(by)?,
-        times,
-    ))
+    let of = record.quantity("of", found)?;
+    let by = record.quantity("by", found)?;
+    Some(RawCoefficientKind::Factor(of, by, times))
 }
 
 pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
@@ -449,12 +437,8 @@ pub fn read_sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSens
 
 pub fn read_point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
     let record = Record::read(entry, &sections::POINT, found)?;
-    let x = record.require("x", found).map(Entry::quantity);
-    let y = record.require("y", found).map(Entry::quantity);
-    let (x, y) = (
-        x.and_then(|x| found.push_error(x)),
-        y.and_then(|y| found.push_error(y)),
-    );
+    let x = record.required("x", Entry::quantity, found);
+    let y = record.required("y", Entry::quantity, found);
     Some(RawPoint {
         name: entry.name.clone(),
         x: x?,

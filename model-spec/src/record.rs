@@ -102,6 +102,27 @@ impl<'d> Record<'d> {
         entry
     }
 
+    /// Returns the value of a required key, or reports that it is missing or of another kind.
+    pub fn required<T>(
+        &self,
+        key: &str,
+        read: impl Fn(&Entry<'d>) -> Result<T, Diagnostic>,
+        found: &mut Diagnostics,
+    ) -> Option<T> {
+        let value = read(self.require(key, found)?);
+        found.push_error(value)
+    }
+
+    /// Returns the value of a key, if present, or reports that it is of another kind.
+    pub fn optional<T>(
+        &self,
+        key: &str,
+        read: impl Fn(&Entry<'d>) -> Result<T, Diagnostic>,
+        found: &mut Diagnostics,
+    ) -> Option<T> {
+        found.push_error(read(self.get(key)?))
+    }
+
     /// Returns the string of a key, "" if absent.
     pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
         self.written(key, found)
@@ -110,17 +131,17 @@ impl<'d> Record<'d> {
 
     /// Returns the string of a key, if present.
     pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<StringValue> {
-        found.push_error(self.get(key)?.written())
+        self.optional(key, Entry::written, found)
     }
 
     /// Returns the number of a key, if present.
     pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
-        found.push_error(self.get(key)?.number())
+        self.optional(key, Entry::number, found)
     }
 
     /// Returns the number or expression of a key, if present.
     pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
-        found.push_error(self.get(key)?.quantity())
+        self.optional(key, Entry::quantity, found)
     }
 }
 

@@ -22,109 +22,47 @@ pub fn schema() -> Value {
         json!("Mechanical system, described by its energies, forces and geometry.");
     schema["anyOf"] = json!([has_entries("coordinates"), has_entries("fields")]);
     schema["allOf"] = json!([{ "anyOf": [has_entries("kinetic"), { "required": ["bodies"] }] }]);
-    schema["$defs"] = json!(kinds());
+    schema["$defs"] = kinds();
     schema
 }
 
 /// Returns the kinds of values by name, with a description.
-pub fn kinds() -> Map<String, Value> {
+pub fn kinds() -> Value {
     let expression = || reference("expression");
-    let number = || json!({ "type": "number" });
-    let list = |element, least: usize, most: usize| json!({ "type": "array", "items": element, "minItems": least, "maxItems": most });
-    let unit = || json!({ "type": "string", "maxLength": MAX_NAME });
     let bases = bases::BASES.iter().map(|(name, _)| *name);
     let bases: Vec<&str> = bases.chain([bases::TABLE]).collect();
-    let kinds = [
-        (
-            "name",
-            "a letter, then letters, digits and underscores",
-            json!({
-                "type": "string",
-                "pattern": "^[A-Za-z][A-Za-z0-9_]*$",
-                "maxLength": MAX_NAME
-            }),
-        ),
-        ("text", "a string", json!({ "type": "string" })),
-        ("number", "a number", number()),
-        (
-            "positive_number",
-            "a number greater than 0",
-            json!({ "type": "number", "exclusiveMinimum": 0 }),
-        ),
-        (
-            "fraction",
-            "a number between 0 and 1",
-            json!({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }),
-        ),
-        ("pair_of_numbers", "two numbers", list(number(), 2, 2)),
-        (
-            "expression",
-            "a number, or an expression in quotes",
-            json!({ "type": ["number", "string"] }),
-        ),
-        (
-            "scalar_or_vector",
-            "an expression, or the components of a vector",
-            json!({ "anyOf": [expression(), list(expression(), 2, 3)] }),
-        ),
-        (
-            "components",
-            "expressions along x, y and z",
-            list(expression(), 3, 3),
-        ),
-        (
-            "vector",
-            "expressions along x, y and z, or one expression of a vector",
-            json!({ "anyOf": [reference("components"), { "type": "string" }] }),
-        ),
-        (
-            "inertia",
-            "I_xx, I_yy, I_zz, or also I_xy, I_yz, I_xz",
-            list(expression(), 3, 6),
-        ),
-        (
-            "range",
-            "lower and upper end, in SI, as expressions of parameters",
-            list(expression(), 2, 2),
-        ),
-        ("unit", "a unit, such as \"kg m^2\" or \"N s/mm\"", unit()),
-        (
-            "coherent_unit",
-            "an SI unit without a prefix, such as \"N m\"",
-            unit(),
-        ),
-        ("rate_count", "2", json!({ "const": 2 })),
-        (
-            "basis",
-            "mode shapes of a beam, a rod or a string, or \"table\"",
-            json!({ "enum": bases }),
-        ),
-        (
-            "mode_count",
-            "a whole number",
-            json!({ "type": "integer", "minimum": 0, "maximum": MAX_ORDER }),
-        ),
-        (
-            "ordinate",
-            "a number in m, or the name of an observable or a coordinate in m",
-            json!({ "type": ["number", "string"] }),
-        ),
-        (
-            "lines",
-            "a table of lists of names",
-            entries(json!({ "type": "array", "minItems": 2, "items": { "type": "string" } })),
-        ),
-    ];
-    let described = |(name, text, schema)| (String::from(name), describe(schema, text));
-    kinds.into_iter().map(described).collect()
+    let line = json!({ "type": "array", "minItems": 2, "items": { "type": "string" } });
+    let mut kinds = json!({
+        "basis": { "description": "mode shapes of a beam, a rod or a string, or \"table\"", "enum": bases },
+        "coherent_unit": { "description": "SI unit without a prefix, such as \"N m\"", "type": "string", "maxLength": MAX_NAME },
+        "components": { "description": "expressions along x, y and z", "type": "array", "items": expression(), "minItems": 3, "maxItems": 3 },
+        "expression": { "description": "number, or expression in quotes", "type": ["number", "string"] },
+        "fraction": { "description": "number between 0 and 1", "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 },
+        "inertia": { "description": "I_xx, I_yy, I_zz, or also I_xy, I_yz, I_xz", "type": "array", "items": expression(), "minItems": 3, "maxItems": 6 },
+        "mode_count": { "description": "whole number", "type": "integer", "minimum": 0, "maximum": MAX_ORDER },
+        "name": { "description": "letter, then letters, digits and underscores", "type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_]*$", "maxLength": MAX_NAME },
+        "number": { "description": "number", "type": "number" },
+        "ordinate": { "description": "number in m, or name of an observable or a coordinate in m", "type": ["number", "string"] },
+        "pair_of_numbers": { "description": "two numbers", "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 },
+        "positive_number": { "description": "number greater than 0", "type": "number", "exclusiveMinimum": 0 },
+        "range": { "description": "lower and upper end, in SI, as expressions of parameters", "type": "array", "items": expression(), "minItems": 2, "maxItems": 2 },
+        "rate_count": { "description": "2", "const": 2 },
+        "scalar_or_vector": { "description": "expression, or components of a vector", "anyOf": [expression(), { "type": "array", "items": expression(), "minItems": 2, "maxItems": 3 }] },
+        "text": { "description": "string", "type": "string" },
+        "unit": { "description": "unit, such as \"kg m^2\" or \"N s/mm\"", "type": "string", "maxLength": MAX_NAME },
+        "vector": { "description": "expressions along x, y and z, or one expression of a vector", "anyOf": [reference("components"), { "type": "string" }] },
+    });
+    kinds["lines"] = describe(entries(line), "table of lists of names");
+    kinds
 }
 
 /// Returns the schema of a table.
 fn table(keys: &Keys) -> Value {
-    let properties = keys.list.iter().map(|key| (key.name, value(key)));
-    let properties: Map<String, Value> = properties
-        .map(|(name, schema)| (name.to_owned(), schema))
-        .collect();
+    let properties = keys
+        .list
+        .iter()
+        .map(|key| (key.name.to_owned(), value(key)));
+    let properties: Map<String, Value> = properties.collect();
     let required = keys.list.iter().filter(|key| key.is_required);
     let required: Vec<&str> = required.map(|key| key.name).collect();
     let mut schema = json!({

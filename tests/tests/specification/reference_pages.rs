@@ -99,7 +99,7 @@ fn table(file: &Keys) -> String {
 
 fn legend() -> String {
     let mut rows = "\n| value | in the file |\n| --- | --- |\n".to_owned();
-    for (name, schema) in kinds() {
+    for (name, schema) in kinds().as_object().expect("kinds") {
         let text = schema["description"].as_str().expect("a description");
         rows.push_str(&format!("| {} | {text} |\n", name.replace('_', " ")));
     }
