@@ -13,9 +13,13 @@ import ctypes
 import json
 import sys
 
-import numpy as np
-from scipy.integrate import simpson
-from scipy.linalg import matrix_balance, solve_continuous_are
+try:
+    import numpy as np
+    from scipy.integrate import simpson
+    from scipy.linalg import matrix_balance, solve_continuous_are
+except ImportError as error:
+    print(f"lqr.py: {error.name} is missing. Install it: pip install numpy scipy", file=sys.stderr)
+    sys.exit(2)
 
 LARGE = {"m": 1e-3, "m/s": 1.0}  # same cost as 1 N m of torque, by unit of the state
 STEP, DURATION = 20e-6, 2.0  # s

@@ -8,8 +8,12 @@ poles of A - B K. It requires numpy and scipy.
 
 import sys
 
-import numpy
-from scipy.linalg import solve_continuous_are
+try:
+    import numpy
+    from scipy.linalg import solve_continuous_are
+except ImportError as error:
+    print(f"gains.py: {error.name} is missing. Install it: pip install numpy scipy", file=sys.stderr)
+    sys.exit(2)
 
 model = numpy.load(sys.argv[1])
 A, B = model["A"], model["B"]

@@ -8,7 +8,11 @@ requires numpy.
 
 import sys
 
-import numpy
+try:
+    import numpy
+except ImportError:
+    print("response.py: numpy is missing. Install it: pip install numpy", file=sys.stderr)
+    sys.exit(2)
 
 model = numpy.load(sys.argv[1])
 A, B = model["A"], model["B"][:, 0]
