@@ -1,29 +1,25 @@
 //! Builds a model from raw entries: parses units, resolves names, sorts by references.
+//! `quantities`, `fields`, `coefficients` and `drawing` build the entries of their sections;
 //! `motion`, `units_check` and `checks` check the result.
 
 mod coefficients;
 mod drawing;
-
-use std::sync::Arc;
+mod fields;
+mod quantities;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
-use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
+use crate::ids::{ConstraintId, DefinitionId, ParameterId};
 use crate::model::{
-    Basis, Constraint, ContactFriction, Coordinate, Definition, Expr, ExprKind, Field, Force,
-    Impact, Input, MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL,
-    Range, Sensor, State, Term, Uncertainty,
+    Constraint, ContactFriction, Definition, Expr, ExprKind, Force, Impact, MULTIPLIER, Model,
+    Observable, Parameter, ParameterValue, RESIDUAL, Sensor, Term,
 };
-use crate::names::{Names, Symbol};
+use crate::names::Names;
 use crate::order::{Reference, cycle_error, sort_by_references};
-use crate::quantity::{Number, Quantity, StringValue};
+use crate::quantity::{Quantity, StringValue};
 use crate::rate_order::{Expanded, rate_order};
-use crate::raw::{
-    Document, RawBasis, RawCoordinate, RawField, RawImpact, RawInput, RawParameter, RawRange,
-    RawSensor, RawState, RawTerm, RawUncertainty,
-};
-use crate::shape_table::ShapeTable;
+use crate::raw::{Document, RawImpact, RawSensor, RawTerm};
 use crate::source::Source;
 use crate::space::{Demands, Inertia};
 use crate::span::Span;
@@ -249,194 +245,6 @@ impl Builder {
         self.found.push_error(resolved)
     }
 
-    fn parameter(&mut self, raw: RawParameter) -> Option<Parameter> {
-        let unit = self.unit(raw.unit);
-        let value = match &raw.value {
-            Quantity::Number(number) => {
-                let unit = unit.as_ref()?;
-                ParameterValue::Number(self.convert_to_si(unit, *number)?)
-            }
-            Quantity::Expression(_) | Quantity::Vector(..) | Quantity::Expansion(_) => {
-                ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
-            }
-        };
-        let unit = unit?;
-        let mut bound = |number: Option<Number>| number.and_then(|n| self.convert_to_si(&unit, n));
-        let (min, max) = (bound(raw.min), bound(raw.max));
-        if let (Some(low), Some(high), Some(number)) = (min, max, raw.max)
-            && low > high
-        {
-            self.found.push(
-                Diagnostic::error(format!("`{}` has no admissible value", raw.name.text))
-                    .with_span(number.span, "max is less than min"),
-            );
-        }
-        let uncertainty = raw
-            .uncertainty
-            .and_then(|raw| self.uncertainty(&unit, &raw));
-        Some(Parameter {
-            name: raw.name.text,
-            unit,
-            doc: raw.doc,
-            origin: raw.origin,
-            value,
-            min,
-            max,
-            uncertainty,
-            span: raw.name.span,
-        })
-    }
-
-    fn uncertainty(&mut self, unit: &Unit, raw: &RawUncertainty) -> Option<Uncertainty> {
-        Some(match *raw {
-            RawUncertainty::Relative(part) => Uncertainty::Relative(part.value),
-            RawUncertainty::StandardDeviation(sd) => {
-                Uncertainty::StandardDeviation(self.convert_to_si(unit, sd)?)
-            }
-            RawUncertainty::Between([low, high]) => Uncertainty::Between([
-                self.convert_to_si(unit, low)?,
-                self.convert_to_si(unit, high)?,
-            ]),
-        })
-    }
-
-    fn convert_to_si(&mut self, unit: &Unit, number: Number) -> Option<f64> {
-        let value = unit.to_si(number.value);
-        if value.is_finite() {
-            return Some(value);
-        }
-        let message = format!("{} {unit} is too large in SI units", number.value);
-        self.found
-            .push(Diagnostic::error(message).with_span(number.span, "here"));
-        None
-    }
-
-    fn coordinate(&mut self, raw: RawCoordinate) -> Option<Coordinate> {
-        let unit = self.coherent_unit(raw.unit);
-        let mut initial = |quantity: Option<Quantity>| match quantity {
-            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
-            None => Some(None),
-        };
-        let (value, rate) = (initial(raw.initial), initial(raw.initial_rate));
-        let range = self.range(raw.range);
-        Some(Coordinate {
-            name: raw.name.text,
-            unit: unit?,
-            doc: raw.doc,
-            initial: value?,
-            initial_rate: rate?,
-            range: range?,
-            span: raw.name.span,
-        })
-    }
-
-    /// Builds a range, `Some(None)` if absent, `None` after an error.
-    fn range(&mut self, raw: Option<RawRange>) -> Option<Option<Range>> {
-        let Some(raw) = raw else {
-            return Some(None);
-        };
-        let low = self.expression(&raw.low, Scope::Parameters);
-        let high = self.expression(&raw.high, Scope::Parameters);
-        Some(Some(Range {
-            low: low?,
-            high: high?,
-            span: raw.span,
-        }))
-    }
-
-    fn input(&mut self, raw: RawInput) -> Option<Input> {
-        let known = |name: &str| match self.names.get(name) {
-            Some(Symbol::Input(input)) => Some(input),
-            _ => None,
-        };
-        let own = known(&raw.name.text);
-        let before = own.and_then(|own| own.index().checked_sub(1));
-        let rate_of = before.filter(|_| raw.rate_order > 0).map(InputId::new);
-        let rate = own.and_then(|own| self.names.input_rate(own));
-        let unit = match raw.rate_order {
-            // An error in the unit is reported at the input itself.
-            0 => self.coherent_unit(raw.unit)?,
-            order => per_seconds(&Unit::parse(&raw.unit?.text).ok()?, order)?,
-        };
-        Some(Input {
-            unit,
-            rate,
-            rate_of,
-            range: self.range(raw.range)?,
-            name: raw.name.text,
-            doc: raw.doc,
-            span: raw.name.span,
-        })
-    }
-
-    /// Builds the mode shapes of a field of this order.
-    fn basis(&mut self, raw: RawBasis, (order, span): (i64, Span)) -> Option<Basis> {
-        let file = match raw {
-            RawBasis::Named(basis) => return Some(basis),
-            RawBasis::Table(file) => file,
-        };
-        let folder = self.found.source().folder.clone();
-        let table = self.found.push_error(ShapeTable::read(
-            folder.as_deref(),
-            file.span,
-            &file.text,
-            MAX_ORDER,
-        ))?;
-        let shapes = table.shapes.len();
-        if usize::try_from(order).is_ok_and(|order| order > shapes && order <= MAX_ORDER) {
-            let message = format!("the order {order} needs more shapes than {}", file.text);
-            self.found.push(
-                Diagnostic::error(message)
-                    .with_span(span, "too high")
-                    .with_help(format!("the table has {shapes}")),
-            );
-            return None;
-        }
-        Some(Basis::Table {
-            table: Arc::new(table),
-            span: file.span,
-        })
-    }
-
-    fn state(&mut self, raw: RawState) -> Option<State> {
-        let unit = self.coherent_unit(raw.unit);
-        let rate = self.expression(&raw.rate, Scope::Motion);
-        let initial = match raw.initial {
-            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
-            None => Some(None),
-        };
-        let range = self.range(raw.range);
-        Some(State {
-            name: raw.name.text,
-            unit: unit?,
-            doc: raw.doc,
-            rate: rate?,
-            initial: initial?,
-            range: range?,
-            span: raw.name.span,
-        })
-    }
-
-    fn field(&mut self, raw: RawField) -> Option<Field> {
-        let unit = self.coherent_unit(raw.unit);
-        let from = self.expression(&raw.from, Scope::Parameters);
-        let to = self.expression(&raw.to, Scope::Parameters);
-        let basis = self.basis(raw.basis, raw.order);
-        let order = self.found.push_error(field_order(raw.order));
-        Some(Field {
-            name: raw.name.text,
-            unit: unit?,
-            along: raw.along.text,
-            from: from?,
-            to: to?,
-            basis: basis?,
-            coordinates: raw.coordinates.text,
-            order: order?,
-            doc: raw.doc,
-            span: raw.name.span,
-        })
-    }
-
     fn definition(&mut self, raw: RawTerm) -> Option<Definition> {
         Some(Definition {
             value: self.expression(&raw.value, Scope::Motion)?,
@@ -574,20 +382,6 @@ fn constraint_observables(constraints: &[Constraint]) -> Vec<Observable> {
     .collect()
 }
 
-fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
-    match usize::try_from(order) {
-        Ok(order) if order <= MAX_ORDER => Ok(order),
-        Ok(_) => Err(
-            Diagnostic::error(format!("the order {order} is above the limit"))
-                .with_span(span, "too high")
-                .with_help(format!("the highest order is {MAX_ORDER}")),
-        ),
-        Err(_) => Err(Diagnostic::error(format!("the order {order} is negative"))
-            .with_span(span, "negative")
-            .with_help("give the number of modes, or 0 for a rigid body")),
-    }
-}
-
 fn parameter_references(parameter: &Parameter) -> Vec<Reference> {
     let mut list = Vec::new();
     if let ParameterValue::Expression(expr) = &parameter.value {
@@ -608,19 +402,4 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
         }
     });
     list
-}
-
-/// Returns a unit per s or per s^2; `None` if an exponent overflows.
-fn per_seconds(unit: &Unit, order: u8) -> Option<Unit> {
-    let mut dimension = unit.dimension;
-    for _ in 0..order {
-        dimension = dimension.divide(Dimension::TIME)?;
-    }
-    let text = match order {
-        1 => format!("{unit}/s"),
-        _ => format!("{unit}/s^{order}"),
-    };
-    let mut unit = Unit::coherent(dimension);
-    unit.text = text;
-    Some(unit)
 }
