@@ -124,24 +124,20 @@ pub struct Prior {
 
 fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     let column = record.require("column", found).cloned();
-    let unit = record.require("unit", found).cloned();
+    let unit = record.required("unit", Entry::written, found);
     let column = column.and_then(|entry| read_key(&entry, found));
-    let unit = unit.and_then(|entry| found.push_error(entry.written()));
     let wrap = read_wrap(record, found);
     Some(Column {
         column: column?,
         unit: unit?,
-        wrap: wrap?,
+        wrap,
     })
 }
 
-fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap>> {
-    let Some(entry) = record.get("wrap") else {
-        return Some(None);
-    };
+fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Wrap> {
+    let entry = record.get("wrap")?;
     if entry.written().is_ok() {
-        let never = found.push_error(entry.keyword(&[("none", Wrap::Never)]))?;
-        return Some(Some(never));
+        return found.push_error(entry.keyword(&[("none", Wrap::Never)]));
     }
     let period = found.push_error(entry.number())?;
     if period.value <= 0.0 {
@@ -154,7 +150,7 @@ fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Option<Wrap
         );
         return None;
     }
-    Some(Some(Wrap::Period(period)))
+    Some(Wrap::Period(period))
 }
 
 fn read_key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {
@@ -190,10 +186,8 @@ pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ti
         }
         None => 1,
     };
-    let filter = match record.get("filter") {
-        Some(filter) => found.push_error(filter.keyword(&[("low-pass", true), ("none", false)]))?,
-        None => true,
-    };
+    let filter = |entry: &Entry<'_>| entry.keyword(&[("low-pass", true), ("none", false)]);
+    let filter = record.optional("filter", filter, found).unwrap_or(true);
     Some(Time {
         column: read_column(&record, found)?,
         every,
@@ -203,16 +197,14 @@ pub(super) fn read_time(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Ti
 
 pub(super) fn read_input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InputColumn> {
     let record = Record::read(entry, &keys::INPUT, found)?;
-    if let Some(hold) = record.get("hold") {
-        found.push_error(hold.keyword(&[("zero-order", ())]));
-    }
+    record.optional("hold", |entry| entry.keyword(&[("zero-order", ())]), found);
     let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(InputColumn {
         name: entry.name.clone(),
         column: read_column(&record, found)?,
-        gain: gain?,
-        bias: bias?,
-        delay: delay?,
+        gain,
+        bias,
+        delay,
     })
 }
 
@@ -228,8 +220,7 @@ pub(super) fn read_motion(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<
 
 pub(super) fn read_channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ChannelColumn> {
     let record = Record::read(entry, &keys::CHANNEL, found)?;
-    let noise = record.require("noise", found).cloned();
-    let noise = noise.and_then(|noise| found.push_error(noise.number()));
+    let noise = record.required("noise", Entry::number, found);
     let observable = record.written("observable", found);
     let [gain, bias, delay] = ["gain", "bias", "delay"].map(|key| read_prior(&record, key, found));
     Some(ChannelColumn {
@@ -237,28 +228,21 @@ pub(super) fn read_channel(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
         column: read_column(&record, found)?,
         noise: noise?,
         observable,
-        gain: gain?,
-        bias: bias?,
-        delay: delay?,
+        gain,
+        bias,
+        delay,
     })
 }
 
-fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Option<Prior>> {
-    let Some(entry) = record.get(key) else {
-        return Some(None);
-    };
-    let record = Record::read(entry, &keys::PRIOR, found)?;
-    let mean = match record.get("mean") {
-        Some(mean) => Some(found.push_error(mean.number())?),
-        None => None,
-    };
-    let sd = record.require("sd", found)?;
-    let sd = found.push_error(sd.number())?;
+fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option<Prior> {
+    let record = Record::read(record.get(key)?, &keys::PRIOR, found)?;
+    let mean = record.number("mean", found);
+    let sd = record.required("sd", Entry::number, found)?;
     if sd.value < 0.0 {
         found.push(
             Diagnostic::error(format!("`sd` cannot be {}", sd.value))
                 .with_span(sd.span, "expected one standard deviation, 0 or greater"),
         );
     }
-    Some(Some(Prior { mean, sd }))
+    Some(Prior { mean, sd })
 }

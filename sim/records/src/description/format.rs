@@ -64,21 +64,19 @@ impl Default for Format {
 pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format> {
     let record = Record::read(entry, &keys::FORMAT, found)?;
     let usual = Format::default();
-    let separator = match record.get("separator") {
-        Some(separator) => found.push_error(separator.keyword(&SEPARATORS))?,
-        None => usual.separator,
-    };
-    let decimal = match record.get("decimal") {
-        Some(decimal) => found.push_error(decimal.keyword(&DECIMALS))?,
-        None => usual.decimal,
-    };
+    let separator = record.optional("separator", |entry| entry.keyword(&SEPARATORS), found);
+    let separator = separator.unwrap_or(usual.separator);
+    let decimal = record.optional("decimal", |entry| entry.keyword(&DECIMALS), found);
+    let decimal = decimal.unwrap_or(usual.decimal);
+    let mut boolean = |key: &str| record.optional(key, Entry::boolean, found);
+    let (names, units) = (boolean("names"), boolean("units"));
     let format = Format {
         separator,
         decimal,
         skip: read_skip(&record, found)?,
         comment: read_comment(&record, found)?,
-        has_names: read_boolean(&record, "names", usual.has_names, found)?,
-        has_units: read_boolean(&record, "units", usual.has_units, found)?,
+        has_names: names.unwrap_or(usual.has_names),
+        has_units: units.unwrap_or(usual.has_units),
     };
     if separator == Separator::Character(decimal) {
         let decimal = record.get("decimal").map_or(entry.span(), Entry::span);
@@ -89,18 +87,6 @@ pub fn read_format(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Format>
         );
     }
     Some(format)
-}
-
-fn read_boolean(
-    record: &Record<'_>,
-    key: &str,
-    usual: bool,
-    found: &mut Diagnostics,
-) -> Option<bool> {
-    match record.get(key) {
-        Some(entry) => found.push_error(entry.boolean()),
-        None => Some(usual),
-    }
 }
 
 fn read_skip(record: &Record<'_>, found: &mut Diagnostics) -> Option<usize> {

@@ -100,28 +100,16 @@ fn read_tables(
     top.text("source", found);
     let records = top.require("records", found).cloned();
     let records = records.and_then(|entry| records::read_records(&entry, found));
-    let format = match top.get("format") {
-        Some(entry) => format::read_format(entry, found),
-        None => Some(Format::default()),
-    };
+    let format = read_or_default(&top, "format", found, format::read_format);
     let time = top.require("time", found).cloned();
     let time = time.and_then(|entry| columns::read_time(&entry, found));
     let inputs = read_entries(&top, "inputs", found, columns::read_input);
     let motion = read_entries(&top, "motion", found, columns::read_motion);
     let channels = read_entries(&top, "channels", found, columns::read_channel);
     let uncertain = read_entries(&top, "uncertain", found, read_uncertain);
-    let initial = match top.get("initial") {
-        Some(entry) => motion::read_initial(entry, found),
-        None => Some(InitialState::Estimate),
-    };
-    let windows = match top.get("windows") {
-        Some(entry) => motion::read_windows(entry, found),
-        None => Some(Windows::default()),
-    };
-    let experiment = match top.get("experiment") {
-        Some(entry) => experiment::read_experiment(entry, found),
-        None => Some(Experiment::default()),
-    };
+    let initial = read_or_default(&top, "initial", found, motion::read_initial);
+    let windows = read_or_default(&top, "windows", found, motion::read_windows);
+    let experiment = read_or_default(&top, "experiment", found, experiment::read_experiment);
     let description = Description {
         source: source.clone(),
         title,
@@ -163,8 +151,21 @@ fn check_column_numbers(description: &Description, found: &mut Diagnostics) {
 
 fn read_uncertain(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(Name, Number)> {
     let record = Record::read(entry, &keys::UNCERTAIN, found)?;
-    let relative = record.require("relative", found)?;
-    Some((entry.name.clone(), found.push_error(relative.number())?))
+    let relative = record.required("relative", Entry::number, found)?;
+    Some((entry.name.clone(), relative))
+}
+
+/// Reads a table; its default if it is absent.
+fn read_or_default<T: Default>(
+    top: &Record<'_>,
+    name: &str,
+    found: &mut Diagnostics,
+    read: impl Fn(&Entry<'_>, &mut Diagnostics) -> Option<T>,
+) -> Option<T> {
+    match top.get(name) {
+        Some(entry) => read(entry, found),
+        None => Some(T::default()),
+    }
 }
 
 fn read_entries<T>(

@@ -8,11 +8,12 @@ use eomgen_model_spec::table::Entry;
 use super::keys;
 
 /// Table `[initial]`.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub enum InitialState {
     /// Initial values of the model, at rest.
     Rest,
     /// Unknown initial state.
+    #[default]
     Estimate,
     /// Values of states by name.
     Values(Vec<(Name, Number)>),
@@ -89,10 +90,8 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
 
 pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
     let record = Record::read(entry, &keys::WINDOWS, found)?;
-    let smoothed = match record.get("start") {
-        Some(start) => found.push_error(start.keyword(&[("fitted", false), ("smoothed", true)])),
-        None => Some(false),
-    };
+    let start = |entry: &Entry<'_>| entry.keyword(&[("fitted", false), ("smoothed", true)]);
+    let smoothed = record.optional("start", start, found);
     let length = record.require("length", found)?;
     let length = match length.written() {
         Ok(_) => found.push_error(length.keyword(&[("record", None)])),
@@ -107,6 +106,6 @@ pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option
     }
     Some(Windows {
         length,
-        is_smoothed: smoothed?,
+        is_smoothed: smoothed.unwrap_or_default(),
     })
 }

@@ -61,7 +61,7 @@ fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
         });
     }
     let record = Record::read(entry, &keys::STRETCH, found)?;
-    let file = record.require("file", found)?.written();
+    let file = record.required("file", Entry::written, found);
     let [from, to] = ["from", "to"].map(|key| record.number(key, found));
     if let (Some(from), Some(to)) = (from, to)
         && from.value >= to.value
@@ -76,7 +76,7 @@ fn read_stretch(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Stretch> {
         );
     }
     Some(Stretch {
-        file: found.push_error(file)?,
+        file: file?,
         from,
         to,
     })
