@@ -1,7 +1,5 @@
 //! Operating points given on the command line, initial states, and their JSON.
 
-use std::path::Path;
-
 use eomgen_compiled_model::{
     CompiledModel, Departure, Equilibrium, EquilibriumRequest, Error as Failure, Instance,
     OperatingPoint, Setting,
@@ -12,6 +10,7 @@ use eomgen_model_spec::unit::Unit;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
+use crate::arguments::{ModelFile, ParameterValues};
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
@@ -19,9 +18,9 @@ use crate::motion::note_moved;
 use crate::settings::{as_borrowed, split, with_settings};
 
 /// Loads a specification with parameters set and derives it.
-pub fn model(spec: &Path, order: Option<&str>, set: &[String]) -> Result<CompiledModel> {
-    let model = with_settings(load(spec)?.model, set)?;
-    let orders = orders(&model, order)?;
+pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledModel> {
+    let model = with_settings(load(&file.spec)?.model, &parameters.set)?;
+    let orders = orders(&model, file.order.text())?;
     derive(model, &orders)
 }
 

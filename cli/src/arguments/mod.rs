@@ -18,7 +18,7 @@ pub use motions::{Linearise, Modes, Simulate, Trim};
 pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};
 pub use records::{Compare, Dataset, Discover};
 pub use setup::{Completions, Man};
-pub use shared::Solver;
+pub use shared::{ModelFile, ParameterValues, Solver};
 
 /// Generates fast, checked equations of motion in Rust and C from the energies of a mechanical system.
 #[derive(Parser)]

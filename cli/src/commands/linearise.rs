@@ -15,11 +15,7 @@ pub fn run(options: &Linearise) -> Result {
         .as_deref()
         .map(|out| Destination::for_output(out, false));
     let destination = destination.transpose()?;
-    let compiled = model(
-        &options.model.spec,
-        options.model.order.text(),
-        &options.parameters.set,
-    )?;
+    let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;

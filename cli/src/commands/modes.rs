@@ -20,11 +20,7 @@ pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
     let drawing = drawing.map(|plot| Destination::for_figure(plot, None, options.output.json));
     let drawing = drawing.transpose()?;
-    let compiled = model(
-        &options.model.spec,
-        options.model.order.text(),
-        &options.parameters.set,
-    )?;
+    let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;

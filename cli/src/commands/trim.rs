@@ -10,11 +10,7 @@ use crate::settings::as_borrowed;
 use crate::significant::significant;
 
 pub fn run(options: &Trim) -> Result {
-    let compiled = model(
-        &options.model.spec,
-        options.model.order.text(),
-        &options.parameters.set,
-    )?;
+    let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let start = values(&run, "--state", &options.start.state)?;
     let fixed = values(&run, "--fix", &options.fix)?;
