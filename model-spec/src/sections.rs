@@ -87,7 +87,7 @@ pub(crate) static TERM: Keys = Keys::new(&[
 ])
 .or_value("expression");
 pub(crate) static DEFINITION: Keys = Keys::new(&[
-    Key::new("value", "scalar_or_vector", "\"l*sin(theta)\"", "expression, in any order without circles").required(),
+    Key::new("value", "scalar_or_vector", "\"l*sin(theta)\"", "expression; it must not refer to itself").required(),
     DOC,
     SOURCE,
 ])

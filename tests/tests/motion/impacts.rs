@@ -445,7 +445,10 @@ fn box_comes_to_rest_for_all_restitutions_and_widths() {
     let model = compile_example("dropped_box", Orders::Declared);
     let mut numbers = Numbers(0x1234_5678_9abc_def1);
     for _ in 0..60 {
-        let (b, e) = (0.25 + 0.2 * numbers.symmetric(), 0.35 + 0.3 * numbers.symmetric());
+        let (b, e) = (
+            0.25 + 0.2 * numbers.symmetric(),
+            0.35 + 0.3 * numbers.symmetric(),
+        );
         let motion = simulate_with(&model, &[("b", b), ("e", e)], &[0.0, 20.0]);
         let state = &motion.trajectory.states[1];
         // The box must lie flat on one of its sides.
