@@ -4,7 +4,6 @@
 //! such as `N/m s` are rejected.
 
 use num_rational::Ratio;
-use thiserror::Error;
 
 use crate::dimension::{Dimension, Exponent};
 use crate::scale::Scale;
@@ -21,8 +20,7 @@ pub struct Unit {
 }
 
 /// Error of [`Unit::parse`].
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{message}")]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
     /// The cause.
     pub message: String,
@@ -147,6 +145,14 @@ impl UnitError {
         Self::new(format!("the unit `{text}` is out of range"), None)
     }
 }
+
+impl std::fmt::Display for UnitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for UnitError {}
 
 type Parsed = (Dimension, Scale);
 

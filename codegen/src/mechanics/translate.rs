@@ -8,7 +8,6 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::ids::{ConstraintId, DefinitionId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
-use thiserror::Error;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;
@@ -20,8 +19,7 @@ use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 
 /// Cause and place of a failed derivation.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{message}")]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
     /// Place of the cause in the specification.
     pub span: Span,
@@ -30,6 +28,14 @@ pub struct DeriveError {
     /// Cure, if known.
     pub help: Option<String>,
 }
+
+impl std::fmt::Display for DeriveError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for DeriveError {}
 
 impl DeriveError {
     /// Returns the error as a diagnostic on the model's source.

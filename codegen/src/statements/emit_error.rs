@@ -1,13 +1,10 @@
 //! Errors of the emission of a program.
 
-use thiserror::Error;
-
 use crate::program::ValueId;
 
 /// Reason why a program cannot be emitted.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EmitError {
-    #[error("`{name}` is not a valid {language} identifier: rename it in the specification")]
     /// Name that is not an identifier in the language of the emitted source.
     Name {
         /// The name.
@@ -15,7 +12,6 @@ pub enum EmitError {
         /// The language.
         language: &'static str,
     },
-    #[error("the program cannot be emitted: {0}")]
     /// Value without source in its stage: a defect of the generator.
     Value(String),
 }
@@ -26,5 +22,21 @@ impl EmitError {
         Self::Value(format!("value {} {kind}", id.index()))
     }
 }
+
+impl std::fmt::Display for EmitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Name { name, language } => write!(
+                f,
+                "`{name}` is not a valid {language} identifier: rename it in the specification"
+            ),
+            Self::Value(message) => {
+                write!(f, "the program cannot be emitted: {message}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for EmitError {}
 
 pub(crate) type EmitResult<T> = Result<T, EmitError>;

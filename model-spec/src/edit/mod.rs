@@ -7,7 +7,6 @@ mod prescribe;
 mod set;
 mod substitute;
 
-use thiserror::Error;
 use toml_edit::DocumentMut;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
@@ -211,12 +210,10 @@ pub struct Substitution {
 }
 
 /// Error of an edit.
-#[derive(Clone, Debug, Error)]
+#[derive(Clone, Debug)]
 pub enum EditError {
-    #[error("{0}")]
     /// The text is not TOML, or the edited text is not a valid specification.
     Invalid(Diagnostics),
-    #[error("[{section}] already contains {}", quote(name))]
     /// The section has an entry of this name.
     NameTaken {
         /// Section.
@@ -224,7 +221,6 @@ pub enum EditError {
         /// Name.
         name: String,
     },
-    #[error("[{section}] does not contain {}", quote(name))]
     /// The section has no entry of this name.
     MissingTerm {
         /// Section.
@@ -232,7 +228,6 @@ pub enum EditError {
         /// Name.
         name: String,
     },
-    #[error("{} in [{section}] does not contain {}", quote(name), quote(find))]
     /// The term does not contain the expression to be replaced.
     MissingExpression {
         /// Section of the term.
@@ -242,7 +237,6 @@ pub enum EditError {
         /// Expression that was not found.
         find: String,
     },
-    #[error("{}: {}", quote(text), diagnostic.summary())]
     /// An expression of the edit or of the term has a syntax error.
     Expression {
         /// Expression.
@@ -250,13 +244,46 @@ pub enum EditError {
         /// Finding, with positions as bytes of the expression.
         diagnostic: Box<Diagnostic>,
     },
-    #[error("the value of {} is not finite", quote(name))]
     /// A value of the edit is not a finite number.
     NotFinite {
         /// Name of the entry.
         name: String,
     },
 }
+
+impl std::fmt::Display for EditError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Invalid(diagnostics) => write!(f, "{diagnostics}"),
+            Self::NameTaken { section, name } => {
+                write!(f, "[{section}] already contains {}", quote(name))
+            }
+            Self::MissingTerm { section, name } => {
+                write!(f, "[{section}] does not contain {}", quote(name))
+            }
+            Self::MissingExpression {
+                section,
+                name,
+                find,
+            } => write!(
+                f,
+                "{} in [{section}] does not contain {}",
+                quote(name),
+                quote(find)
+            ),
+            Self::Expression { text, diagnostic } => {
+                write!(f, "{}: {}", quote(text), diagnostic.message)?;
+                match &diagnostic.help {
+                    Some(help) => write!(f, " ({help})"),
+                    None => Ok(()),
+                }
+            }
+            Self::NotFinite { name } => write!(f, "the value of {} is not finite", quote(name)),
+        }
+    }
+}
+
+impl std::error::Error for EditError {}
 
 /// Returns the text of a specification after all edits, in order. The result passes
 /// [`crate::check`].

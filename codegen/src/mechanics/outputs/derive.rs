@@ -19,7 +19,6 @@ use crate::symbolic::differentiate::Direction;
 use crate::symbolic::factor::factor_if_cheaper;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
-use thiserror::Error;
 
 /// Name of the column of derivatives along a direction: rates without those of the coordinates, then observables.
 pub const TANGENTS: &str = "tangents";
@@ -86,10 +85,7 @@ pub fn derive_outputs(
 
 /// Sum over modes that weights the square of each mode shape by a function of the state. Its Jacobian is not
 /// implemented.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error(
-    "no Jacobian: a sum over modes weights the square of each mode shape by a function of the state"
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingDiagonal {
     /// Index of the term in [`Equations::terms`]; `None` if the sum is in no term.
     pub term: Option<usize>,
@@ -103,6 +99,16 @@ impl MovingDiagonal {
         }
     }
 }
+
+impl std::fmt::Display for MovingDiagonal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(
+            "no Jacobian: a sum over modes weights the square of each mode shape by a function of the state",
+        )
+    }
+}
+
+impl std::error::Error for MovingDiagonal {}
 
 fn bias_forces(equations: &mut Equations) -> RowNodes {
     let graph = &mut equations.graph;

@@ -1,7 +1,5 @@
 //! Outputs that can be requested in addition to rates, observables, energy, power, guards and mass matrix.
 
-use thiserror::Error;
-
 /// Function that is derived and emitted on request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
@@ -70,12 +68,20 @@ impl Output {
 }
 
 /// Error for a name that is not an output.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("unknown output `{name}`; use one of {}", Output::names())]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownOutput {
     /// Name in the request.
     pub name: String,
 }
+
+impl std::fmt::Display for UnknownOutput {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names = Output::names();
+        write!(f, "unknown output `{}`; use one of {names}", self.name)
+    }
+}
+
+impl std::error::Error for UnknownOutput {}
 
 impl std::str::FromStr for Output {
     type Err = UnknownOutput;
