@@ -2,16 +2,23 @@
 
 use std::collections::HashMap;
 
+use eomgen_model_spec::model::Function;
+
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
-/// Returns true if the structure of a node is a homogeneous quadratic form of the rates.
+/// Returns true if the structure of a node is homogeneous of degree 2 in the rates, so that q' dT/dq' = 2 T.
 pub fn is_quadratic_in_rates(graph: &Graph, id: NodeId) -> bool {
     graph.is_zero(id) || degree(graph, id, &mut HashMap::new()) == Some(2)
 }
 
-/// Returns the degree of a homogeneous polynomial of the rates; `None` for another or unrecognised structure.
+/// Returns true if a node depends on the rates.
+fn moves(graph: &Graph, id: NodeId) -> bool {
+    graph.dependence(id).has(Dependence::RATE)
+}
+
+/// Returns the degree of a homogeneous function of the rates; `None` for another or unrecognised structure.
 fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -> Option<i32> {
-    if !graph.dependence(id).has(Dependence::RATE) {
+    if !moves(graph, id) {
         return Some(0);
     }
     if let Some(&result) = known.get(&id) {
@@ -34,6 +41,25 @@ fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -
             .sum(),
         Operation::Total(a) => degree(graph, *a, known),
         Operation::Apply { vector, .. } => degree(graph, *vector, known),
+        Operation::Call(Function::Sqrt, arguments) => degree(graph, arguments[0], known)
+            .filter(|degree| degree % 2 == 0)
+            .map(|degree| degree / 2),
+        Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } if !moves(graph, *a) && !moves(graph, *b) => {
+            let branches = [*then, *otherwise];
+            let mut degrees = branches
+                .into_iter()
+                .filter(|branch| !graph.is_zero(*branch));
+            let first = degree(graph, degrees.next()?, known);
+            match degrees.next() {
+                Some(other) if degree(graph, other, known) != first => None,
+                _ => first,
+            }
+        }
         _ => None,
     };
     known.insert(id, result);

@@ -293,9 +293,14 @@ impl Graph {
     }
 
     /// Returns a function of scalars or vectors. Laws: exact values of simple numbers are computed; odd
-    /// functions move a minus sign out, even ones drop it.
+    /// functions move a minus sign out, even ones drop it; min(a, a) = max(a, a) = a.
     pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<NodeId>>) -> NodeId {
         let arguments = arguments.into();
+        if let (Function::Min | Function::Max, [a, b]) = (function, &arguments[..])
+            && a == b
+        {
+            return *a;
+        }
         if let Arguments::One([a]) = arguments {
             if let Some(value) = self.as_constant(a).and_then(|x| exact_value(function, x)) {
                 return self.constant(value);

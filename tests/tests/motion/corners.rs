@@ -307,6 +307,8 @@ fn continuous_energies_have_no_corners() {
         "max(x, 0)*n",
         "abs(x)*n",
         "above(x)*x*n",
+        "above(x)*max(x, 0)*n",
+        "above(x/l)*sqrt(max(x/l, 0))*n*l",
         "above(x)*sin(x/l)*n*l",
         "above(t - t_1)*x*n",
     ] {

@@ -1,6 +1,7 @@
 //! Reading specifications: grammar, units, ranges, every feature of the language.
 
 mod broken_specs;
+mod clipped_models;
 mod features;
 mod latex;
 mod ranges;

@@ -29,7 +29,7 @@ pub(super) struct Affine {
 const MAX_CANCELLATION_RATIO: f64 = 1e-14;
 
 impl Affine {
-    fn constant(constant: f64) -> Self {
+    pub fn constant(constant: f64) -> Self {
         Self {
             constant,
             terms: Vec::new(),

@@ -202,6 +202,9 @@ fn side_rows(forms: &mut AffineForms<'_>, switch: &Switch, side: Side) -> Vec<(A
                 )
             })
             .into(),
+        (Side::Free, None) if forms.is_nonzero_almost_everywhere(switch.quantity()) => {
+            vec![(Affine::constant(-1.0), Relation::NotNegative)]
+        }
         // It is unknown if an atom is at rest at 0.
         (Side::Free, None) if quantity.has_atoms() => Vec::new(),
         // The quantity is at rest at 0, so neither sign is possible.

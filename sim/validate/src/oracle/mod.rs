@@ -39,6 +39,7 @@ mod functions;
 mod integrals;
 mod legendre;
 mod lower;
+mod nonzero;
 mod observables;
 mod places;
 mod ranges;
