@@ -286,7 +286,7 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, point.t, &point.y);
+        let watched = WatchedSystem::new(&Growth, (point.t, &point.y), 0.0);
         for _ in 0..steps {
             point = make_step(&watched, &point, 4.0 / f64::from(steps)).expect("a step");
         }
@@ -306,7 +306,7 @@ mod tests {
                 t: 0.0,
                 y: vec![1.0],
             };
-            let watched = WatchedSystem::new(&Growth, start.t, &start.y);
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
             let mut stepper = DormandPrince853::new(
                 start.clone(),
                 length,
@@ -333,7 +333,7 @@ mod tests {
                 t: 0.0,
                 y: vec![10.0_f64.powi(exponent)],
             };
-            let watched = WatchedSystem::new(&Growth, start.t, &start.y);
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
             let point = make_step(&watched, &start, 3.0);
             assert!(point.is_some(), "from {:e}: {point:?}", start.y[0]);
         }
@@ -345,7 +345,7 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, start.t, &start.y);
+        let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
         let mut stepper =
             DormandPrince853::new(start.clone(), 3.0, Magnitudes::new(&start.y, &[1.0], 1e-10));
         let outcome = stepper.advance(&watched, 10.0).expect("a trial");
@@ -365,7 +365,7 @@ mod tests {
             t: 0.1,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, start.t, &start.y);
+        let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
         let mut stepper =
             DormandPrince853::new(start.clone(), 0.5, Magnitudes::new(&start.y, &[1.0], 1e-3));
         let outcome = stepper.advance(&watched, 0.3).expect("a step");

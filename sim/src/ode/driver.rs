@@ -91,7 +91,7 @@ fn run<M: Stepper>(
         t: span.0,
         y: initial.to_vec(),
     };
-    let watched = WatchedSystem::new(system, start.t, &start.y);
+    let watched = WatchedSystem::new(system, (start.t, &start.y), settings.tolerance);
     watched.fix_sides(true);
     let step = FIRST_STEP * (span.1 - span.0);
     let magnitudes = Magnitudes::new(&start.y, &system.typical_sizes(), settings.tolerance);

@@ -30,6 +30,7 @@ mod error;
 mod event_search;
 mod events;
 mod examination;
+mod flutter;
 mod grazing;
 mod history;
 mod limits;

@@ -23,11 +23,17 @@ pub struct WatchedSystem<'a, S: System + ?Sized> {
     evaluations: Cell<u64>,
     /// True while rates are evaluated on the side of each state.
     has_released_sides: Cell<bool>,
+    /// The last side of every surface that was not 0.
+    last_sides: RefCell<Regime>,
+    /// Surfaces at which the rates are continuous, so that their side is 0 within the tolerance.
+    continuous: RefCell<Vec<usize>>,
+    /// Relative tolerance of the states.
+    tolerance: f64,
 }
 
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Wraps `system` for a simulation from time `t` and state `y`.
-    pub fn new(system: &'a S, t: f64, y: &[f64]) -> Self {
+    pub fn new(system: &'a S, (t, y): (f64, &[f64]), tolerance: f64) -> Self {
         let watched = Self {
             system,
             regime: RefCell::new(vec![0.0; system.guard_count()]),
@@ -36,6 +42,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             indefinite: Cell::new(None),
             evaluations: Cell::new(0),
             has_released_sides: Cell::new(true),
+            last_sides: RefCell::new(vec![0.0; system.guard_count()]),
+            continuous: RefCell::default(),
+            tolerance,
         };
         watched.enter_regime(t, y);
         watched
@@ -186,10 +195,29 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
         let mut regime = self.regime.borrow_mut();
-        let sides = regime.iter_mut().zip(guards);
-        for (side, guard) in sides.filter(|(_, guard)| guard.abs() > 0.0) {
+        let mut last = self.last_sides.borrow_mut();
+        let sides = regime.iter_mut().zip(guards).enumerate();
+        for (index, (side, guard)) in sides.filter(|(_, (_, guard))| guard.abs() > 0.0) {
+            let is_continuous = self.continuous.borrow().contains(&index);
+            if is_continuous && self.is_at_surface((index, guard), (t, y), self.tolerance) {
+                *side = 0.0;
+                continue;
+            }
+            last[index] = guard.signum();
             *side = guard.signum();
         }
+    }
+
+    /// Lets steps pass the surface `guard` where they come near it, if the rates are continuous there. Returns true
+    /// if it is a new one.
+    pub fn release_if_continuous(&self, guard: usize, t: f64, y: &[f64]) -> bool {
+        let is_new = !self.continuous.borrow().contains(&guard)
+            && self.has_continuous_rates(guard, (t, y), self.tolerance);
+        if is_new {
+            self.continuous.borrow_mut().push(guard);
+            self.enter_regime(t, y);
+        }
+        is_new
     }
 
     /// Applies the jumps of an event between a point just before a surface and one just beyond it.
@@ -241,8 +269,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Writes the modes of the surfaces in the present regime.
     pub fn write_modes(&self, modes: &mut Vec<SurfaceMode>) {
         modes.clear();
-        let regime = self.regime.borrow();
-        modes.extend(regime.iter().map(|side| SurfaceMode::from_side(*side)));
+        let sides = self.last_sides.borrow();
+        modes.extend(sides.iter().map(|side| SurfaceMode::from_side(*side)));
         self.system.write_modes(modes);
     }
 

@@ -1,5 +1,6 @@
 //! Motions against closed forms, published figures, reference trajectories and other solvers.
 
+mod chambers;
 mod constraints;
 mod contact_friction;
 mod corners;
