@@ -127,15 +127,13 @@ fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(
 }
 
 /// Lowers `equations` of a model with the sides of switching surfaces as inputs, after those of the model; see
-/// [`sliding`](crate::mechanics::sliding). Without `may_hold` no surface holds the motion. Returns `None` if there are no
-/// surfaces.
+/// [`sliding`](crate::mechanics::sliding). Returns `None` if there are no surfaces.
 ///
 /// # Errors
 /// Parameter values that are not admissible.
 pub fn lower_with_sides(
     model: &Model,
     equations: &Equations,
-    may_hold: bool,
 ) -> Result<Option<Program>, Diagnostics> {
     let values = model
         .parameter_values()
@@ -145,10 +143,9 @@ pub fn lower_with_sides(
         let inputs = add_side_inputs(&mut equations, may_hold)?;
         Some((equations, inputs))
     };
-    let holds = may_hold && can_hold_motion(equations);
-    let found = holds.then(|| with_sides(true)).flatten();
-    let Some((equations, SideInputs { others, sliding })) = found.or_else(|| with_sides(false))
-    else {
+    let found = can_hold_motion(equations).then(|| with_sides(true));
+    let found = found.flatten().or_else(|| with_sides(false));
+    let Some((equations, SideInputs { others, sliding })) = found else {
         return Ok(None);
     };
     let count = others.len() + sliding.len();

@@ -269,6 +269,7 @@ fn rows(of: &DVector<f64>, rows: &Range<usize>) -> DVector<f64> {
 mod tests {
     use super::*;
     use crate::random_numbers::Numbers;
+    use crate::sliding_modes::Sharing;
 
     /// Returns the rates of discs in two or three directions and of scalar frictions on bodies with a common mass
     /// matrix, and their arrivals.
@@ -299,6 +300,7 @@ mod tests {
         let rates = Rates {
             w: -(&j * j.transpose() * DMatrix::from_diagonal(&levels)),
             c: &j * load,
+            sharing: Sharing::LeastMaximum,
         };
         let arrival = Arrival {
             side: 1.0,
@@ -358,7 +360,16 @@ mod tests {
                 along: vec![1.0, 0.0],
                 exceeds_limit: false,
             };
-            let (_, found) = decide_with_discs(&Rates { w, c }, &[], &[disc]).unwrap();
+            let (_, found) = decide_with_discs(
+                &Rates {
+                    w,
+                    c,
+                    sharing: Sharing::LeastMaximum,
+                },
+                &[],
+                &[disc],
+            )
+            .unwrap();
             let holds = matches!(found[0], DiscVerdict::Holds(_));
             assert_eq!(holds, load < 1.0);
             let s = found[0].vector();

@@ -51,6 +51,15 @@ pub struct Arrival {
     pub exceeds_limit: bool,
 }
 
+/// Values of surfaces that hold the motion together and depend on each other, so that many values hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sharing {
+    /// The least largest magnitude: all surfaces hold as long as they can.
+    LeastMaximum,
+    /// The least sum of squares, which is linear in the rates. A surface can reach its limit before others do.
+    LeastSquares,
+}
+
 /// Rates of the switching functions on their surfaces, g' = c + W s, with s instead of their
 /// signs.
 pub struct Rates {
@@ -58,6 +67,8 @@ pub struct Rates {
     pub w: DMatrix<f64>,
     /// Vector c, in the same units.
     pub c: DVector<f64>,
+    /// Choice among values that hold.
+    pub sharing: Sharing,
 }
 
 /// Decides the effect of each surface on a motion with these arrivals. Returns `None` if no
@@ -97,15 +108,18 @@ impl Rates {
         self.w[(i, i)] < 0.0
     }
 
-    /// Returns the values that replace the signs: the given sides, and for the other surfaces the
-    /// smallest values that hold.
+    /// Returns the values that replace the signs: the given sides, and for the other surfaces values that hold.
     fn solve_signs(&self, sides: &[Option<f64>]) -> DVector<f64> {
         let mut s = DVector::from_iterator(sides.len(), sides.iter().map(|s| s.unwrap_or(0.0)));
         let held = held_surfaces(sides);
         let free = &self.c + &self.w * &s;
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -free[*i]));
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
-        for (i, value) in held.iter().zip(&solve_least_squares(w, right)) {
+        let mut values = solve_least_squares(w.clone(), right);
+        if self.sharing == Sharing::LeastMaximum {
+            reduce_largest(&w, values.as_mut_slice());
+        }
+        for (i, value) in held.iter().zip(&values) {
             s[*i] = *value;
         }
         s
@@ -202,6 +216,70 @@ pub fn solve_least_squares(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
         .unwrap_or_else(|_| zero())
 }
 
+/// Largest number of passes over the directions in which values may change.
+const MAX_PASSES: usize = 20;
+
+/// Reduces the largest magnitude of the values s where W s stays the same: surfaces that depend on each other share their
+/// forces, and all of them hold as long as they can.
+pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
+    if s.len() <= 1 {
+        return;
+    }
+    let Some(v) = qr_iteration::svd(w) else {
+        return;
+    };
+    let most = v.singular_values.max();
+    let Some(rows) = v.v_t else { return };
+    let null = v.singular_values.iter().enumerate();
+    let null = null.filter(|(_, value)| **value <= MIN_SINGULAR_VALUE_FRACTION * most);
+    let directions: Vec<Vec<f64>> = null
+        .map(|(row, _)| rows.row(row).iter().copied().collect())
+        .collect();
+    for _ in 0..MAX_PASSES {
+        let before = largest_after(s, s, 0.0);
+        for direction in &directions {
+            let step = find_best_step(s, direction);
+            let entries = s.iter_mut().zip(direction);
+            entries.for_each(|(entry, part)| *entry += step * part);
+        }
+        if directions.len() <= 1 || largest_after(s, s, 0.0) > before * (1.0 - 1e-3) {
+            return;
+        }
+    }
+}
+
+/// Returns the largest magnitude of `values` after a step along a direction.
+fn largest_after(values: &[f64], direction: &[f64], step: f64) -> f64 {
+    let entries = values.iter().zip(direction);
+    entries.fold(0.0, |most, (value, part)| {
+        most.max((value + step * part).abs())
+    })
+}
+
+/// Returns the step along a direction after which the largest magnitude of `values` is least: two magnitudes are equal
+/// there.
+fn find_best_step(values: &[f64], direction: &[f64]) -> f64 {
+    let mut best = (0.0, largest_after(values, direction, 0.0));
+    for (i, a) in direction.iter().enumerate() {
+        for (j, b) in direction.iter().enumerate().skip(i) {
+            let sums = [
+                (values[i] + values[j], a + b),
+                (values[i] - values[j], a - b),
+            ];
+            for (value, slope) in sums {
+                let step = -value / slope;
+                if step.is_finite() {
+                    let largest = largest_after(values, direction, step);
+                    if largest < best.1 {
+                        best = (step, largest);
+                    }
+                }
+            }
+        }
+    }
+    best.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,6 +299,7 @@ mod tests {
         Rates {
             w: -(&j * j.transpose() * DMatrix::from_diagonal(&levels)),
             c: &j * load,
+            sharing: Sharing::LeastMaximum,
         }
     }
 
@@ -249,6 +328,7 @@ mod tests {
         let rates = |load: f64| Rates {
             w: DMatrix::from_row_slice(2, 2, &[-1.0, -2.0, -1.0, -2.0]),
             c: DVector::from_element(2, load),
+            sharing: Sharing::LeastMaximum,
         };
         for load in [0.5, 1.7, 2.9, 2.999] {
             let found = decide(&rates(load), &[UP, UP]).expect("an answer");
@@ -266,6 +346,7 @@ mod tests {
         let rates = Rates {
             w: DMatrix::from_element(1, 1, 2.0),
             c: DVector::from_element(1, 0.5),
+            sharing: Sharing::LeastMaximum,
         };
         for side in [1.0, -1.0] {
             let found = decide(&rates, &[Arrival { side, ..UP }]).expect("an answer");

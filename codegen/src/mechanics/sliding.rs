@@ -266,6 +266,11 @@ fn roots(equations: &Equations) -> Vec<NodeId> {
     roots.extend(equations.forces.nodes());
     roots.extend(&equations.observables);
     roots.push(equations.power);
+    let impacts = equations.impacts.iter();
+    roots.extend(impacts.flat_map(|impact| {
+        let friction = impact.friction.iter().map(|friction| friction.acceleration);
+        std::iter::once(impact.acceleration).chain(friction)
+    }));
     roots
 }
 
@@ -278,6 +283,12 @@ fn replace(equations: &mut Equations, known: &mut HashMap<NodeId, NodeId>) {
     let nodes = nodes.chain(forces.scalars.iter_mut().chain(&mut forces.modal));
     let nodes = nodes.chain(&mut equations.state_rates);
     let nodes = nodes.chain(&mut equations.observables);
+    let accelerations = equations.impacts.iter_mut().flat_map(|impact| {
+        let friction = impact.friction.iter_mut();
+        let along = friction.map(|friction| &mut friction.acceleration);
+        std::iter::once(&mut impact.acceleration).chain(along)
+    });
+    let nodes = nodes.chain(accelerations);
     for node in nodes.chain(std::iter::once(&mut equations.power)) {
         *node = substitute(graph, *node, &|_, _| None, known);
     }

@@ -80,8 +80,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         }
         let mut found = EnergyAndPower::from_observables(&observables);
         if let Some(contacts) = &self.contacts {
-            found.power += self.evaluate_at(t, state, |evaluator, point| {
-                contacts.borrow_mut().power(evaluator, point)
+            found.power += self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.power(own, Point { t, state, inputs })
             });
         }
         found
@@ -114,7 +114,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     /// surfaces, and these hold the motion, as under dry friction. The system keeps their state, so use it for one
     /// motion only.
     pub fn with_sides(mut self, sided: Option<SidedModel>) -> Self {
-        self.sliding = sided.map(|sided| RefCell::new(SurfaceStates::new(sided)));
+        let contact_guards = self.contacts.as_ref();
+        let contact_guards = contact_guards.map_or(0, |contacts| contacts.borrow().guard_count());
+        self.sliding = sided.map(|sided| {
+            let mut states = SurfaceStates::new(sided);
+            states.skip_contact_guards(contact_guards);
+            RefCell::new(states)
+        });
         self
     }
 
@@ -177,13 +183,56 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 
     fn has_closed_contacts(&self) -> bool {
         let contacts = self.contacts.as_ref();
-        contacts.is_some_and(|contacts| contacts.borrow().has_closed())
+        contacts.is_some_and(|contacts| !contacts.borrow().closed().is_empty())
+    }
+
+    /// Sets the closed contacts beside the surfaces. Returns true if they changed.
+    fn update_closed_contacts(&self) -> bool {
+        let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
+            return false;
+        };
+        let (contacts, mut sliding) = (contacts.borrow(), sliding.borrow_mut());
+        let closed = contacts.closed();
+        let is_known = !contacts.has_friction() && sliding.disc_count() == 0;
+        sliding.set_closed_contacts((is_known || closed.is_empty()).then_some(closed))
+    }
+
+    /// Decides the effect of the surfaces anew if the closed contacts changed.
+    fn follow_contacts(&self, at: (f64, &[f64]), inputs: &[f64]) {
+        if self.update_closed_contacts()
+            && let Some(sliding) = &self.sliding
+        {
+            sliding.borrow_mut().decide_again(at, inputs);
+        }
+    }
+
+    /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
+    fn with_contacts<T>(
+        &self,
+        contacts: &RefCell<Contacts>,
+        (t, state): (f64, &[f64]),
+        act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
+    ) -> T {
+        let inputs = &self.inputs.borrow().evaluate(t);
+        let sliding = self.surface_states();
+        let contacts = &mut contacts.borrow_mut();
+        let Some(sliding) = sliding else {
+            return act(contacts, &mut self.evaluator(), inputs);
+        };
+        let mut sliding = sliding.borrow_mut();
+        let (evaluator, inputs) = sliding.evaluator_with_sides((t, state), inputs);
+        act(contacts, evaluator, inputs)
     }
 
     /// Returns the states of the surfaces if they determine rates and observables: while sides are fixed or surfaces hold
-    /// the motion. The forces of closed contacts are those of the side of the state.
+    /// the motion. Forces of closed contacts with friction are those of the side of the state.
     fn surface_states(&self) -> Option<&RefCell<SurfaceStates>> {
-        let decides = self.is_sticking_active() && !self.has_closed_contacts();
+        let contacts = self.contacts.as_ref();
+        let has_unknown = contacts.is_some_and(|contacts| {
+            let contacts = contacts.borrow();
+            contacts.has_friction() && !contacts.closed().is_empty()
+        });
+        let decides = self.is_sticking_active() && !has_unknown;
         self.sliding.as_ref().filter(|_| decides)
     }
 
@@ -285,9 +334,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             None => self.evaluator().rates(point, out),
         }
         if let Some(contacts) = &self.contacts {
-            contacts
-                .borrow_mut()
-                .add_to_rates(&mut self.evaluator(), point, out);
+            self.with_contacts(contacts, (t, y), |contacts, own, inputs| {
+                let point = Point {
+                    t,
+                    state: y,
+                    inputs,
+                };
+                contacts.add_to_rates(own, point, out);
+            });
         }
     }
 
@@ -333,13 +387,21 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let own = self.evaluator().guard_count();
         self.evaluate_at(t, y, |evaluator, point| {
-            let (own, more) = out.split_at_mut(evaluator.guard_count());
-            evaluator.guards(point, own);
-            if let Some(contacts) = &self.contacts {
-                contacts.borrow_mut().write_guards(evaluator, point, more);
-            }
+            evaluator.guards(point, &mut out[..own]);
         });
+        if let Some(contacts) = &self.contacts {
+            self.with_contacts(contacts, (t, y), |contacts, evaluator, inputs| {
+                let point = Point {
+                    t,
+                    state: y,
+                    inputs,
+                };
+                contacts.write_guards(evaluator, point, &mut out[own..]);
+            });
+            self.update_closed_contacts();
+        }
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().write_guards((t, y), inputs, out);
@@ -393,15 +455,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             return 0;
         }
         let inputs = &self.inputs.borrow().evaluate(t);
-        let (at, mut evaluations) = ((t, &inputs[..]), 0);
+        let mut evaluations = 0;
         if let Some(projection) = &self.projection {
             let given = self.inputs.borrow();
             evaluations += projection.correct_after_step(&mut self.evaluator(), t, given, y);
         }
         if let Some(contacts) = &self.contacts {
-            evaluations += contacts
-                .borrow_mut()
-                .correct_state(&mut self.evaluator(), at, y);
+            let arrived = y.to_vec();
+            evaluations += self.with_contacts(contacts, (t, &arrived), |contacts, own, inputs| {
+                contacts.correct_state(own, (t, inputs), y)
+            });
+            self.follow_contacts((t, y), inputs);
         }
         if let Some(sliding) = &self.sliding {
             evaluations += sliding.borrow_mut().correct_state(t, inputs, y);
@@ -409,31 +473,32 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         evaluations
     }
 
-    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
+        let mut jumps = false;
         if let Some(contacts) = &self.contacts {
-            let arrived = self.auditor.as_ref().map(|_| y.to_vec());
-            let inputs = &self.inputs.borrow().evaluate(t);
-            contacts
-                .borrow_mut()
-                .apply_impact(&mut self.evaluator(), inputs, before, t, y);
+            let arrived = y.to_vec();
+            self.with_contacts(contacts, before, |contacts, own, inputs| {
+                contacts.apply_impact(own, inputs, before, t, y);
+            });
             let work = contacts.borrow().impact_work();
-            if let (Some(auditor), Some(arrived)) = (&self.auditor, arrived)
-                && arrived != y
-            {
+            jumps = arrived != y;
+            if let Some(auditor) = self.auditor.as_ref().filter(|_| jumps) {
                 let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
                 let states = (&arrived[..], &*y);
                 auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
         }
-        let has_corner = self.apply_corner(before, t, y);
+        jumps |= self.apply_corner(before, t, y);
+        let has_changed = self.update_closed_contacts();
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
-            match has_corner {
+            match jumps || has_changed {
                 // Rates that jump over a surface do not arrive on it.
-                true => sliding.borrow_mut().release_moved((t, y), inputs),
+                true => sliding.borrow_mut().decide_again((t, y), inputs),
                 false => sliding.borrow_mut().apply_crossing(inputs, before, t, y),
             }
         }
+        jumps
     }
 
     fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
@@ -473,6 +538,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             self.evaluate_at(t, y, |evaluator, point| {
                 contacts.borrow_mut().update_friction(evaluator, point);
             });
+            self.follow_contacts((t, y), &given.evaluate(t));
         }
         if let Some(sliding) = &self.sliding {
             let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));

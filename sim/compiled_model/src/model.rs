@@ -260,8 +260,7 @@ impl CompiledModel {
     }
 
     /// Returns the model in which the sides of switching surfaces are inputs, at these values of
-    /// the independent parameters, SI. `None` if there are no surfaces. With impacts no surface holds the
-    /// motion.
+    /// the independent parameters, SI. `None` if there are no surfaces.
     ///
     /// # Errors
     /// Parameter values that are not admissible.
@@ -283,10 +282,9 @@ impl CompiledModel {
     }
 
     fn sided_program(&self) -> Result<Option<&Program>, Error> {
-        let made = self.sided.get_or_init(|| {
-            let may_hold = self.model.impacts.is_empty();
-            lower_with_sides(&self.model, &self.equations, may_hold)
-        });
+        let made = self
+            .sided
+            .get_or_init(|| lower_with_sides(&self.model, &self.equations));
         let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
         Ok(made.as_ref())
     }

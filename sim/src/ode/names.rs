@@ -28,7 +28,7 @@ pub enum UnsupportedSticking {
     Formula,
     /// The Adams method needs the preceding steps.
     Adams,
-    /// The model has impacts.
+    /// A contact is closed.
     Impacts,
 }
 
@@ -67,7 +67,7 @@ impl Names<'_> {
             Some(SurfaceKind::Speed) => {
                 let (reason, cure) = match self.unsupported_sticking {
                     UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
-                    UnsupportedSticking::Impacts => ("for a model with impacts", ""),
+                    UnsupportedSticking::Impacts => ("while a contact is closed", ""),
                     UnsupportedSticking::Formula => {
                         ("for a speed with piecewise functions or an exponent", "")
                     }

@@ -67,9 +67,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     fn apply_event(&mut self, start: &Point, point: &mut Point) {
         let arrived = self.crossed_guards(point);
         let before = point.y.clone();
-        self.watched
-            .apply_event((start.t, &start.y), point.t, &mut point.y);
-        self.record_jump(point.t, &before, &point.y);
+        let start = (start.t, &start.y[..]);
+        if self.watched.apply_event(start, point.t, &mut point.y) {
+            self.record_jump(point.t, &before, &point.y);
+        }
         let beyond = self.crossed_guards(point);
         self.rebounds = arrived;
         self.rebounds.retain(|guard| !beyond.contains(guard));

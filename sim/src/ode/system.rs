@@ -87,8 +87,10 @@ pub trait System {
     }
 
     /// Changes `y` after an event: `before` (time and state) is on the near side of the switching
-    /// surface, `t` and `y` are just beyond it. Impacts and tangent vectors jump here.
-    fn apply_event(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
+    /// surface, `t` and `y` are just beyond it. Impacts and tangent vectors jump here. Returns true if states jump.
+    fn apply_event(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) -> bool {
+        false
+    }
 
     /// Changes `y` at a breakpoint `t`, where inputs jump. Returns true if it did.
     fn apply_breakpoint(&self, _t: f64, _y: &mut [f64]) -> bool {
@@ -166,8 +168,8 @@ impl<S: System + ?Sized> System for &S {
         (**self).next_breakpoint(t)
     }
 
-    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
-        (**self).apply_event(before, t, y);
+    fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
+        (**self).apply_event(before, t, y)
     }
 
     fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {

@@ -221,8 +221,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Applies the jumps of an event between a point just before a surface and one just beyond it.
-    pub fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
-        self.system.apply_event(before, t, y);
+    pub fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
+        self.system.apply_event(before, t, y)
     }
 
     /// Applies the jumps of inputs at `t`; see [`System::apply_breakpoint`]. Returns true if there

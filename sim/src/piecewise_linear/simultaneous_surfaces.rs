@@ -13,7 +13,7 @@ use super::event_function::Linear;
 use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::transition::Limit;
-use crate::sliding_modes::{Arrival, Rates, Verdict, decide, solve_least_squares};
+use crate::sliding_modes::{Arrival, Rates, Sharing, Verdict, decide, solve_least_squares};
 
 /// Largest residual of a function that follows from others, and of its threshold, relative.
 const DEPENDENCE_TOLERANCE: f64 = 1e-10;
@@ -217,7 +217,8 @@ impl Propagator {
             let function = functions(met[i].family);
             function.state.dot(&middle) + self.explicit_rate(function, standing.phases)
         });
-        Some(Rates { w, c })
+        let sharing = Sharing::LeastSquares;
+        Some(Rates { w, c, sharing })
     }
 }
 

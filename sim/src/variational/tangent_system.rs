@@ -114,7 +114,7 @@ impl System for TangentSystem<'_> {
         self.system.fix_sides(sides);
     }
 
-    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
+    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let states = self.system.state_count();
         let (start, (y, v)) = (&start[..states], y.split_at_mut(states));
         // The start of the step can be on the surface up to the last bit, with the rates of either
@@ -146,6 +146,6 @@ impl System for TangentSystem<'_> {
                 None => self.together.set(Some(t)),
             }
         }
-        self.system.apply_event((before, start), t, y);
+        self.system.apply_event((before, start), t, y)
     }
 }

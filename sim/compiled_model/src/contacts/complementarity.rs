@@ -55,7 +55,7 @@ pub(super) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
 }
 
 /// Solves W x = -c for these rows; x is 0 for dependent rows.
-pub(super) fn solve_rows(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
+pub(crate) fn solve_rows(w: &[Vec<f64>], c: &[f64], rows: &[usize]) -> Vec<f64> {
     let size = rows.len();
     let mut lower = vec![0.0; size * size];
     let mut y = vec![0.0; size];

@@ -24,7 +24,8 @@ use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Poi
 use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode};
 
-use complementarity::{solve_complementarity, solve_rows};
+use complementarity::solve_complementarity;
+pub(crate) use complementarity::solve_rows;
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
@@ -125,9 +126,9 @@ impl Contacts {
         self.names.len() + self.tangents.len()
     }
 
-    /// Returns true if a contact is closed.
-    pub fn has_closed(&self) -> bool {
-        !self.closed.is_empty()
+    /// Returns the closed contacts.
+    pub fn closed(&self) -> &[usize] {
+        &self.closed
     }
 
     /// Writes the guards, positive while the contacts keep their state: distances of open contacts,

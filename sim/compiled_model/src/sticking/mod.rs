@@ -10,6 +10,7 @@
 //! displaced by that rounding until the motion has left it. `discs` does the same for friction in
 //! several directions.
 
+mod contact_balance;
 mod discs;
 mod observed_motion;
 mod sided_model;
@@ -18,7 +19,7 @@ pub(crate) use observed_motion::ObservedMotion;
 pub use observed_motion::StickingMotion;
 pub use sided_model::SidedModel;
 
-use eomgen_codegen::program::evaluator::Enclosure;
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator};
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::ode::{SurfaceMode, difference_step};
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
@@ -63,6 +64,8 @@ enum SurfaceState {
     Holding { from: f64, since: f64 },
     /// The surface exerts its largest force to this side, and other surfaces hold the motion.
     Bearing { from: f64, side: f64 },
+    /// Closed contacts stop the motion, and the surface exerts no force.
+    Unloaded { from: f64 },
     /// The surface has released the motion to this side, but its function is still within
     /// rounding; the surface is displaced by `moved`.
     Leaving { side: f64, moved: f64 },
@@ -70,14 +73,27 @@ enum SurfaceState {
 
 impl SurfaceState {
     fn is_on(self) -> bool {
-        matches!(self, Self::Holding { .. } | Self::Bearing { .. })
+        matches!(
+            self,
+            Self::Holding { .. } | Self::Bearing { .. } | Self::Unloaded { .. }
+        )
+    }
+
+    /// Returns the side from which the motion came, if the surface holds it.
+    fn came_from(self) -> Option<f64> {
+        match self {
+            Self::Holding { from, .. } | Self::Bearing { from, .. } | Self::Unloaded { from } => {
+                Some(from)
+            }
+            Self::Free | Self::Leaving { .. } => None,
+        }
     }
 
     /// Returns the displacement of the surface until the motion has left it.
     fn displacement(self) -> f64 {
         match self {
             Self::Leaving { side, moved } => side * moved,
-            Self::Free | Self::Holding { .. } | Self::Bearing { .. } => 0.0,
+            Self::Free | Self::Holding { .. } | Self::Bearing { .. } | Self::Unloaded { .. } => 0.0,
         }
     }
 }
@@ -94,8 +110,12 @@ enum KnownSides {
 /// States of all surfaces along a motion.
 pub(crate) struct SurfaceStates {
     sided: SidedModel,
-    /// False if no surface holds the motion.
+    /// False if no surface can hold the motion.
+    can_hold: bool,
+    /// False while closed contacts exert forces, which the sides that hold the motion do not balance.
     may_hold: bool,
+    /// Index of the guard of the first disc.
+    first_disc_guard: usize,
     places: Vec<SurfaceState>,
     /// Frictions against the direction of sliding.
     discs: Vec<Disc>,
@@ -113,7 +133,9 @@ impl SurfaceStates {
     pub fn new(sided: SidedModel) -> Self {
         let count = sided.surface_count();
         Self {
+            can_hold: sided.can_hold_motion(),
             may_hold: sided.can_hold_motion(),
+            first_disc_guard: sided.guard_count(),
             places: vec![SurfaceState::Free; count],
             is_jumpless: vec![false; count],
             discs: sided.discs().iter().cloned().map(Disc::new).collect(),
@@ -127,7 +149,64 @@ impl SurfaceStates {
 
     /// Lets the motion cross all surfaces.
     pub fn disable_holding(&mut self) {
-        self.may_hold = false;
+        (self.can_hold, self.may_hold) = (false, false);
+    }
+
+    /// Places the guards of discs behind those of so many contacts.
+    pub fn skip_contact_guards(&mut self, count: usize) {
+        self.first_disc_guard = self.sided.guard_count() + count;
+    }
+
+    /// Sets the closed contacts, whose forces act beside those of the surfaces. With `None` forces of closed contacts are
+    /// not known, and the motion crosses all surfaces. Returns true if the contacts changed.
+    pub fn set_closed_contacts(&mut self, closed: Option<&[usize]>) -> bool {
+        let may_hold = self.can_hold && closed.is_some();
+        if self.may_hold && !may_hold {
+            self.places.fill(SurfaceState::Free);
+            self.discs
+                .iter_mut()
+                .for_each(|disc| disc.state = DiscState::Sliding);
+        }
+        let closed = closed.unwrap_or_default();
+        if self.may_hold == may_hold && self.sided.closed_contacts() == closed {
+            return false;
+        }
+        self.may_hold = may_hold;
+        self.sided.set_closed_contacts(closed);
+        self.known = KnownSides::Nothing;
+        true
+    }
+
+    /// Returns the evaluator with the sides at a point, and its inputs: those of the model and the sides.
+    pub fn evaluator_with_sides(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+    ) -> (&mut Evaluator, &[f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.evaluator_with_sides()
+    }
+
+    /// Decides the effect of all surfaces on which the motion is, after rates jumped or contacts changed.
+    pub fn decide_again(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        if !self.may_hold || self.begin.is_none() {
+            return;
+        }
+        self.release_moved(at, inputs);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
+        let touches = |surface: &usize| {
+            let allowed = roundings[*surface] + MAX_DRIFT_FRACTION * self.sizes[*surface];
+            self.places[*surface].is_on() || functions[*surface].abs() <= allowed
+        };
+        let touching: Vec<usize> = (0..self.places.len()).filter(touches).collect();
+        let discs = self.held_discs(at, inputs);
+        if touching.is_empty() && discs.is_empty() {
+            return;
+        }
+        let came_from = self.arrival_sides(&functions);
+        let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
+        self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
     }
 
     /// Returns the model with sides, for use with another motion.
@@ -146,13 +225,15 @@ impl SurfaceStates {
             let slot = &mut modes[self.sided.guard_index(surface)];
             match place {
                 SurfaceState::Free => {}
-                SurfaceState::Holding { .. } | SurfaceState::Bearing { .. } => {
+                SurfaceState::Holding { .. }
+                | SurfaceState::Bearing { .. }
+                | SurfaceState::Unloaded { .. } => {
                     *slot = SurfaceMode::Held;
                 }
                 SurfaceState::Leaving { side, .. } => *slot = SurfaceMode::from_side(*side),
             }
         }
-        let discs = &mut modes[self.sided.guard_count()..];
+        let discs = &mut modes[self.first_disc_guard..];
         let holding = discs.iter_mut().zip(&self.discs);
         for (slot, _) in holding.filter(|(_, disc)| disc.is_holding()) {
             *slot = SurfaceMode::Held;
@@ -182,7 +263,7 @@ impl SurfaceStates {
 
     /// Returns true if the derivatives of the rates grow without bound towards the surface of a guard.
     pub fn is_singular(&self, guard: usize) -> bool {
-        let disc = guard.checked_sub(self.sided.guard_count());
+        let disc = guard.checked_sub(self.first_disc_guard);
         let disc = disc.and_then(|disc| self.discs.get(disc));
         disc.is_some_and(Disc::is_singular)
     }
@@ -278,7 +359,9 @@ impl SurfaceStates {
             match *place {
                 SurfaceState::Free => {}
                 SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
-                SurfaceState::Bearing { from, .. } => *slot = from,
+                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
+                    *slot = from;
+                }
                 SurfaceState::Leaving { side, moved } => *slot += side * moved,
             }
         }
@@ -292,13 +375,15 @@ impl SurfaceStates {
             match *place {
                 SurfaceState::Free => {}
                 SurfaceState::Holding { .. } => *slot = Enclosure::UNKNOWN,
-                SurfaceState::Bearing { from, .. } => *slot = Enclosure::constant(from),
+                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
+                    *slot = Enclosure::constant(from);
+                }
                 SurfaceState::Leaving { side, moved } => {
                     *slot = slot.add_enclosure(Enclosure::constant(side * moved));
                 }
             }
         }
-        if let Some(discs) = out.get_mut(self.sided.guard_count()..) {
+        if let Some(discs) = out.get_mut(self.first_disc_guard..) {
             discs.fill(Enclosure::UNKNOWN);
         }
     }
@@ -312,7 +397,7 @@ impl SurfaceStates {
         self.find_holding_sides(at, inputs);
         let sides = self.sided.sides().to_vec();
         let functions = self.sided.evaluate_functions(at, inputs);
-        let slots = &mut out[self.sided.guard_count()..];
+        let slots = &mut out[self.first_disc_guard..];
         for (slot, disc) in slots.iter_mut().zip(&self.discs) {
             *slot = match disc.is_holding() {
                 true => 1.0 - norm(&signs(&sides[disc.rows.clone()])),
@@ -607,6 +692,7 @@ impl SurfaceStates {
         let sides = self.current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
+        let (touching, arrivals) = self.unload_stopped((touching, arrivals), came_from);
         let arrived: Vec<DiscArrival> = discs.iter().map(|(_, arrival)| arrival.clone()).collect();
         let asked = (&touching[..], &arrivals[..], &arrived[..]);
         let Some((verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
@@ -635,11 +721,7 @@ impl SurfaceStates {
         }
         for (surface, verdict) in touching.iter().zip(verdicts) {
             let old = self.places[*surface];
-            let from = match old {
-                SurfaceState::Holding { from, .. } | SurfaceState::Bearing { from, .. } => from,
-                _ if came_from[*surface] < 0.0 => -1.0,
-                _ => 1.0,
-            };
+            let from = side_of_arrival(old, came_from[*surface]);
             let since = match old {
                 SurfaceState::Holding { since, .. } => since,
                 _ => at.0,
@@ -663,6 +745,22 @@ impl SurfaceStates {
                 kept[*surface] = verdict.sign().signum();
             }
         }
+    }
+
+    /// Enters rest at the surfaces whose motion closed contacts stop, and returns the others.
+    fn unload_stopped(
+        &mut self,
+        (touching, arrivals): (Vec<usize>, Vec<Arrival>),
+        came_from: &[f64],
+    ) -> (Vec<usize>, Vec<Arrival>) {
+        let reached = touching.into_iter().zip(arrivals);
+        let (stopped, others): (Vec<_>, Vec<_>) =
+            reached.partition(|(surface, _)| self.sided.is_stopped_by_contacts(*surface));
+        for (surface, _) in stopped {
+            let from = side_of_arrival(self.places[surface], came_from[surface]);
+            self.places[surface] = SurfaceState::Unloaded { from };
+        }
+        others.into_iter().unzip()
     }
 
     /// Frees the surfaces without a jump of the rates and returns the others.
@@ -696,7 +794,7 @@ impl SurfaceStates {
         for (surface, place) in self.places.iter().enumerate() {
             let kept = kept.get(surface).filter(|side| **side != 0.0);
             let moved = match (*place, kept) {
-                (SurfaceState::Holding { .. }, _) => {
+                (SurfaceState::Holding { .. } | SurfaceState::Unloaded { .. }, _) => {
                     sides.push(0.5);
                     continue;
                 }
@@ -827,6 +925,12 @@ impl SurfaceStates {
         }
         CORRECTION_COUNT as u64
     }
+}
+
+/// Returns the side, -1 or 1, from which a motion came to a surface in this state, given the sign of its function.
+fn side_of_arrival(state: SurfaceState, sign: f64) -> f64 {
+    let by_sign = if sign < 0.0 { -1.0 } else { 1.0 };
+    state.came_from().unwrap_or(by_sign)
 }
 
 /// Returns the components -1 to 1 of these sides.

@@ -3,9 +3,11 @@
 use std::ops::Range;
 
 use eomgen_codegen::mechanics::outputs::Side;
-use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point, SlidingValues};
 use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict, decide_with_discs};
-use eomgen_sim::sliding_modes::{Arrival, Rates, Verdict, solve_least_squares};
+use eomgen_sim::sliding_modes::{
+    Arrival, Rates, Sharing, Verdict, reduce_largest, solve_least_squares,
+};
 use nalgebra::{DMatrix, DVector};
 
 /// Maximum number of Newton iterations if the rates are not linear in the sides.
@@ -32,20 +34,25 @@ pub(super) type TimeAndState<'p> = (f64, &'p [f64]);
 /// [`DrivenModel::with_sides`](crate::DrivenModel::with_sides). The sides of surfaces that can hold a motion are set,
 /// the others are fixed or follow from the state.
 pub struct SidedModel {
-    evaluator: Evaluator,
+    pub(super) evaluator: Evaluator,
     model_input_count: usize,
     /// Index of the first side that is set among the inputs.
     first_side: usize,
     /// Inputs of the model, then the sides: those of surfaces that cannot hold a motion, those that can, and those
     /// of the components of discs.
-    inputs: Vec<f64>,
+    pub(super) inputs: Vec<f64>,
     /// Surfaces that cannot hold a motion; true if the side is fixed.
     others: Vec<(Side, bool)>,
     /// Rows of the components of each disc among the sides.
     discs: Vec<Range<usize>>,
-    at: Vec<SlidingValues>,
-    guards: Vec<f64>,
+    pub(super) at: Vec<SlidingValues>,
+    pub(super) guards: Vec<f64>,
     is_linear: bool,
+    /// Closed contacts, whose forces follow from the sides.
+    pub(super) closed_contacts: Vec<usize>,
+    pub(super) impacts: Vec<ImpactValues>,
+    /// Effect of each surface's force on its own function without contact forces.
+    pub(super) own_effects: Vec<f64>,
 }
 
 impl SidedModel {
@@ -71,6 +78,9 @@ impl SidedModel {
             at: Vec::new(),
             guards: vec![0.0; evaluator.guard_count()],
             is_linear: sliding.iter().all(|surface| surface.is_linear),
+            closed_contacts: Vec::new(),
+            impacts: Vec::new(),
+            own_effects: Vec::new(),
             evaluator,
         }
     }
@@ -262,9 +272,21 @@ impl SidedModel {
             for (surface, change) in held.iter().zip(&change) {
                 self.inputs[self.first_side + surface] += change;
             }
+            self.share_forces(held);
             if change.amax() <= MAX_SETTLED_CHANGE {
                 return;
             }
+        }
+    }
+
+    /// Moves the sides of held surfaces that depend on each other as far from their limits as possible.
+    fn share_forces(&mut self, held: &[usize]) {
+        let first = self.first_side;
+        let signs = held.iter().map(|row| 2.0 * self.inputs[first + row] - 1.0);
+        let mut signs: Vec<f64> = signs.collect();
+        reduce_largest(&self.matrix(held), &mut signs);
+        for (row, sign) in held.iter().zip(signs) {
+            self.inputs[first + row] = 0.5 + 0.5 * sign;
         }
     }
 
@@ -327,6 +349,7 @@ impl SidedModel {
             let rates = Rates {
                 c: self.surface_values(&rows, |surface| surface.rate) - &w * &s,
                 w,
+                sharing: Sharing::LeastMaximum,
             };
             let found = decide_with_discs(&rates, arrivals, &packed)?;
             let scalars = found.0.iter().map(|verdict| verdict.sign());
@@ -403,6 +426,7 @@ impl SidedModel {
         let inputs = &self.inputs;
         self.evaluator
             .sliding(Point { t, state, inputs }, &mut self.at);
+        self.add_contact_forces((t, state));
     }
 
     fn iterations(&self) -> usize {

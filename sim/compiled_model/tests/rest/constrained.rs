@@ -1,5 +1,9 @@
-//! Friction at rest beside constraints, compared with the same machine in independent coordinates.
+//! Friction at rest beside constraints, compared with the same machine in independent coordinates, and beside closed
+//! contacts, compared with the same machine with constraints instead.
 
+use std::fmt::Write as _;
+
+use super::rows::Numbers;
 use super::{GENERAL, grid, of_text, simulated};
 
 /// Bead on a straight wire with dry friction.
@@ -137,5 +141,121 @@ fn pendulum_on_rod_comes_to_rest_as_in_its_angle() {
         }
         let last = &cartesian.trajectory.states[40];
         assert!(last[2..].iter().all(|rate| rate.abs() < 1e-13), "{last:?}");
+    }
+}
+
+/// Returns a machine of three coordinates with coupled inertias, dry friction at each, periodic drives, and a load that
+/// presses on a surface. `section` states that the machine is on the surface where `distance` is zero.
+fn pressed_machine(seed: u64, section: &str) -> String {
+    let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let mut next = |low: f64, high: f64| low + (high - low) * numbers.next();
+    let names = ["a", "b", "c"];
+    let mut text =
+        "[model]\nname = \"pressed\"\n[parameters]\nN = { value = 200, unit = \"N\" }\n".to_owned();
+    text += "omega = { value = 1, unit = \"rad/s\" }\nkg = { value = 1, unit = \"kg\" }\n";
+    text += "force = { value = 1, unit = \"N\" }\n[coordinates]\n";
+    for name in names {
+        writeln!(text, "{name} = {{ unit = \"m\" }}").expect("text");
+    }
+    let slopes = [next(-1.0, 1.0), next(-1.0, 1.0)];
+    let distance = format!("c + {:.3}*a + {:.3}*b", slopes[0], slopes[1]);
+    writeln!(text, "[definitions]\ndistance = \"{distance}\"\n[kinetic]").expect("text");
+    for (place, name) in names.into_iter().enumerate() {
+        let other = names[(place + 1) % 3];
+        let (own, coupled) = (next(1.0, 3.0), next(-1.0, 1.0));
+        writeln!(
+            text,
+            "{name} = \"1/2*kg*({own:.3}*dot({name})^2 + (dot({name}) + {coupled:.3}*dot({other}))^2)\""
+        )
+        .expect("text");
+    }
+    writeln!(text, "[potential]\nload = \"N*distance\"\n[forces]").expect("text");
+    for name in names {
+        let (level, push) = (next(1.0, 4.0), next(2.0, 8.0));
+        let (rate, phase) = (next(2.0, 5.0), next(0.0, 6.0));
+        writeln!(
+            text,
+            "rub_{name} = {{ on = \"{name}\", value = \"-{level:.3}*force*sign(dot({name}))\" }}\n\
+             push_{name} = {{ on = \"{name}\", value = \"{push:.3}*force*sin({rate:.3}*omega*t + {phase:.3})\" }}"
+        )
+        .expect("text");
+    }
+    text + section
+}
+
+#[test]
+fn friction_beside_closed_contact_matches_constraint() {
+    let times = grid(3.0, 30);
+    let contact = "[impacts]\nfloor = { when = \"distance\", restitution = 0.5 }\n";
+    let constraint = "[constraints]\nfloor = { zero = \"distance\" }\n";
+    let mut held = 0;
+    for seed in 1..=12 {
+        let pressed = of_text(&pressed_machine(seed, contact));
+        let guided = of_text(&pressed_machine(seed, constraint));
+        for solver in GENERAL {
+            let found = simulated(&pressed, &[], &times, solver).trajectory;
+            let expected = simulated(&guided, &[], &times, solver).trajectory;
+            for (t, (state, expected)) in
+                times.iter().zip(found.states.iter().zip(&expected.states))
+            {
+                for (entry, other) in state.iter().zip(expected) {
+                    assert!(
+                        (entry - other).abs() < 1e-7,
+                        "{seed} {solver} {t}: {state:?} and {expected:?}"
+                    );
+                }
+            }
+            held += found.events.len();
+        }
+    }
+    assert!(held > 100, "{held} events");
+}
+
+#[test]
+fn sled_stops_at_wall_and_leaves_it_against_friction() {
+    let sled = r#"
+[model]
+name = "sled"
+[parameters]
+m = { value = 2, unit = "kg" }
+F = { value = 3, unit = "N" }
+d = { value = 1, unit = "m" }
+A = { value = 12, unit = "N" }
+w = { value = 5, unit = "rad/s" }
+[coordinates]
+x = { unit = "m", initial_rate = 3 }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[forces]
+drive = { on = "x", value = "A*sin(w*t)" }
+rub = { on = "x", value = "-F*sign(dot(x))" }
+[impacts]
+wall = { when = "d - x", restitution = 0 }
+"#;
+    let model = of_text(sled);
+    // The wall holds it while the drive pushes, friction until the drive pulls with F.
+    let pi = std::f64::consts::PI;
+    let (parts, leaves) = (pi / 5.0, (pi + 0.25_f64.asin()) / 5.0);
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &[0.0, 0.4, parts, leaves, 0.7], solver);
+        let events = &motion.trajectory.events;
+        let times: Vec<f64> = events.iter().map(|event| event.t).collect();
+        assert_eq!(events.len(), 4, "{solver}: {events:?}");
+        assert!((times[2] - parts).abs() < 1e-9, "{solver}: {events:?}");
+        assert!((times[3] - leaves).abs() < 1e-9, "{solver}: {events:?}");
+        for state in &motion.trajectory.states[1..4] {
+            assert!(
+                (state[0] - 1.0).abs() < 1e-12 && state[1].abs() < 1e-12,
+                "{state:?}"
+            );
+        }
+        let after = 0.7 - leaves;
+        // F + A sin(w t) is about A w cos(w t) (t - leaves).
+        let speed = 60.0 * (5.0 * leaves).cos() / 2.0 * after * after / 2.0;
+        let last = motion.trajectory.states[4][1];
+        assert!(
+            (last / speed - 1.0).abs() < 0.02,
+            "{solver}: {last} and {speed}"
+        );
     }
 }

@@ -6,10 +6,10 @@ use super::time_stepping::{Machine, Rubbing};
 use super::{GENERAL, grid, of_text, simulated};
 
 /// Pseudorandom numbers between 0 and 1.
-struct Numbers(u64);
+pub(super) struct Numbers(pub(super) u64);
 
 impl Numbers {
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;

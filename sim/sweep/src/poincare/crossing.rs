@@ -303,7 +303,7 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.project(t, y)
     }
 
-    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
+    fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let value = self.surface.next_value();
         if let Some(part) = self.surface.crossing.crossing_fraction(value, start, y) {
             let on = |from: f64, to: f64| from + part * (to - from);
@@ -312,7 +312,7 @@ impl<S: System> System for SectionSystem<'_, S> {
             self.found_crossings.borrow_mut().push(point);
         }
         self.surface.set_turn(y);
-        self.system.apply_event((before, start), t, y);
+        self.system.apply_event((before, start), t, y)
     }
 
     fn fix_sides(&self, sides: Option<&[f64]>) {

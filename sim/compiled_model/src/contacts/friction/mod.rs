@@ -22,7 +22,8 @@ const RELATIVE_CHANGE: f64 = 1e-6;
 const SLIP_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
 impl Contacts {
-    pub(super) fn has_friction(&self) -> bool {
+    /// Returns true if a contact has friction.
+    pub fn has_friction(&self) -> bool {
         !self.tangents.is_empty()
     }
 
