@@ -11,7 +11,7 @@ const ZERO_FRACTION: f64 = 1e-12;
 
 /// Solves x >= 0, W x + c >= 0, x (W x + c) = 0 by the active-set method of Lawson and Hanson
 /// (*Solving Least Squares Problems*, chapter 23). W is given by rows.
-pub(super) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
+pub(crate) fn solve_complementarity(w: &[Vec<f64>], c: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; c.len()];
     let mut pushing: Vec<usize> = Vec::new();
     let zero = ZERO_FRACTION * max_magnitude(c);

@@ -24,8 +24,7 @@ use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Poi
 use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode};
 
-use complementarity::solve_complementarity;
-pub(crate) use complementarity::solve_rows;
+pub(crate) use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 

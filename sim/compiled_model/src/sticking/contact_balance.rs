@@ -5,7 +5,7 @@
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::sided_model::{SidedModel, TimeAndState};
-use crate::contacts::solve_rows;
+use crate::contacts::{solve_complementarity, solve_rows};
 
 /// Rest of the effect of a surface's force on its own function, beside closed contacts, that is rounding.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
@@ -19,6 +19,40 @@ impl SidedModel {
 
     pub(super) fn closed_contacts(&self) -> &[usize] {
         &self.closed_contacts
+    }
+
+    /// Closes the contacts without friction that touch, do not move and push at a state, which has rounding of these sizes
+    /// in its coordinates and rates.
+    pub(super) fn close_resting_contacts(
+        &mut self,
+        (t, state): TimeAndState<'_>,
+        [distance_rounding, rate_rounding]: [f64; 2],
+    ) {
+        self.closed_contacts.clear();
+        let impacts = &self.evaluator.program().impacts;
+        if impacts.is_empty() || impacts.iter().any(|impact| impact.friction.is_some()) {
+            return;
+        }
+        let inputs = &self.inputs;
+        self.evaluator
+            .impacts(Point { t, state, inputs }, &mut self.impacts);
+        let rests = |place: &usize| {
+            let impact = &self.impacts[*place];
+            impact.distance <= distance_rounding && impact.rate.abs() <= rate_rounding
+        };
+        let resting: Vec<usize> = (0..self.impacts.len()).filter(rests).collect();
+        let delassus = resting.iter().map(|place| {
+            let entries = &self.impacts[*place].delassus;
+            resting.iter().map(|other| entries[*other]).collect()
+        });
+        let delassus: Vec<Vec<f64>> = delassus.collect();
+        let accelerations = resting
+            .iter()
+            .map(|place| self.impacts[*place].acceleration);
+        let forces = solve_complementarity(&delassus, &accelerations.collect::<Vec<f64>>());
+        let pushing = resting.iter().zip(forces).filter(|(_, force)| *force > 0.0);
+        self.closed_contacts
+            .extend(pushing.map(|(place, _)| *place));
     }
 
     /// Returns the evaluator and its inputs: those of the model and the sides.

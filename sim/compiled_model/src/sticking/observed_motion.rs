@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::inputs::HeldInputs;
@@ -52,8 +53,9 @@ impl ObservedMotion {
 /// Forces and rates during sticking, along a motion.
 pub struct StickingMotion {
     sided: SidedModel,
-    /// Largest value of each function, and the duration of the motion, s.
+    /// Largest value of each function, coordinate and rate, and the duration of the motion, s.
     sizes: Vec<f64>,
+    state_sizes: [f64; 2],
     duration: f64,
 }
 
@@ -65,10 +67,16 @@ impl StickingMotion {
         inputs: &HeldInputs,
     ) -> Self {
         let mut sizes = vec![0.0_f64; sided.side_count()];
+        let mut state_sizes = [0.0_f64; 2];
+        let degrees = sided.degrees_of_freedom();
         for (t, state) in times.iter().zip(states) {
             let functions = sided.evaluate_functions((*t, state), &inputs.evaluate(*t));
             for (size, value) in sizes.iter_mut().zip(functions) {
                 *size = size.max(value.abs());
+            }
+            let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
+            for (size, entries) in state_sizes.iter_mut().zip([coordinates, rates]) {
+                *size = size.max(max_magnitude(entries));
             }
         }
         let duration = match (times.first(), times.last()) {
@@ -78,6 +86,7 @@ impl StickingMotion {
         Self {
             sided,
             sizes,
+            state_sizes,
             duration,
         }
     }
@@ -113,6 +122,9 @@ impl StickingMotion {
             .iter()
             .map(|size| MAX_DISTANCE_FRACTION * size)
             .collect();
+        let roundings = self.state_sizes.map(|size| MAX_DISTANCE_FRACTION * size);
+        self.sided.set_model_inputs(inputs);
+        self.sided.close_resting_contacts((t, state), roundings);
         set_holding_sides(&mut self.sided, (t, state), inputs, (&reach, self.duration))
     }
 }
@@ -143,6 +155,11 @@ fn set_holding_sides(
         .collect();
     let is_near =
         |rows: &&Range<usize>| norm(&functions[(*rows).clone()]) <= norm(&reach[(*rows).clone()]);
+    let (stopped, touching): (Vec<usize>, Vec<usize>) =
+        (touching.into_iter()).partition(|surface| sided.is_stopped_by_contacts(*surface));
+    for surface in &stopped {
+        sides[*surface] = 0.5;
+    }
     let discs = sided.discs().iter().filter(is_near);
     let discs: Vec<DiscArrival> = discs
         .map(|rows| DiscArrival {
@@ -152,7 +169,10 @@ fn set_holding_sides(
         })
         .collect();
     if touching.is_empty() && discs.is_empty() {
-        return false;
+        if !stopped.is_empty() {
+            sided.find_holding_sides(at, inputs, &sides, &[]);
+        }
+        return !stopped.is_empty();
     }
     let arrival = |surface: &usize| Arrival {
         side: if functions[*surface] < 0.0 { -1.0 } else { 1.0 },

@@ -90,6 +90,10 @@ impl SidedModel {
         self.inputs.len() - self.first_side
     }
 
+    pub(super) fn degrees_of_freedom(&self) -> usize {
+        self.evaluator.program().degrees_of_freedom()
+    }
+
     /// Returns true if there are surfaces that can hold a motion.
     pub fn can_hold_motion(&self) -> bool {
         self.side_count() > 0

@@ -231,6 +231,8 @@ drive = { on = "x", value = "A*sin(w*t)" }
 rub = { on = "x", value = "-F*sign(dot(x))" }
 [impacts]
 wall = { when = "d - x", restitution = 0 }
+[observables]
+friction = "-F*sign(dot(x))"
 "#;
     let model = of_text(sled);
     // The wall holds it while the drive pushes, friction until the drive pulls with F.
@@ -248,6 +250,14 @@ wall = { when = "d - x", restitution = 0 }
                 (state[0] - 1.0).abs() < 1e-12 && state[1].abs() < 1e-12,
                 "{state:?}"
             );
+        }
+        // Beside the wall, friction exerts no force; then it balances the drive.
+        let run = model.with_declared_parameters().unwrap();
+        let observables = run.observables(&motion).unwrap();
+        let forces = observables.iter().map(|row| row[0]);
+        let expected = [-3.0, 0.0, 0.0, 3.0, 3.0];
+        for (t, (force, expected)) in forces.zip(expected).enumerate() {
+            assert!((force - expected).abs() < 1e-6, "{solver} {t}: {force}");
         }
         let after = 0.7 - leaves;
         // F + A sin(w t) is about A w cos(w t) (t - leaves).
