@@ -96,6 +96,7 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        (request.settings().check()).map_err(|error| Error::Request(error.to_string()))?;
         let asked = |method| Settings {
             method,
             ..request.settings()

@@ -1,7 +1,7 @@
 //! Checks of a simulation request.
 
 use super::error::SolveError;
-use super::settings::{MAX_TOLERANCE, MIN_TOLERANCE, Settings};
+use super::settings::Settings;
 use super::system::System;
 
 /// Rejects an invalid request: lengths, order, ranges, and rates at the start.
@@ -35,18 +35,7 @@ pub fn check<S: System + ?Sized>(
             "sample times must ascend from {begin} s to at most {end} s"
         ));
     }
-    if !(MIN_TOLERANCE..=MAX_TOLERANCE).contains(&settings.tolerance) {
-        return refuse(format!(
-            "the tolerance {} must be between {MIN_TOLERANCE:e} and {MAX_TOLERANCE}",
-            settings.tolerance
-        ));
-    }
-    if settings.max_step.is_nan() || settings.max_step <= 0.0 {
-        return refuse(format!(
-            "the longest step, {} s, must be greater than 0",
-            settings.max_step
-        ));
-    }
+    settings.check()?;
     check_rates(system, begin, initial)
 }
 

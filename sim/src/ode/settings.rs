@@ -1,5 +1,7 @@
 //! Method, tolerance and limits of a simulation.
 
+use super::error::SolveError;
+
 /// Size that a component has until it moves, as a fraction of its typical size.
 pub const UNMOVED_SIZE_FRACTION: f64 = 1e-9;
 
@@ -13,10 +15,10 @@ pub fn difference_step(value: f64, typical_size: f64) -> f64 {
 }
 
 /// Smallest tolerance; below it, rounding dominates the error estimate.
-pub(super) const MIN_TOLERANCE: f64 = 1e-14;
+const MIN_TOLERANCE: f64 = 1e-14;
 
 /// Largest tolerance.
-pub(super) const MAX_TOLERANCE: f64 = 1e-1;
+const MAX_TOLERANCE: f64 = 1e-1;
 
 /// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,6 +57,27 @@ impl Settings {
             tolerance,
             ..Self::default()
         }
+    }
+
+    /// Checks the tolerance and the longest step.
+    ///
+    /// # Errors
+    /// [`SolveError::Request`] with the limit that is violated.
+    pub fn check(&self) -> Result<(), SolveError> {
+        let refuse = |problem| Err(SolveError::Request { problem });
+        if !(MIN_TOLERANCE..=MAX_TOLERANCE).contains(&self.tolerance) {
+            return refuse(format!(
+                "the tolerance {:e} must be between {MIN_TOLERANCE:e} and {MAX_TOLERANCE}",
+                self.tolerance
+            ));
+        }
+        if self.max_step.is_nan() || self.max_step <= 0.0 {
+            return refuse(format!(
+                "the longest step, {} s, must be greater than 0",
+                self.max_step
+            ));
+        }
+        Ok(())
     }
 }
 

@@ -11,6 +11,7 @@ mod exact_properties;
 mod exact_reference;
 mod exact_survival;
 mod impacts;
+mod invalid_requests;
 mod passed_surfaces;
 mod piecewise;
 mod reference_trajectory;
