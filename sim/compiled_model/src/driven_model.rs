@@ -186,7 +186,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         contacts.is_some_and(|contacts| !contacts.borrow().closed().is_empty())
     }
 
-    /// Sets the closed contacts beside the surfaces. Returns true if they changed.
+    /// Passes the closed contacts to the surfaces. Returns true if they changed.
     fn update_closed_contacts(&self) -> bool {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
             return false;

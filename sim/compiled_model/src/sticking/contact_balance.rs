@@ -1,4 +1,4 @@
-//! Closed contacts beside surfaces that hold the motion. The contact forces keep the distances from accelerating, so
+//! Surfaces that hold the motion while contacts are closed. The contact forces keep the distances from accelerating, so
 //! they follow from the sides: a = a_0 + W lambda = 0 with Delassus' matrix W. With these forces the rates of the
 //! switching functions are linear in the sides again.
 
@@ -7,7 +7,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use super::sided_model::{SidedModel, TimeAndState};
 use crate::contacts::{solve_complementarity, solve_rows};
 
-/// Rest of the effect of a surface's force on its own function, beside closed contacts, that is rounding.
+/// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
 
 impl SidedModel {

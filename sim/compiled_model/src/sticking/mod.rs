@@ -157,7 +157,7 @@ impl SurfaceStates {
         self.first_disc_guard = self.sided.guard_count() + count;
     }
 
-    /// Sets the closed contacts, whose forces act beside those of the surfaces. With `None` forces of closed contacts are
+    /// Sets the closed contacts, whose forces act with those of the surfaces. With `None` forces of closed contacts are
     /// not known, and the motion crosses all surfaces. Returns true if the contacts changed.
     pub fn set_closed_contacts(&mut self, closed: Option<&[usize]>) -> bool {
         let may_hold = self.can_hold && closed.is_some();

@@ -1,4 +1,4 @@
-//! Friction at rest beside constraints, compared with the same machine in independent coordinates, and beside closed
+//! Friction at rest with constraints, compared with the same machine in independent coordinates, and with closed
 //! contacts, compared with the same machine with constraints instead.
 
 use std::fmt::Write as _;
@@ -184,7 +184,7 @@ fn pressed_machine(seed: u64, section: &str) -> String {
 }
 
 #[test]
-fn friction_beside_closed_contact_matches_constraint() {
+fn friction_with_closed_contact_matches_constraint() {
     let times = grid(3.0, 30);
     let contact = "[impacts]\nfloor = { when = \"distance\", restitution = 0.5 }\n";
     let constraint = "[constraints]\nfloor = { zero = \"distance\" }\n";
@@ -251,7 +251,7 @@ friction = "-F*sign(dot(x))"
                 "{state:?}"
             );
         }
-        // Beside the wall, friction exerts no force; then it balances the drive.
+        // At the wall friction exerts no force; then it balances the drive.
         let run = model.with_declared_parameters().unwrap();
         let observables = run.observables(&motion).unwrap();
         let forces = observables.iter().map(|row| row[0]);
@@ -268,4 +268,46 @@ friction = "-F*sign(dot(x))"
             "{solver}: {last} and {speed}"
         );
     }
+}
+
+#[test]
+fn hammer_drives_pile_against_friction_alike_by_all_solvers() {
+    let hammer = r#"
+[model]
+name = "hammer"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 50, unit = "N/m" }
+F = { value = 2, unit = "N" }
+D = { value = 1, unit = "m" }
+e = { value = 0.4, unit = "1" }
+A = { value = 30, unit = "N" }
+w = { value = 9, unit = "rad/s" }
+[coordinates]
+a = { unit = "m", doc = "hammer" }
+b = { unit = "m", initial = 0.05, doc = "pile" }
+[kinetic]
+T = "1/2*m*dot(a)^2 + m*dot(b)^2"
+[potential]
+V = "1/2*k*a^2"
+[forces]
+drive = { on = "a", value = "A*sin(w*t)" }
+guide = { on = "a", value = "-F*sign(dot(a))" }
+ground = { on = "b", value = "-3*F*sign(dot(b))" }
+[impacts]
+hit = { when = "b - a", restitution = "e" }
+rock = { when = "D - b", restitution = 0 }
+"#;
+    let model = of_text(hammer);
+    let times = grid(20.0, 200);
+    let motions = GENERAL.map(|solver| simulated(&model, &[], &times, solver).trajectory);
+    let [first, second] = &motions;
+    for (t, (state, other)) in times.iter().zip(first.states.iter().zip(&second.states)) {
+        for (entry, other) in state.iter().zip(other) {
+            assert!((entry - other).abs() < 1e-6, "{t}: {state:?} and {other:?}");
+        }
+    }
+    // The pile rests between blows, and at the end on the rock.
+    assert!((first.states[200][1] - 1.0).abs() < 1e-12);
+    assert!(first.events.len() > 100, "{}", first.events.len());
 }
