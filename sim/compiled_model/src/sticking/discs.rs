@@ -160,3 +160,8 @@ pub(super) fn norm(v: &[f64]) -> f64 {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+/// Returns the components -1 to 1 of these sides.
+pub(super) fn signs(sides: &[f64]) -> Vec<f64> {
+    sides.iter().map(|side| 2.0 * side - 1.0).collect()
+}

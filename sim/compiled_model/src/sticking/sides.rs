@@ -1,0 +1,156 @@
+//! Sides at a point of the motion, and corrections of states onto surfaces that hold.
+
+use super::discs::{Disc, DiscState};
+use super::sided_model::CORRECTION_COUNT;
+use super::surface_state::SurfaceState;
+use super::surface_states::{
+    KnownSides, MAX_DRIFT_FRACTION, MAX_FORCE_DRIFT_FRACTION, SurfaceStates,
+};
+
+impl SurfaceStates {
+    /// Returns the sides of all surfaces at a point, 0.5 for those that hold. Functions are
+    /// evaluated only if needed.
+    pub(super) fn current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
+        let kept = self.kept.clone().unwrap_or_default();
+        let mut functions = Vec::new();
+        let mut sides = Vec::with_capacity(self.places.len());
+        for (surface, place) in self.places.iter().enumerate() {
+            let kept = kept.get(surface).filter(|side| **side != 0.0);
+            let moved = match (*place, kept) {
+                (SurfaceState::Holding { .. } | SurfaceState::Unloaded { .. }, _) => {
+                    sides.push(0.5);
+                    continue;
+                }
+                (SurfaceState::Bearing { side, .. }, _)
+                | (SurfaceState::Leaving { side, .. }, Some(_)) => {
+                    sides.push(0.5 + 0.5 * side);
+                    continue;
+                }
+                (SurfaceState::Free, Some(side)) => {
+                    sides.push(0.5 + 0.5 * side);
+                    continue;
+                }
+                (SurfaceState::Free | SurfaceState::Leaving { .. }, None) => place.displacement(),
+            };
+            if functions.is_empty() {
+                functions = self.sided.evaluate_functions(at, inputs);
+            }
+            sides.push(
+                self.sided
+                    .side_at_value(surface, functions[surface] + moved),
+            );
+        }
+        self.append_disc_sides(at, inputs, &mut sides);
+        sides
+    }
+
+    /// Appends the sides of the components of discs at a point.
+    pub(super) fn append_disc_sides(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+        sides: &mut Vec<f64>,
+    ) {
+        let functions = match self.discs.iter().all(Disc::is_holding) {
+            true => Vec::new(),
+            false => self.sided.evaluate_functions(at, inputs),
+        };
+        for disc in &self.discs {
+            disc.write_sides(&functions, self.kept.is_some(), sides);
+        }
+    }
+
+    /// Returns the surfaces that hold, and the rows of the discs that hold.
+    pub(super) fn holding_rows(&self) -> Vec<usize> {
+        let holds = |surface: &usize| matches!(self.places[*surface], SurfaceState::Holding { .. });
+        let discs = self.discs.iter().filter(|disc| disc.is_holding());
+        let surfaces = (0..self.places.len()).filter(holds);
+        surfaces
+            .chain(discs.flat_map(|disc| disc.rows.clone()))
+            .collect()
+    }
+
+    /// Returns the time since which the surface or the disc of a row holds, s.
+    fn held_since(&self, row: usize) -> Option<f64> {
+        if let Some(place) = self.places.get(row) {
+            return match place {
+                SurfaceState::Holding { since, .. } => Some(*since),
+                _ => None,
+            };
+        }
+        let disc = self.discs.iter().find(|disc| disc.rows.contains(&row))?;
+        match disc.state {
+            DiscState::Holding { since } => Some(since),
+            _ => None,
+        }
+    }
+
+    /// Computes the sides that hold the motion at a point.
+    pub(super) fn find_holding_sides(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+        match &self.known {
+            KnownSides::Everywhere => {
+                self.sided.set_model_inputs(inputs);
+                return;
+            }
+            KnownSides::At(known, at) if *known == t && at == state => return,
+            KnownSides::At(..) | KnownSides::Nothing => {}
+        }
+        let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
+        self.sided
+            .find_holding_sides((t, state), inputs, &sides, &held);
+        if self.are_sides_fixed() {
+            self.known = KnownSides::Everywhere;
+            return;
+        }
+        match &mut self.known {
+            KnownSides::At(known, at) => {
+                *known = t;
+                at.copy_from_slice(state);
+            }
+            known => *known = KnownSides::At(t, state.to_vec()),
+        }
+    }
+
+    /// Returns true if no side depends on the state.
+    fn are_sides_fixed(&self) -> bool {
+        let is_fixed = |side: &f64| *side != 0.0;
+        let kept = self.kept.as_ref();
+        self.discs.is_empty()
+            && self.places.iter().all(|place| *place == SurfaceState::Free)
+            && kept.is_some_and(|kept| kept.iter().all(is_fixed))
+            && self.sided.are_other_sides_fixed()
+    }
+
+    /// Corrects a state onto the surfaces that hold it, if it has drifted or `always`.
+    pub(super) fn correct_onto_surfaces(
+        &mut self,
+        (t, state): (f64, &mut [f64]),
+        inputs: &[f64],
+        always: bool,
+    ) -> u64 {
+        let held = self.holding_rows();
+        if held.is_empty() {
+            return 0;
+        }
+        let values = self.sided.evaluate_functions((t, state), inputs);
+        let has_strayed = |surface: &usize| {
+            let Some(since) = self.held_since(*surface) else {
+                return false;
+            };
+            let by_force = self.sided.own_force_rate(*surface) * (t - since).abs();
+            let allowed =
+                MAX_DRIFT_FRACTION * self.sizes[*surface] + MAX_FORCE_DRIFT_FRACTION * by_force;
+            values[*surface].abs() > allowed
+        };
+        if !always && !held.iter().any(has_strayed) {
+            return 0;
+        }
+        self.find_holding_sides((t, state), inputs);
+        self.known = KnownSides::Nothing;
+        for _ in 0..CORRECTION_COUNT {
+            let values = self.sided.evaluate_functions((t, state), inputs);
+            self.sided.move_onto_surfaces(t, state, (&held, &values));
+        }
+        CORRECTION_COUNT as u64
+    }
+}

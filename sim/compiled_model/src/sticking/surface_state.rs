@@ -1,0 +1,50 @@
+//! States of single surfaces.
+
+/// State of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SurfaceState {
+    /// The sign of the function determines the side.
+    Free,
+    /// The surface holds the motion, which came from this side, -1 or 1, at this time, s.
+    Holding { from: f64, since: f64 },
+    /// The surface exerts its largest force to this side, and other surfaces hold the motion.
+    Bearing { from: f64, side: f64 },
+    /// Closed contacts stop the motion, and the surface exerts no force.
+    Unloaded { from: f64 },
+    /// The surface has released the motion to this side, but its function is still within
+    /// rounding; the surface is displaced by `moved`.
+    Leaving { side: f64, moved: f64 },
+}
+
+impl SurfaceState {
+    pub(super) fn is_on(self) -> bool {
+        matches!(
+            self,
+            Self::Holding { .. } | Self::Bearing { .. } | Self::Unloaded { .. }
+        )
+    }
+
+    /// Returns the side from which the motion came, if the surface holds it.
+    pub(super) fn came_from(self) -> Option<f64> {
+        match self {
+            Self::Holding { from, .. } | Self::Bearing { from, .. } | Self::Unloaded { from } => {
+                Some(from)
+            }
+            Self::Free | Self::Leaving { .. } => None,
+        }
+    }
+
+    /// Returns the displacement of the surface until the motion has left it.
+    pub(super) fn displacement(self) -> f64 {
+        match self {
+            Self::Leaving { side, moved } => side * moved,
+            Self::Free | Self::Holding { .. } | Self::Bearing { .. } | Self::Unloaded { .. } => 0.0,
+        }
+    }
+}
+
+/// Returns the side, -1 or 1, from which a motion came to a surface in this state, given the sign of its function.
+pub(super) fn side_of_arrival(state: SurfaceState, sign: f64) -> f64 {
+    let by_sign = if sign < 0.0 { -1.0 } else { 1.0 };
+    state.came_from().unwrap_or(by_sign)
+}

@@ -1,0 +1,303 @@
+//! The surfaces along a motion: the rates, observables and guards that follow from their states.
+
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator};
+use eomgen_sim::ode::{SurfaceMode, difference_step};
+
+use super::discs::{Disc, DiscState, norm, signs};
+use super::sided_model::SidedModel;
+use super::surface_state::SurfaceState;
+
+/// Largest distance of a state from a surface that holds it, relative to the largest value of the
+/// switching function. Beyond it the state is corrected.
+pub(super) const MAX_DRIFT_FRACTION: f64 = 1e-12;
+
+/// Additional distance, relative to the effect of the surface's own force on its function since
+/// the surface holds.
+pub(super) const MAX_FORCE_DRIFT_FRACTION: f64 = 1e-13;
+
+/// Points at which the sides of the model are right.
+pub(super) enum KnownSides {
+    Nothing,
+    /// At this time (s) and state.
+    At(f64, Vec<f64>),
+    /// Everywhere: no surface holds the motion, and all sides are fixed.
+    Everywhere,
+}
+
+/// States of all surfaces along a motion.
+pub(crate) struct SurfaceStates {
+    pub(super) sided: SidedModel,
+    /// False if no surface can hold the motion.
+    pub(super) can_hold: bool,
+    /// False while closed contacts exert forces, which the sides that hold the motion do not balance.
+    pub(super) may_hold: bool,
+    /// Index of the guard of the first disc.
+    pub(super) first_disc_guard: usize,
+    pub(super) places: Vec<SurfaceState>,
+    /// Frictions against the direction of sliding.
+    pub(super) discs: Vec<Disc>,
+    /// True if the rates had no jump on a surface at the last arrival; then the sign of its
+    /// function determines the side.
+    pub(super) is_jumpless: Vec<bool>,
+    pub(super) sizes: Vec<f64>,
+    pub(super) begin: Option<f64>,
+    /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
+    pub(super) kept: Option<Vec<f64>>,
+    pub(super) known: KnownSides,
+}
+
+impl SurfaceStates {
+    pub fn new(sided: SidedModel) -> Self {
+        let count = sided.surface_count();
+        Self {
+            can_hold: sided.can_hold_motion(),
+            may_hold: sided.can_hold_motion(),
+            first_disc_guard: sided.guard_count(),
+            places: vec![SurfaceState::Free; count],
+            is_jumpless: vec![false; count],
+            discs: sided.discs().iter().cloned().map(Disc::new).collect(),
+            sizes: vec![0.0; sided.side_count()],
+            begin: None,
+            kept: None,
+            known: KnownSides::Nothing,
+            sided,
+        }
+    }
+
+    /// Lets the motion cross all surfaces.
+    pub fn disable_holding(&mut self) {
+        (self.can_hold, self.may_hold) = (false, false);
+    }
+
+    /// Places the guards of discs behind those of so many contacts.
+    pub fn skip_contact_guards(&mut self, count: usize) {
+        self.first_disc_guard = self.sided.guard_count() + count;
+    }
+
+    /// Sets the closed contacts, whose forces act with those of the surfaces. With `None` forces of closed contacts are
+    /// not known, and the motion crosses all surfaces. Returns true if the contacts changed.
+    pub fn set_closed_contacts(&mut self, closed: Option<&[usize]>) -> bool {
+        let may_hold = self.can_hold && closed.is_some();
+        if self.may_hold && !may_hold {
+            self.places.fill(SurfaceState::Free);
+            self.discs
+                .iter_mut()
+                .for_each(|disc| disc.state = DiscState::Sliding);
+        }
+        let closed = closed.unwrap_or_default();
+        if self.may_hold == may_hold && self.sided.closed_contacts() == closed {
+            return false;
+        }
+        self.may_hold = may_hold;
+        self.sided.set_closed_contacts(closed);
+        self.known = KnownSides::Nothing;
+        true
+    }
+
+    /// Returns the evaluator with the sides at a point, and its inputs: those of the model and the sides.
+    pub fn evaluator_with_sides(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+    ) -> (&mut Evaluator, &[f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.evaluator_with_sides()
+    }
+
+    /// Returns the model with sides, for use with another motion.
+    pub fn into_sided_model(self) -> SidedModel {
+        self.sided
+    }
+
+    /// Returns true if the signs of the functions do not determine the rates.
+    pub fn is_active(&self) -> bool {
+        self.kept.is_some() || !self.discs.is_empty() || !self.is_free()
+    }
+
+    /// Writes the modes of the surfaces that hold or release the motion.
+    pub fn write_modes(&self, modes: &mut [SurfaceMode]) {
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut modes[self.sided.guard_index(surface)];
+            match place {
+                SurfaceState::Free => {}
+                SurfaceState::Holding { .. }
+                | SurfaceState::Bearing { .. }
+                | SurfaceState::Unloaded { .. } => {
+                    *slot = SurfaceMode::Held;
+                }
+                SurfaceState::Leaving { side, .. } => *slot = SurfaceMode::from_side(*side),
+            }
+        }
+        let discs = &mut modes[self.first_disc_guard..];
+        let holding = discs.iter_mut().zip(&self.discs);
+        for (slot, _) in holding.filter(|(_, disc)| disc.is_holding()) {
+            *slot = SurfaceMode::Held;
+        }
+    }
+
+    /// Adds the roundings of the rates by the forces that hold the motion.
+    pub fn add_rate_roundings(&self, out: &mut [f64]) {
+        for row in self.holding_rows() {
+            self.sided.add_rate_rounding(row, out);
+        }
+    }
+
+    /// Returns true if the motion is on no surface and has left all surfaces.
+    pub fn is_free(&self) -> bool {
+        self.places.iter().all(|place| *place == SurfaceState::Free)
+            && self
+                .discs
+                .iter()
+                .all(|disc| disc.state == DiscState::Sliding)
+    }
+
+    /// Returns the formulas of the speeds of the discs, whose guards follow those of the model.
+    pub fn disc_formulas(&self) -> Vec<String> {
+        self.sided.disc_formulas()
+    }
+
+    /// Returns true if the derivatives of the rates grow without bound towards the surface of a guard.
+    pub fn is_singular(&self, guard: usize) -> bool {
+        let disc = guard.checked_sub(self.first_disc_guard);
+        let disc = disc.and_then(|disc| self.discs.get(disc));
+        disc.is_some_and(Disc::is_singular)
+    }
+
+    pub fn disc_count(&self) -> usize {
+        self.discs.len()
+    }
+
+    /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
+    /// without a jump are not fixed, because their rates beyond the surface may lead away from it.
+    pub fn fix_sides(&mut self, sides: Option<&[f64]>) {
+        self.known = KnownSides::Nothing;
+        self.sided.fix_other_sides(sides);
+        self.kept = sides.map(|sides| {
+            let kept = |surface: usize| match self.is_jumpless[surface] {
+                true => 0.0,
+                false => sides[self.sided.guard_index(surface)],
+            };
+            (0..self.places.len()).map(kept).collect()
+        });
+    }
+
+    /// Returns true if no surface holds the motion and the sides at a point are the fixed ones.
+    pub fn has_own_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> bool {
+        let kept = self.kept.clone().unwrap_or_default();
+        self.is_free() && self.sided.has_own_sides(at, inputs, &kept)
+    }
+
+    /// Writes the rates, if this is active.
+    pub fn write_rates(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.write_rates(at, inputs, out);
+    }
+
+    /// Writes the observables, if this is active.
+    pub fn write_observables(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        self.find_holding_sides(at, inputs);
+        self.sided.write_observables(at, out);
+    }
+
+    /// Computes the derivatives of the rates with respect to the state by finite differences, if
+    /// this is active. Sides and sticking remain unchanged.
+    pub fn write_jacobian(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        (inputs, typical_sizes): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        let (mut sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
+        self.known = KnownSides::Nothing;
+        let count = state.len();
+        let mut rates = |state: &[f64], out: &mut [f64]| {
+            if !self.discs.iter().any(Disc::is_leaving) {
+                sides.truncate(self.places.len());
+                self.append_disc_sides((t, state), inputs, &mut sides);
+            }
+            self.sided
+                .find_holding_sides((t, state), inputs, &sides, &held);
+            self.sided.write_rates((t, state), inputs, out);
+        };
+        let (mut base, mut moved_rates) = (vec![0.0; count], vec![0.0; count]);
+        rates(state, &mut base);
+        let mut moved = state.to_vec();
+        for column in 0..count {
+            moved[column] = state[column] + difference_step(state[column], typical_sizes[column]);
+            rates(&moved, &mut moved_rates);
+            let step = moved[column] - state[column];
+            for row in 0..count {
+                out[row * count + column] = (moved_rates[row] - base[row]) / step;
+            }
+            moved[column] = state[column];
+        }
+    }
+
+    /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
+    /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
+    /// a limit.
+    pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        if !self.may_hold {
+            return;
+        }
+        if self.begin.is_none() {
+            self.start_motion(at, inputs);
+        }
+        self.write_disc_guards(at, inputs, out);
+        if self.is_free() {
+            return;
+        }
+        self.find_holding_sides(at, inputs);
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut out[self.sided.guard_index(surface)];
+            let side = self.sided.sides()[surface];
+            match *place {
+                SurfaceState::Free => {}
+                SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
+                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
+                    *slot = from;
+                }
+                SurfaceState::Leaving { side, moved } => *slot += side * moved,
+            }
+        }
+    }
+
+    /// Replaces the bounds of guards as [`SurfaceStates::write_guards`] replaces the guards. Those of
+    /// surfaces that hold are unknown.
+    pub fn bound_guards(&self, out: &mut [Enclosure]) {
+        for (surface, place) in self.places.iter().enumerate() {
+            let slot = &mut out[self.sided.guard_index(surface)];
+            match *place {
+                SurfaceState::Free => {}
+                SurfaceState::Holding { .. } => *slot = Enclosure::UNKNOWN,
+                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
+                    *slot = Enclosure::constant(from);
+                }
+                SurfaceState::Leaving { side, moved } => {
+                    *slot = slot.add_enclosure(Enclosure::constant(side * moved));
+                }
+            }
+        }
+        if let Some(discs) = out.get_mut(self.first_disc_guard..) {
+            discs.fill(Enclosure::UNKNOWN);
+        }
+    }
+
+    /// Writes the guards of discs. While a disc holds, its guard becomes negative if its force
+    /// reaches the limit.
+    fn write_disc_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
+        if self.discs.is_empty() {
+            return;
+        }
+        self.find_holding_sides(at, inputs);
+        let sides = self.sided.sides().to_vec();
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let slots = &mut out[self.first_disc_guard..];
+        for (slot, disc) in slots.iter_mut().zip(&self.discs) {
+            *slot = match disc.is_holding() {
+                true => 1.0 - norm(&signs(&sides[disc.rows.clone()])),
+                false => disc.guard(&functions),
+            };
+        }
+    }
+}

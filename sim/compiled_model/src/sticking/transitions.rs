@@ -1,0 +1,436 @@
+//! Changes of the states of surfaces: arrivals, releases, and decisions where several surfaces meet.
+
+use eomgen_sim::friction_discs::DiscArrival;
+use eomgen_sim::sliding_modes::{Arrival, Verdict};
+
+use super::discs::{Disc, DiscState, norm, signs, unit_vector};
+use super::surface_state::{SurfaceState, side_of_arrival};
+use super::surface_states::{
+    KnownSides, MAX_DRIFT_FRACTION, MAX_FORCE_DRIFT_FRACTION, SurfaceStates,
+};
+
+/// Largest distance of other surfaces that count as reached, relative to the change of their
+/// functions in the step across a surface.
+const NEAR_MOVE_FACTOR: f64 = 4.0;
+
+/// Limit of that distance, relative to the largest value of the function.
+const MAX_NEAR_FRACTION: f64 = 1e-9;
+
+/// Largest velocity that turns by more than 90 degrees within a step and counts as zero, relative to the
+/// largest velocity. Friction that can hold such a motion stops it at once.
+const MAX_SLOW_FRACTION: f64 = 1e-8;
+
+/// Arrival on a surface on which the motion already is.
+const ARRIVAL_AT_REST: Arrival = Arrival {
+    side: 1.0,
+    exceeds_limit: false,
+};
+
+/// Surfaces on which a motion is with their arrivals, and discs with theirs.
+type Reached<'r> = (&'r [usize], &'r [Arrival], &'r [(usize, DiscArrival)]);
+
+impl SurfaceStates {
+    /// Decides the effect of all surfaces on which the motion is, after rates jumped or contacts changed.
+    pub fn decide_again(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        if !self.may_hold || self.begin.is_none() {
+            return;
+        }
+        self.release_moved(at, inputs);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
+        let touches = |surface: &usize| {
+            let allowed = roundings[*surface] + MAX_DRIFT_FRACTION * self.sizes[*surface];
+            self.places[*surface].is_on() || functions[*surface].abs() <= allowed
+        };
+        let touching: Vec<usize> = (0..self.places.len()).filter(touches).collect();
+        let discs = self.held_discs(at, inputs);
+        if touching.is_empty() && discs.is_empty() {
+            return;
+        }
+        let came_from = self.arrival_sides(&functions);
+        let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
+        self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
+    }
+    /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
+    /// a surface, `t` and `state` just beyond it.
+    pub fn apply_crossing(
+        &mut self,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
+        if !self.may_hold {
+            return;
+        }
+        let fixed = self.sided.release_other_sides();
+        self.reach_surfaces(inputs, (t_before, before), t, state);
+        self.sided.restore_other_sides(fixed);
+        self.known = KnownSides::Nothing;
+    }
+
+    /// Decides like [`SurfaceStates::apply_crossing`], with the sides of other surfaces at the state.
+    fn reach_surfaces(
+        &mut self,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
+        let near = self.sided.evaluate_functions((t_before, before), inputs);
+        let beyond = self.sided.evaluate_functions((t, state), inputs);
+        let roundings = self.sided.function_roundings((t, state), inputs);
+        let mut is_new = false;
+        let mut touching = Vec::new();
+        let mut arrivals = Vec::new();
+        let overcome = self.find_overcome((t, state), inputs);
+        let came_from = self.arrival_sides(&near);
+        for (surface, place) in self.places.iter().enumerate() {
+            let (from, to) = (near[surface], beyond[surface]);
+            let moved = place.displacement();
+            let is_crossed = came_from[surface] * (to + moved) < 0.0;
+            let near = NEAR_MOVE_FACTOR * (to - from).abs();
+            let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
+            let is_near = to.abs() <= near;
+            if place.is_on() || is_crossed || (is_near && *place == SurfaceState::Free) {
+                is_new |= is_crossed && !place.is_on();
+                touching.push(surface);
+                arrivals.push(overcome[surface].unwrap_or(Arrival {
+                    side: match is_crossed {
+                        true => -came_from[surface],
+                        false => came_from[surface],
+                    },
+                    exceeds_limit: false,
+                }));
+            }
+        }
+        let discs = self.disc_arrivals((t, state), inputs, (&near, &beyond));
+        is_new |= discs
+            .iter()
+            .any(|(disc, arrival)| arrival.exceeds_limit || !self.discs[*disc].is_holding());
+        if !is_new && overcome.iter().all(Option::is_none) {
+            return;
+        }
+        let reached = (&touching[..], &arrivals[..], &discs[..]);
+        self.decide_states((t, state), inputs, reached, &came_from);
+        self.correct_onto_surfaces((t, state), inputs, true);
+    }
+
+    /// Releases the motion from surfaces that a jump of the rates moved it away from.
+    pub fn release_moved(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
+        for (surface, place) in self.places.iter_mut().enumerate() {
+            let value = functions[surface];
+            let allowed = roundings[surface] + MAX_DRIFT_FRACTION * self.sizes[surface];
+            if *place != SurfaceState::Free && value.abs() > allowed {
+                *place = SurfaceState::Free;
+            }
+        }
+        self.known = KnownSides::Nothing;
+    }
+
+    /// Returns the discs that hold the motion, and those whose velocity came to zero between two
+    /// values of the functions. A velocity that passed zero at a distance has turned; it gets a new
+    /// reference.
+    fn disc_arrivals(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        (near, beyond): (&[f64], &[f64]),
+    ) -> Vec<(usize, DiscArrival)> {
+        let mut found = self.held_discs((t, state), inputs);
+        let roundings = self.sided.function_roundings((t, state), inputs);
+        for (index, disc) in self.discs.iter_mut().enumerate() {
+            if disc.is_holding() {
+                continue;
+            }
+            let velocity = disc.velocity(beyond);
+            let moved = velocity.iter().zip(disc.velocity(near));
+            let moved: Vec<f64> = moved.map(|(to, from)| to - from).collect();
+            let size = norm(disc.velocity(&self.sizes));
+            let most = MAX_NEAR_FRACTION * size;
+            let has_passed = disc.guard(beyond) < 0.0;
+            let reach = match has_passed {
+                true => MAX_SLOW_FRACTION * size,
+                false => most.min(NEAR_MOVE_FACTOR * norm(&moved)),
+            };
+            if norm(velocity) <= reach + norm(disc.velocity(&roundings)) {
+                found.push((
+                    index,
+                    DiscArrival {
+                        rows: disc.rows.clone(),
+                        along: disc.along.clone(),
+                        exceeds_limit: false,
+                    },
+                ));
+            } else if has_passed {
+                disc.state = DiscState::Sliding;
+                disc.follow(beyond);
+                self.known = KnownSides::Nothing;
+            }
+        }
+        found
+    }
+
+    /// Returns the discs that hold the motion; their force may exceed its limit.
+    fn held_discs(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<(usize, DiscArrival)> {
+        if !self.discs.iter().any(Disc::is_holding) {
+            return Vec::new();
+        }
+        self.find_holding_sides(at, inputs);
+        let sides = self.sided.sides();
+        let holding = self.discs.iter().enumerate();
+        let holding = holding.filter(|(_, disc)| disc.is_holding());
+        let arrivals = holding.map(|(index, disc)| {
+            let needed = signs(&sides[disc.rows.clone()]);
+            let arrival = DiscArrival {
+                rows: disc.rows.clone(),
+                along: unit_vector(&needed, Some(&disc.along)),
+                exceeds_limit: norm(&needed) > 1.0,
+            };
+            (index, arrival)
+        });
+        arrivals.collect()
+    }
+
+    /// Returns the sides, -1 or 1, from which the motion came, given the values of the functions.
+    /// If a function is exactly zero, its fixed side counts.
+    fn arrival_sides(&self, near: &[f64]) -> Vec<f64> {
+        let kept = |surface: usize| self.kept.as_ref().map(|kept| kept[surface]);
+        let side = |(surface, value): (usize, &f64)| {
+            let moved = self.places[surface].displacement();
+            match kept(surface).filter(|side| *side != 0.0) {
+                Some(side) if value + moved == 0.0 => side,
+                _ => (value + moved).signum(),
+            }
+        };
+        let surfaces = near.iter().take(self.places.len());
+        surfaces.enumerate().map(side).collect()
+    }
+
+    /// Corrects a state that drifted from the surfaces that hold it; returns the number of
+    /// evaluations.
+    pub fn correct_state(&mut self, t: f64, inputs: &[f64], state: &mut [f64]) -> u64 {
+        self.correct_onto_surfaces((t, state), inputs, false)
+    }
+
+    /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
+    /// motion if an input moves a surface away or a force exceeds its limit.
+    pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
+        if !self.may_hold {
+            return;
+        }
+        self.sided.fix_other_sides(None);
+        self.known = KnownSides::Nothing;
+        if self.begin.is_some() && !self.is_free() {
+            let functions = self.sided.evaluate_functions(at, inputs);
+            let jumps: Vec<bool> = match earlier == inputs {
+                true => vec![false; functions.len()],
+                false => {
+                    let before = self.sided.evaluate_functions(at, earlier);
+                    let roundings = self.sided.function_roundings(at, inputs);
+                    let moved = functions.iter().zip(&before).map(|(a, b)| (a - b).abs());
+                    let allowed = roundings.iter().zip(&self.sizes);
+                    let allowed =
+                        allowed.map(|(rounding, size)| rounding + MAX_DRIFT_FRACTION * size);
+                    moved.zip(allowed).map(|(a, b)| a > b).collect()
+                }
+            };
+            for disc in &mut self.discs {
+                if disc.is_holding() && disc.rows.clone().any(|row| jumps[row]) {
+                    disc.state = DiscState::Sliding;
+                    self.known = KnownSides::Nothing;
+                }
+            }
+            for (surface, place) in self.places.iter_mut().enumerate() {
+                let value = functions[surface];
+                let has_left = match *place {
+                    SurfaceState::Leaving { side, moved } => side * value > 2.0 * moved,
+                    _ => jumps[surface],
+                };
+                if has_left && *place != SurfaceState::Free {
+                    *place = SurfaceState::Free;
+                    self.known = KnownSides::Nothing;
+                }
+            }
+            for _ in 0..=self.places.len() {
+                let overcome = self.find_overcome(at, inputs);
+                let discs = self.held_discs(at, inputs);
+                let exceeds = discs.iter().any(|(_, arrival)| arrival.exceeds_limit);
+                if !exceeds && overcome.iter().all(Option::is_none) {
+                    break;
+                }
+                let on = |surface: &usize| self.places[*surface].is_on();
+                let touching: Vec<usize> = (0..self.places.len()).filter(on).collect();
+                let arrival = |surface: &usize| overcome[*surface].unwrap_or(ARRIVAL_AT_REST);
+                let arrivals: Vec<Arrival> = touching.iter().map(arrival).collect();
+                let reached = (&touching[..], &arrivals[..], &discs[..]);
+                self.decide_states(at, inputs, reached, &functions);
+            }
+        }
+        let functions = self.sided.evaluate_functions(at, inputs);
+        for disc in &mut self.discs {
+            disc.follow(&functions);
+            self.known = KnownSides::Nothing;
+        }
+        for (size, value) in self.sizes.iter_mut().zip(&functions) {
+            *size = size.max(value.abs());
+        }
+        for disc in &mut self.discs {
+            disc.floor = MAX_DRIFT_FRACTION * norm(disc.velocity(&self.sizes));
+        }
+    }
+
+    /// Starts a motion: surfaces on which it is may hold it.
+    pub(super) fn start_motion(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        self.begin = Some(at.0);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let roundings = self.sided.function_roundings(at, inputs);
+        let touching: Vec<usize> = (0..self.places.len())
+            .filter(|surface| functions[*surface].abs() <= roundings[*surface])
+            .collect();
+        let mut discs = Vec::new();
+        for (index, disc) in self.discs.iter_mut().enumerate() {
+            disc.follow(&functions);
+            if norm(disc.velocity(&functions)) <= norm(disc.velocity(&roundings)) {
+                let arrival = DiscArrival {
+                    rows: disc.rows.clone(),
+                    along: disc.along.clone(),
+                    exceeds_limit: false,
+                };
+                discs.push((index, arrival));
+            }
+        }
+        if !touching.is_empty() || !discs.is_empty() {
+            let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
+            let reached = (&touching[..], &arrivals[..], &discs[..]);
+            self.decide_states(at, inputs, reached, &functions);
+        }
+    }
+
+    /// Returns the surfaces whose force exceeds its limit, with the side.
+    pub(super) fn find_overcome(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+    ) -> Vec<Option<Arrival>> {
+        self.find_holding_sides(at, inputs);
+        let held = self.places.iter().zip(self.sided.sides());
+        held.map(|(place, side)| {
+            let is_overcome =
+                matches!(place, SurfaceState::Holding { .. }) && !(0.0..=1.0).contains(side);
+            is_overcome.then_some(Arrival {
+                side: (side - 0.5).signum(),
+                exceeds_limit: is_overcome,
+            })
+        })
+        .collect()
+    }
+
+    /// Decides the states of the surfaces `touching` and of discs, on which the motion is. It came
+    /// from the sides with these signs of the functions.
+    fn decide_states(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+        (touching, arrivals, discs): Reached<'_>,
+        came_from: &[f64],
+    ) {
+        self.known = KnownSides::Nothing;
+        let sides = self.current_sides(at, inputs);
+        let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
+        let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
+        let (touching, arrivals) = self.unload_stopped((touching, arrivals), came_from);
+        let arrived: Vec<DiscArrival> = discs.iter().map(|(_, arrival)| arrival.clone()).collect();
+        let asked = (&touching[..], &arrivals[..], &arrived[..]);
+        let Some((verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
+            // The functions decide, and the solver reports chattering.
+            for surface in touching {
+                self.places[surface] = SurfaceState::Free;
+            }
+            for (index, arrival) in discs {
+                let disc = &mut self.discs[*index];
+                disc.state = DiscState::Sliding;
+                disc.along.clone_from(&arrival.along);
+            }
+            return;
+        };
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let mut roundings = self.sided.function_roundings(at, inputs);
+        let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
+        for (surface, rounding) in roundings.iter_mut().enumerate() {
+            // A rate of rounding, accumulated over time.
+            *rounding += MAX_FORCE_DRIFT_FRACTION * self.sided.own_force_rate(surface) * passed;
+        }
+        for ((index, _), verdict) in discs.iter().zip(&vectors) {
+            let disc = &mut self.discs[*index];
+            let rounding = norm(disc.velocity(&roundings));
+            disc.enter(verdict, at.0, &functions, rounding);
+        }
+        for (surface, verdict) in touching.iter().zip(verdicts) {
+            let old = self.places[*surface];
+            let from = side_of_arrival(old, came_from[*surface]);
+            let since = match old {
+                SurfaceState::Holding { since, .. } => since,
+                _ => at.0,
+            };
+            let new = match verdict {
+                Verdict::Holds(_) => SurfaceState::Holding { from, since },
+                Verdict::AtLimit(side) => SurfaceState::Bearing { from, side },
+                Verdict::Releases(side) => {
+                    let value = functions[*surface];
+                    match side * value > 2.0 * roundings[*surface] {
+                        true => SurfaceState::Free,
+                        false => SurfaceState::Leaving {
+                            side,
+                            moved: roundings[*surface].max(-2.0 * side * value),
+                        },
+                    }
+                }
+            };
+            self.places[*surface] = new;
+            if let Some(kept) = &mut self.kept {
+                kept[*surface] = verdict.sign().signum();
+            }
+        }
+    }
+
+    /// Enters rest at the surfaces whose motion closed contacts stop, and returns the others.
+    fn unload_stopped(
+        &mut self,
+        (touching, arrivals): (Vec<usize>, Vec<Arrival>),
+        came_from: &[f64],
+    ) -> (Vec<usize>, Vec<Arrival>) {
+        let reached = touching.into_iter().zip(arrivals);
+        let (stopped, others): (Vec<_>, Vec<_>) =
+            reached.partition(|(surface, _)| self.sided.is_stopped_by_contacts(*surface));
+        for (surface, _) in stopped {
+            let from = side_of_arrival(self.places[surface], came_from[surface]);
+            self.places[surface] = SurfaceState::Unloaded { from };
+        }
+        others.into_iter().unzip()
+    }
+
+    /// Frees the surfaces without a jump of the rates and returns the others.
+    fn free_without_jump(
+        &mut self,
+        (touching, arrivals): (&[usize], &[Arrival]),
+        jumps: &[bool],
+    ) -> (Vec<usize>, Vec<Arrival>) {
+        let mut left = (Vec::new(), Vec::new());
+        for ((surface, arrival), jumps) in touching.iter().zip(arrivals).zip(jumps) {
+            self.is_jumpless[*surface] = !jumps;
+            if *jumps {
+                left.0.push(*surface);
+                left.1.push(*arrival);
+                continue;
+            }
+            self.places[*surface] = SurfaceState::Free;
+            if let Some(kept) = &mut self.kept {
+                kept[*surface] = 0.0;
+            }
+        }
+        left
+    }
+}
