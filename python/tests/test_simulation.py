@@ -35,6 +35,18 @@ def test_arm_with_other_play_matches_the_documentation(arm):
     assert "piecewise linear" in r.reason
 
 
+def test_events_have_surface_kind_modes_and_jump():
+    m = eomgen.load(SPECIFICATIONS.parent.parent / "examples" / "impacts" / "bouncing_ball.toml")
+    r = m.simulate(until=1)
+    assert r.switches == len(r.events) > 0
+    first = r.events[0]
+    assert (first.kind, first.before, first.after) == ("impact", "positive", "positive")
+    assert first.jump[m.states[0]] > 0 and 0 < first.t < 1
+    arm = eomgen.load(SPECIFICATIONS / "planetary_arm.toml").simulate(until=0.1)
+    assert {event.kind for event in arm.events} == {"crossing"}
+    assert all(event.jump == {} for event in arm.events)
+
+
 def test_number_of_samples_follows_the_interval(pendulum):
     assert len(pendulum.simulate(until=1)) == 1001
     assert pendulum.simulate(until=1, interval=0.3).t.tolist() == pytest.approx([0, 0.3, 0.6, 0.9])

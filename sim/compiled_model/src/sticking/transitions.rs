@@ -51,6 +51,7 @@ impl SurfaceStates {
         let arrivals = vec![ARRIVAL_AT_REST; touching.len()];
         self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
     }
+
     /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
     /// a surface, `t` and `state` just beyond it.
     pub fn apply_crossing(
