@@ -779,3 +779,115 @@ fn hosts_without_impacts_reject_them() {
         assert!(!Path::new(&out).exists());
     }
 }
+
+/// Sleigh whose blade moves along its heading phi only.
+const SLEIGH: &str = r#"
+[model]
+name = "sleigh"
+[parameters]
+m = { value = 1, unit = "kg" }
+I = { value = 0.2, unit = "kg*m^2" }
+a = { value = 0.3, unit = "m" }
+d = { value = 2, unit = "m" }
+e = { value = 0.8, unit = "1" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+y = { unit = "m" }
+phi = { unit = "rad", initial_rate = 0.2 }
+[kinetic]
+T = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*I*dot(phi)^2"
+[constraints]
+blade = { zero = "-sin(phi)*dot(x) + cos(phi)*dot(y) - a*dot(phi)" }
+[impacts]
+wall = { when = "d - x", restitution = "e" }
+"#;
+
+/// Upright disc with the heading psi that rolls on a plane.
+const ROLLING_DISC: &str = r#"
+[model]
+name = "disc"
+[parameters]
+m = { value = 1, unit = "kg" }
+r = { value = 0.2, unit = "m" }
+I = { value = 0.02, unit = "kg*m^2" }
+J = { value = 0.01, unit = "kg*m^2" }
+d = { value = 1, unit = "m" }
+e = { value = 0.8, unit = "1" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+theta = { unit = "rad", initial_rate = 5 }
+psi = { unit = "rad", initial = 0.3, initial_rate = 0.1 }
+[kinetic]
+T = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*I*dot(theta)^2 + 1/2*J*dot(psi)^2"
+[constraints]
+rolls_x = { zero = "dot(x) - r*cos(psi)*dot(theta)" }
+rolls_y = { zero = "dot(y) - r*sin(psi)*dot(theta)" }
+[impacts]
+wall = { when = "d - x", restitution = "e" }
+"#;
+
+/// Asserts that the first impact at the wall x = d obeys Newton's law with these inertias and rows of constraints at an
+/// angle, the last coordinate.
+fn assert_bounce_within_constraints(
+    text: &str,
+    inertias: &[f64],
+    rows: impl Fn(f64) -> Vec<Vec<f64>>,
+) {
+    let model = CompiledModel::from_text("wall.toml", text, Orders::Declared).expect("a model");
+    let count = inertias.len();
+    let initial = model.with_declared_parameters().unwrap();
+    let initial = initial.initial_state().to_vec();
+    for motion in simulate_with_all_solvers(&model, &initial, &[0.0, 5.0]) {
+        let jump = &motion.trajectory.jumps[0];
+        let around = [jump.t * (1.0 - 1e-9), jump.t * (1.0 + 1e-9)];
+        let times = [0.0, around[0], around[1]];
+        let run = model.with_declared_parameters().unwrap();
+        let inputs = run.default_inputs();
+        let near = run
+            .simulate(&initial, &times, &inputs, motion.solver)
+            .unwrap();
+        let [_, before, after] = &near.trajectory.states[..] else {
+            panic!("three samples");
+        };
+        let rows = rows(before[count - 1]);
+        let size = count + rows.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut right = DVector::zeros(size);
+        right[0] = -1.0;
+        for (place, inertia) in inertias.iter().enumerate() {
+            matrix[(place, place)] = *inertia;
+        }
+        for (row, entries) in rows.iter().enumerate() {
+            for (place, entry) in entries.iter().enumerate() {
+                matrix[(count + row, place)] = *entry;
+                matrix[(place, count + row)] = *entry;
+            }
+        }
+        let column = matrix.lu().solve(&right).expect("independent constraints");
+        let impulse = 1.8 * before[count] / -column[0];
+        for place in 0..count {
+            let expected = impulse * column[place];
+            let found = jump.change[count + place];
+            assert!(
+                (found - expected).abs() < 1e-7,
+                "{place}: {found} and {expected}"
+            );
+            let change = after[count + place] - before[count + place];
+            assert!((change - expected).abs() < 1e-7, "{place}: {change}");
+        }
+    }
+}
+
+#[test]
+fn sleigh_and_rolling_disc_bounce_within_their_constraints() {
+    assert_bounce_within_constraints(SLEIGH, &[1.0, 1.0, 0.2], |phi| {
+        vec![vec![-phi.sin(), phi.cos(), -0.3]]
+    });
+    assert_bounce_within_constraints(ROLLING_DISC, &[1.0, 1.0, 0.02, 0.01], |psi| {
+        vec![
+            vec![1.0, 0.0, -0.2 * psi.cos(), 0.0],
+            vec![0.0, 1.0, -0.2 * psi.sin(), 0.0],
+        ]
+    });
+}

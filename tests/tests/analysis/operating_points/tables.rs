@@ -287,7 +287,7 @@ fn paths_outside_the_folder_are_rejected() {
         (
             "table = \"modes.csv\"\n",
             "",
-            "name the file with the shapes",
+            "give the file with the shapes",
         ),
         (
             "\"table\"",
