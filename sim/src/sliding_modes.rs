@@ -7,6 +7,7 @@
 //! unique.
 
 use eomgen_analysis::qr_iteration;
+use eomgen_codegen::independence::vectors::max_magnitude;
 use nalgebra::{DMatrix, DVector};
 
 /// Rates below this fraction of their terms count as rounding.
@@ -219,7 +220,10 @@ pub fn solve_least_squares(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
 /// Largest number of passes over the directions in which values may change.
 const MAX_PASSES: usize = 20;
 
-/// Reduces the largest magnitude of the values s where W s stays the same: surfaces that depend on each other share their
+/// Reduction of the largest magnitude in a pass below which further passes are useless.
+const MIN_REDUCTION: f64 = 1e-3;
+
+/// Reduces the largest magnitude of the values s while W s stays the same: surfaces that depend on each other share their
 /// forces, and all of them hold as long as they can.
 pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
     if s.len() <= 1 {
@@ -236,13 +240,13 @@ pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
         .map(|(row, _)| rows.row(row).iter().copied().collect())
         .collect();
     for _ in 0..MAX_PASSES {
-        let before = largest_after(s, s, 0.0);
+        let before = max_magnitude(&*s);
         for direction in &directions {
             let step = find_best_step(s, direction);
             let entries = s.iter_mut().zip(direction);
             entries.for_each(|(entry, part)| *entry += step * part);
         }
-        if directions.len() <= 1 || largest_after(s, s, 0.0) > before * (1.0 - 1e-3) {
+        if directions.len() <= 1 || max_magnitude(&*s) > before * (1.0 - MIN_REDUCTION) {
             return;
         }
     }
@@ -259,7 +263,7 @@ fn largest_after(values: &[f64], direction: &[f64], step: f64) -> f64 {
 /// Returns the step along a direction after which the largest magnitude of `values` is least: two magnitudes are equal
 /// there.
 fn find_best_step(values: &[f64], direction: &[f64]) -> f64 {
-    let mut best = (0.0, largest_after(values, direction, 0.0));
+    let mut best = (0.0, max_magnitude(values));
     for (i, a) in direction.iter().enumerate() {
         for (j, b) in direction.iter().enumerate().skip(i) {
             let sums = [

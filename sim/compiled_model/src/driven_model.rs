@@ -576,7 +576,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             return;
         };
         let mut auditor = auditor.borrow_mut();
-        if self.is_sticking_active() || self.has_closed_contacts() {
+        let sliding = self.sliding.as_ref();
+        let is_held = sliding.is_some_and(|sliding| !sliding.borrow().is_free());
+        if is_held || self.has_closed_contacts() {
             let mut rates = vec![0.0; step.end.1.len()];
             self.add_rate_roundings(&mut rates);
             let (length, degrees) = (step.end.0 - step.start.0, self.degrees_of_freedom());

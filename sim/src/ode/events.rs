@@ -1,7 +1,5 @@
 //! Modes of switching surfaces, and the events that change them.
 
-use std::fmt;
-
 /// Mode of a switching surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SurfaceMode {
@@ -39,12 +37,6 @@ impl SurfaceMode {
             Self::Closed => "closed",
             Self::Open => "open",
         }
-    }
-}
-
-impl fmt::Display for SurfaceMode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }
 

@@ -130,9 +130,9 @@ impl Auditor {
         }
     }
 
-    /// Records an energy change that is NaN or exceeds the tolerance.
+    /// Records an energy change that exceeds the tolerance. Energies that are not finite are reported with their rows.
     fn record_excess(&mut self, t: f64, size: f64, tolerance: f64) {
-        if size.abs() > tolerance || size.is_nan() {
+        if size.is_finite() && size.abs() > tolerance {
             self.audit.note(Imbalance {
                 t,
                 energy_gain: size,

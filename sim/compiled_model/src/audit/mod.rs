@@ -108,11 +108,7 @@ impl Audit {
         ))
     }
 
-    /// Records a fault. An energy that is not finite is an error of its own.
     fn note(&mut self, found: Imbalance) {
-        if !found.energy_gain.is_finite() {
-            return;
-        }
         self.fault_count += 1;
         self.first_fault.get_or_insert(found);
         let largest = self.largest_fault.get_or_insert(found);

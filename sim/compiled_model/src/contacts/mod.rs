@@ -366,12 +366,17 @@ impl Contacts {
 
     /// Delassus' matrix of these contacts.
     fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
-        let row = |place: &usize| {
-            let entries = &self.at[*place].delassus;
-            places.iter().map(|other| entries[*other]).collect()
-        };
-        places.iter().map(row).collect()
+        delassus(&self.at, places)
     }
+}
+
+/// Returns Delassus' matrix of the impacts at these places.
+pub(crate) fn delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<Vec<f64>> {
+    let row = |place: &usize| {
+        let entries = &impacts[*place].delassus;
+        places.iter().map(|other| entries[*other]).collect()
+    };
+    places.iter().map(row).collect()
 }
 
 /// By how much rounding of state and time changes distances.

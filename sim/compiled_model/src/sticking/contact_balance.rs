@@ -1,11 +1,11 @@
 //! Surfaces that hold the motion while contacts are closed. The contact forces keep the distances from accelerating, so
 //! they follow from the sides: a = a_0 + W lambda = 0 with Delassus' matrix W. With these forces the rates of the
-//! switching functions are linear in the sides again.
+//! switching functions are linear in the sides.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::sided_model::{SidedModel, TimeAndState};
-use crate::contacts::{solve_complementarity, solve_rows};
+use crate::contacts::{delassus, solve_complementarity, solve_rows};
 
 /// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
@@ -41,11 +41,7 @@ impl SidedModel {
             impact.distance <= distance_rounding && impact.rate.abs() <= rate_rounding
         };
         let resting: Vec<usize> = (0..self.impacts.len()).filter(rests).collect();
-        let delassus = resting.iter().map(|place| {
-            let entries = &self.impacts[*place].delassus;
-            resting.iter().map(|other| entries[*other]).collect()
-        });
-        let delassus: Vec<Vec<f64>> = delassus.collect();
+        let delassus = delassus(&self.impacts, &resting);
         let accelerations = resting
             .iter()
             .map(|place| self.impacts[*place].acceleration);
@@ -83,12 +79,8 @@ impl SidedModel {
             inputs: &self.inputs,
         };
         self.evaluator.impacts(point, &mut self.impacts);
-        let closed = &self.closed_contacts;
-        let delassus = closed.iter().map(|place| {
-            let entries = &self.impacts[*place].delassus;
-            closed.iter().map(|other| entries[*other]).collect()
-        });
-        let delassus: Vec<Vec<f64>> = delassus.collect();
+        let closed = self.closed_contacts.clone();
+        let delassus = delassus(&self.impacts, &closed);
         let rows: Vec<usize> = (0..closed.len()).collect();
         let accelerations: Vec<f64> = (closed.iter())
             .map(|place| self.impacts[*place].acceleration)
@@ -97,10 +89,7 @@ impl SidedModel {
             .map(|place| self.impacts[*place].column.clone())
             .collect();
         let forces = solve_rows(&delassus, &accelerations, &rows);
-        let (degrees, closed) = (
-            self.evaluator.program().degrees_of_freedom(),
-            closed.clone(),
-        );
+        let degrees = self.degrees_of_freedom();
         let mut moved = state.to_vec();
         moved[degrees..2 * degrees].fill(0.0);
         let still = self.distance_rates_and_functions(t, &moved, &closed);

@@ -18,10 +18,7 @@ pub(super) enum SurfaceState {
 
 impl SurfaceState {
     pub(super) fn is_on(self) -> bool {
-        matches!(
-            self,
-            Self::Holding { .. } | Self::Bearing { .. } | Self::Unloaded { .. }
-        )
+        self.came_from().is_some()
     }
 
     /// Returns the side from which the motion came, if the surface holds it.

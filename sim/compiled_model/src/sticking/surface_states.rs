@@ -119,13 +119,9 @@ impl SurfaceStates {
         for (surface, place) in self.places.iter().enumerate() {
             let slot = &mut modes[self.sided.guard_index(surface)];
             match place {
-                SurfaceState::Free => {}
-                SurfaceState::Holding { .. }
-                | SurfaceState::Bearing { .. }
-                | SurfaceState::Unloaded { .. } => {
-                    *slot = SurfaceMode::Held;
-                }
                 SurfaceState::Leaving { side, .. } => *slot = SurfaceMode::from_side(*side),
+                place if place.is_on() => *slot = SurfaceMode::Held,
+                _ => {}
             }
         }
         let discs = &mut modes[self.first_disc_guard..];

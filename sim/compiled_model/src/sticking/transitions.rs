@@ -36,12 +36,8 @@ impl SurfaceStates {
             return;
         }
         self.release_moved(at, inputs);
-        let functions = self.sided.evaluate_functions(at, inputs);
-        let roundings = self.sided.function_roundings(at, inputs);
-        let touches = |surface: &usize| {
-            let allowed = roundings[*surface] + MAX_DRIFT_FRACTION * self.sizes[*surface];
-            self.places[*surface].is_on() || functions[*surface].abs() <= allowed
-        };
+        let (functions, allowed) = self.functions_and_roundings(at, inputs);
+        let touches = |surface: &usize| functions[*surface].abs() <= allowed[*surface];
         let touching: Vec<usize> = (0..self.places.len()).filter(touches).collect();
         let discs = self.held_discs(at, inputs);
         if touching.is_empty() && discs.is_empty() {
@@ -119,16 +115,27 @@ impl SurfaceStates {
 
     /// Releases the motion from surfaces that a jump of the rates moved it away from.
     pub fn release_moved(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
-        let functions = self.sided.evaluate_functions(at, inputs);
-        let roundings = self.sided.function_roundings(at, inputs);
+        let (functions, allowed) = self.functions_and_roundings(at, inputs);
         for (surface, place) in self.places.iter_mut().enumerate() {
-            let value = functions[surface];
-            let allowed = roundings[surface] + MAX_DRIFT_FRACTION * self.sizes[surface];
-            if *place != SurfaceState::Free && value.abs() > allowed {
+            if functions[surface].abs() > allowed[surface] {
                 *place = SurfaceState::Free;
             }
         }
         self.known = KnownSides::Nothing;
+    }
+
+    /// Returns the switching functions, and the magnitude of each that counts as zero.
+    fn functions_and_roundings(
+        &mut self,
+        at: (f64, &[f64]),
+        inputs: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let mut allowed = self.sided.function_roundings(at, inputs);
+        for (allowed, size) in allowed.iter_mut().zip(&self.sizes) {
+            *allowed += MAX_DRIFT_FRACTION * size;
+        }
+        (functions, allowed)
     }
 
     /// Returns the discs that hold the motion, and those whose velocity came to zero between two
