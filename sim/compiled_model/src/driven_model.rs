@@ -65,19 +65,25 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         Some(auditor.borrow().audit().clone())
     }
 
-    /// Returns energy and power, with the forces during sticking and those of contacts at rest.
-    fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
-        let mut observables = vec![0.0; self.evaluator().program().observables.len()];
+    /// Writes the observables, with the forces during sticking.
+    pub(crate) fn write_observables(&self, (t, state): (f64, &[f64]), out: &mut [f64]) {
         match self.surface_states() {
             Some(sliding) => {
                 let inputs = &self.inputs.borrow().evaluate(t);
-                let mut sliding = sliding.borrow_mut();
-                sliding.write_observables((t, state), inputs, &mut observables);
+                sliding
+                    .borrow_mut()
+                    .write_observables((t, state), inputs, out);
             }
             None => self.evaluate_at(t, state, |evaluator, point| {
-                evaluator.observables(point, &mut observables);
+                evaluator.observables(point, out)
             }),
         }
+    }
+
+    /// Returns energy and power, with the forces during sticking and those of contacts at rest.
+    fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
+        let mut observables = vec![0.0; self.evaluator().program().observables.len()];
+        self.write_observables((t, state), &mut observables);
         let mut found = EnergyAndPower::from_observables(&observables);
         if let Some(contacts) = &self.contacts {
             found.power += self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
@@ -138,8 +144,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         Some(sliding.into_inner().into_sided_model())
     }
 
-    pub(crate) fn projection(&self) -> Option<&Projection> {
-        self.projection.as_ref()
+    /// Returns time (s) and reason if the motion ended at a singular position of its constraints, where it
+    /// reached a time and a state.
+    pub(crate) fn find_singular_position(
+        &self,
+        (t, state): (f64, &[f64]),
+    ) -> Option<(f64, String)> {
+        let projection = self.projection.as_ref()?;
+        let mut rates = vec![0.0; state.len()];
+        self.evaluate_at(t, state, |evaluator, point| {
+            evaluator.rates(point, &mut rates)
+        });
+        let mut watch = projection.singularity_watch.borrow_mut();
+        watch.find_end((t, state), &rates, self.inputs.borrow())
     }
 
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
@@ -314,6 +331,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             evaluator.guards(point, &mut values);
         });
         values
+    }
+}
+
+impl<E> DrivenModel<E, HeldInputs> {
+    /// Replaces the inputs.
+    pub(crate) fn set_inputs(&mut self, inputs: HeldInputs) {
+        self.inputs = inputs;
     }
 }
 

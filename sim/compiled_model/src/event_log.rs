@@ -1,6 +1,6 @@
 //! The event log of a motion: surface, kind, modes before and after, and jumps of the rates.
 
-use eomgen_sim::ode::{Event, SurfaceKind, SurfaceMode};
+use eomgen_sim::ode::{Event, Surface, SurfaceKind, SurfaceMode, Trajectory};
 
 use crate::motion::Motion;
 
@@ -76,47 +76,56 @@ pub struct LoggedEvent<'m> {
 impl Motion {
     /// Returns the events of the motion in order of time. Its model has so many `degrees` of freedom.
     pub fn event_log(&self, degrees: usize) -> Vec<LoggedEvent<'_>> {
-        let (events, jumps) = (&self.trajectory.events, &self.trajectory.jumps);
-        let mut log = Vec::with_capacity(events.len());
-        let mut next = 0;
-        for jump in jumps {
-            let (t, change) = (jump.t, &jump.change[degrees..2 * degrees]);
-            while let Some(event) = events.get(next).filter(|event| event.t < t) {
-                log.push(self.log_event(event, &[]));
-                next += 1;
-            }
-            let first = log.len();
-            while let Some(event) = events.get(next).filter(|event| event.t == t) {
-                log.push(self.log_event(event, change));
-                next += 1;
-            }
-            if log.len() == first {
-                log.push(LoggedEvent {
-                    t,
-                    surface: "",
-                    kind: EventKind::Input,
-                    modes: None,
-                    jump: change,
-                });
-            }
-        }
-        log.extend(
-            events[next..]
-                .iter()
-                .map(|event| self.log_event(event, &[])),
-        );
-        log
+        log_events(&self.trajectory, &self.surfaces, degrees)
     }
+}
 
-    fn log_event<'m>(&'m self, event: &Event, jump: &'m [f64]) -> LoggedEvent<'m> {
-        let surface = self.surfaces.get(event.guard);
-        let kind = surface.map_or(SurfaceKind::Function, |surface| surface.kind);
-        LoggedEvent {
-            t: event.t,
-            surface: surface.map_or("", |surface| &surface.formula),
-            kind: EventKind::find(kind, event, !jump.is_empty()),
-            modes: Some((event.from, event.to)),
-            jump,
+/// Returns the events of a trajectory over these surfaces in order of time.
+pub(crate) fn log_events<'m>(
+    trajectory: &'m Trajectory,
+    surfaces: &'m [Surface],
+    degrees: usize,
+) -> Vec<LoggedEvent<'m>> {
+    let (events, jumps) = (&trajectory.events, &trajectory.jumps);
+    let mut log = Vec::with_capacity(events.len());
+    let mut next = 0;
+    for jump in jumps {
+        let (t, change) = (jump.t, &jump.change[degrees..2 * degrees]);
+        while let Some(event) = events.get(next).filter(|event| event.t < t) {
+            log.push(log_event(surfaces, event, &[]));
+            next += 1;
         }
+        let first = log.len();
+        while let Some(event) = events.get(next).filter(|event| event.t == t) {
+            log.push(log_event(surfaces, event, change));
+            next += 1;
+        }
+        if log.len() == first {
+            log.push(LoggedEvent {
+                t,
+                surface: "",
+                kind: EventKind::Input,
+                modes: None,
+                jump: change,
+            });
+        }
+    }
+    log.extend(
+        events[next..]
+            .iter()
+            .map(|event| log_event(surfaces, event, &[])),
+    );
+    log
+}
+
+fn log_event<'m>(surfaces: &'m [Surface], event: &Event, jump: &'m [f64]) -> LoggedEvent<'m> {
+    let surface = surfaces.get(event.guard);
+    let kind = surface.map_or(SurfaceKind::Function, |surface| surface.kind);
+    LoggedEvent {
+        t: event.t,
+        surface: surface.map_or("", |surface| &surface.formula),
+        kind: EventKind::find(kind, event, !jump.is_empty()),
+        modes: Some((event.from, event.to)),
+        jump,
     }
 }

@@ -1,6 +1,7 @@
 //! Initial states on the constraints, errors of constraints that cannot hold, and the system whose
 //! steps are projected onto the constraints.
 
+use std::borrow::Borrow;
 use std::cell::RefCell;
 
 use eomgen_codegen::independence::dependence::dependent_combination;
@@ -40,11 +41,11 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
-    pub fn driven_model<'d>(
+    pub fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
         &self,
-        evaluator: &'d RefCell<Evaluator>,
-        inputs: &'d HeldInputs,
-    ) -> Result<DrivenModel<&'d RefCell<Evaluator>, &'d HeldInputs>, Error> {
+        evaluator: E,
+        inputs: I,
+    ) -> Result<DrivenModel<E, I>, Error> {
         let impacts = self.model().model().impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
         let driven = DrivenModel::new(evaluator, inputs)

@@ -1,5 +1,8 @@
 //! A compiled model at one set of parameter values.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
@@ -14,9 +17,28 @@ use crate::model::CompiledModel;
 use crate::motion::Motion;
 use crate::sticking::{ObservedMotion, SidedModel};
 
+/// A compiled model that an instance borrows or shares.
+#[derive(Clone)]
+pub(crate) enum ModelHandle<'m> {
+    Borrowed(&'m CompiledModel),
+    Shared(Arc<CompiledModel>),
+}
+
+impl Deref for ModelHandle<'_> {
+    type Target = CompiledModel;
+
+    fn deref(&self) -> &CompiledModel {
+        match self {
+            Self::Borrowed(model) => model,
+            Self::Shared(model) => model,
+        }
+    }
+}
+
 /// A compiled model at one set of parameter values, and the initial state that follows from them.
+#[derive(Clone)]
 pub struct Instance<'m> {
-    pub(crate) model: &'m CompiledModel,
+    pub(crate) model: ModelHandle<'m>,
     /// Independent parameters, SI.
     parameters: Vec<f64>,
     /// All parameters of the specification, SI.
@@ -41,19 +63,25 @@ impl CompiledModel {
     /// expression. Such an expression is part of the equations: replace it in the model, then
     /// derive again.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
-        Instance::new(self, settings)
+        Instance::new(ModelHandle::Borrowed(self), settings)
+    }
+
+    /// Returns an instance that shares the model; see [`CompiledModel::with_parameters`].
+    ///
+    /// # Errors
+    /// Same as [`CompiledModel::with_parameters`].
+    pub fn share_with_parameters(
+        self: &Arc<Self>,
+        settings: &[(&str, f64)],
+    ) -> Result<Instance<'static>, Error> {
+        Instance::new(ModelHandle::Shared(Arc::clone(self)), settings)
     }
 }
 
 impl<'m> Instance<'m> {
     /// Returns a copy in which residuals of constraints decay at this rate, 1/s.
     pub(crate) fn with_stabilisation_rate(&self, rate: f64) -> Self {
-        let mut changed = Self {
-            model: self.model,
-            parameters: self.parameters.clone(),
-            values: self.values.clone(),
-            initial: self.initial.clone(),
-        };
+        let mut changed = self.clone();
         let mut set = |place: Option<usize>, all: fn(&mut Self) -> &mut Vec<f64>| {
             if let Some(value) = place.and_then(|place| all(&mut changed).get_mut(place)) {
                 *value = rate;
@@ -74,7 +102,7 @@ impl<'m> Instance<'m> {
         changed
     }
 
-    fn new(compiled: &'m CompiledModel, settings: &[(&str, f64)]) -> Result<Self, Error> {
+    fn new(compiled: ModelHandle<'m>, settings: &[(&str, f64)]) -> Result<Self, Error> {
         let declared = compiled.model();
         let refused = |error| Error::from_model_error(declared, error);
         let model = declared.with_parameters(settings).map_err(refused)?;
@@ -91,21 +119,22 @@ impl<'m> Instance<'m> {
             return Err(Diagnostics::from_one(declared.source.clone(), wrong).into());
         }
         let values = model.parameter_values().map_err(refused)?;
+        let initial = model.initial_state(compiled.orders()).map_err(refused)?;
         let mut instance = Self {
             model: compiled,
             parameters: Vec::new(),
-            initial: model.initial_state(compiled.orders()).map_err(refused)?,
+            initial,
             values,
         };
-        let independent = compiled.program().parameters.iter();
+        let independent = instance.model.program().parameters.iter();
         let value = |name: &str| instance.value(name).unwrap_or(f64::NAN);
         instance.parameters = independent.map(|p| value(&p.quantity.name)).collect();
         Ok(instance)
     }
 
     /// Returns the compiled model.
-    pub fn model(&self) -> &'m CompiledModel {
-        self.model
+    pub fn model(&self) -> &CompiledModel {
+        &self.model
     }
 
     /// Returns the independent parameters, SI, in the order of

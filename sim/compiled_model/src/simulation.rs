@@ -5,10 +5,7 @@ use std::cell::RefCell;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{
-    Method, Names, ObservedStep, Settings, SolveError, Surface, Trajectory, UnsupportedSticking,
-    simulate_into,
-};
+use eomgen_sim::ode::{Method, ObservedStep, Settings, Surface, Trajectory, simulate_into};
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
 use crate::audit::{Audit, Auditor, EnergyAndPower};
@@ -16,13 +13,16 @@ use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{EarlyStop, Motion, Solver, SolverChoice, StopCause};
+use crate::stop_reasons::{
+    describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
+};
 
 /// Default relative tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
 /// changes to the implicit solver. That solver needs a few times less time for the trajectory.
-const MAX_STIFF_STEPS: u64 = 100_000;
+pub(crate) const MAX_STIFF_STEPS: u64 = 100_000;
 
 /// Request for a simulation.
 #[derive(Clone, Copy, Debug)]
@@ -159,16 +159,14 @@ impl Instance<'_> {
             let found = (trajectory, surfaces);
             return Ok(new_motion(found, request, Solver::Exact, (choice, audit)));
         };
-        let reason = self.format_named((&surfaces, Solver::Exact), |names| {
-            error.format_named(names)
-        });
+        let reason = describe_exact_stop(self.model(), &surfaces, &error);
         if is_free && may_be_supported_by_general(&error) {
             let choice = Some(SolverChoice::NotSupportedByExact(reason));
             return self.simulate_automatically(request, choice, progress);
         }
         let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
         let t = error.time();
-        let cause = self.exact_stop_cause(&error, &surfaces);
+        let cause = find_exact_stop_cause(self.model(), &error, &surfaces);
         let found = (trajectory, surfaces);
         let so_far = new_motion(found, request, Solver::Exact, (choice, audit));
         with_early_stop(so_far, EarlyStop { t, reason, cause })
@@ -206,172 +204,42 @@ impl Instance<'_> {
         choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        let is_constrained = !self.model.model().constraints.is_empty();
-        if !self.model.model().impacts.is_empty() && settings.method == Method::Adams {
-            return Err(Error::Request(
-                "the solver adams uses the preceding steps, which impacts of this model invalidate: use \
-                 --solver rk or radau"
-                    .to_owned(),
-            ));
-        }
-        if let Some(surface) = self.model.first_corner()
-            && settings.method == Method::Adams
-        {
-            return Err(Error::Request(format!(
-                "the solver adams uses the preceding steps, which jumps of the rates invalidate, and the \
-                 energies of this model jump where `{surface}` is zero: use --solver rk or radau"
-            )));
-        }
-        if is_constrained && settings.method == Method::Adams {
-            return Err(Error::Request(
-                "the solver adams uses the preceding steps, which the projection onto the constraints \
-                 invalidates: use --solver rk or radau"
-                    .to_owned(),
-            ));
-        }
-        let sided = self.sided_model()?;
-        if sided.is_some_and(|sided| sided.has_discs()) && settings.method == Method::Adams {
-            return Err(Error::Request(
-                "the solver adams uses the preceding steps, which a stop under friction along v/norm(v) \
-                 invalidates: use --solver rk or radau"
-                    .to_owned(),
-            ));
-        }
-        // Before the evaluator, whose pivots give a less specific error for dependent constraints.
-        let (initial, moved) =
-            self.find_consistent_start(request.initial, request.time_span(), request.inputs)?;
-        let evaluator = RefCell::new(self.evaluator()?);
-        let mut system = self.driven_model(&evaluator, request.inputs)?;
-        if settings.method == Method::Adams {
-            // The Adams method uses the preceding steps, so it cannot continue from sticking; it
-            // reports the time of sticking instead.
-            system = system.without_holding();
-        }
-        let solver = match settings.method {
-            Method::DormandPrince853 => Solver::Rk,
-            Method::Adams => Solver::Adams,
-            Method::Radau => Solver::Radau,
-        };
-        if settings.method == Method::Radau {
-            system = system.with_jacobian(self.jacobian_evaluator()?);
-        }
         let auditor = request.audit.then(|| self.auditor(Some(request.tolerance)));
-        let system = system.with_auditor(auditor);
+        let run = self.prepare_general_run(
+            (request.initial, request.time_span()),
+            request.inputs,
+            settings,
+        )?;
+        let run = run.with_auditor(auditor);
         let mut trajectory = Trajectory::default();
-        let asked = (initial.as_slice(), request.time_span(), request.times);
-        let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
+        let asked = (run.initial.as_slice(), request.time_span(), request.times);
+        let ended = simulate_into(&mut trajectory, &run.system, asked, settings, progress);
         let so_far = Motion {
-            initial_changes: moved,
+            initial_changes: run.initial_changes.clone(),
             ..new_motion(
-                (trajectory, system.surfaces()),
+                (trajectory, run.surfaces.clone()),
                 request,
-                solver,
-                (choice, system.audit()),
+                run.solver,
+                (choice, run.system.audit()),
             )
         };
         match ended {
             Ok(()) => Ok(so_far),
             Err(error) => {
-                let (t, surfaces) = (SolveError::time(&error), &so_far.surfaces);
-                let cause = self.cause(&error, surfaces);
-                let ended_at = t.unwrap_or(request.time_span().0);
-                let may_be = matches!(cause, StopCause::NotFinite | StopCause::Limit);
-                let passed = system.projection().filter(|_| may_be);
-                let passed = passed.and_then(|projection| {
-                    let state = &so_far.trajectory.final_state;
-                    let mut rates = vec![0.0; state.len()];
-                    let inputs = &request.inputs.evaluate(ended_at);
-                    let point = Point {
-                        t: ended_at,
-                        state,
-                        inputs,
-                    };
-                    evaluator.borrow_mut().rates(point, &mut rates);
-                    let mut watch = projection.singularity_watch.borrow_mut();
-                    watch.find_end((ended_at, state), &rates, request.inputs)
-                });
-                let (t, singular) = match passed {
-                    Some((passed, reason)) => (Some(passed), Some(reason)),
-                    None => (t, None),
-                };
-                let reason = match (system.overlap_message(), singular) {
-                    (Some(overlap), _) => format!("at t = {ended_at:?} s {overlap}"),
-                    _ if system.corner_message().is_some() => {
-                        system.corner_message().unwrap_or_default()
-                    }
-                    (None, Some(reason)) => reason,
-                    (None, None) => {
-                        self.format_named((surfaces, solver), |names| error.format_named(names))
-                    }
-                };
-                with_early_stop(so_far, EarlyStop { t, reason, cause })
+                let reached = (request.time_span().0, &so_far.trajectory.final_state[..]);
+                let stop = run.early_stop(self.model(), &error, reached);
+                with_early_stop(so_far, stop)
             }
         }
     }
 
-    fn auditor(&self, tolerance: Option<f64>) -> Auditor {
+    pub(crate) fn auditor(&self, tolerance: Option<f64>) -> Auditor {
         let driven = self.input_driven_impact().map(|name| {
             format!(
                 "the distance or slip of the impact `{name}` depends on inputs, so the contact jumps when they jump"
             )
         });
         Auditor::new(tolerance, self.model().typical_sizes(), driven)
-    }
-
-    fn cause(&self, error: &SolveError, surfaces: &[Surface]) -> StopCause {
-        match error {
-            SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
-                StopCause::NotFinite
-            }
-            SolveError::Sticking { .. } | SolveError::TooManySwitches { .. } => {
-                StopCause::Switching
-            }
-            SolveError::Stiff { state, within, .. } => {
-                let state = &self.model.state_names()[*state];
-                StopCause::Stiff(format!(
-                    "the model is stiff: `{state}` settles within {within:.1e} s"
-                ))
-            }
-            SolveError::StiffAtSurface { guard, .. } => {
-                StopCause::Stiff(match surfaces.get(*guard) {
-                    Some(surface) => {
-                        format!("stiff near the place where `{}` is zero", surface.formula)
-                    }
-                    None => "stiff near a switching surface".to_owned(),
-                })
-            }
-            SolveError::Request { .. }
-            | SolveError::StepTooSmall { .. }
-            | SolveError::TooManySteps { .. } => StopCause::Limit,
-        }
-    }
-
-    fn exact_stop_cause(&self, error: &ExactError, surfaces: &[Surface]) -> StopCause {
-        match error {
-            ExactError::Stopped(error) => self.cause(error, surfaces),
-            ExactError::Sticking { .. } => StopCause::Switching,
-            ExactError::NotFinite | ExactError::NotPositiveDefinite => StopCause::NotFinite,
-            _ => StopCause::Limit,
-        }
-    }
-
-    /// Formats an error of a solver with the names of the states and of these switching functions.
-    fn format_named(
-        &self,
-        (surfaces, solver): (&[Surface], Solver),
-        message: impl FnOnce(&Names<'_>) -> String,
-    ) -> String {
-        let states = self.model.state_names();
-        let unfollowed = match solver {
-            Solver::Adams => UnsupportedSticking::Adams,
-            _ if !self.model.model().impacts.is_empty() => UnsupportedSticking::Impacts,
-            _ => UnsupportedSticking::Formula,
-        };
-        message(&Names {
-            states: &states,
-            surfaces,
-            unsupported_sticking: unfollowed,
-        })
     }
 }
 
@@ -436,12 +304,4 @@ fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> 
     }
     motion.early_stop = Some(why);
     Ok(motion)
-}
-
-/// Returns true if another solver may follow the motion.
-fn may_be_supported_by_general(error: &ExactError) -> bool {
-    matches!(
-        error,
-        ExactError::Sticking { .. } | ExactError::NotConverged
-    )
 }

@@ -2,26 +2,18 @@
 
 use std::collections::VecDeque;
 
-use super::adams::Adams;
 use super::approach::Approach;
 use super::bernstein::BernsteinBasis;
-use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::event_search::Crossing;
 use super::events::{Event, Jump, SurfaceMode};
-use super::magnitudes::Magnitudes;
-use super::radau::Radau;
-use super::request;
 use super::resolution::Resolution;
-use super::settings::{Method, Settings};
+use super::settings::Settings;
 use super::stepper::{Outcome, Point, Stepper, rejection_error};
 use super::stiffness::Pace;
 use super::system::{Interior, System};
 use super::trajectory::Trajectory;
 use super::watch::WatchedSystem;
-
-/// The first step, relative to the span; the error estimate corrects it at once.
-const FIRST_STEP: f64 = 1e-6;
 
 /// Number of times that a step is shortened because it does not resolve the switching functions. Finer
 /// changes of these count as rounding.
@@ -33,94 +25,6 @@ pub(super) const SHORTENED: f64 = 0.2;
 /// More samples than this in a step are many.
 const MANY: usize = 2;
 
-/// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states at
-/// `samples` (s, ascending, inside the span). Calls `progress` with the time after every step.
-///
-/// # Errors
-/// An invalid request, a rate that is not finite, or a limit of `settings`; see [`SolveError`].
-pub fn simulate(
-    system: &dyn System,
-    initial: &[f64],
-    span: (f64, f64),
-    samples: &[f64],
-    settings: &Settings,
-    progress: &mut dyn FnMut(f64),
-) -> Result<Trajectory, SolveError> {
-    let mut trajectory = Trajectory::default();
-    let request = (initial, span, samples);
-    simulate_into(&mut trajectory, system, request, settings, progress)?;
-    Ok(trajectory)
-}
-
-/// Simulates like [`simulate`] into an empty `trajectory`, which keeps all results up to an error.
-/// The request is the initial state, the span and the samples.
-///
-/// # Errors
-/// Same as [`simulate`].
-pub fn simulate_into(
-    trajectory: &mut Trajectory,
-    system: &dyn System,
-    (initial, span, samples): (&[f64], (f64, f64), &[f64]),
-    settings: &Settings,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(), SolveError> {
-    request::check(system, initial, span, samples, settings)?;
-    let run = match settings.method {
-        Method::DormandPrince853 => run::<DormandPrince853>,
-        Method::Adams => run::<Adams>,
-        Method::Radau => run::<Radau>,
-    };
-    run(
-        trajectory,
-        system,
-        (initial, span, samples),
-        settings,
-        progress,
-    )
-}
-
-/// Simulates with one method. The system is a trait object, so that each method is compiled once.
-fn run<M: Stepper>(
-    trajectory: &mut Trajectory,
-    system: &dyn System,
-    (initial, span, samples): (&[f64], (f64, f64), &[f64]),
-    settings: &Settings,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(), SolveError> {
-    let start = Point {
-        t: span.0,
-        y: initial.to_vec(),
-    };
-    let watched = WatchedSystem::new(system, (start.t, &start.y), settings.tolerance);
-    watched.fix_sides(true);
-    let step = FIRST_STEP * (span.1 - span.0);
-    let magnitudes = Magnitudes::new(&start.y, &system.typical_sizes(), settings.tolerance);
-    let mut driver = Driver {
-        watched: &watched,
-        stepper: M::new(start, step, magnitudes),
-        settings,
-        samples,
-        end: span.1,
-        until: span.1,
-        recent: VecDeque::new(),
-        pace: Pace::new(span.0),
-        approaches: VecDeque::new(),
-        resolution: Resolution::new(settings.tolerance),
-        basis: BernsteinBasis::new(),
-        projected: None,
-        modes: Vec::new(),
-        earlier_modes: Vec::new(),
-        has_roundings: false,
-        rebounds: Vec::new(),
-        trajectory,
-    };
-    watched.write_modes(&mut driver.modes);
-    driver.sample_start();
-    let ended = driver.go_to_the_end(system, progress);
-    driver.finish();
-    ended
-}
-
 /// Action after a step with an acceptable error.
 pub(super) enum Accepted {
     /// The motion continues from its end.
@@ -131,54 +35,185 @@ pub(super) enum Accepted {
     Crossed(Crossing),
 }
 
-/// A simulation under way.
-pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
-    pub(super) watched: &'a WatchedSystem<'a, S>,
+/// State of the loop that continues from one call to the next.
+pub(super) struct Run<M> {
     pub(super) stepper: M,
-    pub(super) settings: &'a Settings,
-    samples: &'a [f64],
-    pub(super) end: f64,
-    /// Time at which the present step ends at the latest, s.
-    pub(super) until: f64,
-    /// The last switches: when, s, and of which function.
-    pub(super) recent: VecDeque<(f64, usize)>,
-    pub(super) pace: Pace,
-    /// The last approaches to switching surfaces.
-    pub(super) approaches: VecDeque<Approach>,
     pub(super) resolution: Resolution,
-    pub(super) basis: BernsteinBasis,
-    /// The state here brought back onto what the motion keeps, if that moves it.
+    /// The last switches: time, s, and function.
+    pub(super) recent: VecDeque<(f64, usize)>,
+    /// The present state after projection onto constraints, if that changes it.
     projected: Option<Vec<f64>>,
-    /// Modes of the surfaces here, and those before the last event.
+    /// Modes of the surfaces at the present point, and those before the last event.
     pub(super) modes: Vec<SurfaceMode>,
     earlier_modes: Vec<SurfaceMode>,
     /// True if the scales of the errors have roundings of a motion at rest.
     has_roundings: bool,
     /// Surfaces that returned the motion in the last step over them.
     pub(super) rebounds: Vec<usize>,
+    /// A step that leads beyond the end of a call.
+    pending: Option<PendingStep>,
+}
+
+/// An accurate step that leads beyond the end of a call. Its surfaces and constraints were examined; its end
+/// is not part of the motion yet.
+#[derive(Clone, Copy)]
+struct PendingStep {
+    begin: f64,
+    /// True if states inside it are interpolated.
+    is_interior_told: bool,
+}
+
+impl<M: Stepper> Run<M> {
+    pub fn new(stepper: M, tolerance: f64) -> Self {
+        Self {
+            stepper,
+            resolution: Resolution::new(tolerance),
+            recent: VecDeque::new(),
+            projected: None,
+            modes: Vec::new(),
+            earlier_modes: Vec::new(),
+            has_roundings: false,
+            rebounds: Vec::new(),
+            pending: None,
+        }
+    }
+
+    /// Returns the last point of the motion so far.
+    pub fn last_point(&self) -> &Point {
+        match self.pending {
+            Some(_) => self.stepper.step_start(),
+            None => self.stepper.current_point(),
+        }
+    }
+
+    /// Discards a pending step and continues from a point.
+    pub fn restart(&mut self, point: Point) {
+        let step = self.stepper.step();
+        if self.pending.take().is_some() {
+            self.stepper.take_back();
+        }
+        self.projected = None;
+        self.stepper.restart(point, step);
+    }
+}
+
+/// Limits of a call.
+#[derive(Clone, Copy)]
+pub(super) struct Span {
+    /// End, s.
+    pub end: f64,
+    /// True if a step may lead beyond the end.
+    pub may_pass: bool,
+}
+
+/// A simulation under way.
+pub(super) struct Driver<'a, S: System + ?Sized, M: Stepper> {
+    pub(super) watched: &'a WatchedSystem<'a, S>,
+    pub(super) run: &'a mut Run<M>,
+    pub(super) settings: &'a Settings,
+    samples: &'a [f64],
+    /// Number of samples taken.
+    taken: usize,
+    pub(super) end: f64,
+    may_pass: bool,
+    /// Time at which the present step ends at the latest, s.
+    pub(super) until: f64,
+    pub(super) pace: Pace,
+    /// The last approaches to switching surfaces.
+    pub(super) approaches: VecDeque<Approach>,
+    pub(super) basis: BernsteinBasis,
     pub(super) trajectory: &'a mut Trajectory,
 }
 
-impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    fn go_to_the_end(
+impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
+    pub fn new(
+        watched: &'a WatchedSystem<'a, S>,
+        run: &'a mut Run<M>,
+        (span, samples): (Span, &'a [f64]),
+        settings: &'a Settings,
+        trajectory: &'a mut Trajectory,
+    ) -> Self {
+        let t = run.stepper.current_point().t;
+        Self {
+            watched,
+            run,
+            settings,
+            samples,
+            taken: 0,
+            end: span.end,
+            may_pass: span.may_pass,
+            until: span.end,
+            pace: Pace::new(t),
+            approaches: VecDeque::new(),
+            basis: BernsteinBasis::new(),
+            trajectory,
+        }
+    }
+
+    /// Starts a motion: modes and samples at its first point.
+    pub fn start(&mut self) {
+        self.watched.write_modes(&mut self.run.modes);
+        let start = self.run.stepper.current_point().clone();
+        self.take_samples_until(&start);
+    }
+
+    /// Continues the motion to the end of the call.
+    ///
+    /// # Errors
+    /// See [`SolveError`]; the run keeps its last point.
+    pub fn go_to_the_end(
         &mut self,
         system: &S,
         progress: &mut dyn FnMut(f64),
     ) -> Result<(), SolveError> {
-        while self.stepper.current_point().t < self.end {
+        self.continue_pending_step()?;
+        while self.run.stepper.current_point().t < self.end {
             self.advance(system)?;
-            progress(self.stepper.current_point().t);
+            progress(self.run.stepper.current_point().t.min(self.end));
             self.look_at_the_pace(system)?;
         }
         Ok(())
     }
 
+    /// Takes the samples inside a pending step, and accepts it if it ends before the end of the call.
+    fn continue_pending_step(&mut self) -> Result<(), SolveError> {
+        let Some(pending) = self.run.pending else {
+            return Ok(());
+        };
+        if self.run.stepper.current_point().t > self.end {
+            return self.take_inner_samples(pending, self.end.next_up());
+        }
+        self.run.pending = None;
+        self.accept_with(pending)
+    }
+
+    /// Returns the point at the end of the call, s.
+    pub fn end_point(&mut self) -> Result<Point, SolveError> {
+        let Some(pending) = self.run.pending else {
+            return Ok(self.run.stepper.current_point().clone());
+        };
+        let y = self.state_inside(pending, self.end)?;
+        Ok(Point { t: self.end, y })
+    }
+
+    /// Follows a jump of the inputs at the present point.
+    pub fn follow_input_jump(&mut self) -> Result<(), SolveError> {
+        let mut point = self.run.stepper.current_point().clone();
+        if self.watched.apply_breakpoint(point.t, &mut point.y) {
+            self.take_jump(point);
+        }
+        self.enter_regime()
+    }
+
     /// One accepted step, or the way to and over a switching surface.
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
-        let begin = self.stepper.current_point().t;
+        let begin = self.run.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
         let until = next.map_or(self.end, |next| next.min(self.end));
-        self.until = until;
+        self.until = match self.may_pass {
+            true => next.unwrap_or(f64::INFINITY),
+            false => until,
+        };
         self.watched.limit_time(next.unwrap_or(f64::INFINITY));
         let mut shortened = 0;
         loop {
@@ -188,21 +223,31 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             if self.step_is_too_short() {
                 return self.cross_at_once();
             }
-            let outcome = self.make_controlled_step(until)?;
+            let outcome = self.make_controlled_step(self.until)?;
             if outcome.is_accepted {
+                let passes = self.run.stepper.current_point().t > self.end;
                 match self.look_at(outcome.length, shortened < MOST_SHORTENED) {
                     Accepted::Shortened => shortened += 1,
+                    Accepted::Crossed(_) if passes => {
+                        self.refuse_passage(outcome.length);
+                        self.until = until;
+                    }
                     Accepted::Crossed(crossing) => return self.cross(&crossing, outcome.length),
+                    Accepted::Continues if passes => return self.suspend_step(begin),
                     Accepted::Continues => return self.accept(begin),
                 }
+            }
+            if self.watched.non_finite_state().is_some() {
+                // Rates beyond the end of the call may not exist.
+                self.until = until;
             }
         }
     }
 
     /// Makes the next step no longer than the settings allow.
     fn limit_step(&mut self) {
-        if self.stepper.step() > self.settings.max_step {
-            self.stepper.set_step(self.settings.max_step);
+        if self.run.stepper.step() > self.settings.max_step {
+            self.run.stepper.set_step(self.settings.max_step);
         }
     }
 
@@ -210,17 +255,18 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     fn set_roundings(&mut self) {
         let is_at_rest =
             |mode: &SurfaceMode| matches!(mode, SurfaceMode::Held | SurfaceMode::Closed);
-        let is_resting = self.modes.iter().any(is_at_rest);
-        if !is_resting && !self.has_roundings {
+        let is_resting = self.run.modes.iter().any(is_at_rest);
+        if !is_resting && !self.run.has_roundings {
             return;
         }
-        self.has_roundings = is_resting;
-        let mut rates = vec![0.0; self.stepper.current_point().y.len()];
+        self.run.has_roundings = is_resting;
+        let mut rates = vec![0.0; self.run.stepper.current_point().y.len()];
         if is_resting {
             self.watched.add_rate_roundings(&mut rates);
         }
-        let length = self.stepper.step();
-        self.stepper
+        let length = self.run.stepper.step();
+        self.run
+            .stepper
             .magnitudes_mut()
             .set_rate_roundings(&rates, length);
     }
@@ -231,10 +277,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return;
         }
         let (start, end) = (
-            self.stepper.step_start().clone(),
-            self.stepper.current_point().clone(),
+            self.run.stepper.step_start().clone(),
+            self.run.stepper.current_point().clone(),
         );
-        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let (stepper, watched) = (&mut self.run.stepper, self.watched);
         let mut inside = |t, interior| match interior {
             Interior::Interpolated => stepper.interpolated(watched, t),
             Interior::Recomputed => stepper.inside(watched, t),
@@ -246,12 +292,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     pub(super) fn make_controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
         self.check_steps()?;
         self.watched.forget_trials();
-        let mut outcome = self.stepper.advance(self.watched, until)?;
+        let mut outcome = self.run.stepper.advance(self.watched, until)?;
         if !outcome.is_accepted && self.watched.release_sides() {
             // Beyond a surface the rates of the near side may have no value.
             self.watched.forget_trials();
-            self.stepper.set_step(outcome.length);
-            outcome = self.stepper.advance(self.watched, until)?;
+            self.run.stepper.set_step(outcome.length);
+            outcome = self.run.stepper.advance(self.watched, until)?;
         }
         if outcome.is_accepted && self.watched.non_finite_state().is_some() {
             // It ends where the rates have no value: no motion gets there.
@@ -265,84 +311,135 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Takes an accepted step of `length` s back for a shorter one.
     pub(super) fn refuse(&mut self, length: f64) {
-        self.stepper.take_back();
-        self.stepper.set_step(SHORTENED * length);
+        self.run.stepper.take_back();
+        self.run.stepper.set_step(SHORTENED * length);
         self.trajectory.statistics.rejected_steps += 1;
     }
 
     /// Finds the state here that the motion keeps. Returns whether it is as near as the tolerance
     /// promises: a step that strayed farther than its error estimate says did not meet the tolerance.
     pub(super) fn project(&mut self) -> bool {
-        let here = self.stepper.current_point();
+        let here = self.run.stepper.current_point();
         let mut y = here.y.clone();
-        self.projected = None;
+        self.run.projected = None;
         if !self.watched.project(here.t, &mut y) {
             return true;
         }
         let moved = y.iter().zip(&here.y).map(|(to, from)| to - from);
-        let is_near = self.stepper.magnitudes().allow(moved, &here.y);
-        self.projected = Some(y);
+        let is_near = self.run.stepper.magnitudes().allow(moved, &here.y);
+        self.run.projected = Some(y);
         is_near
     }
 
     /// Returns the state at `t` (s) inside the last step. It is interpolated if the interior
     /// `is_told` and the step crossed no surface.
     fn inside(&mut self, t: f64, is_told: bool) -> Result<Vec<f64>, SolveError> {
-        if is_told && let Some(state) = self.stepper.interpolated(self.watched, t) {
+        if is_told && let Some(state) = self.run.stepper.interpolated(self.watched, t) {
             return Ok(state);
         }
         self.check_steps()?;
         self.trajectory.statistics.trial_steps += 1;
         self.watched.forget_trials();
-        let state = self.stepper.inside(self.watched, t);
+        let state = self.run.stepper.inside(self.watched, t);
         state.ok_or_else(|| {
-            let start = self.stepper.step_start();
+            let start = self.run.stepper.step_start();
             rejection_error(self.watched, start, t - start.t)
         })
     }
 
-    /// Samples from `begin` (s) to here, takes the projected state, and enters the regime found here.
+    /// Takes an accepted step of `length` s that leads beyond the end of the call back.
+    fn refuse_passage(&mut self, length: f64) {
+        self.run.stepper.take_back();
+        self.run.stepper.set_step(length);
+        self.trajectory.statistics.rejected_steps += 1;
+    }
+
+    /// Takes the samples inside a step from `begin` (s) that leads beyond the end of the call, and suspends it there.
+    fn suspend_step(&mut self, begin: f64) -> Result<(), SolveError> {
+        check_finite(begin, &self.run.stepper.current_point().y)?;
+        let pending = PendingStep {
+            begin,
+            is_interior_told: self.tells_interior(),
+        };
+        self.run.pending = Some(pending);
+        self.take_inner_samples(pending, self.end.next_up())
+    }
+
+    /// Accepts the last step, from `begin` (s).
     pub(super) fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
-        check_finite(begin, &self.stepper.current_point().y)?;
-        self.stepper.settle(self.projected.is_some());
+        check_finite(begin, &self.run.stepper.current_point().y)?;
+        let t = self.run.stepper.current_point().t;
+        let is_interior_told = self.is_interior_told(t);
+        self.accept_with(PendingStep {
+            begin,
+            is_interior_told,
+        })
+    }
+
+    /// Takes the samples inside a step, replaces its end by the projected state, and enters the regime there.
+    fn accept_with(&mut self, step: PendingStep) -> Result<(), SolveError> {
+        self.run.stepper.settle(self.run.projected.is_some());
         self.trajectory.statistics.steps += 1;
         self.watched.forget_later_trials();
         self.observe_step();
-        let t = self.stepper.current_point().t;
-        let is_told = self.is_interior_told(t);
-        while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {
-            let mut state = self.inside(sample, is_told)?;
-            self.watched.project(sample, &mut state);
-            check_finite(begin, &state)?;
-            self.trajectory.times.push(sample);
-            self.trajectory.states.push(state);
+        let t = self.run.stepper.current_point().t;
+        self.take_inner_samples(step, t)?;
+        if let Some(y) = self.run.projected.take() {
+            check_finite(step.begin, &y)?;
+            self.run.stepper.correct(y);
+            self.run.stepper.settle(false);
         }
-        if let Some(y) = self.projected.take() {
-            check_finite(begin, &y)?;
-            self.stepper.correct(y);
-            self.stepper.settle(false);
-        }
-        while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
-            self.trajectory.times.push(sample);
-            self.trajectory
-                .states
-                .push(self.stepper.current_point().y.clone());
-        }
+        let end = self.run.stepper.current_point().clone();
+        self.take_samples_until(&end);
         self.pass_breakpoint();
         self.enter_regime()
     }
 
+    /// Takes the samples before `end` (s) inside the last step.
+    fn take_inner_samples(&mut self, step: PendingStep, end: f64) -> Result<(), SolveError> {
+        while let Some(sample) = self.next_sample().filter(|sample| *sample < end) {
+            let state = self.state_inside(step, sample)?;
+            self.take_sample(sample, state);
+        }
+        Ok(())
+    }
+
+    /// Returns the state at a time (s) inside the last step.
+    fn state_inside(&mut self, step: PendingStep, t: f64) -> Result<Vec<f64>, SolveError> {
+        let mut state = self.inside(t, step.is_interior_told)?;
+        self.watched.project(t, &mut state);
+        check_finite(step.begin, &state)?;
+        Ok(state)
+    }
+
+    fn take_samples_until(&mut self, point: &Point) {
+        while let Some(sample) = self.next_sample().filter(|sample| *sample <= point.t) {
+            self.take_sample(sample, point.y.clone());
+        }
+    }
+
+    fn take_sample(&mut self, t: f64, state: Vec<f64>) {
+        self.taken += 1;
+        self.trajectory.times.push(t);
+        self.trajectory.states.push(state);
+    }
+
     /// Changes the state where it jumps with inputs.
     fn pass_breakpoint(&mut self) {
-        let mut point = self.stepper.current_point().clone();
+        let mut point = self.run.stepper.current_point().clone();
         let is_changed = self.watched.has_breakpoint_at(point.t)
             && self.watched.apply_breakpoint(point.t, &mut point.y);
         if is_changed {
-            let before = self.stepper.current_point().y.clone();
-            self.record_jump(point.t, &before, &point.y);
-            let step = self.stepper.step();
-            self.stepper.restart(point, step);
+            self.take_jump(point);
         }
+    }
+
+    /// Continues from a point after a jump of the state.
+    fn take_jump(&mut self, point: Point) {
+        let before = self.run.stepper.current_point().y.clone();
+        self.record_jump(point.t, &before, &point.y);
+        let step = self.run.stepper.step();
+        self.run.stepper.restart(point, step);
     }
 
     /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated.
@@ -353,21 +450,25 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !self.watched.has_guards() {
             return true;
         }
-        let next = self.trajectory.times.len() + MANY;
+        let next = self.taken + MANY;
         if self.samples.get(next).is_none_or(|sample| *sample >= t) {
             return false;
         }
+        self.tells_interior()
+    }
+
+    fn tells_interior(&mut self) -> bool {
         self.watched.forget_trials();
-        self.stepper.tells_interior(self.watched)
+        !self.watched.has_guards() || self.run.stepper.tells_interior(self.watched)
     }
 
     fn next_sample(&self) -> Option<f64> {
-        self.samples.get(self.trajectory.times.len()).copied()
+        self.samples.get(self.taken).copied()
     }
 
     /// Records the jump of the state at an event, unless it is below the tolerance.
     pub(super) fn record_jump(&mut self, t: f64, before: &[f64], after: &[f64]) {
-        let magnitudes = self.stepper.magnitudes();
+        let magnitudes = self.run.stepper.magnitudes();
         let changes = before.iter().zip(after).map(|(a, b)| b - a);
         let change = magnitudes.round_to_tolerance(changes, after);
         if change.iter().any(|entry| *entry != 0.0) {
@@ -377,15 +478,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
-        let here = self.stepper.current_point();
+        let here = self.run.stepper.current_point();
         let t = here.t;
         self.watched.update_modes(t, &here.y);
         self.watched.enter_regime(t, &here.y);
-        std::mem::swap(&mut self.modes, &mut self.earlier_modes);
-        self.watched.write_modes(&mut self.modes);
-        let rebounds = std::mem::take(&mut self.rebounds);
-        for guard in 0..self.modes.len() {
-            let (from, to) = (self.earlier_modes[guard], self.modes[guard]);
+        std::mem::swap(&mut self.run.modes, &mut self.run.earlier_modes);
+        self.watched.write_modes(&mut self.run.modes);
+        let rebounds = std::mem::take(&mut self.run.rebounds);
+        for guard in 0..self.run.modes.len() {
+            let (from, to) = (self.run.earlier_modes[guard], self.run.modes[guard]);
             let has_changed = from != to && from != SurfaceMode::Unknown;
             if has_changed || rebounds.contains(&guard) {
                 self.trajectory.events.push(Event { t, guard, from, to });
@@ -405,22 +506,5 @@ fn check_finite(begin: f64, state: &[f64]) -> Result<(), SolveError> {
     match state.iter().position(|entry| !entry.is_finite()) {
         Some(state) => Err(SolveError::NotFinite { t: begin, state }),
         None => Ok(()),
-    }
-}
-
-/// Samples at the start, and the end.
-impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
-    fn sample_start(&mut self) {
-        let start = self.stepper.current_point();
-        for sample in self.samples.iter().take_while(|sample| **sample <= start.t) {
-            self.trajectory.times.push(*sample);
-            self.trajectory.states.push(start.y.clone());
-        }
-    }
-
-    fn finish(self) {
-        self.watched.fix_sides(false);
-        self.trajectory.final_state = self.stepper.current_point().y.clone();
-        self.trajectory.statistics.evaluations = self.watched.evaluations();
     }
 }

@@ -33,8 +33,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// these, others by samples.
     fn find_crossing_inside(&mut self, length: f64, may_shorten: bool) -> Accepted {
         let (start, end) = (
-            self.stepper.step_start().clone(),
-            self.stepper.current_point().clone(),
+            self.run.stepper.step_start().clone(),
+            self.run.stepper.current_point().clone(),
         );
         let is_short = end.t - start.t <= SHORTEST_SEEN * end.t.abs();
         if !self.watched.has_guards() {
@@ -43,7 +43,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if is_short {
             return self.find_change_over_step();
         }
-        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let (stepper, watched) = (&mut self.run.stepper, self.watched);
         let interpolate =
             |part: f64| stepper.interpolated(watched, start.t + part * (end.t - start.t));
         let Some(piece) = self.basis.fit((&start.y, &end.y), interpolate) else {
@@ -96,7 +96,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Finds the surfaces between the ends of the last step.
     fn find_change_over_step(&self) -> Accepted {
-        let end = self.stepper.current_point();
+        let end = self.run.stepper.current_point();
         let values = self.watched.evaluate_guards_before(end.t, &end.y);
         let guards =
             (0..values.len()).filter(|guard| self.watched.is_beyond(*guard, values[*guard]));
@@ -123,7 +123,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return Accepted::Crossed(crossing);
         }
         let trials = &mut self.trajectory.statistics.trial_steps;
-        let step = (self.watched, &mut self.stepper);
+        let step = (self.watched, &mut self.run.stepper);
         if let Some((guard, passed)) = find_passed_surface(step, sides, &values, trials) {
             return Accepted::Crossed(Crossing {
                 near: 0.0,
@@ -131,7 +131,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 guards: vec![guard],
             });
         }
-        self.resolution.settle(&values);
+        self.run.resolution.settle(&values);
         Accepted::Continues
     }
 
@@ -139,8 +139,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// does not interpolate it.
     fn sample_guards(&mut self) -> Option<[Vec<f64>; 5]> {
         let (start, end) = (
-            self.stepper.step_start().clone(),
-            self.stepper.current_point().clone(),
+            self.run.stepper.step_start().clone(),
+            self.run.stepper.current_point().clone(),
         );
         let mut values: [Vec<f64>; 5] = Default::default();
         for (part, values) in PARTS.into_iter().zip(&mut values) {
@@ -148,7 +148,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let state = match part {
                 0.0 => start.y.clone(),
                 1.0 => end.y.clone(),
-                _ => self.stepper.interpolated(self.watched, t)?,
+                _ => self.run.stepper.interpolated(self.watched, t)?,
             };
             *values = self.watched.evaluate_guards_before(t, &state);
         }
@@ -160,19 +160,19 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// back.
     fn shorten_unresolved(&mut self, values: &[Vec<f64>; 5], sides: &[f64], length: f64) -> bool {
         let side = |guard: usize| sides[guard];
-        let mut longest = self.resolution.longest(values, side, &[]);
+        let mut longest = self.run.resolution.longest(values, side, &[]);
         if longest < 1.0 {
-            let start = self.stepper.step_start();
+            let start = self.run.stepper.step_start();
             let roundings = self.watched.guard_roundings(start.t, &start.y);
-            longest = self.resolution.longest(values, side, &roundings);
+            longest = self.run.resolution.longest(values, side, &roundings);
         }
         let is_resolved = longest >= 1.0;
         if is_resolved {
-            let step = self.stepper.step();
-            self.stepper.set_step(step.min(longest * length));
+            let step = self.run.stepper.step();
+            self.run.stepper.set_step(step.min(longest * length));
         } else {
-            self.stepper.take_back();
-            self.stepper.set_step(longest.max(SHORTENED) * length);
+            self.run.stepper.take_back();
+            self.run.stepper.set_step(longest.max(SHORTENED) * length);
             self.trajectory.statistics.rejected_steps += 1;
         }
         !is_resolved

@@ -24,29 +24,29 @@ const SMALLEST_TIME: f64 = 1e-6;
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns true if the next step would not change the time.
     pub(super) fn step_is_too_short(&self) -> bool {
-        self.stepper.step() <= self.shortest_step()
+        self.run.stepper.step() <= self.shortest_step()
     }
 
     /// Returns the shortest step that changes the time, s.
     pub(super) fn shortest_step(&self) -> f64 {
-        let t = self.stepper.current_point().t.abs();
+        let t = self.run.stepper.current_point().t.abs();
         f64::EPSILON * t.max(SMALLEST_TIME * self.end.abs())
     }
 
     pub(super) fn check_switch_rate(&mut self, t: f64, guard: usize) -> Result<(), SolveError> {
         let rate = self.settings.max_switch_rate;
-        self.recent.push_back((t, guard));
-        if self.recent.len() < SWITCHES_AVERAGED {
+        self.run.recent.push_back((t, guard));
+        if self.run.recent.len() < SWITCHES_AVERAGED {
             return Ok(());
         }
-        let first = self.recent.pop_front().map_or(t, |(first, _)| first);
+        let first = self.run.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
-            let here = self.stepper.current_point();
+            let here = self.run.stepper.current_point();
             if self.watched.release_if_continuous(guard, t, &here.y) {
-                self.recent.clear();
+                self.run.recent.clear();
                 return Ok(());
             }
-            if self.recent.iter().all(|(_, other)| *other == guard) {
+            if self.run.recent.iter().all(|(_, other)| *other == guard) {
                 return Err(SolveError::Sticking { t: first, guard });
             }
             let guard = self.rarest();
@@ -59,14 +59,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// switches. A surface that sticks and releases between the switches of another one does not
     /// chatter.
     fn rarest(&self) -> usize {
-        let mut counts = vec![0; self.modes.len()];
-        for (_, guard) in &self.recent {
+        let mut counts = vec![0; self.run.modes.len()];
+        for (_, guard) in &self.run.recent {
             counts[*guard] += 1;
         }
         let turns = counts
             .iter()
             .enumerate()
-            .filter(|(_, count)| 4 * **count >= self.recent.len());
+            .filter(|(_, count)| 4 * **count >= self.run.recent.len());
         turns
             .min_by_key(|(_, count)| **count)
             .map_or(0, |(guard, _)| guard)
@@ -77,7 +77,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if self.steps() < steps {
             return Ok(());
         }
-        let Point { t, y } = self.stepper.current_point();
+        let Point { t, y } = self.run.stepper.current_point();
         Err(SolveError::TooManySteps {
             t: *t,
             steps,
@@ -99,7 +99,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !M::IS_EXPLICIT || !can_change {
             return Ok(());
         }
-        let (t, steps) = (self.stepper.current_point().t, self.steps());
+        let (t, steps) = (self.run.stepper.current_point().t, self.steps());
         self.approaches.push_back(Approach {
             t,
             steps,
@@ -140,11 +140,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if !M::IS_EXPLICIT {
             return Ok(());
         }
-        let Point { t, y } = self.stepper.current_point();
+        let Point { t, y } = self.run.stepper.current_point();
         let standing = Progress {
             t: *t,
             y,
-            step: self.stepper.step(),
+            step: self.run.stepper.step(),
             steps: (self.steps(), self.settings.max_steps),
             max_steps_if_stiff: self.settings.max_steps_if_stiff,
             end: self.end,

@@ -48,11 +48,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Returns the time (s) after the start of the last step at which a function of `crossing` is zero on the
     /// interior of the step.
     pub(super) fn find_interior_root(&mut self, crossing: &Crossing) -> f64 {
-        let (begin, end) = (self.stepper.step_start().t, self.stepper.current_point().t);
+        let (begin, end) = (
+            self.run.stepper.step_start().t,
+            self.run.stepper.current_point().t,
+        );
         let length = end - begin;
         let mut near = (crossing.near * length, 0.0);
         let mut beyond = (crossing.beyond * length, 0.0);
-        let (stepper, watched) = (&mut self.stepper, self.watched);
+        let (stepper, watched) = (&mut self.run.stepper, self.watched);
         let mut value = |after: f64| {
             let y = match after {
                 after if after <= 0.0 => stepper.step_start().y.clone(),
@@ -122,7 +125,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.statistics.trial_steps += 1;
             self.watched.forget_trials();
             let line = match after > self.shortest_step() {
-                true => (self.stepper.trial(self.watched, after))
+                true => (self.run.stepper.trial(self.watched, after))
                     .map(|(point, rates)| Line { point, rates }),
                 false => Some(self.line_here()),
             };
@@ -155,7 +158,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     fn line_here(&self) -> Line {
-        let point = self.stepper.current_point().clone();
+        let point = self.run.stepper.current_point().clone();
         let mut rates = vec![0.0; point.y.len()];
         self.watched.rates(point.t, &point.y, &mut rates);
         Line { point, rates }
@@ -181,7 +184,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
     /// of `length` s.
     fn cross_on(&self, line: Line, (offset, length): (f64, f64), guards: &[usize]) -> Located {
-        let begin = self.stepper.current_point().t;
+        let begin = self.run.stepper.current_point().t;
         let shortest = self.shortest_step();
         let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * shortest);
         let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
@@ -210,10 +213,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Goes to a point before a surface, `after` (s) from here, at which the rates are singular.
     fn approach(&mut self, guards: &[usize], after: f64) -> Located {
         self.trajectory.statistics.trial_steps += 1;
-        let trial = self.stepper.trial(self.watched, APPROACH * after);
+        let trial = self.run.stepper.trial(self.watched, APPROACH * after);
         let near =
             trial.filter(|(point, _)| self.watched.lowest_guard(guards, point.t, &point.y) >= 0.0);
-        self.stepper.set_step(2.0 * (1.0 - APPROACH) * after);
+        self.run.stepper.set_step(2.0 * (1.0 - APPROACH) * after);
         near.map_or(Located::Failed, |(point, _)| Located::Touched(point))
     }
 }

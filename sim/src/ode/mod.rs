@@ -7,7 +7,7 @@
 //! switching functions over its interior, a polynomial in `bernstein` form; `grazing` and
 //! `resolution` by samples, for functions without bounds. `location` finds the root on the interior and makes steps that
 //! end at the surface; `passage` applies the event there. `driver` combines these into a
-//! [`Trajectory`], with `limits` and `stiffness`. No step averages over a kink or jump
+//! [`Trajectory`], with `limits` and `stiffness`. `simulation` runs it once, or from call to call. No step averages over a kink or jump
 //! of the right-hand side, which would reduce the order of the method.
 //!
 //! # Tolerance
@@ -44,6 +44,7 @@ mod request;
 mod resolution;
 pub mod runge_kutta;
 mod settings;
+mod simulation;
 mod slopes;
 mod stepper;
 mod stiffness;
@@ -52,10 +53,10 @@ mod tableau;
 mod trajectory;
 mod watch;
 
-pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
 pub use events::{Event, Jump, SurfaceMode};
 pub use names::{Names, Surface, SurfaceKind, UnsupportedSticking};
 pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
+pub use simulation::{Simulation, simulate, simulate_into};
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{SolverStatistics, Trajectory};

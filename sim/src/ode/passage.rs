@@ -14,8 +14,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Takes the last step, of `length` s, back to the first surface that it crosses, and applies the event.
     pub(super) fn cross(&mut self, crossing: &Crossing, length: f64) -> Result<(), SolveError> {
         let guess = self.find_interior_root(crossing);
-        self.stepper.take_back();
-        let start = self.stepper.current_point().clone();
+        self.run.stepper.take_back();
+        let start = self.run.stepper.current_point().clone();
         let located = self.locate(crossing, guess, length)?;
         let guard = crossing.guards.first().copied();
         let has_crossed = matches!(located, Located::Crossed(..));
@@ -24,15 +24,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 if let Some(near) = near {
                     self.end_step(near)?;
                 }
-                let near = self.stepper.current_point().clone();
+                let near = self.run.stepper.current_point().clone();
                 self.apply_event(&near, &mut beyond);
-                self.stepper.restart(beyond, length);
+                self.run.stepper.restart(beyond, length);
                 self.project();
                 self.accept(near.t)?;
             }
             Located::Touched(point) if point.t > start.t => self.end_step(point)?,
             Located::Touched(_) | Located::Failed => {
-                self.stepper.restart(start, SHORTENED * length);
+                self.run.stepper.restart(start, SHORTENED * length);
             }
         }
         self.check_approaches(guard, has_crossed)
@@ -43,21 +43,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// # Errors
     /// The reason why steps are too short, if there is no surface.
     pub(super) fn cross_at_once(&mut self) -> Result<(), SolveError> {
-        let near = self.stepper.current_point().clone();
-        let step = self.stepper.step();
+        let near = self.run.stepper.current_point().clone();
+        let step = self.run.stepper.step();
         let Some(mut beyond) = self.find_point_beyond() else {
             return Err(rejection_error(self.watched, &near, step));
         };
         self.apply_event(&near, &mut beyond);
-        self.stepper.restart(beyond, step / SHORTENED);
+        self.run.stepper.restart(beyond, step / SHORTENED);
         self.project();
         self.accept(near.t)
     }
 
     /// Ends the step at a point on the near side of a surface.
     fn end_step(&mut self, point: Point) -> Result<(), SolveError> {
-        let begin = self.stepper.current_point().t;
-        self.stepper.end_trial(point);
+        let begin = self.run.stepper.current_point().t;
+        self.run.stepper.end_trial(point);
         self.project();
         self.accept(begin)
     }
@@ -72,8 +72,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.record_jump(point.t, &before, &point.y);
         }
         let beyond = self.crossed_guards(point);
-        self.rebounds = arrived;
-        self.rebounds.retain(|guard| !beyond.contains(guard));
+        self.run.rebounds = arrived;
+        self.run.rebounds.retain(|guard| !beyond.contains(guard));
     }
 
     /// Returns the surfaces of the present regime that a point is beyond.

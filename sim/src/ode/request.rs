@@ -23,6 +23,14 @@ pub fn check<S: System + ?Sized>(
     if let Some(index) = initial.iter().position(|y| !y.is_finite()) {
         return refuse(format!("entry {index} of the initial state is not finite"));
     }
+    check_span((begin, end), samples)?;
+    settings.check()?;
+    check_rates(system, begin, initial)
+}
+
+/// Rejects an end before the start (s), and samples outside or not in order.
+pub fn check_span((begin, end): (f64, f64), samples: &[f64]) -> Result<(), SolveError> {
+    let refuse = |problem: String| Err(SolveError::Request { problem });
     if !(begin.is_finite() && end.is_finite() && begin < end) {
         return refuse(format!(
             "the end of the simulation, {end} s, must be later than its start, {begin} s"
@@ -35,8 +43,7 @@ pub fn check<S: System + ?Sized>(
             "sample times must ascend from {begin} s to at most {end} s"
         ));
     }
-    settings.check()?;
-    check_rates(system, begin, initial)
+    Ok(())
 }
 
 /// Rejects rates at the start that are not finite.

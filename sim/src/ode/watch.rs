@@ -13,9 +13,14 @@ use super::system::{Interior, ObservedStep, System};
 /// Side of every switching surface: -1, 1, or 0 if a step begins on it.
 pub type Regime = Vec<f64>;
 
-/// A system, the regime of the present step and the errors of its trials.
+/// A system with its record.
 pub struct WatchedSystem<'a, S: System + ?Sized> {
     system: &'a S,
+    record: Record,
+}
+
+/// The regime of the present step, and the errors of its trials.
+pub struct Record {
     regime: RefCell<Regime>,
     horizon: Cell<f64>,
     not_finite: Cell<Option<usize>>,
@@ -34,8 +39,7 @@ pub struct WatchedSystem<'a, S: System + ?Sized> {
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Wraps `system` for a simulation from time `t` and state `y`.
     pub fn new(system: &'a S, (t, y): (f64, &[f64]), tolerance: f64) -> Self {
-        let watched = Self {
-            system,
+        let record = Record {
             regime: RefCell::new(vec![0.0; system.guard_count()]),
             horizon: Cell::new(f64::INFINITY),
             not_finite: Cell::new(None),
@@ -46,58 +50,77 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             continuous: RefCell::default(),
             tolerance,
         };
+        let watched = Self { system, record };
         watched.enter_regime(t, y);
+        watched.fix_sides(true);
         watched
+    }
+
+    /// Continues with a record that [`WatchedSystem::pause`] returned.
+    pub fn resume(system: &'a S, record: Record) -> Self {
+        record.evaluations.set(0);
+        let watched = Self { system, record };
+        watched.fix_sides(true);
+        watched
+    }
+
+    /// Releases the system and returns the record.
+    pub fn pause(self) -> Record {
+        self.fix_sides(false);
+        self.record
     }
 
     /// Clears the errors of earlier trials.
     pub fn forget_trials(&self) {
-        self.not_finite.set(None);
+        self.record.not_finite.set(None);
     }
 
     /// Clips the time of trials to just before `t`. At a breakpoint the right-hand side may jump,
     /// and a step that ends there belongs to the time before.
     pub fn limit_time(&self, t: f64) {
-        self.horizon.set(t);
+        self.record.horizon.set(t);
     }
 
     /// Returns the time of evaluation for a trial at `t`.
     fn seen(&self, t: f64) -> f64 {
-        let horizon = self.horizon.get();
+        let horizon = self.record.horizon.get();
         if t < horizon { t } else { horizon.next_down() }
     }
 
     /// Returns a state variable with a non-finite rate in a trial since
     /// [`WatchedSystem::forget_trials`].
     pub fn non_finite_state(&self) -> Option<usize> {
-        self.not_finite.get()
+        self.record.not_finite.get()
     }
 
     /// Returns a coordinate without positive inertia at a trial since
     /// [`WatchedSystem::forget_later_trials`].
     pub fn indefinite_coordinate(&self) -> Option<usize> {
-        self.indefinite.get()
+        self.record.indefinite.get()
     }
 
     /// Clears errors of trials beyond the present point, after the motion has reached them.
     pub fn forget_later_trials(&self) {
-        self.indefinite.set(None);
+        self.record.indefinite.set(None);
     }
 
     /// Returns the number of evaluations of the right-hand side.
     pub fn evaluations(&self) -> u64 {
-        self.evaluations.get()
+        self.record.evaluations.get()
     }
 
     /// Computes the rates at `t` and `y` in the present regime.
     pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let t = self.seen(t);
         self.system.rates(t, y, out);
-        self.evaluations.set(self.evaluations.get() + 1);
+        self.record
+            .evaluations
+            .set(self.record.evaluations.get() + 1);
         if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
-            self.not_finite.set(Some(state));
-            if self.indefinite.get().is_none() {
-                self.indefinite
+            self.record.not_finite.set(Some(state));
+            if self.record.indefinite.get().is_none() {
+                self.record
+                    .indefinite
                     .set(self.system.find_indefinite_coordinate(t, y));
             }
         }
@@ -107,7 +130,9 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// the system has none.
     pub fn project(&self, t: f64, y: &mut [f64]) -> bool {
         let evaluations = self.system.project(self.seen(t), y);
-        self.evaluations.set(self.evaluations.get() + evaluations);
+        self.record
+            .evaluations
+            .set(self.record.evaluations.get() + evaluations);
         evaluations > 0
     }
 
@@ -118,17 +143,22 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Returns true if the system has switching surfaces.
     pub fn has_guards(&self) -> bool {
-        !self.regime.borrow().is_empty()
+        !self.record.regime.borrow().is_empty()
     }
 
     /// Returns the side of the surface `guard` in the present regime: -1, 1, or 0 if unknown.
     pub fn side(&self, guard: usize) -> f64 {
-        self.regime.borrow().get(guard).copied().unwrap_or(0.0)
+        self.record
+            .regime
+            .borrow()
+            .get(guard)
+            .copied()
+            .unwrap_or(0.0)
     }
 
     /// Returns the sides of all surfaces; see [`WatchedSystem::side`].
     pub fn sides(&self) -> Vec<f64> {
-        self.regime.borrow().clone()
+        self.record.regime.borrow().clone()
     }
 
     /// Returns the switching functions at `t` and `y`.
@@ -176,7 +206,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// present regime.
     pub fn lowest_guard(&self, guards: &[usize], t: f64, y: &[f64]) -> f64 {
         let values = self.evaluate_guards_before(t, y);
-        let regime = self.regime.borrow();
+        let regime = self.record.regime.borrow();
         let values = guards.iter().map(|guard| regime[*guard] * values[*guard]);
         values.fold(f64::INFINITY, f64::min)
     }
@@ -194,12 +224,12 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Sets the regime to that of `t` and `y`. A function that is exactly 0 keeps its side.
     pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
-        let mut regime = self.regime.borrow_mut();
-        let mut last = self.last_sides.borrow_mut();
+        let mut regime = self.record.regime.borrow_mut();
+        let mut last = self.record.last_sides.borrow_mut();
         let sides = regime.iter_mut().zip(guards).enumerate();
         for (index, (side, guard)) in sides.filter(|(_, (_, guard))| guard.abs() > 0.0) {
-            let is_continuous = self.continuous.borrow().contains(&index);
-            if is_continuous && self.is_at_surface((index, guard), (t, y), self.tolerance) {
+            let is_continuous = self.record.continuous.borrow().contains(&index);
+            if is_continuous && self.is_at_surface((index, guard), (t, y), self.record.tolerance) {
                 *side = 0.0;
                 continue;
             }
@@ -211,10 +241,10 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Lets steps pass the surface `guard` where they come near it, if the rates are continuous there. Returns true
     /// if it is a new one.
     pub fn release_if_continuous(&self, guard: usize, t: f64, y: &[f64]) -> bool {
-        let is_new = !self.continuous.borrow().contains(&guard)
-            && self.has_continuous_rates(guard, (t, y), self.tolerance);
+        let is_new = !self.record.continuous.borrow().contains(&guard)
+            && self.has_continuous_rates(guard, (t, y), self.record.tolerance);
         if is_new {
-            self.continuous.borrow_mut().push(guard);
+            self.record.continuous.borrow_mut().push(guard);
             self.enter_regime(t, y);
         }
         is_new
@@ -233,20 +263,20 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Returns true if the system has a breakpoint at `t`, where steps end.
     pub fn has_breakpoint_at(&self, t: f64) -> bool {
-        t == self.horizon.get()
+        t == self.record.horizon.get()
     }
 
     /// Extends the rates of the present regime smoothly beyond its surfaces if `keep`; see
     /// [`System::fix_sides`].
     pub fn fix_sides(&self, keep: bool) {
-        self.has_released_sides.set(!keep);
-        let regime = self.regime.borrow();
+        self.record.has_released_sides.set(!keep);
+        let regime = self.record.regime.borrow();
         self.system.fix_sides(keep.then_some(regime.as_slice()));
     }
 
     /// Fixes sides that were released for an earlier step.
     pub fn restore_sides(&self) {
-        if self.has_released_sides.get() {
+        if self.record.has_released_sides.get() {
             self.fix_sides(true);
         }
     }
@@ -254,7 +284,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Evaluates rates on the side of each state if those of the present regime were not finite in
     /// a trial. Returns true if so.
     pub fn release_sides(&self) -> bool {
-        let releases = self.has_guards() && self.not_finite.get().is_some();
+        let releases = self.has_guards() && self.record.not_finite.get().is_some();
         if releases {
             self.fix_sides(false);
         }
@@ -269,7 +299,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Writes the modes of the surfaces in the present regime.
     pub fn write_modes(&self, modes: &mut Vec<SurfaceMode>) {
         modes.clear();
-        let sides = self.last_sides.borrow();
+        let sides = self.record.last_sides.borrow();
         modes.extend(sides.iter().map(|side| SurfaceMode::from_side(*side)));
         self.system.write_modes(modes);
     }

@@ -336,6 +336,19 @@ impl Propagator {
         })
     }
 
+    /// Follows a change of the inputs at the time reached.
+    ///
+    /// # Errors
+    /// A regime that cannot be prepared.
+    pub fn follow_input_jump(
+        &mut self,
+        motion: &mut Motion,
+        inputs: &HeldInputs,
+    ) -> Result<(), ExactError> {
+        motion.jumped = Some(Jumped::Any);
+        self.take_inputs(motion, inputs)
+    }
+
     /// Enters the regime that inputs lead to which have changed, where what they switch has one
     /// value while they are held.
     fn take_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {

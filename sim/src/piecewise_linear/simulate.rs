@@ -3,7 +3,7 @@
 use super::error::ExactError;
 use super::flow::Flow;
 use super::follow::Samples;
-use super::propagator::{Change, Follow, Propagator, Segment};
+use super::propagator::{Change, Follow, Motion, Propagator, Segment};
 use crate::inputs::HeldInputs;
 use crate::ode::{Event, ObservedStep, Trajectory};
 
@@ -60,24 +60,63 @@ impl Propagator {
     ) -> Result<(), ExactError> {
         let samples = Samples::new(span, samples)?;
         let mut motion = self.start(span.0, initial, inputs)?;
+        let request = (span.1, samples, Some(initial));
+        self.record_until(
+            &mut motion,
+            request,
+            inputs,
+            (progress, observer),
+            trajectory,
+        )
+    }
+
+    /// Continues a motion to the time `until` (s), and adds the states at `samples` (s, ascending, after the time
+    /// reached), the events and the work to `trajectory`.
+    ///
+    /// # Errors
+    /// Same as [`Propagator::simulate`].
+    pub fn continue_motion(
+        &mut self,
+        motion: &mut Motion,
+        (until, samples): (f64, &[f64]),
+        inputs: &HeldInputs,
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), ExactError> {
+        let samples = Samples::new((motion.time(), until), samples)?;
+        let request = (until, samples, None);
+        self.record_until(motion, request, inputs, (progress, None), trajectory)
+    }
+
+    fn record_until(
+        &mut self,
+        motion: &mut Motion,
+        (until, samples, initial): (f64, Samples<'_>, Option<&[f64]>),
+        inputs: &HeldInputs,
+        (progress, observer): (&mut dyn FnMut(f64), Option<&mut StepObserver<'_>>),
+        trajectory: &mut Trajectory,
+    ) -> Result<(), ExactError> {
+        let before = motion.effort.clone();
         let mut recorder = Recorder {
             samples,
             events: Vec::new(),
             progress,
             observer,
         };
-        recorder.samples.take_until(span.0, initial);
-        let ended = self.follow_until(&mut motion, span.1, inputs, &mut recorder);
+        if let Some(initial) = initial {
+            recorder.samples.take_until(motion.time(), initial);
+        }
+        let ended = self.follow_until(motion, until, inputs, &mut recorder);
         if ended.is_ok() {
             // The last switch may be at the end, up to rounding.
-            recorder.samples.take_until(span.1, motion.state());
+            recorder.samples.take_until(until, motion.state());
         }
-        trajectory.times = recorder.samples.times;
-        trajectory.states = recorder.samples.states;
-        trajectory.events = recorder.events;
+        trajectory.times.append(&mut recorder.samples.times);
+        trajectory.states.append(&mut recorder.samples.states);
+        trajectory.events.append(&mut recorder.events);
         trajectory.final_state = motion.state().to_vec();
-        trajectory.statistics.steps = motion.effort.steps;
-        trajectory.statistics.trial_steps = motion.effort.newton;
+        trajectory.statistics.steps += motion.effort.steps - before.steps;
+        trajectory.statistics.trial_steps += motion.effort.newton - before.newton;
         ended
     }
 }

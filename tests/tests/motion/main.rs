@@ -3,6 +3,7 @@
 mod chambers;
 mod constraints;
 mod contact_friction;
+mod continued;
 mod corners;
 mod drawn_motion;
 mod energy_audit;

@@ -41,6 +41,13 @@ impl ObservedMotion {
         }
     }
 
+    /// Adds a point to the motion.
+    pub fn extend(&mut self, point: Point<'_>) {
+        if let Some(rest) = &mut self.rest {
+            rest.extend(point);
+        }
+    }
+
     /// Writes the observables at a point of the motion.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
         let rest = self.rest.as_mut();
@@ -53,42 +60,46 @@ impl ObservedMotion {
 /// Forces and rates during sticking, along a motion.
 pub struct StickingMotion {
     sided: SidedModel,
-    /// Largest value of each function, coordinate and rate, and the duration of the motion, s.
+    /// Largest value of each function, coordinate and rate.
     sizes: Vec<f64>,
     state_sizes: [f64; 2],
-    duration: f64,
+    /// First and last time, s.
+    span: Option<(f64, f64)>,
 }
 
 impl StickingMotion {
     /// Prepares a motion with these times (s) and states.
     pub fn new(
-        mut sided: SidedModel,
+        sided: SidedModel,
         (times, states): (&[f64], &[Vec<f64>]),
         inputs: &HeldInputs,
     ) -> Self {
-        let mut sizes = vec![0.0_f64; sided.side_count()];
-        let mut state_sizes = [0.0_f64; 2];
-        let degrees = sided.degrees_of_freedom();
-        for (t, state) in times.iter().zip(states) {
-            let functions = sided.evaluate_functions((*t, state), &inputs.evaluate(*t));
-            for (size, value) in sizes.iter_mut().zip(functions) {
-                *size = size.max(value.abs());
-            }
-            let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
-            for (size, entries) in state_sizes.iter_mut().zip([coordinates, rates]) {
-                *size = size.max(max_magnitude(entries));
-            }
-        }
-        let duration = match (times.first(), times.last()) {
-            (Some(first), Some(last)) => last - first,
-            _ => 0.0,
-        };
-        Self {
+        let mut motion = Self {
+            sizes: vec![0.0_f64; sided.side_count()],
+            state_sizes: [0.0; 2],
+            span: None,
             sided,
-            sizes,
-            state_sizes,
-            duration,
+        };
+        for (&t, state) in times.iter().zip(states) {
+            let inputs = &inputs.evaluate(t);
+            motion.extend(Point { t, state, inputs });
         }
+        motion
+    }
+
+    /// Adds a point after the last one to the motion.
+    pub fn extend(&mut self, Point { t, state, inputs }: Point<'_>) {
+        let functions = self.sided.evaluate_functions((t, state), inputs);
+        for (size, value) in self.sizes.iter_mut().zip(functions) {
+            *size = size.max(value.abs());
+        }
+        let degrees = self.sided.degrees_of_freedom();
+        let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
+        for (size, entries) in self.state_sizes.iter_mut().zip([coordinates, rates]) {
+            *size = size.max(max_magnitude(entries));
+        }
+        let (begin, _) = self.span.unwrap_or((t, t));
+        self.span = Some((begin, t));
     }
 
     /// Writes the rates at a point of the motion and returns true, if surfaces hold it there.
@@ -125,7 +136,8 @@ impl StickingMotion {
         let roundings = self.state_sizes.map(|size| MAX_DISTANCE_FRACTION * size);
         self.sided.set_model_inputs(inputs);
         self.sided.close_resting_contacts((t, state), roundings);
-        set_holding_sides(&mut self.sided, (t, state), inputs, (&reach, self.duration))
+        let duration = self.span.map_or(0.0, |(begin, end)| end - begin);
+        set_holding_sides(&mut self.sided, (t, state), inputs, (&reach, duration))
     }
 }
 

@@ -1,0 +1,489 @@
+//! Simulations that continue from call to call, as with a controller, in a co-simulation or in an interactive
+//! program.
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Method, Settings, Simulation as GeneralSimulation, Surface, Trajectory};
+use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
+
+use crate::driven_model::DrivenModel;
+use crate::error::Error;
+use crate::event_log::{LoggedEvent, log_events};
+use crate::general_run::GeneralRun;
+use crate::instance::Instance;
+use crate::motion::{EarlyStop, Solver, StopCause};
+use crate::projection::InitialChange;
+use crate::simulation::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS};
+use crate::sticking::ObservedMotion;
+use crate::stop_reasons::{
+    describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
+};
+
+/// Length (s) of a motion whose first step the solver starts with; the error estimate corrects it at once.
+const FIRST_LENGTH_S: f64 = 1.0;
+
+/// Solver and accuracy of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverOptions {
+    /// Solver of the equations of motion.
+    pub solver: Solver,
+    /// Relative tolerance; [`Solver::Exact`] ignores it.
+    pub tolerance: f64,
+    /// Longest step, s; [`Solver::Exact`] ignores it.
+    pub max_step: f64,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self {
+            solver: Solver::Auto,
+            tolerance: DEFAULT_TOLERANCE,
+            max_step: f64::INFINITY,
+        }
+    }
+}
+
+impl SolverOptions {
+    fn settings(&self, method: Method) -> Settings {
+        let max_steps_if_stiff = match self.solver {
+            Solver::Auto => MAX_STIFF_STEPS,
+            _ => Settings::default().max_steps_if_stiff,
+        };
+        Settings {
+            method,
+            max_step: self.max_step,
+            max_steps_if_stiff,
+            ..Settings::with_tolerance(self.tolerance)
+        }
+    }
+}
+
+/// A simulation that continues from call to call. Inputs may change in between; they are held until the
+/// next change. Without a change the solver keeps its steps, so that many short calls give the same motion as a long one.
+///
+/// ```
+/// # use eomgen_compiled_model::{CompiledModel, Orders, SolverOptions};
+/// let text = r#"
+///     [model]
+///     name = "mass"
+///     [parameters]
+///     m = { value = 2.0, unit = "kg" }
+///     [coordinates]
+///     x = "m"
+///     [inputs]
+///     F = "N"
+///     [energy]
+///     kinetic = "1/2*m*dot(x)^2"
+///     [forces]
+///     drive = { on = "x", value = "F" }
+/// "#;
+/// let model = CompiledModel::from_text("mass.toml", text, Orders::Declared)?;
+/// let run = model.with_declared_parameters()?;
+/// let start = (0.0, run.initial_state());
+/// let mut simulation = run.start_simulation(start, run.default_inputs(), SolverOptions::default())?;
+/// for step in 1..=4 {
+///     let force = -10.0 * (simulation.state()[0] - 1.0) - 4.0 * simulation.state()[1];
+///     simulation.set_inputs(&[force])?;
+///     simulation.advance(0.1 * f64::from(step))?;
+/// }
+/// assert!((simulation.time() - 0.4).abs() < 1e-15);
+/// # Ok::<(), eomgen_compiled_model::Error>(())
+/// ```
+pub struct Simulation<'m> {
+    instance: Instance<'m>,
+    options: SolverOptions,
+    inputs: HeldInputs,
+    /// Inputs from the time reached on.
+    present_inputs: Vec<f64>,
+    engine: Engine,
+    surfaces: Vec<Surface>,
+    initial_changes: Vec<InitialChange>,
+    /// Events and jumps since [`Simulation::clear_events`].
+    log: Trajectory,
+}
+
+enum Engine {
+    Exact {
+        propagator: Box<Propagator>,
+        motion: Box<ExactMotion>,
+        observed: Box<ObservedMotion>,
+    },
+    General {
+        run: Box<GeneralRun>,
+        simulation: GeneralSimulation,
+    },
+}
+
+impl<'m> Instance<'m> {
+    /// Starts a simulation at a time (s) and a state (SI).
+    ///
+    /// # Errors
+    /// An invalid request, no consistent state near the given one, or a solver that does not support the model.
+    pub fn start_simulation(
+        &self,
+        (t, state): (f64, &[f64]),
+        inputs: HeldInputs,
+        options: SolverOptions,
+    ) -> Result<Simulation<'m>, Error> {
+        let check = options.settings(Method::default()).check();
+        check.map_err(|error| Error::Request(error.to_string()))?;
+        let is_held = !inputs.is_time_varying();
+        let exact = match options.solver {
+            Solver::Exact if !is_held => {
+                return Err(Error::Request(
+                    "the exact solver holds inputs constant between samples, but these inputs are functions of \
+                     time: use --solver rk"
+                        .to_owned(),
+                ));
+            }
+            Solver::Exact => Some(self.start_exact((t, state), &inputs)?),
+            Solver::Auto if is_held && self.model().piecewise_linear().is_ok() => {
+                Some(self.start_exact((t, state), &inputs)?)
+            }
+            _ => None,
+        };
+        let (engine, initial_changes) = match exact {
+            Some(engine) => (engine, Vec::new()),
+            None => {
+                let method = match options.solver {
+                    Solver::Radau => Method::Radau,
+                    Solver::Adams => Method::Adams,
+                    _ => Method::DormandPrince853,
+                };
+                self.start_general((t, state), &inputs, &options.settings(method))?
+            }
+        };
+        let surfaces = match &engine {
+            Engine::Exact { .. } => self.surfaces(&inputs)?,
+            Engine::General { run, .. } => run.surfaces.clone(),
+        };
+        Ok(Simulation {
+            instance: self.clone(),
+            options,
+            present_inputs: inputs.evaluate(t).into_owned(),
+            inputs,
+            engine,
+            surfaces,
+            initial_changes,
+            log: Trajectory::default(),
+        })
+    }
+
+    fn surfaces(&self, inputs: &HeldInputs) -> Result<Vec<Surface>, Error> {
+        let evaluator = std::cell::RefCell::new(self.evaluator()?);
+        Ok(DrivenModel::new(&evaluator, inputs).surfaces())
+    }
+
+    fn start_exact(&self, (t, state): (f64, &[f64]), inputs: &HeldInputs) -> Result<Engine, Error> {
+        let mut propagator = self.propagator().map_err(|error| Error::from(&error))?;
+        let motion = propagator.start(t, state, inputs);
+        let motion = motion.map_err(|error| Error::from(&error))?;
+        let start = Trajectory {
+            times: vec![t],
+            states: vec![state.to_vec()],
+            ..Trajectory::default()
+        };
+        let holding = self.holding_model()?;
+        let observed = ObservedMotion::new(self.evaluator()?, holding, &start, inputs);
+        Ok(Engine::Exact {
+            propagator: Box::new(propagator),
+            motion: Box::new(motion),
+            observed: Box::new(observed),
+        })
+    }
+
+    fn start_general(
+        &self,
+        (t, state): (f64, &[f64]),
+        inputs: &HeldInputs,
+        settings: &Settings,
+    ) -> Result<(Engine, Vec<InitialChange>), Error> {
+        let span = (t, t + FIRST_LENGTH_S);
+        let mut run = self.prepare_general_run((state, span), inputs, settings)?;
+        let start = (t, &run.initial[..]);
+        let simulation = GeneralSimulation::new(&run.system, start, FIRST_LENGTH_S, settings);
+        let simulation = simulation.map_err(|error| {
+            let stop = run.early_stop(self.model(), &error, (t, &run.initial));
+            into_error(stop)
+        })?;
+        let changes = std::mem::take(&mut run.initial_changes);
+        let run = Box::new(run);
+        Ok((Engine::General { run, simulation }, changes))
+    }
+}
+
+impl Simulation<'_> {
+    /// Returns the time reached, s.
+    pub fn time(&self) -> f64 {
+        match &self.engine {
+            Engine::Exact { motion, .. } => motion.time(),
+            Engine::General { simulation, .. } => simulation.time(),
+        }
+    }
+
+    /// Returns the state at that time, SI.
+    pub fn state(&self) -> &[f64] {
+        match &self.engine {
+            Engine::Exact { motion, .. } => motion.state(),
+            Engine::General { simulation, .. } => simulation.state(),
+        }
+    }
+
+    /// Returns the inputs from that time on, SI.
+    pub fn inputs(&self) -> &[f64] {
+        &self.present_inputs
+    }
+
+    /// Returns the solver in use; never [`Solver::Auto`].
+    pub fn solver(&self) -> Solver {
+        match &self.engine {
+            Engine::Exact { .. } => Solver::Exact,
+            Engine::General { run, .. } => run.solver,
+        }
+    }
+
+    /// Returns the switching surfaces of the events.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// Returns the changes of the first state that made the constraints hold.
+    pub fn initial_changes(&self) -> &[InitialChange] {
+        &self.initial_changes
+    }
+
+    /// Returns the events since the start or the last [`Simulation::clear_events`].
+    pub fn events(&self) -> Vec<LoggedEvent<'_>> {
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        log_events(&self.log, &self.surfaces, degrees)
+    }
+
+    /// Forgets the events so far.
+    pub fn clear_events(&mut self) {
+        self.log.events.clear();
+        self.log.jumps.clear();
+    }
+
+    /// Writes the observables at the time reached to `out`. During sticking they use the friction force that holds
+    /// the motion.
+    pub fn write_observables(&mut self, out: &mut [f64]) {
+        let t = self.time();
+        match &mut self.engine {
+            Engine::Exact {
+                motion, observed, ..
+            } => {
+                let point = Point {
+                    t,
+                    state: motion.state(),
+                    inputs: &self.present_inputs,
+                };
+                observed.observables(point, out);
+            }
+            Engine::General { run, simulation } => {
+                run.system.write_observables((t, simulation.state()), out);
+            }
+        }
+    }
+
+    /// Continues to the time `until` (s).
+    ///
+    /// # Errors
+    /// A time before the time reached, and [`Error::Stopped`] if the solver stops early, at the time that it reached.
+    pub fn advance(&mut self, until: f64) -> Result<(), Error> {
+        let mut trajectory = Trajectory::default();
+        let ended = self.advance_through((until, &[]), &mut trajectory, &mut |_| {});
+        self.log.events.append(&mut trajectory.events);
+        self.log.jumps.append(&mut trajectory.jumps);
+        match ended? {
+            Some(stop) => Err(into_error(stop)),
+            None => Ok(()),
+        }
+    }
+
+    /// Continues to the time `until` (s), and adds the states at `samples` (s, ascending, after the time reached), the
+    /// events and the work to `trajectory`. Calls `progress` with the time reached, s. Returns the reason if the
+    /// solver stops early.
+    ///
+    /// # Errors
+    /// Times that are not finite, not ascending or before the time reached.
+    pub fn advance_through(
+        &mut self,
+        (until, samples): (f64, &[f64]),
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        let now = self.time();
+        let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
+        let inside = samples.iter().all(|sample| (now..=until).contains(sample));
+        if !(until.is_finite() && until >= now && ascending && inside) {
+            return Err(Error::Request(format!(
+                "a simulation that reached {now:?} s cannot continue to {until:?} s with these samples: times must be \
+                 finite and ascend from the time reached"
+            )));
+        }
+        let first = trajectory.times.len();
+        loop {
+            let rest = &samples[trajectory.times.len() - first..];
+            let Some(stop) = self.try_advance((until, rest), trajectory, progress) else {
+                return Ok(None);
+            };
+            match stop {
+                (_, Some(method)) if self.options.solver == Solver::Auto => {
+                    self.continue_with(method)?;
+                }
+                (stop, _) => return Ok(Some(stop)),
+            }
+        }
+    }
+
+    /// Continues with the present solver. Returns the reason of an early stop, and a method that may continue from there.
+    fn try_advance(
+        &mut self,
+        (until, samples): (f64, &[f64]),
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Option<(EarlyStop, Option<Method>)> {
+        let begin = self.time();
+        if begin == until && samples.is_empty() {
+            return None;
+        }
+        let model = self.instance.model();
+        match &mut self.engine {
+            Engine::Exact {
+                propagator,
+                motion,
+                observed,
+            } => {
+                let asked = (until, samples);
+                let ended =
+                    propagator.continue_motion(motion, asked, &self.inputs, trajectory, progress);
+                observed.extend(Point {
+                    t: motion.time(),
+                    state: motion.state(),
+                    inputs: &self.present_inputs,
+                });
+                let error = ended.err()?;
+                let stop = EarlyStop {
+                    t: error.time(),
+                    reason: describe_exact_stop(model, &self.surfaces, &error),
+                    cause: find_exact_stop_cause(model, &error, &self.surfaces),
+                };
+                let may_continue = may_be_supported_by_general(&error);
+                Some((stop, may_continue.then_some(Method::DormandPrince853)))
+            }
+            Engine::General { run, simulation } => {
+                let asked = (until, samples);
+                let ended = simulation.advance(&run.system, asked, trajectory, progress);
+                let error = ended.err()?;
+                let stop = run.early_stop(model, &error, (begin, simulation.state()));
+                let is_stiff = matches!(stop.cause, StopCause::Stiff(_));
+                let may_continue = is_stiff && run.solver != Solver::Radau;
+                Some((stop, may_continue.then_some(Method::Radau)))
+            }
+        }
+    }
+
+    fn continue_with(&mut self, method: Method) -> Result<(), Error> {
+        let start = (self.time(), self.state());
+        let settings = self.options.settings(method);
+        let started = self
+            .instance
+            .start_general(start, &self.inputs, &settings)?;
+        self.engine = started.0;
+        Ok(())
+    }
+
+    /// Changes the inputs from the time reached on. The same inputs again change nothing.
+    ///
+    /// # Errors
+    /// Another number of inputs, one that is not finite, and a motion that cannot follow the jump.
+    pub fn set_inputs(&mut self, inputs: &[f64]) -> Result<(), Error> {
+        let names = &self.instance.model().program().inputs;
+        if inputs.len() != names.len() {
+            let (given, wanted) = (inputs.len(), names.len());
+            return Err(Error::Request(format!(
+                "{given} inputs are given, but the model has {wanted}"
+            )));
+        }
+        let t = self.time();
+        if let Some(place) = inputs.iter().position(|value| !value.is_finite()) {
+            return Err(Error::Request(format!(
+                "at t = {t:?} s the input `{}` is not finite",
+                names[place].name
+            )));
+        }
+        if self.present_inputs == inputs && !self.inputs.is_time_varying() {
+            return Ok(());
+        }
+        let before = self.inputs.evaluate(t.next_down());
+        let rows = [&before[..], inputs].concat();
+        let held = HeldInputs::new(vec![t.next_down(), t], rows, inputs.len());
+        let Some(held) = held else { return Ok(()) };
+        self.present_inputs = inputs.to_vec();
+        self.inputs = held;
+        self.follow_input_jump()
+    }
+
+    fn follow_input_jump(&mut self) -> Result<(), Error> {
+        let begin = self.time();
+        let model = self.instance.model();
+        match &mut self.engine {
+            Engine::Exact {
+                propagator, motion, ..
+            } => {
+                let followed = propagator.follow_input_jump(motion, &self.inputs);
+                followed.map_err(|error| Error::Stopped {
+                    t: Some(begin),
+                    reason: describe_exact_stop(model, &self.surfaces, &error),
+                })
+            }
+            Engine::General { run, simulation } => {
+                run.system.set_inputs(self.inputs.clone());
+                let followed = simulation.follow_input_jump(&run.system, &mut self.log);
+                followed.map_err(|error| {
+                    let stop = run.early_stop(model, &error, (begin, simulation.state()));
+                    into_error(stop)
+                })
+            }
+        }
+    }
+
+    /// Continues from another state at the time reached, SI.
+    ///
+    /// # Errors
+    /// An invalid state, and one from which the motion cannot continue.
+    pub fn set_state(&mut self, state: &[f64]) -> Result<(), Error> {
+        let span = (self.time(), self.time() + FIRST_LENGTH_S);
+        let states = self.instance.model().program().states();
+        if state.len() != states || state.iter().any(|entry| !entry.is_finite()) {
+            return Err(Error::Request(format!(
+                "a state has {states} finite entries"
+            )));
+        }
+        let found = (self.instance).find_consistent_start(state, span, &self.inputs)?;
+        match &self.engine {
+            Engine::Exact { .. } => {
+                self.engine = self.instance.start_exact((span.0, state), &self.inputs)?;
+                Ok(())
+            }
+            // Surfaces hold or close anew.
+            Engine::General { run, .. } => {
+                let method = match run.solver {
+                    Solver::Radau => Method::Radau,
+                    Solver::Adams => Method::Adams,
+                    _ => Method::DormandPrince853,
+                };
+                let settings = self.options.settings(method);
+                let start = (span.0, &found.0[..]);
+                self.engine = (self.instance)
+                    .start_general(start, &self.inputs, &settings)?
+                    .0;
+                Ok(())
+            }
+        }
+    }
+}
+
+fn into_error(EarlyStop { t, reason, .. }: EarlyStop) -> Error {
+    Error::Stopped { t, reason }
+}

@@ -1,0 +1,88 @@
+//! Causes of early stops, with the names of states and surfaces.
+
+use eomgen_sim::ode::{Names, SolveError, Surface, UnsupportedSticking};
+use eomgen_sim::piecewise_linear::ExactError;
+
+use crate::model::CompiledModel;
+use crate::motion::{Solver, StopCause};
+
+/// Returns the category of an error of a general solver.
+pub(crate) fn find_stop_cause(
+    model: &CompiledModel,
+    error: &SolveError,
+    surfaces: &[Surface],
+) -> StopCause {
+    match error {
+        SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
+            StopCause::NotFinite
+        }
+        SolveError::Sticking { .. } | SolveError::TooManySwitches { .. } => StopCause::Switching,
+        SolveError::Stiff { state, within, .. } => {
+            let state = &model.state_names()[*state];
+            StopCause::Stiff(format!(
+                "the model is stiff: `{state}` settles within {within:.1e} s"
+            ))
+        }
+        SolveError::StiffAtSurface { guard, .. } => StopCause::Stiff(match surfaces.get(*guard) {
+            Some(surface) => {
+                format!("stiff near the place where `{}` is zero", surface.formula)
+            }
+            None => "stiff near a switching surface".to_owned(),
+        }),
+        SolveError::Request { .. }
+        | SolveError::StepTooSmall { .. }
+        | SolveError::TooManySteps { .. } => StopCause::Limit,
+    }
+}
+
+/// Returns the category of an error of the exact solver.
+pub(crate) fn find_exact_stop_cause(
+    model: &CompiledModel,
+    error: &ExactError,
+    surfaces: &[Surface],
+) -> StopCause {
+    match error {
+        ExactError::Stopped(error) => find_stop_cause(model, error, surfaces),
+        ExactError::Sticking { .. } => StopCause::Switching,
+        ExactError::NotFinite | ExactError::NotPositiveDefinite => StopCause::NotFinite,
+        _ => StopCause::Limit,
+    }
+}
+
+/// Returns cause and cure of an error of the exact solver.
+pub(crate) fn describe_exact_stop(
+    model: &CompiledModel,
+    surfaces: &[Surface],
+    error: &ExactError,
+) -> String {
+    format_named(model, (surfaces, Solver::Exact), |names| {
+        error.format_named(names)
+    })
+}
+
+/// Returns true if another solver may follow the motion.
+pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
+    matches!(
+        error,
+        ExactError::Sticking { .. } | ExactError::NotConverged
+    )
+}
+
+/// Formats an error of a solver with the names of the states and of these switching functions.
+pub(crate) fn format_named(
+    model: &CompiledModel,
+    (surfaces, solver): (&[Surface], Solver),
+    message: impl FnOnce(&Names<'_>) -> String,
+) -> String {
+    let states = model.state_names();
+    let unsupported_sticking = match solver {
+        Solver::Adams => UnsupportedSticking::Adams,
+        _ if !model.model().impacts.is_empty() => UnsupportedSticking::Impacts,
+        _ => UnsupportedSticking::Formula,
+    };
+    message(&Names {
+        states: &states,
+        surfaces,
+        unsupported_sticking,
+    })
+}
