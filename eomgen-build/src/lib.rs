@@ -96,15 +96,8 @@ pub fn generate_with(
     println!("cargo::rerun-if-changed={}", root.join(path).display());
     let checked =
         eomgen_model_spec::load_from(&root, path).map_err(|found| specification_error(&found))?;
-    let beside = path.parent().unwrap_or(Path::new(""));
-    for table in checked
-        .model
-        .fields
-        .iter()
-        .filter_map(|field| field.basis.table())
-    {
-        let file = root.join(beside).join(&table.file);
-        println!("cargo::rerun-if-changed={}", file.display());
+    for file in checked.model.files().iter().skip(1) {
+        println!("cargo::rerun-if-changed={}", root.join(file).display());
     }
     for warning in checked.warnings.records() {
         println!("cargo::warning={}", format_on_one_line(&warning));

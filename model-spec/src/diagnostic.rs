@@ -285,20 +285,33 @@ impl Diagnostics {
             1 => ("", "is"),
             _ => ("s", "are"),
         };
-        let name =
-            |span: &Span| self.source.text[self.clamp_to_text(*span)].trim_matches(['"', '\'']);
+        let name = |span: &Span| {
+            self.source.text[clamp(&self.source.text, *span)].trim_matches(['"', '\''])
+        };
         let names: Vec<&str> = spans.iter().map(name).collect();
-        let places = spans.iter().map(|span| self.source.place(span.start));
-        let places: Vec<String> = places
-            .map(|place| format!("{}:{}", place.line, place.column))
-            .collect();
         Some(format!(
-            "the {}{ending} `{}` {verb} not used ({}:{})",
+            "the {}{ending} `{}` {verb} not used ({})",
             kind.name(),
             names.join("`, `"),
-            self.source.path,
-            places.join(", ")
+            self.places(&spans)
         ))
+    }
+
+    /// Returns the lines and columns of spans, each file named once in a row.
+    fn places(&self, spans: &[Span]) -> String {
+        let mut text = String::new();
+        let mut named = None;
+        for span in spans {
+            let (file, inside) = self.source.locate(*span);
+            let place = file.place(inside.start);
+            text.push_str(if text.is_empty() { "" } else { ", " });
+            if named != Some(&file.path) {
+                text.push_str(&format!("{}:", file.path));
+                named = Some(&file.path);
+            }
+            text.push_str(&format!("{}:{}", place.line, place.column));
+        }
+        text
     }
 
     /// Returns all findings for programs.
@@ -308,10 +321,11 @@ impl Diagnostics {
 
     fn record(&self, diagnostic: &Diagnostic) -> Record {
         let span = diagnostic.primary.as_ref().map(|label| label.span);
-        let start = span.map(|span| self.source.place(span.start));
-        let end = span.map(|span| self.source.place(span.end));
+        let located = span.map(|span| self.source.locate(span));
+        let start = located.map(|(file, span)| file.place(span.start));
+        let end = located.map(|(file, span)| file.place(span.end));
         Record {
-            file: self.source.path.clone(),
+            file: located.map_or(&self.source, |(file, _)| file).path.clone(),
             line: start.map(|place| place.line),
             column: start.map(|place| place.column),
             end_line: end.map(|place| place.line),
@@ -329,7 +343,11 @@ impl Diagnostics {
         };
         let title = level.primary_title(diagnostic.message.as_str());
         let group = match &diagnostic.primary {
-            Some(primary) => title.element(self.snippet(primary, &diagnostic.secondary)),
+            Some(primary) => self
+                .snippets(primary, &diagnostic.secondary)
+                .fold(Group::with_title(title), |group, snippet| {
+                    group.element(snippet)
+                }),
             None => title.element(Origin::path(self.source.path.as_str())),
         };
         match &diagnostic.help {
@@ -338,53 +356,86 @@ impl Diagnostics {
         }
     }
 
-    fn snippet<'a>(
+    /// Returns one snippet with all labels in the file of the primary one, and one for each label
+    /// in another file.
+    fn snippets<'a>(
         &'a self,
         primary: &'a Label,
         secondary: &'a [Label],
-    ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
-        let (excerpt, line) = self.excerpt(primary, secondary);
-        let annotation = |kind: AnnotationKind, label: &'a Label| {
-            let inside = self.clamp_to_text(label.span);
-            let annotation = kind.span(inside.start - excerpt.start..inside.end - excerpt.start);
-            if label.text.is_empty() {
-                annotation
-            } else {
-                annotation.label(label.text.as_str())
+    ) -> impl Iterator<Item = Snippet<'a, annotate_snippets::Annotation<'a>>> {
+        let mark = |kind: AnnotationKind| {
+            move |label: &'a Label| {
+                let (file, span) = self.source.locate(label.span);
+                let text = label.text.as_str();
+                Mark {
+                    kind,
+                    file,
+                    span,
+                    text,
+                }
             }
         };
-        let others = secondary
-            .iter()
-            .map(|label| annotation(AnnotationKind::Context, label));
-        Snippet::source(&self.source.text[excerpt.clone()])
-            .line_start(line)
-            .path(self.source.path.as_str())
-            .annotation(annotation(AnnotationKind::Primary, primary))
-            .annotations(others)
+        let first = mark(AnnotationKind::Primary)(primary);
+        let others = secondary.iter().map(mark(AnnotationKind::Context));
+        let (here, elsewhere): (Vec<_>, Vec<_>) =
+            others.partition(|mark| std::ptr::eq(mark.file, first.file));
+        let here = std::iter::once(first).chain(here).collect();
+        std::iter::once(here)
+            .chain(elsewhere.into_iter().map(|mark| vec![mark]))
+            .map(snippet)
     }
+}
 
-    /// Returns the lines that contain all labels, and the number of the first line. Rendering time
-    /// grows with the lines given.
-    fn excerpt(&self, primary: &Label, others: &[Label]) -> (std::ops::Range<usize>, usize) {
-        let span = |whole: Span, label: &Label| whole.join(label.span);
-        let whole = self.clamp_to_text(others.iter().fold(primary.span, span));
-        let text = &self.source.text;
-        let start = text[..whole.start]
-            .rfind('\n')
-            .map_or(0, |newline| newline + 1);
-        let end = text[whole.end..]
-            .find('\n')
-            .map_or(text.len(), |newline| whole.end + newline);
-        (start..end, self.source.place(start).line)
-    }
+/// Label at its position in a file.
+struct Mark<'a> {
+    kind: AnnotationKind,
+    file: &'a Source,
+    span: Span,
+    text: &'a str,
+}
 
-    /// Clamps a span to whole characters of the text.
-    fn clamp_to_text(&self, span: Span) -> std::ops::Range<usize> {
-        let text = &self.source.text;
-        let start = character_start(text, span.start);
-        let end = character_start(text, span.end);
-        start..end.max(start)
-    }
+/// Returns a snippet of the lines that contain all marks, which are in one file.
+fn snippet(marks: Vec<Mark<'_>>) -> Snippet<'_, annotate_snippets::Annotation<'_>> {
+    let file = marks[0].file;
+    let whole = marks
+        .iter()
+        .skip(1)
+        .fold(marks[0].span, |whole, mark| whole.join(mark.span));
+    let (excerpt, line) = excerpt(file, whole);
+    let annotations = marks.into_iter().map(|mark| {
+        let inside = clamp(&file.text, mark.span);
+        let span = inside.start - excerpt.start..inside.end - excerpt.start;
+        let annotation = mark.kind.span(span);
+        match mark.text {
+            "" => annotation,
+            text => annotation.label(text),
+        }
+    });
+    Snippet::source(&file.text[excerpt.clone()])
+        .line_start(line)
+        .path(file.path.as_str())
+        .annotations(annotations)
+}
+
+/// Returns the lines that contain a span, and the number of the first line. Rendering time grows
+/// with the lines given.
+fn excerpt(file: &Source, span: Span) -> (std::ops::Range<usize>, usize) {
+    let text = &file.text;
+    let whole = clamp(text, span);
+    let start = text[..whole.start]
+        .rfind('\n')
+        .map_or(0, |newline| newline + 1);
+    let end = text[whole.end..]
+        .find('\n')
+        .map_or(text.len(), |newline| whole.end + newline);
+    (start..end, file.place(start).line)
+}
+
+/// Clamps a span to whole characters of a text.
+fn clamp(text: &str, span: Span) -> std::ops::Range<usize> {
+    let start = character_start(text, span.start);
+    let end = character_start(text, span.end);
+    start..end.max(start)
 }
 
 impl std::fmt::Display for Diagnostics {

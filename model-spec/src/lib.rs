@@ -23,7 +23,8 @@
 //! # Ok::<(), eomgen_model_spec::diagnostic::Diagnostics>(())
 //! ```
 //!
-//! Pipeline, one file per step: `source` (text and positions), [`lexer`], [`parser`] (tokens to
+//! Pipeline, one file per step: `source` (text and positions), `extension`
+//! (files that the specification extends), [`lexer`], [`parser`] (tokens to
 //! [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve`
 //! (names), `rate_order` (cycles among the rates of states), `motion` (quantities allowed in
 //! each section), `units_check` and `infer` (units of every expression), `checks`,
@@ -50,6 +51,7 @@ pub mod edit;
 mod entries;
 pub mod evaluate;
 mod expression;
+mod extension;
 mod foreign;
 mod functions;
 pub mod hidden_characters;

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
 use crate::diagnostic::{DeclarationKind, Diagnostic, Diagnostics};
 use crate::document;
+use crate::extension;
 use crate::model::Model;
 use crate::motion;
 use crate::resolve::resolve;
@@ -41,20 +42,26 @@ pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
 /// Those of [`load`].
 pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
-    let bytes = read(&root.join(path))
-        .map_err(|diagnostic| Diagnostics::from_one(Source::new(shown.clone(), ""), diagnostic))?;
-    let text = String::from_utf8(bytes).map_err(|error| not_utf8(shown.clone(), &error))?;
     let file = root.join(path);
+    let text = read_text(&file, &shown)?;
     let folder = file.parent().unwrap_or(Path::new(""));
     check(Source::new(shown, text).in_folder(folder))
 }
 
-/// Checks a specification.
+/// Reads the text of a file; findings show the path `shown`.
+pub(crate) fn read_text(file: &Path, shown: &str) -> Result<String, Diagnostics> {
+    let bytes = read(file)
+        .map_err(|diagnostic| Diagnostics::from_one(Source::new(shown, ""), diagnostic))?;
+    String::from_utf8(bytes).map_err(|error| not_utf8(shown.to_owned(), &error))
+}
+
+/// Checks a specification with everything that it extends.
 ///
 /// # Errors
 /// All errors of a stage. The stages are: grammar and keys; names and expressions; quantities
 /// allowed in each section, inertia and units; values. A stage with errors is the last one.
 pub fn check(source: Source) -> Result<Checked, Diagnostics> {
+    let source = extension::merge(source)?;
     if source.text.len() as u64 > MAX_SIZE {
         let size = source.text.len() as u64;
         return Err(Diagnostics::from_one(source, too_large(size)));

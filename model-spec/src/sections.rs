@@ -13,6 +13,7 @@ pub(crate) static MODEL: Keys = Keys::new(&[
     Key::new("name", "name", "\"my_machine\"", "name of emitted files and items").required(),
     Key::new("title", "text", "\"My machine\"", "title in one line"),
     Key::new("gravity", "components", "[0, 0, \"-g\"]", "acceleration of free fall along the fixed axes, for bodies").explained("Bodies in space"),
+    Key::new("extends", "text", "\"arm.toml\"", "specification whose entries this one changes; relative to this file").explained("Extending another specification"),
 ]);
 pub(crate) static PARAMETER: Keys = Keys::new(&[
     Key::new("value", "expression", "0.5", "value in `unit`, or an expression of other parameters").required(),

@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use crate::span::Span;
+
 /// Named text.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -15,6 +17,27 @@ pub struct Source {
     pub text: Arc<str>,
     /// Folder of the file and of the tables that it names; `None` for a text without a file.
     pub folder: Option<Arc<Path>>,
+    /// Files of a merged text.
+    origin: Option<Arc<Origin>>,
+}
+
+/// Files of a merged text, the first one being the extended specification.
+#[derive(Debug)]
+struct Origin {
+    files: Vec<Source>,
+    /// In the order of the text.
+    parts: Vec<Copied>,
+}
+
+/// Part of a merged text that was copied from a file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Copied {
+    /// Position in the merged text.
+    pub place: Span,
+    /// Index of the file.
+    pub file: usize,
+    /// Position in the file.
+    pub from: Span,
 }
 
 /// Position in a text; line and column start at 1.
@@ -33,6 +56,7 @@ impl Source {
             path: path.into(),
             text: text.into(),
             folder: None,
+            origin: None,
         }
     }
 
@@ -43,6 +67,53 @@ impl Source {
         self
     }
 
+    /// Returns the source with the merged text of several files.
+    pub(crate) fn merged(&self, text: String, files: Vec<Source>, parts: Vec<Copied>) -> Self {
+        Self {
+            text: text.into(),
+            origin: Some(Arc::new(Origin { files, parts })),
+            ..self.clone()
+        }
+    }
+
+    /// Returns the paths of all files of the text, as shown in messages: its own, then those that
+    /// it extends.
+    pub fn files(&self) -> Vec<&str> {
+        match &self.origin {
+            Some(origin) => origin.files.iter().map(|file| &*file.path).collect(),
+            None => vec![&self.path],
+        }
+    }
+
+    /// Returns the file that contains the start of a span, and the position in that file.
+    pub fn locate(&self, span: Span) -> (&Source, Span) {
+        let Some(origin) = &self.origin else {
+            return (self, span);
+        };
+        let is_before = |part: &Copied| match span.start < span.end {
+            true => part.place.end <= span.start,
+            false => part.place.end < span.start,
+        };
+        let first = origin.parts.partition_point(is_before);
+        let Some(part) = origin.parts.get(first).or(origin.parts.last()) else {
+            return (self, span);
+        };
+        let inside = |part: &Copied, offset: usize| {
+            let offset = offset.saturating_sub(part.place.start);
+            (part.from.start + offset).min(part.from.end)
+        };
+        let start = inside(part, span.start);
+        // A table may consist of several parts of one file.
+        let follows = |next: &&Copied| {
+            next.file == part.file
+                && next.from.start >= part.from.start
+                && next.place.start < span.end
+        };
+        let parts = origin.parts.iter().skip(first).take_while(follows);
+        let end = parts.last().map_or(start, |last| inside(last, span.end));
+        (&origin.files[part.file], Span::new(start, end.max(start)))
+    }
+
     /// Returns the source with another text, and the same path and folder.
     #[must_use]
     pub fn with_text(&self, text: impl Into<Arc<str>>) -> Self {
@@ -50,6 +121,7 @@ impl Source {
             path: self.path.clone(),
             text: text.into(),
             folder: self.folder.clone(),
+            origin: None,
         }
     }
 

@@ -1,6 +1,8 @@
 //! Evaluates and changes the numbers of a model: values of parameters, orders of fields, names
 //! of states.
 
+use std::path::{Path, PathBuf};
+
 use crate::constants;
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
@@ -75,6 +77,18 @@ impl Model {
             true => self.source.hash(),
             false => sha256(self.source.hash() + &tables),
         }
+    }
+
+    /// Returns the paths of all files that the model was read from, as shown in messages: the
+    /// specification, those that it extends, and its tables.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let folder = Path::new(&self.source.path).parent();
+        let folder = folder.unwrap_or(Path::new(""));
+        let tables = self.fields.iter().filter_map(|field| field.basis.table());
+        let texts = self.source.files().into_iter().map(PathBuf::from);
+        texts
+            .chain(tables.map(|table| folder.join(&table.file)))
+            .collect()
     }
 
     /// Returns the highest order of all fields: a table has one shape per column.

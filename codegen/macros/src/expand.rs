@@ -1,6 +1,6 @@
 //! Expands the macro's arguments to the items of a model, through `model-spec` and `codegen`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::{Packaging, emit};
@@ -57,11 +57,9 @@ fn expand_file(
         .map_err(|found| error_in_file(&found, place))?;
     let items = emit_items(&variant)?;
     let warnings = warnings_in_file(&checked.warnings, place);
-    let folder = Path::new(&written).parent().unwrap_or(Path::new(""));
-    let tables = model.fields.iter().filter_map(|field| field.basis.table());
-    let files = tables.map(|table| folder.join(&table.file));
-    let read = std::iter::once(PathBuf::from(&written)).chain(files);
-    let paths: Option<Vec<String>> = read
+    let paths: Option<Vec<String>> = model
+        .files()
+        .iter()
         .map(|file| root.join(file).to_str().map(str::to_owned))
         .collect();
     let Some(paths) = paths else {

@@ -2,6 +2,7 @@
 
 mod broken;
 mod edits;
+mod extension;
 mod properties;
 mod semantics;
 mod shipped;
