@@ -98,6 +98,8 @@ pub struct Generate {
     pub spec: Option<PathBuf>,
     #[command(flatten)]
     pub order: Order,
+    #[command(flatten)]
+    pub parameters: ParameterValues,
     /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (Jacobian times vector), linearisation,
     /// regimes (rates for given contact states), lanes (an inlined copy of every function, for SIMD), hessians
@@ -115,7 +117,7 @@ pub struct Generate {
     pub certify: bool,
     /// Regenerate the checked-in variants in `generated/src` and their certificates; run it in the project's
     /// folder.
-    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with", "target", "certify"])]
+    #[arg(long, conflicts_with_all = ["spec", "out", "order", "set", "with", "target", "certify"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit with status 1 on a difference.
     #[arg(long)]
@@ -129,6 +131,8 @@ pub struct Generate {
 pub struct Validate {
     #[command(flatten)]
     pub model: ModelFile,
+    #[command(flatten)]
+    pub parameters: ParameterValues,
     /// Additional functions, as in `generate`. The certificate covers one emitted source, with these functions
     /// only.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]

@@ -17,6 +17,7 @@ use crate::emission;
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
+use crate::settings::with_settings;
 
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
      --check`; nothing was written\n\nTo compare the files of one model, generate them into another \
@@ -35,7 +36,7 @@ pub fn run(options: &Generate) -> Result {
 
 fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let outputs = emission::outputs(options)?;
-    let model = load(spec)?.model;
+    let model = with_settings(load(spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.order.text())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
     let emitted = emission::files(&model, &variant, options)?;

@@ -8,6 +8,7 @@ use crate::error::{Error, Result, print_bytes, print_text};
 use crate::model::{load, orders};
 use crate::output::Destination;
 use crate::progress::Note;
+use crate::settings::with_settings;
 
 pub fn run(options: &Validate) -> Result {
     let out = options.out.as_deref();
@@ -15,6 +16,7 @@ pub fn run(options: &Validate) -> Result {
         .map(|path| Destination::for_output(path, options.output.json))
         .transpose()?;
     let model = load(&options.model.spec)?.model;
+    let model = with_settings(model, &options.parameters.set)?;
     let orders = orders(&model, options.model.order.text())?;
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));

@@ -7,4 +7,5 @@ mod checked_in_variants;
 mod machine_code;
 mod regimes;
 mod routes;
+mod settings;
 mod single_precision;
