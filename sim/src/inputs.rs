@@ -169,6 +169,9 @@ impl HeldInputs {
             return 0;
         }
         let times = &self.times;
+        if let [only] = times[..] {
+            return usize::from(only <= t);
+        }
         let (first, last) = (times[0], times[times.len() - 1]);
         let part = (t - first) / (last - first);
         let near = ((part * (times.len() - 1) as f64) as usize).min(times.len());

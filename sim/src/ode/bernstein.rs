@@ -26,6 +26,8 @@ type Controls = [f64; POINTS];
 pub struct BernsteinBasis {
     /// From the values at [`PARTS`], relative to the chord, to the inner control points.
     inner: SMatrix<f64, INNER, INNER>,
+    /// Control points of the factors in the nested form of `slopes`.
+    nested: [Controls; DEGREE],
 }
 
 /// Part of a step: control points of each state between two parts of the step.
@@ -46,6 +48,28 @@ impl BernsteinBasis {
         let inner = basis.try_inverse();
         Self {
             inner: inner.unwrap_or_else(SMatrix::zeros),
+            nested: std::array::from_fn(nested_factor),
+        }
+    }
+
+    /// Returns the interior of a step from `start` to `end` as one piece, from the coefficients of its nested form
+    /// start + s (c_0 + (1 - s) (c_1 + s (c_2 + ...))).
+    pub fn convert(&self, (start, end): (&[f64], &[f64]), nested: &[Vec<f64>; DEGREE]) -> Piece {
+        let controls = start.iter().zip(end).enumerate().map(|(entry, (a, b))| {
+            let mut points = [0.0; POINTS];
+            for (factor, coefficients) in self.nested.iter().zip(nested) {
+                let coefficient = coefficients[entry];
+                let terms = points.iter_mut().zip(factor);
+                terms.for_each(|(point, factor)| *point += coefficient * factor);
+            }
+            points.iter_mut().for_each(|point| *point += a);
+            points[DEGREE] = *b;
+            points
+        });
+        Piece {
+            from: 0.0,
+            to: 1.0,
+            controls: controls.collect(),
         }
     }
 
@@ -132,12 +156,23 @@ impl Piece {
     }
 }
 
+/// Returns the control points of s^a (1 - s)^b, the factor of a coefficient in the nested form.
+fn nested_factor(coefficient: usize) -> Controls {
+    let degree = coefficient + 1;
+    let (a, more) = (coefficient / 2 + 1, DEGREE - degree);
+    std::array::from_fn(|place| match place.checked_sub(a) {
+        Some(rest) if rest <= more => binomial(more, rest) / binomial(DEGREE, place),
+        _ => 0.0,
+    })
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |choices, j| choices * (n - j) as f64 / (j + 1) as f64)
+}
+
 /// Returns the value of a Bernstein polynomial of [`DEGREE`].
 fn bernstein(place: usize, part: f64) -> f64 {
-    let choices = (0..place).fold(1.0, |choices, k| {
-        choices * (DEGREE - k) as f64 / (k + 1) as f64
-    });
-    choices * part.powi(place as i32) * (1.0 - part).powi((DEGREE - place) as i32)
+    binomial(DEGREE, place) * part.powi(place as i32) * (1.0 - part).powi((DEGREE - place) as i32)
 }
 
 #[cfg(test)]
@@ -152,6 +187,30 @@ mod tests {
         let ends = ([polynomial(0.0)], [polynomial(1.0)]);
         let fitted = BernsteinBasis::new().fit((&ends.0, &ends.1), |s| Some(vec![polynomial(s)]));
         fitted.expect("a polynomial")
+    }
+
+    #[test]
+    fn nested_form_and_samples_give_the_same_control_points() {
+        let coefficients: [f64; DEGREE] = [0.7, -1.3, 0.4, 2.1, -0.9, 0.2, 1.7];
+        let start = 0.3;
+        let value = |s: f64| {
+            let nested = coefficients.iter().enumerate().rev();
+            start
+                + nested.fold(0.0, |value, (place, coefficient)| {
+                    let factor = if place % 2 == 0 { s } else { 1.0 - s };
+                    factor * (value + coefficient)
+                })
+        };
+        let ends = ([start], [value(1.0)]);
+        let basis = BernsteinBasis::new();
+        let converted = basis.convert((&ends.0, &ends.1), &coefficients.map(|c| vec![c]));
+        let fitted = basis.fit((&ends.0, &ends.1), |s| Some(vec![value(s)]));
+        let pairs = converted.controls[0]
+            .iter()
+            .zip(fitted.expect("a polynomial").controls[0]);
+        for (converted, fitted) in pairs {
+            assert!((converted - fitted).abs() < 1e-13, "{converted} {fitted}");
+        }
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! The Dormand-Prince method of order 8 (Hairer, Norsett and Wanner, "Solving Ordinary
 //! Differential Equations I", section II.5), with and without control of the error.
 
+use super::bernstein::{BernsteinBasis, Piece};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
-use super::slopes::{Interior, Slopes};
+use super::slopes::Slopes;
 use super::stepper::{Outcome, Point, Stepper, split_step};
 use super::system::System;
 use super::watch::WatchedSystem;
@@ -30,7 +31,8 @@ pub struct DormandPrince853 {
     known: Known,
     /// True if the last trial was rejected; the next step does not grow.
     is_rejected: bool,
-    interior: Option<Interior>,
+    /// True if the interior of the last step is known.
+    has_interior: bool,
 }
 
 /// Slopes that are known.
@@ -57,7 +59,7 @@ impl Stepper for DormandPrince853 {
             magnitudes,
             known: Known::Nothing,
             is_rejected: false,
-            interior: None,
+            has_interior: false,
         }
     }
 
@@ -81,7 +83,7 @@ impl Stepper for DormandPrince853 {
         self.last = std::mem::replace(&mut self.here, point);
         self.step = step;
         self.known = Known::Nothing;
-        self.interior = None;
+        self.has_interior = false;
     }
 
     fn magnitudes(&self) -> &Magnitudes {
@@ -151,7 +153,7 @@ impl Stepper for DormandPrince853 {
 
     fn take_back(&mut self) {
         std::mem::swap(&mut self.last, &mut self.here);
-        self.interior = None;
+        self.has_interior = false;
         self.known = match self.known {
             Known::Step | Known::StepBeforeJump => Known::Start,
             Known::Nothing | Known::Start => Known::Nothing,
@@ -170,14 +172,14 @@ impl Stepper for DormandPrince853 {
         }
         let t = self.here.t + length;
         let end = Point { t, y };
-        self.slopes.end(watched, &end);
-        Some((end, self.slopes.end_rates().to_vec()))
+        let rates = self.slopes.end(watched, &end).to_vec();
+        Some((end, rates))
     }
 
     fn end_trial(&mut self, point: Point) {
         self.last = std::mem::replace(&mut self.here, point);
         self.known = Known::StepBeforeJump;
-        self.interior = None;
+        self.has_interior = false;
     }
 
     fn interpolated<S: System + ?Sized>(
@@ -189,15 +191,22 @@ impl Stepper for DormandPrince853 {
             return None;
         }
         let (begin, end) = (self.last.t, self.here.t);
-        let ends = (&self.last, &self.here);
-        let interior = match self.interior.take() {
-            Some(interior) => interior,
-            None => self.slopes.find_interior(watched, end - begin, ends),
-        };
         let part = ((t - begin) / (end - begin)).clamp(0.0, 1.0);
-        let state = interior.interpolate(part, &self.last.y);
-        self.interior = Some(interior);
-        Some(state)
+        self.find_interior(watched);
+        Some(self.slopes.interior().interpolate(part, &self.last.y))
+    }
+
+    fn interior<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        basis: &BernsteinBasis,
+    ) -> Option<Piece> {
+        if !matches!(self.known, Known::Step | Known::StepBeforeJump) {
+            return None;
+        }
+        self.find_interior(watched);
+        let coefficients = self.slopes.interior().coefficients();
+        Some(basis.convert((&self.last.y, &self.here.y), coefficients))
     }
 
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
@@ -223,6 +232,16 @@ impl Stepper for DormandPrince853 {
 }
 
 impl DormandPrince853 {
+    /// Computes the interior of the last step unless it is known.
+    fn find_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
+        if !self.has_interior {
+            let length = self.here.t - self.last.t;
+            let ends = (&self.last, &self.here);
+            self.slopes.find_interior(watched, length, ends);
+            self.has_interior = true;
+        }
+    }
+
     /// Prepares the slope at the start of a step.
     fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) {
         match self.known {
@@ -231,7 +250,7 @@ impl DormandPrince853 {
             Known::Nothing | Known::StepBeforeJump => self.slopes.begin(watched, &self.here),
         }
         self.known = Known::Start;
-        self.interior = None;
+        self.has_interior = false;
     }
 }
 

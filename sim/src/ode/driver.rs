@@ -153,8 +153,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     /// Starts a motion: modes and samples at its first point.
     pub fn start(&mut self) {
         self.watched.write_modes(&mut self.run.modes);
-        let start = self.run.stepper.current_point().clone();
-        self.take_samples_until(&start);
+        self.take_samples_here();
     }
 
     /// Continues the motion to the end of the call.
@@ -389,8 +388,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             self.run.stepper.correct(y);
             self.run.stepper.settle(false);
         }
-        let end = self.run.stepper.current_point().clone();
-        self.take_samples_until(&end);
+        self.take_samples_here();
         self.pass_breakpoint();
         self.enter_regime()
     }
@@ -412,9 +410,12 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         Ok(state)
     }
 
-    fn take_samples_until(&mut self, point: &Point) {
-        while let Some(sample) = self.next_sample().filter(|sample| *sample <= point.t) {
-            self.take_sample(sample, point.y.clone());
+    /// Takes the samples up to the present point.
+    fn take_samples_here(&mut self) {
+        let t = self.run.stepper.current_point().t;
+        while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
+            let state = self.run.stepper.current_point().y.clone();
+            self.take_sample(sample, state);
         }
     }
 
@@ -426,9 +427,12 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
 
     /// Changes the state where it jumps with inputs.
     fn pass_breakpoint(&mut self) {
-        let mut point = self.run.stepper.current_point().clone();
-        let is_changed = self.watched.has_breakpoint_at(point.t)
-            && self.watched.apply_breakpoint(point.t, &mut point.y);
+        let here = self.run.stepper.current_point();
+        if !self.watched.has_breakpoint_at(here.t) {
+            return;
+        }
+        let mut point = here.clone();
+        let is_changed = self.watched.apply_breakpoint(point.t, &mut point.y);
         if is_changed {
             self.take_jump(point);
         }

@@ -43,10 +43,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if is_short {
             return self.find_change_over_step();
         }
-        let (stepper, watched) = (&mut self.run.stepper, self.watched);
-        let interpolate =
-            |part: f64| stepper.interpolated(watched, start.t + part * (end.t - start.t));
-        let Some(piece) = self.basis.fit((&start.y, &end.y), interpolate) else {
+        let Some(piece) = self.run.stepper.interior(self.watched, &self.basis) else {
             return Accepted::Continues;
         };
         let mut sampled: Vec<f64> = self.watched.sides();

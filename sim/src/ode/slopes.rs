@@ -9,11 +9,20 @@ use super::watch::WatchedSystem;
 /// Weight of the error estimate of order 3 in that of the step.
 const WEIGHT_OF_ORDER_3: f64 = 0.1;
 
+/// Entries that are summed at once, in registers.
+const LANES: usize = 4;
+
+/// Rates of [`LANES`] states at the nodes of a step.
+type Group = [[f64; LANES]; SLOPES];
+
 /// Rates of a step at its nodes, with reused memory.
 pub struct Slopes {
-    rates: [Vec<f64>; SLOPES],
+    groups: Vec<Group>,
+    /// The rates evaluated last.
+    rates: Vec<f64>,
     trial: Vec<f64>,
     sums: [Vec<f64>; 2],
+    interior: Interior,
 }
 
 impl Slopes {
@@ -21,20 +30,27 @@ impl Slopes {
     pub fn new(states: usize) -> Self {
         let zeros = || vec![0.0; states];
         Self {
-            rates: std::array::from_fn(|_| zeros()),
+            groups: vec![[[0.0; LANES]; SLOPES]; states.div_ceil(LANES)],
+            rates: zeros(),
             trial: zeros(),
             sums: [zeros(), zeros()],
+            interior: Interior {
+                coefficients: std::array::from_fn(|_| zeros()),
+            },
         }
     }
 
     /// Evaluates the slope at the start of a step.
     pub fn begin<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>, start: &Point) {
-        watched.rates(start.t, &start.y, &mut self.rates[0]);
+        watched.rates(start.t, &start.y, &mut self.rates);
+        self.store(0);
     }
 
     /// Takes the slope at the end of the last step as that at the start of the next.
     pub fn follow(&mut self) {
-        self.rates.swap(0, END);
+        for group in &mut self.groups {
+            group[0] = group[END];
+        }
     }
 
     /// Makes a step of `length` s from `start`, whose slope is known, and writes its end state to `end`. Returns false
@@ -47,8 +63,7 @@ impl Slopes {
         end: &mut Vec<f64>,
     ) -> bool {
         for stage in 1..STAGES {
-            self.evaluate(watched, start, length, stage);
-            if !is_finite(&self.rates[stage]) {
+            if !self.evaluate(watched, start, length, stage) {
                 return false;
             }
         }
@@ -70,21 +85,33 @@ impl Slopes {
             .then_some(end)
     }
 
-    /// Evaluates the slope at the end of a step.
-    pub fn end<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>, end: &Point) {
-        watched.rates(end.t, &end.y, &mut self.rates[END]);
+    /// Evaluates the slope at the end of a step, and returns it.
+    pub fn end<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        end: &Point,
+    ) -> &[f64] {
+        watched.rates(end.t, &end.y, &mut self.rates);
+        self.store(END);
+        &self.rates
     }
 
-    /// Returns the slope at the end of a step.
-    pub fn end_rates(&self) -> &[f64] {
-        &self.rates[END]
+    /// Keeps the rates evaluated last as those of a node.
+    fn store(&mut self, slope: usize) {
+        let parts = self.rates.chunks(LANES);
+        for (group, part) in self.groups.iter_mut().zip(parts) {
+            match part.try_into() {
+                Ok(whole) => group[slope] = whole,
+                Err(_) => group[slope][..part.len()].copy_from_slice(part),
+            }
+        }
     }
 
     /// Returns the error of a step of `length` s to the state `end`, as a multiple of the tolerance.
     pub fn error(&mut self, magnitudes: &Magnitudes, length: f64, end: &[f64]) -> f64 {
         let [order_5, order_3] = &mut self.sums;
-        combine(&self.rates, ERROR_5, order_5);
-        combine(&self.rates, ERROR_3, order_3);
+        combine(&self.groups, ERROR_5, order_5);
+        combine(&self.groups, ERROR_3, order_3);
         let fifth = magnitudes.max_norm(order_5, end);
         let third = WEIGHT_OF_ORDER_3 * magnitudes.max_norm(order_3, end);
         let size = fifth.hypot(third);
@@ -94,47 +121,54 @@ impl Slopes {
         }
     }
 
-    /// Returns the interior of the last step of `length` s from `start` to `end`, whose slope is known.
+    /// Computes the interior of the last step of `length` s from `start` to `end`, whose slope is known.
     pub fn find_interior<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         length: f64,
         (start, end): (&Point, &Point),
-    ) -> Interior {
+    ) {
         for stage in END + 1..SLOPES {
             self.evaluate(watched, start, length, stage);
         }
-        let moves = start.y.iter().zip(&end.y).map(|(a, b)| b - a);
-        let ends = self.rates[0].iter().zip(&self.rates[END]);
-        let ends = ends.map(|(first, last)| (length * first, length * last));
-        let mut coefficients: [Vec<f64>; 7] = std::array::from_fn(|_| vec![0.0; start.y.len()]);
-        for (place, (moved, (first, last))) in moves.zip(ends).enumerate() {
+        let coefficients = &mut self.interior.coefficients;
+        for place in 0..start.y.len() {
+            let moved = end.y[place] - start.y[place];
+            let group = &self.groups[place / LANES];
+            let [first, last] = [0, END].map(|slope| length * group[slope][place % LANES]);
             coefficients[0][place] = moved;
             coefficients[1][place] = first - moved;
             coefficients[2][place] = 2.0 * moved - (first + last);
         }
         for (terms, out) in EXTENSION.into_iter().zip(&mut coefficients[3..]) {
-            combine(&self.rates, terms, out);
+            combine(&self.groups, terms, out);
             out.iter_mut().for_each(|entry| *entry *= length);
         }
-        Interior { coefficients }
     }
 
+    /// Returns the interior of the step for which it was computed last.
+    pub fn interior(&self) -> &Interior {
+        &self.interior
+    }
+
+    /// Evaluates the slope at a node. Returns true if it is finite.
     fn evaluate<S: System + ?Sized>(
         &mut self,
         watched: &WatchedSystem<'_, S>,
         start: &Point,
         length: f64,
         stage: usize,
-    ) {
+    ) -> bool {
         self.write_state(start, length, stage);
         let t = start.t + PARTS[stage] * length;
-        watched.rates(t, &self.trial, &mut self.rates[stage]);
+        let is_finite = watched.rates(t, &self.trial, &mut self.rates);
+        self.store(stage);
+        is_finite
     }
 
     /// Writes the state at a node to `trial`.
     fn write_state(&mut self, start: &Point, length: f64, stage: usize) {
-        combine(&self.rates, INCREMENTS[stage], &mut self.trial);
+        combine(&self.groups, INCREMENTS[stage], &mut self.trial);
         for (entry, start) in self.trial.iter_mut().zip(&start.y) {
             *entry = start + length * *entry;
         }
@@ -147,6 +181,11 @@ pub struct Interior {
 }
 
 impl Interior {
+    /// Returns the coefficients of the nested form, relative to the start.
+    pub fn coefficients(&self) -> &[Vec<f64>; 7] {
+        &self.coefficients
+    }
+
     /// Returns the state at a `part` of the step from `start`.
     pub fn interpolate(&self, part: f64, start: &[f64]) -> Vec<f64> {
         let rest = 1.0 - part;
@@ -163,11 +202,18 @@ impl Interior {
 }
 
 /// Writes a combination of slopes to `out`.
-fn combine(rates: &[Vec<f64>; SLOPES], terms: Terms, out: &mut [f64]) {
-    out.fill(0.0);
-    for (slope, coefficient) in terms {
-        let entries = out.iter_mut().zip(&rates[*slope]);
-        entries.for_each(|(out, rate)| *out += coefficient * rate);
+fn combine(groups: &[Group], terms: Terms, out: &mut [f64]) {
+    for (slots, group) in out.chunks_mut(LANES).zip(groups) {
+        let mut sums = [0.0; LANES];
+        for (slope, coefficient) in terms {
+            for (sum, rate) in sums.iter_mut().zip(&group[*slope % SLOPES]) {
+                *sum += coefficient * rate;
+            }
+        }
+        match slots.len() {
+            LANES => slots.copy_from_slice(&sums),
+            part => slots.copy_from_slice(&sums[..part]),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Interface between the driver and a method: steps of controlled length, steps of a given length,
 //! and states inside a step. The driver decides about switches.
 
+use super::bernstein::{BernsteinBasis, Piece};
 use super::error::SolveError;
 use super::magnitudes::Magnitudes;
 pub use super::point::Point;
@@ -90,6 +91,19 @@ pub trait Stepper: Sized {
         watched: &WatchedSystem<'_, S>,
         t: f64,
     ) -> Option<Vec<f64>>;
+
+    /// Returns the interpolation inside the last step as a polynomial; `None` if this method made no step to here.
+    fn interior<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+        basis: &BernsteinBasis,
+    ) -> Option<Piece> {
+        let (start, end) = (self.step_start().clone(), self.current_point().clone());
+        let at = |part: f64| start.t + part * (end.t - start.t);
+        basis.fit((&start.y, &end.y), |part| {
+            self.interpolated(watched, at(part))
+        })
+    }
 
     /// Returns true if interpolation inside the last step is as accurate as the step: one that
     /// stability keeps short ends where it should, and may swing in between.

@@ -109,14 +109,15 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.record.evaluations.get()
     }
 
-    /// Computes the rates at `t` and `y` in the present regime.
-    pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+    /// Computes the rates at `t` and `y` in the present regime. Returns true if they are finite.
+    pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
         let t = self.seen(t);
         self.system.rates(t, y, out);
         self.record
             .evaluations
             .set(self.record.evaluations.get() + 1);
-        if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
+        let not_finite = out.iter().position(|rate| !rate.is_finite());
+        if let Some(state) = not_finite {
             self.record.not_finite.set(Some(state));
             if self.record.indefinite.get().is_none() {
                 self.record
@@ -124,6 +125,7 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
                     .set(self.system.find_indefinite_coordinate(t, y));
             }
         }
+        not_finite.is_none()
     }
 
     /// Projects a state onto constraints and invariants; see [`System::project`]. Returns false if

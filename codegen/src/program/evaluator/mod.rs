@@ -40,6 +40,7 @@ pub struct Evaluator {
     places: Places,
     /// Parameter values, each with its index among the independent parameters.
     parameters: Vec<(ValueId, usize)>,
+    guard_count: usize,
     prepare: Vec<ValueId>,
     /// Steps of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<ValueId>; Stage::ALL.len()],
@@ -63,7 +64,10 @@ impl Evaluator {
             })
             .collect();
         let places = Places::new(&program);
+        let guards = program.guards.iter();
+        let guard_extents = guards.map(|guard| program.value(guard.value).extent);
         let mut evaluator = Self {
+            guard_count: guard_extents.map(Extent::length).sum(),
             memory: vec![0.0; places.size()],
             places,
             parameters,
@@ -158,12 +162,7 @@ impl Evaluator {
 
     /// Returns the number of switching surfaces; a surface over modes counts once for each mode.
     pub fn guard_count(&self) -> usize {
-        let extents = self
-            .program
-            .guards
-            .iter()
-            .map(|g| self.program.value(g.value).extent);
-        extents.map(Extent::length).sum()
+        self.guard_count
     }
 
     /// Writes the values of the switching surfaces to `out`, [`Evaluator::guard_count`] numbers.
