@@ -15,6 +15,14 @@ const SAFETY: f64 = 0.9;
 /// Smallest and largest factor from a step to the next.
 const FACTORS: (f64, f64) = (0.333, 6.0);
 
+/// Largest last term of the interior, in tolerances, without a test in its middle. In 41 693 steps of random smooth
+/// machines, 0.12 % had an error above ten tolerances inside; the last term exceeded this in 94 % of them, and in 4 % of all.
+const MAX_LAST_TERM: f64 = 40.0;
+
+/// Largest error in the middle, in tolerances, with which samples of a smooth motion are interpolated. Elsewhere in the
+/// step it is up to 2.1 times as large; more than 3 tolerances occur in 1.6 % of those steps.
+const MAX_INTERIOR_ERROR: f64 = 4.0;
+
 /// Order of the error of a step.
 const ORDER: f64 = 8.0;
 
@@ -210,15 +218,23 @@ impl Stepper for DormandPrince853 {
     }
 
     fn tells_interior<S: System + ?Sized>(&mut self, watched: &WatchedSystem<'_, S>) -> bool {
-        let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
-        let Some(middle) = make_step(watched, &self.last, half) else {
-            return false;
-        };
-        let Some(told) = self.interpolated(watched, begin + half) else {
-            return false;
-        };
-        let errors = told.iter().zip(&middle.y).map(|(told, y)| told - y);
-        self.magnitudes.norm(errors, &middle.y) <= 1.0
+        self.middle_error(watched).is_some_and(|(errors, middle)| {
+            self.magnitudes.norm(errors.into_iter(), &middle) <= 1.0
+        })
+    }
+
+    fn tells_smooth_interior<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+    ) -> bool {
+        self.find_interior(watched);
+        let last = self.slopes.interior().last_term();
+        if self.magnitudes.max_norm(&last, &self.here.y) <= MAX_LAST_TERM {
+            return true;
+        }
+        self.middle_error(watched).is_some_and(|(errors, middle)| {
+            self.magnitudes.max_norm(&errors, &middle) <= MAX_INTERIOR_ERROR
+        })
     }
 
     fn inside<S: System + ?Sized>(
@@ -240,6 +256,19 @@ impl DormandPrince853 {
             self.slopes.find_interior(watched, length, ends);
             self.has_interior = true;
         }
+    }
+
+    /// Returns the error of the interior in the middle of the last step, and the state there by a step of half the
+    /// length.
+    fn middle_error<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (begin, half) = (self.last.t, 0.5 * (self.here.t - self.last.t));
+        let middle = make_step(watched, &self.last, half)?.y;
+        let told = self.interpolated(watched, begin + half)?;
+        let errors = told.iter().zip(&middle).map(|(told, y)| told - y);
+        Some((errors.collect(), middle))
     }
 
     /// Prepares the slope at the start of a step.
@@ -343,6 +372,45 @@ mod tests {
         // Within one step the error has one order more.
         let order = (error(1.0) / error(0.5)).log2();
         assert!((7.5..9.0).contains(&order), "order {order}");
+    }
+
+    #[test]
+    fn interpolated_samples_of_smooth_motion_rarely_exceed_ten_tolerances() {
+        let (mut interpolated, mut rejected, mut exceeding) = (0, 0, 0);
+        for place in 0..400 {
+            let start = Point {
+                t: 0.02 * f64::from(place),
+                y: vec![1.0],
+            };
+            let scale = start.t.sin().exp();
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+            let tolerance = 10.0_f64.powi(-(4 + place % 6));
+            let magnitudes = Magnitudes::new(&start.y, &[1.0], tolerance);
+            let mut stepper = DormandPrince853::new(start.clone(), 4.0, magnitudes);
+            while !stepper
+                .advance(&watched, 100.0)
+                .expect("a trial")
+                .is_accepted
+            {}
+            let length = stepper.here.t - start.t;
+            let errors = (1..20).map(|part| {
+                let t = start.t + 0.05 * f64::from(part) * length;
+                let state = stepper.interpolated(&watched, t).expect("a state")[0];
+                let right = t.sin().exp() / scale;
+                (state - right).abs() / (tolerance * (1.0 + right))
+            });
+            let error = errors.fold(0.0, f64::max);
+            if stepper.tells_smooth_interior(&watched) {
+                interpolated += 1;
+                exceeding += usize::from(error > 10.0);
+                assert!(error < 15.0, "{place}: {error} tolerances");
+            } else {
+                rejected += 1;
+            }
+        }
+        let counts = (interpolated, rejected, exceeding);
+        assert!(interpolated > 200 && rejected > 5, "{counts:?}");
+        assert!(exceeding <= interpolated / 100, "{counts:?}");
     }
 
     #[test]

@@ -446,24 +446,21 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.run.stepper.restart(point, step);
     }
 
-    /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated.
-    /// Beside switching surfaces, where states are to be right to the last digit, the interior is
-    /// looked at first: that takes as long as a sample that is not interpolated, and is worth it
-    /// where there are many.
+    /// Returns true if samples inside the last step, which ends at `t` (s), are interpolated. Beside switching surfaces
+    /// states are to be right to the last digit: the interior is tested if there are many samples, because a test takes as
+    /// long as a sample that is not interpolated.
     fn is_interior_told(&mut self, t: f64) -> bool {
-        if !self.watched.has_guards() {
-            return true;
-        }
-        let next = self.taken + MANY;
-        if self.samples.get(next).is_none_or(|sample| *sample >= t) {
-            return false;
-        }
-        self.tells_interior()
+        let least = if self.watched.has_guards() { MANY } else { 0 };
+        let last = self.samples.get(self.taken + least);
+        last.is_some_and(|sample| *sample < t) && self.tells_interior()
     }
 
     fn tells_interior(&mut self) -> bool {
         self.watched.forget_trials();
-        !self.watched.has_guards() || self.run.stepper.tells_interior(self.watched)
+        match self.watched.has_guards() {
+            true => self.run.stepper.tells_interior(self.watched),
+            false => self.run.stepper.tells_smooth_interior(self.watched),
+        }
     }
 
     fn next_sample(&self) -> Option<f64> {

@@ -186,6 +186,13 @@ impl Interior {
         &self.coefficients
     }
 
+    /// Returns the largest contribution of the last coefficient to each state.
+    pub fn last_term(&self) -> Vec<f64> {
+        // s^4 (1 - s)^3 at s = 4/7.
+        let largest = (4.0_f64 / 7.0).powi(4) * (3.0_f64 / 7.0).powi(3);
+        self.coefficients[6].iter().map(|c| largest * c).collect()
+    }
+
     /// Returns the state at a `part` of the step from `start`.
     pub fn interpolate(&self, part: f64, start: &[f64]) -> Vec<f64> {
         let rest = 1.0 - part;

@@ -112,6 +112,15 @@ pub trait Stepper: Sized {
         true
     }
 
+    /// Returns true if interpolation inside the last step is accurate enough for samples of a smooth motion.
+    fn tells_smooth_interior<S: System + ?Sized>(
+        &mut self,
+        watched: &WatchedSystem<'_, S>,
+    ) -> bool {
+        let _ = watched;
+        true
+    }
+
     /// The state at time `t` (s) inside the last step, with the accuracy of the step; `None` if no
     /// step to there meets the tolerance.
     fn inside<S: System + ?Sized>(
