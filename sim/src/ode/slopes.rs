@@ -176,6 +176,7 @@ impl Slopes {
 }
 
 /// Interior of a step: coefficients of its polynomial.
+#[derive(Clone)]
 pub struct Interior {
     coefficients: [Vec<f64>; 7],
 }
