@@ -13,6 +13,7 @@ mod inputs;
 mod interruption;
 mod linearisation;
 mod model;
+mod resumable;
 mod simulation;
 
 /// Python module.
@@ -32,6 +33,8 @@ mod _native {
     use crate::linearisation::linearise;
     #[pymodule_export]
     use crate::model::{Model, nearest};
+    #[pymodule_export]
+    use crate::resumable::Simulation;
     #[pymodule_export]
     use crate::simulation::simulate;
     /// Highest order of a field.

@@ -66,6 +66,13 @@ impl Model {
         self.compiled.with_parameters(&settings.collect::<Vec<_>>())
     }
 
+    /// Returns an instance at the parameter values that shares the compiled model.
+    pub fn shared_instance(&self) -> Result<Instance<'static>, Error> {
+        let settings = self.settings.iter().map(|(name, v)| (name.as_str(), *v));
+        let settings: Vec<_> = settings.collect();
+        self.compiled.share_with_parameters(&settings)
+    }
+
     /// Computes with an evaluator at the parameter values.
     pub fn evaluate<T>(&self, compute: impl FnOnce(&mut Evaluator) -> T) -> Result<T, Error> {
         let new = || self.instance()?.evaluator();

@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use eomgen_compiled_model::{Audit, Error, Motion, Overlap, Request, Solver, SolverChoice};
+use eomgen_compiled_model::{
+    Audit, Error, LoggedEvent, Motion, Overlap, Request, Solver, SolverChoice,
+};
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
@@ -31,7 +33,7 @@ type SimulationTuple<'py> = (
 );
 
 /// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
-type EventTuple = (
+pub type EventTuple = (
     f64,
     String,
     &'static str,
@@ -125,7 +127,7 @@ pub fn simulate<'py>(
 }
 
 /// Returns the solver of a name.
-fn parse_solver(name: &str) -> PyResult<Solver> {
+pub fn parse_solver(name: &str) -> PyResult<Solver> {
     let known = Solver::ALL.into_iter().find(|known| known.name() == name);
     known.ok_or_else(|| {
         let names = Solver::ALL.map(|known| format!("\"{}\"", known.name()));
@@ -164,15 +166,17 @@ fn follow(
 /// Returns the event log of a motion.
 fn list_events(model: &Model, motion: &Motion) -> Vec<EventTuple> {
     let degrees = model.compiled().program().degrees_of_freedom();
-    let log = motion.event_log(degrees).into_iter();
-    let events = log.map(|event| {
-        let (before, after) = event
-            .modes
-            .map_or(("", ""), |(from, to)| (from.name(), to.name()));
-        let (surface, kind) = (event.surface.to_owned(), event.kind.name());
-        (event.t, surface, kind, before, after, event.jump.to_vec())
-    });
-    events.collect()
+    let log = motion.event_log(degrees);
+    log.iter().map(describe_event).collect()
+}
+
+/// Returns an event as numbers and names.
+pub fn describe_event(event: &LoggedEvent<'_>) -> EventTuple {
+    let (before, after) = event
+        .modes
+        .map_or(("", ""), |(from, to)| (from.name(), to.name()));
+    let (surface, kind) = (event.surface.to_owned(), event.kind.name());
+    (event.t, surface, kind, before, after, event.jump.to_vec())
 }
 
 /// Returns the reason for the selection of a solver.

@@ -15,6 +15,7 @@ from .equilibrium import Equilibrium
 from .linearisation import Linearisation
 from .model import Model, SpecificationWarning, load
 from .records import record_to_csv
+from .simulation import Simulation
 from .trajectory import Event, Trajectory
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "Event",
     "Linearisation",
     "Model",
+    "Simulation",
     "SimulationError",
     "SpecificationError",
     "SpecificationWarning",

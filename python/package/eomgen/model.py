@@ -14,6 +14,7 @@ from . import _arguments, _native
 from ._arguments import Call
 from .equilibrium import Equilibrium
 from .linearisation import Linearisation
+from .simulation import Simulation
 from .trajectory import Trajectory, simulate
 
 __all__ = ["Model", "SpecificationWarning", "load"]
@@ -272,6 +273,25 @@ class Model:
         span = (start, until, interval)
         settings = (solver, tolerance, max_step)
         return simulate(self, span, settings, self.state(state), (inputs, breaks), progress)
+
+    def simulation(
+        self,
+        start: float = 0.0,
+        state: Any = None,
+        inputs: Any = None,
+        *,
+        solver: str = "auto",
+        tolerance: float = 1e-9,
+        max_step: Optional[float] = None,
+    ) -> Simulation:
+        """Starts a simulation that continues from call to call, for controllers and interactive programs.
+
+        start: time, s. state: initial state, as for `simulate`. inputs: (inputs,), or a mapping of names to numbers;
+        missing inputs are 0. The other arguments are those of `simulate`.
+
+        Raises SimulationError or ValueError for a state from which the model cannot move.
+        """
+        return Simulation(self, start, self.state(state), inputs, solver, tolerance, max_step)
 
     def state(self, values: Any = None) -> Array:
         """Returns a state, (states,): the given array, or the initial state of the specification with some

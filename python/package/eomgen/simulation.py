@@ -1,0 +1,128 @@
+"""Simulations that continue from call to call."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, List, Mapping, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arguments, _native
+from .trajectory import Event
+
+if TYPE_CHECKING:
+    from .model import Model
+
+Array = NDArray[np.float64]
+
+
+class Simulation:
+    """Simulation that continues from call to call, created by `Model.simulation`. Only one thread may use it.
+
+    >>> s = m.simulation(state={"theta": 0.1})
+    >>> while s.t < 2:
+    ...     s.set_inputs({"torque": -0.5 * s["theta_dot"]})
+    ...     s.advance(s.t + 1e-3)
+
+    Inputs hold until `set_inputs` changes them. Without a change the solver keeps its steps: many short calls give the
+    motion of one long call.
+    """
+
+    def __init__(
+        self,
+        model: "Model",
+        start: float,
+        state: Array,
+        inputs: Any,
+        solver: str,
+        tolerance: float,
+        max_step: Optional[float],
+    ):
+        self._model = model
+        longest = math.inf if max_step is None else float(max_step)
+        settings = (solver, _arguments.real("tolerance", tolerance), longest)
+        start = _arguments.real("start", start)
+        values = np.zeros(len(model.inputs))
+        self._values = self._with(values, inputs)
+        self._native = _native.Simulation(model._native, start, state, self._values, settings)
+
+    def _with(self, values: Array, inputs: Any) -> Array:
+        names = self._model.inputs
+        if inputs is None:
+            return values
+        if isinstance(inputs, Mapping):
+            _arguments.check_names("input", inputs, names)
+            values = values.copy()
+            for name, value in inputs.items():
+                values[names.index(name)] = _arguments.real(f"the input {name}", value)
+            return values
+        values = _arguments.numbers("the inputs", inputs).reshape(-1)
+        if len(values) != len(names):
+            raise ValueError(f"{len(values)} inputs: expected {len(names)}, for {', '.join(names)}")
+        return values
+
+    @property
+    def t(self) -> float:
+        """Time reached, s."""
+        return self._native.t
+
+    @property
+    def state(self) -> Array:
+        """State at that time, (states,)."""
+        return self._native.state
+
+    @property
+    def inputs(self) -> Array:
+        """Inputs from that time on, (inputs,)."""
+        return self._native.inputs
+
+    @property
+    def observables(self) -> Array:
+        """Observables at that time, (observables,)."""
+        return self._native.observables()
+
+    @property
+    def solver(self) -> str:
+        """Name of the solver in use."""
+        return self._native.solver
+
+    def __getitem__(self, name: str) -> float:
+        if name in self._model.observable_names:
+            return float(self.observables[self._model.observable_names.index(name)])
+        if name in self._model.states:
+            return float(self.state[self._model.states.index(name)])
+        names = self._model.states + self._model.observable_names
+        raise KeyError(_arguments.unknown("state or observable", name, names))
+
+    def advance(self, until: float) -> None:
+        """Continues to the time `until`, s.
+
+        Raises SimulationError if the solver stops; the simulation then keeps the time and state that it reached.
+        """
+        self._native.advance(until)
+
+    def set_inputs(self, inputs: Any) -> None:
+        """Changes inputs from the time reached on: (inputs,), or a mapping of names to numbers; other inputs keep their
+        values."""
+        self._values = self._with(self._values, inputs)
+        self._native.set_inputs(self._values)
+
+    def set_state(self, state: Any) -> None:
+        """Continues from another state: (states,), or a mapping of names to numbers; other states keep their values."""
+        if isinstance(state, Mapping):
+            names = self._model.states
+            _arguments.check_names("state", state, names)
+            values = self.state.copy()
+            for name, value in state.items():
+                values[names.index(name)] = _arguments.real(name, value)
+            state = values
+        self._native.set_state(self._model.state(state))
+
+    def take_events(self) -> List[Event]:
+        """Returns the events since the last call, in order of time."""
+        names = self._model.states
+        return [Event(*event[:5], dict(zip(names, event[5]))) for event in self._native.take_events()]
+
+    def __repr__(self) -> str:
+        return f"<eomgen.Simulation: {self._model.name} at t = {self.t:g} s, solver {self.solver}>"

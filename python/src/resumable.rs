@@ -1,0 +1,100 @@
+//! Simulations that continue from call to call, as a Python class.
+
+use eomgen_compiled_model::{LoggedEvent, Simulation as Continued, SolverOptions};
+use eomgen_sim::inputs::HeldInputs;
+use numpy::{PyArray1, PyReadonlyArray1, ToPyArray};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::model::Model;
+use crate::simulation::{EventTuple, describe_event, parse_solver};
+
+/// Simulation that continues from call to call. Only the thread that created it may use it.
+#[pyclass(unsendable, module = "eomgen._native")]
+pub struct Simulation {
+    continued: Continued<'static>,
+    observables: Vec<f64>,
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    fn new(
+        model: &Model,
+        start: f64,
+        state: PyReadonlyArray1<'_, f64>,
+        inputs: PyReadonlyArray1<'_, f64>,
+        settings: (String, f64, f64),
+    ) -> PyResult<Self> {
+        let (solver, tolerance, max_step) = settings;
+        let instance = model.shared_instance().map_err(error::model)?;
+        let options = SolverOptions {
+            solver: parse_solver(&solver)?,
+            tolerance,
+            max_step,
+        };
+        let program = model.compiled().program();
+        let (state, inputs) = (state.as_slice()?, inputs.as_slice()?);
+        if state.len() != program.states() || inputs.len() != program.inputs.len() {
+            return Err(PyValueError::new_err("a state or inputs of another model"));
+        }
+        let inputs = HeldInputs::constant(inputs.to_vec());
+        let continued = instance.start_simulation((start, state), inputs, options);
+        Ok(Self {
+            continued: continued.map_err(error::model)?,
+            observables: vec![0.0; program.observables.len()],
+        })
+    }
+
+    /// Continues to a time, s.
+    fn advance(&mut self, until: f64) -> PyResult<()> {
+        self.continued.advance(until).map_err(error::model)
+    }
+
+    /// Changes the inputs from the time reached on.
+    fn set_inputs(&mut self, inputs: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        let set = self.continued.set_inputs(inputs.as_slice()?);
+        set.map_err(error::model)
+    }
+
+    /// Continues from another state.
+    fn set_state(&mut self, state: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        let set = self.continued.set_state(state.as_slice()?);
+        set.map_err(error::model)
+    }
+
+    #[getter]
+    fn t(&self) -> f64 {
+        self.continued.time()
+    }
+
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.continued.state().to_pyarray(py)
+    }
+
+    #[getter]
+    fn inputs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.continued.inputs().to_pyarray(py)
+    }
+
+    #[getter]
+    fn solver(&self) -> &'static str {
+        self.continued.solver().name()
+    }
+
+    /// Returns the observables at the time reached.
+    fn observables<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.continued.write_observables(&mut self.observables);
+        self.observables.to_pyarray(py)
+    }
+
+    /// Returns the events since the last call.
+    fn take_events(&mut self) -> Vec<EventTuple> {
+        let log: Vec<LoggedEvent<'_>> = self.continued.events();
+        let events = log.iter().map(describe_event).collect();
+        self.continued.clear_events();
+        events
+    }
+}
