@@ -6,9 +6,9 @@ use std::path::{Component, Path, PathBuf};
 use toml_edit::{Document, Item, TableLike, Value};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
-use crate::load::read_text;
 use crate::source::{Copied, Source};
 use crate::span::Span;
+use crate::specification_file::read_text;
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, entries};
 use crate::toml_file::grammar_error;

@@ -23,7 +23,7 @@
 //! # Ok::<(), eomgen_model_spec::diagnostic::Diagnostics>(())
 //! ```
 //!
-//! Pipeline, one file per step: `source` (text and positions), `extension`
+//! Pipeline, one file per step: `specification_file` (text of a file), `source` (text and positions), `extension`
 //! (files that the specification extends), [`lexer`], [`parser`] (tokens to
 //! [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve`
 //! (names), `rate_order` (cycles among the rates of states), `motion` (quantities allowed in
@@ -83,6 +83,7 @@ pub mod shape_table;
 pub mod source;
 mod space;
 pub mod span;
+mod specification_file;
 pub mod suggest;
 pub mod table;
 pub mod toml_file;
@@ -92,4 +93,5 @@ mod units_check;
 pub mod variant;
 
 pub use functions::reservation_reason;
-pub use load::{Checked, MAX_SIZE, check, load, load_from};
+pub use load::{Checked, check, load, load_from};
+pub use specification_file::MAX_SIZE;

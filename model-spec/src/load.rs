@@ -1,6 +1,5 @@
 //! Reads a file or a text and returns a checked model, or all findings.
 
-use std::io::Read;
 use std::path::Path;
 
 use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
@@ -12,12 +11,9 @@ use crate::motion;
 use crate::resolve::resolve;
 use crate::source::Source;
 use crate::space;
-use crate::span::Span;
+use crate::specification_file::{MAX_SIZE, read_text, too_large};
 use crate::units_check;
 use crate::variant::ModelError;
-
-/// Largest specification read, in bytes.
-pub const MAX_SIZE: u64 = 1 << 20;
 
 /// Model that passed all checks.
 #[derive(Clone, Debug)]
@@ -46,13 +42,6 @@ pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let text = read_text(&file, &shown)?;
     let folder = file.parent().unwrap_or(Path::new(""));
     check(Source::new(shown, text).in_folder(folder))
-}
-
-/// Reads the text of a file; findings show the path `shown`.
-pub(crate) fn read_text(file: &Path, shown: &str) -> Result<String, Diagnostics> {
-    let bytes = read(file)
-        .map_err(|diagnostic| Diagnostics::from_one(Source::new(shown, ""), diagnostic))?;
-    String::from_utf8(bytes).map_err(|error| not_utf8(shown.to_owned(), &error))
 }
 
 /// Checks a specification with everything that it extends.
@@ -103,42 +92,6 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
         ));
     }
     Ok(Checked { model, warnings })
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
-    let unreadable = |error: std::io::Error| {
-        Diagnostic::error(format!("the specification cannot be read: {error}"))
-            .with_help("give the path of a TOML file")
-    };
-    let metadata = std::fs::metadata(path).map_err(unreadable)?;
-    if !metadata.is_file() {
-        return Err(Diagnostic::error("the specification is not a file")
-            .with_help("give the path of a TOML file"));
-    }
-    if metadata.len() > MAX_SIZE {
-        return Err(too_large(metadata.len()));
-    }
-    let mut bytes = Vec::new();
-    // The file may have grown since `metadata`; read at most one byte more than `check` accepts.
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    let read = file.take(MAX_SIZE + 1).read_to_end(&mut bytes);
-    read.map_err(unreadable)?;
-    Ok(bytes)
-}
-
-fn not_utf8(shown: String, error: &std::string::FromUtf8Error) -> Diagnostics {
-    let valid = error.utf8_error().valid_up_to();
-    let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-    let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
-        .with_span(Span::new(valid, valid + 1), "invalid byte")
-        .with_help("save the file as UTF-8");
-    Diagnostics::from_one(Source::new(shown, text), diagnostic)
-}
-
-fn too_large(size: u64) -> Diagnostic {
-    Diagnostic::error(format!("the specification is too large: {size} bytes"))
-        .with_span(Span::new(0, 0), "too large")
-        .with_help(format!("reduce it to {MAX_SIZE} bytes (1 MiB)"))
 }
 
 #[cfg(test)]
