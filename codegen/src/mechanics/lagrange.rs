@@ -10,7 +10,8 @@ use crate::symbolic::association::shared_operations;
 use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::expand::{MAX_EXPANSIONS, expand_once};
 use crate::symbolic::factor::factor_if_cheaper;
-use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use crate::symbolic::gradient::derive_by_all;
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 use crate::symbolic::modal_derivative::ModalDerivative;
 use crate::symbolic::operation_count::count_operations;
 use crate::symbolic::trigonometry::with_sums_of_angles;
@@ -27,20 +28,16 @@ pub(crate) fn nonzero_gradient(
     scalar: NodeId,
     by: &GradientBy,
 ) -> Vec<(usize, NodeId)> {
-    let leaves = graph.reachable(&[scalar]).into_iter();
-    let variables = leaves.filter_map(|leaf| match (graph.operation(leaf), by) {
-        (Operation::Coordinate(index), GradientBy::Coordinates)
-        | (Operation::Rate(index), GradientBy::Rates) => Some((index.index(), leaf)),
+    let by = match by {
+        GradientBy::Coordinates => Dependence::COORDINATE,
+        GradientBy::Rates => Dependence::RATE,
+    };
+    let gradient = derive_by_all(graph, scalar, by).into_iter();
+    let indexed = gradient.filter_map(|(leaf, derivative)| match graph.operation(leaf) {
+        Operation::Coordinate(index) | Operation::Rate(index) => Some((index.index(), derivative)),
         _ => None,
     });
-    let mut found = Vec::new();
-    for (place, variable) in variables.collect::<Vec<_>>() {
-        let derivative = derive_by_scalar(graph, scalar, variable);
-        if !graph.is_zero(derivative) {
-            found.push((place, derivative));
-        }
-    }
-    found
+    indexed.collect()
 }
 
 pub(crate) struct Variables {

@@ -2,7 +2,7 @@
 //!
 //! - Nodes: `graph` and `node_map` store them, `operation` and `arguments` define them, `simplify` applies
 //!   algebraic laws in their constructors, `tables` and `table_text` hold constants of a basis.
-//! - Derivatives: `differentiate`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors`,
+//! - Derivatives: `differentiate`, `gradient`, `modal_derivative` and `matrix` keep the structure; `limits`, `cofactors`,
 //!   `vanishing_products` and `orders` handle zeros of roots, `switches`, `branches` and `flat` operations that switch.
 //! - Transformations: `substitute`, `expand`, `factor`, `trigonometry` and `association` (multiplication
 //!   order), with `degree` and `operation_count` to compare forms.
@@ -18,6 +18,7 @@ pub(crate) mod expand;
 pub(crate) mod factor;
 pub(crate) mod flat;
 pub mod formula;
+pub(crate) mod gradient;
 pub mod graph;
 pub(crate) mod limits;
 pub mod matrix;

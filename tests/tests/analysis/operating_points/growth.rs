@@ -41,6 +41,16 @@ fn masses_with_constraints(count: usize) -> String {
     masses(2 * count, &section("constraints", count, &pair))
 }
 
+fn constraint_over_masses(count: usize) -> String {
+    let terms: Vec<String> = (0..count).map(|k| format!("sin(q{k}/l)")).collect();
+    let length = "l = { value = 1, unit = \"m\" }\n";
+    let constraint = format!(
+        "[constraints]\nall = {{ zero = \"{}\" }}\n",
+        terms.join(" + ")
+    );
+    masses(count, &constraint).replace("k = {", &format!("{length}k = {{"))
+}
+
 fn chain_with_coefficients(count: usize) -> String {
     let spring = |k: usize| match k {
         0 => "V0 = \"1/2*k*q0^2\"".to_owned(),
@@ -161,6 +171,11 @@ fn check_of_impacts_grows_linearly() {
 #[test]
 fn check_of_constraints_grows_linearly() {
     assert_growth("check", 50, masses_with_constraints);
+}
+
+#[test]
+fn check_of_a_constraint_over_masses_grows_linearly() {
+    assert_growth("check", 80, constraint_over_masses);
 }
 
 #[test]
