@@ -25,7 +25,8 @@ pub(crate) struct KineticRows {
 impl KineticRows {
     /// Returns the form with the fewest operations, counted together with the gradient of the potential.
     /// Models with fields have one form. Others also have the form of a sweep, and both forms of the
-    /// quadratic form with sums of angles.
+    /// quadratic form with sums of angles. In a long chain the other form grows faster than that of the sweep.
+    /// Its derivation ends when it cannot be the cheapest.
     pub(crate) fn derive_cheapest(
         graph: &mut Graph,
         variables: &Variables,
@@ -41,10 +42,16 @@ impl KineticRows {
         };
         let beside = variables.gradient(graph, potential, GradientBy::Coordinates);
         let sweep = swept.sweep.clone();
-        let mut forms = vec![
-            Self::derive_by_differentiation(graph, variables, kinetic),
-            swept,
-        ];
+        let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
+        let most = match variables.coordinates > MAX_COMPARED_COORDINATES {
+            true => MAX_RELATIVE_OPERATIONS * swept.operations(graph, &beside.scalars),
+            false => usize::MAX,
+        };
+        let Some(mass) = variables.mass_matrix_below(graph, &momenta, most) else {
+            return swept;
+        };
+        let differentiated = Self::with_mass_matrix(graph, variables, kinetic, (momenta, mass));
+        let mut forms = vec![differentiated, swept];
         if is_quadratic_in_rates(graph, kinetic) {
             let entries = &forms[1].mass.scalars.clone();
             if let Some(other) = quadratic_form(graph, entries).filter(|other| *other != kinetic) {
@@ -67,6 +74,15 @@ impl KineticRows {
     ) -> Self {
         let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
         let mass = variables.mass_matrix(graph, &momenta);
+        Self::with_mass_matrix(graph, variables, kinetic, (momenta, mass))
+    }
+
+    fn with_mass_matrix(
+        graph: &mut Graph,
+        variables: &Variables,
+        kinetic: NodeId,
+        (momenta, mass): (RowNodes, MassMatrix),
+    ) -> Self {
         let mut velocity_terms = variables.velocity_terms(graph, kinetic, &momenta);
         if variables.fields == 0 {
             velocity_terms.scalars = factor_if_cheaper(graph, velocity_terms.scalars);
@@ -121,6 +137,13 @@ impl KineticRows {
         shared_operations(graph, &nodes)
     }
 }
+
+/// Largest number of coordinates for which both forms are derived completely.
+const MAX_COMPARED_COORDINATES: usize = 12;
+
+/// Operations of a mass matrix, relative to those of the whole form of a sweep, at which its derivation by
+/// differentiation ends.
+const MAX_RELATIVE_OPERATIONS: usize = 2;
 
 /// Largest number of coordinates for which the quadratic form is expanded.
 const MAX_COORDINATES: usize = 4;

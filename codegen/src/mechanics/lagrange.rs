@@ -86,6 +86,25 @@ impl Variables {
     }
 
     pub(crate) fn mass_matrix(&self, graph: &mut Graph, momenta: &RowNodes) -> MassMatrix {
+        let scalars = self.mass_rows(graph, momenta, usize::MAX);
+        self.with_modes(graph, momenta, scalars)
+    }
+
+    /// Returns the mass matrix; `None` if its rows of coordinates take more operations than `most`.
+    pub(crate) fn mass_matrix_below(
+        &self,
+        graph: &mut Graph,
+        momenta: &RowNodes,
+        most: usize,
+    ) -> Option<MassMatrix> {
+        let scalars = self.mass_rows(graph, momenta, most);
+        let is_whole = scalars.len() == self.coordinates;
+        is_whole.then(|| self.with_modes(graph, momenta, scalars))
+    }
+
+    /// Returns the rows of the mass matrix for the coordinates, without the modes. Ends after the row with which
+    /// they take more operations than `most`, unless it is the last.
+    fn mass_rows(&self, graph: &mut Graph, momenta: &RowNodes, most: usize) -> Vec<Vec<NodeId>> {
         let rates: Vec<NodeId> = CoordinateId::first(self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
@@ -98,7 +117,19 @@ impl Variables {
                 entries.push(expand_if_cheaper(graph, entry));
             }
             scalars.push(entries);
+            if most < usize::MAX && count_operations(graph, &scalars.concat()) > most {
+                break;
+            }
         }
+        scalars
+    }
+
+    fn with_modes(
+        &self,
+        graph: &mut Graph,
+        momenta: &RowNodes,
+        scalars: Vec<Vec<NodeId>>,
+    ) -> MassMatrix {
         let mut coupling = vec![Vec::new(); self.coordinates];
         let mut modal = vec![Vec::new(); self.fields];
         for field in FieldId::first(self.fields) {
