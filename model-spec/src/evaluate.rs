@@ -2,28 +2,52 @@
 //! library. Compiled models evaluate everything that depends on the motion.
 
 use crate::ast::BinaryOperator;
-use crate::model::{Expr, ExprKind, Function};
+use crate::model::{Expr, ExprKind, Function, Model};
 
 /// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains
 /// anything else; expressions of parameters in a checked model do not.
 pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
+    evaluate_with(expr, &|leaf| parameter(leaf, parameters))
+}
+
+/// Evaluates a function of time at `t` (s) and the values of the parameters in SI; see
+/// [`Model::is_function_of_time`].
+pub fn evaluate_at_time(model: &Model, expr: &Expr, parameters: &[f64], t: f64) -> f64 {
+    evaluate_with(expr, &|leaf| match leaf {
+        ExprKind::Time => t,
+        ExprKind::Definition(index) => {
+            evaluate_at_time(model, &model.definitions[*index].value, parameters, t)
+        }
+        _ => parameter(leaf, parameters),
+    })
+}
+
+/// Returns the value of a parameter; NaN for other leaves.
+fn parameter(leaf: &ExprKind, parameters: &[f64]) -> f64 {
+    match leaf {
+        ExprKind::Parameter(index) => parameters.get(index.index()).copied().unwrap_or(f64::NAN),
+        _ => f64::NAN,
+    }
+}
+
+/// Evaluates an expression whose leaves, other than numbers, have the values of `leaf`.
+fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
         ExprKind::Pi => std::f64::consts::PI,
-        ExprKind::Parameter(index) => parameters.get(index.index()).copied().unwrap_or(f64::NAN),
-        ExprKind::Negate(operand) => -evaluate(operand, parameters),
+        ExprKind::Negate(operand) => -evaluate_with(operand, leaf),
         ExprKind::Binary(operator, left, right) => {
-            let (left, right) = (evaluate(left, parameters), evaluate(right, parameters));
+            let (left, right) = (evaluate_with(left, leaf), evaluate_with(right, leaf));
             binary(*operator, left, right)
         }
         ExprKind::Call(function, arguments) => {
             let argument = |index: usize| {
                 let found = arguments.get(index);
-                found.map_or(f64::NAN, |expr| evaluate(expr, parameters))
+                found.map_or(f64::NAN, |expr| evaluate_with(expr, leaf))
             };
             call(*function, argument(0), argument(1))
         }
-        _ => f64::NAN,
+        other => leaf(other),
     }
 }
 

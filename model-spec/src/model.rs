@@ -520,6 +520,32 @@ pub struct Expr {
     pub span: Span,
 }
 
+impl Model {
+    /// Returns true if an expression contains the time, and otherwise only numbers, parameters and
+    /// definitions of these.
+    pub fn is_function_of_time(&self, expr: &Expr) -> bool {
+        let (mut has_time, mut has_others) = (false, false);
+        self.visit_time(expr, &mut has_time, &mut has_others);
+        has_time && !has_others
+    }
+
+    fn visit_time(&self, expr: &Expr, has_time: &mut bool, has_others: &mut bool) {
+        expr.visit(&mut |part| match &part.kind {
+            ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::Parameter(_)
+            | ExprKind::Negate(_)
+            | ExprKind::Binary(..)
+            | ExprKind::Call(..) => {}
+            ExprKind::Time => *has_time = true,
+            ExprKind::Definition(index) => {
+                self.visit_time(&self.definitions[*index].value, has_time, has_others);
+            }
+            _ => *has_others = true,
+        });
+    }
+}
+
 impl Expr {
     /// Calls `see` with this expression and all its parts, the whole before its parts.
     pub fn visit(&self, see: &mut impl FnMut(&Expr)) {

@@ -139,7 +139,7 @@ def test_invalid_inputs_are_rejected(cart):
     name = cart.inputs[0]
     for force, said in [
         (np.zeros(7), "expected a number, or 101 numbers"),
-        (np.full(101, np.nan), "not finite"),
+        (np.full(101, np.nan), f"the input {name} at t = 0.0: nan: expected a finite number"),
         (lambda t: np.nan if t > 0.5 else 1.0, f"the input {name} at t = 0.5.*: NaN: expected a"),
         ("sin(t", f"the input {name}: .* is missing"),
     ]:
@@ -157,6 +157,16 @@ def test_input_exceptions_are_chained(cart):
     with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0 ") as raised:
         cart.simulate(until=1, inputs={name: lambda t: {}["missing"]})
     assert isinstance(raised.value.__cause__, KeyError)
+
+
+def test_inputs_without_a_finite_value_are_named_with_their_time(cart):
+    name = cart.inputs[0]
+    force = np.zeros(101)
+    force[50] = np.inf
+    with pytest.raises(ValueError, match=f"the input {name} at t = 0.5: inf: expected a finite number"):
+        cart.simulate(until=1, interval=0.01, inputs={name: force})
+    with pytest.raises(eomgen.SimulationError, match=f"`{name}` is infinite at t = 0.0 s"):
+        cart.simulate(until=1, inputs={name: "1/t"})
 
 
 AXIS = """

@@ -155,6 +155,26 @@ impl HeldInputs {
         bounds
     }
 
+    /// Returns the time (s), the index and the value of the first input that is held at a number
+    /// that is not finite between two times (s).
+    pub fn first_not_finite(&self, begin: f64, end: f64) -> Option<(f64, usize, f64)> {
+        let is_held = |place: &usize| {
+            let mut given = self.functions.iter();
+            given.all(|given| !(given.place..given.place + given.count).contains(place))
+        };
+        let first = self.times_until(begin).saturating_sub(1);
+        let rows = (first..self.times.len()).take_while(|row| self.times[*row] <= end);
+        rows.flat_map(|row| (0..self.count).map(move |place| (row, place)))
+            .map(|(row, place)| {
+                (
+                    self.times[row],
+                    place,
+                    self.values[row * self.count + place],
+                )
+            })
+            .find(|(_, place, value)| !value.is_finite() && is_held(place))
+    }
+
     /// Returns the inputs of the last sample at or before a time (s), without prescribed motion
     /// and functions.
     pub fn last_sample(&self, t: f64) -> &[f64] {

@@ -271,6 +271,8 @@ def _column(name: str, given: Any, times: Array) -> Array:
             f"the input {name} has the shape {np.shape(given)}: expected a number, or "
             f"{len(times)} numbers, one for each sample"
         )
-    if not np.isfinite(column).all():
-        raise ValueError(f"the input {name} is not finite at some sample")
+    wrong = np.flatnonzero(~np.isfinite(column))
+    if wrong.size:
+        first = wrong[0]
+        raise ValueError(f"the input {name} at t = {times[first]}: {column[first]}: expected a finite number")
     return column

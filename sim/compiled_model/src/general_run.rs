@@ -10,6 +10,7 @@ use eomgen_sim::ode::{Method, Settings, SolveError, Surface};
 use crate::audit::Auditor;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
+use crate::infinite_inputs::find_infinite_function;
 use crate::instance::Instance;
 use crate::model::CompiledModel;
 use crate::motion::{EarlyStop, Solver, StopCause};
@@ -24,6 +25,8 @@ pub(crate) struct GeneralRun {
     /// Consistent state at the start.
     pub initial: Vec<f64>,
     pub initial_changes: Vec<InitialChange>,
+    /// All parameters of the specification, SI.
+    values: Vec<f64>,
 }
 
 impl Instance<'_> {
@@ -41,7 +44,13 @@ impl Instance<'_> {
             self.check_adams()?;
         }
         // Before the evaluator, whose pivots give a less specific error for dependent constraints.
-        let (initial, initial_changes) = self.find_consistent_start(state, span, inputs)?;
+        let values = self.values().to_vec();
+        let start = self.find_consistent_start(state, span, inputs);
+        let (initial, initial_changes) = start.map_err(|error| {
+            let infinite = find_infinite_function(self.model(), &values, (span.0, span.0));
+            let t = Some(span.0);
+            infinite.map_or(error, |reason| Error::Stopped { t, reason })
+        })?;
         let evaluator = RefCell::new(self.evaluator()?);
         let mut system = self.driven_model(evaluator, inputs.clone())?;
         let solver = match settings.method {
@@ -63,6 +72,7 @@ impl Instance<'_> {
             solver,
             initial,
             initial_changes,
+            values,
         })
     }
 
@@ -111,7 +121,12 @@ impl GeneralRun {
             Some((passed, reason)) => (Some(passed), Some(reason)),
             None => (t, None),
         };
-        let reason = if let Some(overlap) = self.system.overlap_message() {
+        let infinite = may_be
+            .then(|| find_infinite_function(model, &self.values, (begin, ended_at)))
+            .flatten();
+        let reason = if let Some(infinite) = infinite {
+            infinite
+        } else if let Some(overlap) = self.system.overlap_message() {
             format!("at t = {ended_at:?} s {overlap}")
         } else if let Some(corner) = self.system.corner_message() {
             corner

@@ -49,6 +49,7 @@ mod equilibrium;
 mod error;
 mod event_log;
 mod general_run;
+mod infinite_inputs;
 mod initial_consistency;
 mod instance;
 mod jacobian_program;

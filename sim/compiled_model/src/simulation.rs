@@ -97,6 +97,7 @@ impl Instance<'_> {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         (request.settings().check()).map_err(|error| Error::Request(error.to_string()))?;
+        self.check_held_inputs(request.inputs, request.time_span())?;
         let asked = |method| Settings {
             method,
             ..request.settings()

@@ -55,3 +55,64 @@ fn overflowing_energy_has_no_warning_of_the_audit() {
     assert!(message.contains("`energy` is not finite"), "{message}");
     assert!(!message.contains("without work"), "{message}");
 }
+
+#[test]
+fn input_without_a_finite_value_is_named_with_its_time() {
+    // Infinite at the start, in between and at the end; not a number from a time on; infinite between steps.
+    for (input, cause, status) in [
+        ("u=1/t", "`u` is infinite at t = 0.0 s", 2),
+        ("u=ln(t)", "`u` is infinite at t = 0.0 s", 2),
+        ("u=1/(t - 0.5)", "`u` becomes infinite near t = 0.5", 1),
+        ("u=tan(pi*t)", "`u` becomes infinite near t = 0.5", 1),
+        ("u=1/(1 - t)", "`u` becomes infinite near t = 1", 1),
+        (
+            "u=sqrt(0.5 - t)",
+            "`u` is not a number (NaN) after t = 0.5",
+            1,
+        ),
+    ] {
+        for solver in ["auto", "rk", "radau", "adams"] {
+            let (found, message) = simulate(&["--solver", solver, "--input", input]);
+            assert_eq!(found, Some(status), "{solver}, {input}: {message}");
+            let is_named =
+                message.contains(cause) || message.contains(&cause.replace("0.5", "0.4"));
+            assert!(is_named, "{solver}, {input}: {message}");
+            assert!(message.contains("simulate another time span"), "{message}");
+            assert!(!message.contains("x_dot"), "{solver}, {input}: {message}");
+        }
+    }
+    for solver in ["auto", "exact"] {
+        let (status, message) = simulate(&["--solver", solver, "--input", "u=1/above(t - 0.5)"]);
+        assert_eq!(status, Some(2), "{solver}: {message}");
+        assert!(
+            message.contains("the input `u` is infinite from t = 0.0 s on"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn finite_inputs_are_not_blamed_for_a_diverging_state() {
+    let spec = MASS
+        .replace("1/2*k*x^2", "-1/2*k*x^2/(1 - x/l)")
+        .replace("k = {", "l = { value = 0.2, unit = \"m\" }\nk = {");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("singular.toml");
+    std::fs::write(&file, spec).expect("written");
+    let out = folder.path().join("a.csv").display().to_string();
+    let arguments = [
+        "simulate",
+        &file.display().to_string(),
+        "--until",
+        "9",
+        "--out",
+        &out,
+        "--input",
+        "u=10*above(t)",
+    ];
+    let message = text(&run(&arguments).stderr);
+    assert!(
+        message.contains("x_dot") && !message.contains("`u`"),
+        "{message}"
+    );
+}

@@ -1,0 +1,84 @@
+//! Inputs and other functions of time without a finite value at a time of the motion.
+
+use eomgen_model_spec::evaluate::evaluate_at_time;
+use eomgen_sim::inputs::HeldInputs;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::model::CompiledModel;
+
+/// Distances after the end of a motion at which functions are tested, relative to the time: a solver fails on
+/// trial steps.
+const DISTANCES_AFTER: [f64; 5] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9];
+
+/// Distances before the end of a motion that show a pole, relative to the simulated time.
+const DISTANCES_BEFORE: [f64; 3] = [1e-9, 1e-7, 1e-5];
+
+/// Smallest growth of a function towards a pole from each of these distances to the next. A pole of order 1/2
+/// gives 10.
+const MIN_POLE_GROWTH: f64 = 5.0;
+
+impl Instance<'_> {
+    /// Rejects inputs that are held at infinity or NaN during the simulated time span, in s.
+    pub(crate) fn check_held_inputs(
+        &self,
+        inputs: &HeldInputs,
+        (begin, end): (f64, f64),
+    ) -> Result<(), Error> {
+        let Some((t, place, value)) = inputs.first_not_finite(begin, end) else {
+            return Ok(());
+        };
+        let known = self.model().model().inputs.get(place);
+        let name = known.map_or("", |input| &input.name);
+        Err(Error::Request(format!(
+            "the input `{name}` is {} from t = {t:?} s on: correct the expression or the record, or simulate \
+             another time span",
+            describe(value)
+        )))
+    }
+}
+
+/// Returns the message for a definition of time alone, such as an input given by an expression, that has no
+/// finite value where a motion from `begin` ended, both in s. `parameters` are all those of the specification, SI.
+pub(crate) fn find_infinite_function(
+    model: &CompiledModel,
+    parameters: &[f64],
+    (begin, end): (f64, f64),
+) -> Option<String> {
+    let model = model.model();
+    let definitions = model.definition_order.iter();
+    let functions = definitions
+        .map(|index| &model.definitions[*index])
+        .filter(|definition| model.is_function_of_time(&definition.value));
+    let cure = "write an expression that is finite at all times, such as 1/max(t, 0.001) for 1/t, or simulate \
+                another time span";
+    for definition in functions {
+        let name = &definition.name;
+        let value = |t| evaluate_at_time(model, &definition.value, parameters, t);
+        let (span, size) = (end - begin, end.abs().max(end - begin));
+        let after = DISTANCES_AFTER.map(|distance| value(end + distance * size));
+        if let Some(at) = after.iter().position(|value| !value.is_finite()) {
+            let (kind, when) = (describe(after[at]), if at == 0 { "at" } else { "after" });
+            return Some(format!(
+                "the function of time `{name}` is {kind} {when} t = {end:?} s: {cure}"
+            ));
+        }
+        let before = DISTANCES_BEFORE.map(|distance| value(end - distance * span).abs());
+        if before
+            .windows(2)
+            .all(|pair| pair[0] > MIN_POLE_GROWTH * pair[1])
+        {
+            return Some(format!(
+                "the function of time `{name}` becomes infinite near t = {end:.9} s: {cure}"
+            ));
+        }
+    }
+    None
+}
+
+fn describe(value: f64) -> &'static str {
+    match value.is_nan() {
+        true => "not a number (NaN)",
+        false => "infinite",
+    }
+}
