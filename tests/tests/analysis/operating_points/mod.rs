@@ -4,6 +4,7 @@ mod bases;
 mod drawn_modes;
 mod given;
 mod growth;
+mod nonlinear;
 mod tables;
 
 use std::f64::consts::{PI, TAU};
