@@ -140,3 +140,39 @@ fn nested_powers_of_the_position_stay_small() {
     let nodes = equations(&model(&text), 2).graph.len();
     assert!(nodes < 150, "{nodes}");
 }
+
+/// Returns a chain of bodies on hinges about the three axes in turn.
+fn hinged_bodies(count: usize) -> String {
+    let mut text = String::from(
+        "[model]\nname = \"hinged\"\ngravity = [0, 0, \"-g\"]\n[parameters]\n\
+         m = { value = 1, unit = \"kg\" }\nl = { value = 1, unit = \"m\" }\n\
+         J = { value = 1, unit = \"kg m^2\" }\ng = { value = 9.81, unit = \"m/s^2\" }\n[coordinates]\n",
+    );
+    (0..count).for_each(|k| writeln!(text, "q{k} = {{ unit = \"rad\" }}").unwrap());
+    text.push_str("[frames]\nf0 = { rotation = \"rotation_x(q0)\" }\n");
+    for k in 1..count {
+        let axis = ['x', 'y', 'z'][k % 3];
+        let place = format!("in = \"f{}\", origin = [0, 0, \"-l\"]", k - 1);
+        writeln!(
+            text,
+            "f{k} = {{ rotation = \"rotation_{axis}(q{k})\", {place} }}"
+        )
+        .unwrap();
+    }
+    text.push_str("[bodies]\n");
+    for k in 0..count {
+        let body = format!("frame = \"f{k}\", mass = \"m\", inertia = [\"J\", \"J\", \"J\"]");
+        writeln!(text, "f{k} = {{ {body} }}").unwrap();
+    }
+    text
+}
+
+// The mass matrix has the square of the number of bodies as entries, and its factors are emitted as a loop.
+#[test]
+fn derivation_of_hinged_bodies_grows_with_the_square() {
+    let [single, double] = [18, 36].map(|count| {
+        let equations = equations(&model(&hinged_bodies(count)), 0);
+        equations.graph.len()
+    });
+    assert!(double <= 4 * single, "{single} to {double} nodes");
+}

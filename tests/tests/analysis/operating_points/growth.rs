@@ -198,6 +198,12 @@ fn modes_of_connected_masses_grow_with_the_cube() {
     assert_growth_below(CUBIC_RATIO, ("modes", 40), chain_with_coefficients);
 }
 
+/// Modes without the eigenvalues.
+#[test]
+fn linearise_of_connected_masses_grows_linearly() {
+    assert_growth("linearise", 30, chain_with_coefficients);
+}
+
 #[test]
 fn modes_of_hinged_bodies_grow_with_the_cube() {
     assert_growth_below(CUBIC_RATIO, ("modes", 4), |count| {
