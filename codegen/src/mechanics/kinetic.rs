@@ -43,7 +43,10 @@ impl KineticRows {
         let beside = variables.gradient(graph, potential, GradientBy::Coordinates);
         let sweep = swept.sweep.clone();
         let momenta = variables.gradient(graph, kinetic, GradientBy::Rates);
-        let most = match variables.coordinates > MAX_COMPARED_COORDINATES {
+        let moves = |entry: &NodeId| !graph.dependence(*entry).is_parameter_only();
+        let most = match variables.coordinates > MAX_COMPARED_COORDINATES
+            && swept.mass.scalars.iter().flatten().any(moves)
+        {
             true => MAX_RELATIVE_OPERATIONS * swept.operations(graph, &beside.scalars),
             false => usize::MAX,
         };

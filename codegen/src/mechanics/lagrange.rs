@@ -110,14 +110,19 @@ impl Variables {
             .collect();
         // By symmetry, an entry is a derivative of the momentum with the smaller index.
         let mut scalars: Vec<Vec<NodeId>> = Vec::with_capacity(self.coordinates);
+        let mut moving: Vec<NodeId> = Vec::new();
         for row in 0..self.coordinates {
             let mut entries: Vec<NodeId> = scalars.iter().map(|above| above[row]).collect();
             for &rate in &rates[row..] {
                 let entry = derive_by_scalar(graph, momenta.scalars[row], rate);
                 entries.push(expand_if_cheaper(graph, entry));
             }
+            let own = entries[row..].iter().copied();
+            let before = moving.len();
+            moving.extend(own.filter(|entry| !graph.dependence(*entry).is_parameter_only()));
             scalars.push(entries);
-            if most < usize::MAX && count_operations(graph, &scalars.concat()) > most {
+            if most < usize::MAX && moving.len() > before && count_operations(graph, &moving) > most
+            {
                 break;
             }
         }
