@@ -28,6 +28,8 @@ impl Instance<'_> {
         let Some((t, place, value)) = inputs.first_not_finite(begin, end) else {
             return Ok(());
         };
+        // A sample before the span holds at its start.
+        let t = t.max(begin);
         let known = self.model().model().inputs.get(place);
         let name = known.map_or("", |input| &input.name);
         Err(Error::Request(format!(
