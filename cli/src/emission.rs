@@ -6,8 +6,9 @@ use eomgen_codegen::rust::{self, EmitError, Packaging};
 use eomgen_codegen::variant::Variant;
 use eomgen_codegen::wasm;
 use eomgen_model_spec::model::Model;
+use eomgen_validate::certify::{CCompiler, CSource};
 
-use crate::arguments::{Extra, Generate, Target};
+use crate::arguments::{Extra, Target};
 use crate::count::count;
 use crate::error::{Error, Result};
 use crate::fmu::{self, Version};
@@ -16,21 +17,30 @@ pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
     rust::emit(program, packaging).map_err(input_error)
 }
 
+/// Emits a program as C, with the default compiler for its certificate.
+pub fn c_source(program: &Program, outputs: &[Output]) -> Result<CSource> {
+    let c::Files { source, header } = c::emit(program).map_err(input_error)?;
+    let names = outputs.iter().map(|output| output.name().to_owned());
+    Ok(CSource {
+        name: program.name.clone(),
+        source,
+        header,
+        outputs: names.collect(),
+        compiler: CCompiler::default(),
+    })
+}
+
 /// Emits a program as a WebAssembly module.
 pub fn module(program: &Program) -> Result<Vec<u8>> {
     wasm::emit(program).map_err(input_error)
 }
 
 /// Returns names and contents of the emitted files. The file with the equations is first.
-pub fn files(
-    model: &Model,
-    variant: &Variant,
-    options: &Generate,
-) -> Result<Vec<(String, Vec<u8>)>> {
+pub fn files(model: &Model, variant: &Variant, target: Target) -> Result<Vec<(String, Vec<u8>)>> {
     let program = &variant.program;
     let name = &program.name;
     let text = |name: String, text: String| (name, text.into_bytes());
-    match options.target {
+    match target {
         Target::Rust => {
             let source = source(program, Packaging::Crate)?;
             Ok(vec![text("lib.rs".to_owned(), source)])
@@ -49,7 +59,7 @@ pub fn files(
         Target::Fmu2 | Target::Fmu3 => {
             without_impacts(model, "a functional mock-up unit")?;
             without_corners(program, "a functional mock-up unit")?;
-            let version = match options.target {
+            let version = match target {
                 Target::Fmu2 => Version::Two,
                 _ => Version::Three,
             };
@@ -85,28 +95,27 @@ pub fn without_corners(program: &Program, what: &str) -> Result<()> {
 ///
 /// # Errors
 /// An option that the target does not support.
-pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
+pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Output>> {
     let hessians = Extra::Output(Output::Hessians);
-    let has = |extra: Extra| options.with.contains(&extra);
-    let reason = match options.target {
+    let has = |extra: Extra| with.contains(&extra);
+    let reason = match target {
         Target::Rust | Target::C99 if has(hessians) => "--with hessians needs --target casadi",
-        Target::Rust => return Ok(Extra::outputs(&options.with)),
-        _ if options.certify => {
-            "--certify needs --target rust: a certificate covers the emitted Rust; the emitted C computes the \
-             same bits"
+        Target::Rust => return Ok(Extra::outputs(with)),
+        Target::Casadi | Target::Fmu2 | Target::Fmu3 if certify => {
+            "--certify needs --target rust or --target c99: a certificate covers the emitted Rust or C"
         }
         _ if has(Extra::Bench) => "--with bench needs --target rust: the benchmark is a crate",
         _ if has(Extra::Output(Output::Lanes)) => {
             "--with lanes needs --target rust: its functions are generic over the number type, \
              which C does not support"
         }
-        Target::C99 => return Ok(Extra::outputs(&options.with)),
-        Target::Casadi if options.with.iter().all(|extra| *extra == hessians) => {
+        Target::C99 => return Ok(Extra::outputs(with)),
+        Target::Casadi if with.iter().all(|extra| *extra == hessians) => {
             let mut outputs = c::CASADI_OUTPUTS.to_vec();
-            outputs.extend(Extra::outputs(&options.with));
+            outputs.extend(Extra::outputs(with));
             return Ok(outputs);
         }
-        Target::Fmu2 | Target::Fmu3 if options.with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
+        Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
         Target::Fmu2 | Target::Fmu3 => {
             "--with is not available for a functional mock-up unit: the standard defines its functions"
         }

@@ -8,7 +8,6 @@ mod arguments;
 mod audit;
 mod bench_files;
 mod certification;
-mod checked_in;
 mod commands;
 mod count;
 mod discovery;
@@ -17,6 +16,7 @@ mod emission;
 mod engines;
 mod error;
 mod event_log;
+mod family;
 mod field_shapes;
 mod figures;
 mod fmu;
@@ -65,6 +65,7 @@ fn main() -> ExitCode {
         Command::Check(options) => commands::check::run(&options),
         Command::Derive(options) => commands::derive::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
+        Command::Family(options) => commands::family::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
         Command::Linearise(options) => commands::linearise::run(&options),

@@ -45,6 +45,8 @@ pub struct Model {
     pub title: String,
     /// Text of the specification.
     pub source: Source,
+    /// Parameters that were set, with their numbers in declared units.
+    pub settings: Vec<(String, f64)>,
     /// Parameters in the order of the specification.
     pub parameters: Vec<Parameter>,
     /// Generalised coordinates in the order of the specification, without the modes.

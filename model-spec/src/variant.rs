@@ -231,6 +231,8 @@ impl Model {
         }
         let parameter = &mut self.parameters[index];
         parameter.value = ParameterValue::Number(parameter.unit.to_si(value));
+        self.settings.retain(|(known, _)| known != name);
+        self.settings.push((name.to_owned(), value));
         Ok(())
     }
 

@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
-pub use models::{Check, Derive, Extra, Format, Generate, Page, Target, Validate};
+pub use models::{Check, Derive, Extra, Family, Format, Generate, Page, Target, Validate};
 pub use motions::{Linearise, Modes, Simulate, Trim};
 pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};
 pub use records::{Compare, Dataset, Discover};
@@ -76,6 +76,11 @@ pub enum Command {
         after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
+    /// Emit and certify all variants that a file lists, with a manifest.
+    #[command(
+        after_help = "Examples:\n  eomgen family slew_family.toml --out models\n  eomgen family slew_family.toml --out models --check\ndocs/families.md describes the file."
+    )]
+    Family(Family),
     /// Check the derived equations against independent ones and write a certificate.
     #[command(
         after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json"

@@ -115,13 +115,32 @@ pub struct Generate {
     /// Write `certificate.json` (see `eomgen validate`) to the same folder; exit with status 1 if a check fails.
     #[arg(long)]
     pub certify: bool,
-    /// Regenerate the checked-in variants in `generated/src` and their certificates; run it in the project's
-    /// folder.
+    /// Regenerate the variants of `generated/family.toml` and their certificates, as `eomgen family`; run it in the
+    /// project's folder.
     #[arg(long, conflicts_with_all = ["spec", "out", "order", "set", "with", "target", "certify"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit with status 1 on a difference.
     #[arg(long)]
     pub check: bool,
+    #[command(flatten)]
+    pub output: Json,
+}
+
+/// Options of `family`.
+#[derive(Args)]
+pub struct Family {
+    /// Family file (TOML).
+    pub file: PathBuf,
+    /// Output folder: one folder for each variant, `mod.rs` and `manifest.json`.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Compare instead of writing; exit with status 1 on a missing, edited, stale or different file, a certificate
+    /// that did not pass, or operation counts above those of the manifest.
+    #[arg(long)]
+    pub check: bool,
+    /// Generate all variants, also those without a change in their files.
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub output: Json,
 }

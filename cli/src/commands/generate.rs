@@ -2,26 +2,27 @@
 
 use std::path::Path;
 
+use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant;
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::model_certificate::certify_source;
+use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::json;
 
-use crate::arguments::{Extra, Generate};
+use crate::arguments::{Extra, Generate, Target};
 use crate::bench_files;
 use crate::certification::document;
-use crate::checked_in;
 use crate::document::SCHEMA;
 use crate::emission;
 use crate::error::{Error, Result, print_json, print_text, warn};
+use crate::family;
 use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::settings::with_settings;
 
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
-     --check`; nothing was written\n\nTo compare the files of one model, generate them into another \
-     folder and run `diff -r` on both";
+     --check`; nothing was written\n\nTo compare the files of other models, list them in a family file \
+     and run `eomgen family FAMILY.toml --out DIR --check`";
 
 pub fn run(options: &Generate) -> Result {
     // clap ignores `requires` if the required option conflicts with a given one.
@@ -30,20 +31,44 @@ pub fn run(options: &Generate) -> Result {
     }
     match (&options.spec, &options.out) {
         (Some(spec), Some(out)) => generate(options, spec, out),
-        _ => checked_in::run(options.check, options.output.json),
+        _ => checked_in_variants(options.check, options.output.json),
     }
 }
 
+/// Folder of the variants that are part of the repository, and its family file.
+const CHECKED_IN: &str = "generated/src/variants";
+const CHECKED_IN_FAMILY: &str = "generated/family.toml";
+
+/// Runs `family` on the variants of the repository, all of them: its generator changes within one version.
+fn checked_in_variants(check: bool, json: bool) -> Result {
+    let current = std::env::current_dir()
+        .map_err(|error| Error::input(format!("no current folder: {error}")))?;
+    let mut folders = current.ancestors();
+    let root = folders.find(|folder| folder.join(CHECKED_IN_FAMILY).is_file());
+    let root = root.ok_or_else(|| {
+        Error::input(format!(
+            "--all needs the project's folder: neither the current folder nor one above contains {CHECKED_IN_FAMILY}"
+        ))
+    })?;
+    family::run(&family::Options {
+        file: &root.join(CHECKED_IN_FAMILY),
+        out: &root.join(CHECKED_IN),
+        check,
+        force: true,
+        json,
+    })
+}
+
 fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
-    let outputs = emission::outputs(options)?;
+    let outputs = emission::outputs(options.target, &options.with, options.certify)?;
     let model = with_settings(load(spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.order.text())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
-    let emitted = emission::files(&model, &variant, options)?;
+    let emitted = emission::files(&model, &variant, options.target)?;
     let mut certificate = None;
     if options.certify {
-        let text = emission::source(&variant.program, Packaging::Crate)?;
-        certificate = Some(certify_source(&model, &orders, &outputs, text)?);
+        let sources = sources(&variant, &outputs, options.target)?;
+        certificate = Some(certify_sources(&model, &orders, &outputs, &sources)?);
     }
     let mut files = Vec::new();
     for (name, contents) in &emitted {
@@ -82,6 +107,21 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         }
     }
     certificate.as_ref().map_or(Ok(()), judge)
+}
+
+/// Returns the sources to certify.
+fn sources(variant: &Variant, outputs: &[Output], target: Target) -> Result<Sources> {
+    let program = &variant.program;
+    Ok(match target {
+        Target::C99 => Sources {
+            c: Some(emission::c_source(program, outputs)?),
+            rust: None,
+        },
+        _ => Sources {
+            rust: Some(emission::source(program, Packaging::Crate)?),
+            c: None,
+        },
+    })
 }
 
 /// Fails with exit status 1 if a check failed or was not run.

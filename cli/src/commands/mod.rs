@@ -6,6 +6,7 @@ pub mod completions;
 pub mod dataset;
 pub mod derive;
 pub mod discover;
+pub mod family;
 pub mod generate;
 pub mod linearise;
 pub mod man;

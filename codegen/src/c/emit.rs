@@ -25,16 +25,33 @@ pub struct Files {
     pub source: String,
 }
 
-/// Writes a program as C99 that is also valid C++.
+/// Number type of the emitted C if the including code defines none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Real {
+    /// `double`.
+    Double,
+    /// `float`.
+    Single,
+}
+
+/// Writes a program as C99 that is also valid C++, in double precision.
 ///
 /// # Errors
 /// A name of the program that is a word of C or C++.
 pub fn emit(program: &Program) -> Result<Files, EmitError> {
+    emit_with(program, Real::Double)
+}
+
+/// Writes a program like [`emit`], with this number type.
+///
+/// # Errors
+/// As for [`emit`].
+pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = RequiredFunctions::default();
     let filling = fill_functions(&file, &mut needed)?;
     let stages = stages(&file, &mut needed)?;
-    let header = header(&file, &stages)?;
+    let header = header(&file, &stages, real)?;
     let mut defined = filling;
     for stage in stages {
         defined += &definition(program, stage);

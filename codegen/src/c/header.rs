@@ -1,6 +1,7 @@
 //! Header of the emitted C: sizes, names, structures, declarations.
 
 use super::comments::{comment, resolve_links};
+use super::emit::Real;
 use super::jacobians;
 use super::names::fill_template;
 use super::regimes::{REGIME, regime_head};
@@ -27,7 +28,7 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
         format!(
             "Emitted by eomgen {} from the specification `{}` (SHA-256 {}).",
             env!("CARGO_PKG_VERSION"),
-            program.name,
+            program.specification,
             program.spec_hash
         ),
         "Do not edit: change the specification and generate again.".to_owned(),
@@ -35,7 +36,7 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
 }
 
 /// Returns the notes for callers, by lines.
-fn notes(program: &Program) -> Vec<String> {
+fn notes(program: &Program, (other, precision): (&str, &str)) -> Vec<String> {
     let mut lines = documentation(program);
     let state = program.state_names().join(", ");
     let name = &program.name;
@@ -45,23 +46,28 @@ fn notes(program: &Program) -> Vec<String> {
          reentrant. Their output arguments must not overlap their input arguments.\n\
          \n\
          Compile {name}.c as C99 or C++. The results have the same bits with every compiler that does\n\
-         not contract products and sums: use -std=c99 or -ffp-contract=off. For single precision,\n\
-         use -D{name}_REAL=float here and for every file that includes this one."
+         not contract products and sums: use -std=c99 or -ffp-contract=off. For {precision} precision,\n\
+         use -D{name}_REAL={other} here and for every file that includes this one."
     );
     lines.extend(text.split('\n').map(str::to_owned));
     lines
 }
 
-pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> EmitResult<String> {
+pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResult<String> {
     let program = file.program;
-    let mut text = comment(&notes(program));
+    let (number, other, precision) = match real {
+        Real::Double => ("double", "float", "single"),
+        Real::Single => ("float", "double", "double"),
+    };
+    let mut text = comment(&notes(program, (other, precision)));
     text += &fill_template(
         program,
-        "#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
+        &"#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
          /** Type of all numbers. */\n\
-         #ifndef NAME_REAL\n#define NAME_REAL double\n#endif\n\
-         typedef NAME_REAL NAME_real;\n",
+         #ifndef NAME_REAL\n#define NAME_REAL NUMBER\n#endif\n\
+         typedef NAME_REAL NAME_real;\n"
+            .replace("NUMBER", number),
     );
     text += &sizes(file);
     text += &jacobians::sizes(program);

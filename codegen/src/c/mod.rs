@@ -21,4 +21,9 @@ mod types;
 
 pub use crate::statements::EmitError;
 pub use casadi::{CASADI_OUTPUTS, emit_casadi};
-pub use emit::{Files, emit};
+pub use emit::{Files, Real, emit, emit_with};
+
+/// Returns true if a name is no word of C or C++.
+pub fn is_identifier(name: &str) -> bool {
+    names::WORDS.identifier(name).is_ok()
+}

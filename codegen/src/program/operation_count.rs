@@ -1,6 +1,6 @@
 //! Number of operations in a call, an estimate of its cost that is independent of the machine.
 
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Extent, Op, Program, RowValues, ValueId};
 
 impl Program {
     /// Counts the additions, subtractions, multiplications, divisions, sign changes and selections per call
@@ -11,6 +11,42 @@ impl Program {
             .into_iter()
             .map(|id| self.operations_of(id))
             .sum()
+    }
+
+    /// Counts the operations of a call of each emitted function, see [`Self::operations`].
+    pub fn operations_by_function(&self) -> Vec<(&'static str, usize)> {
+        let observables = &self.observable_values;
+        let (energy, power) = match observables[..] {
+            [.., energy, power] => (vec![energy], vec![power]),
+            _ => Default::default(),
+        };
+        let guards: Vec<ValueId> = self.guards.iter().map(|guard| guard.value).collect();
+        let mass = &self.mass;
+        let mass = mass.scalars.iter().chain(&mass.coupling).flatten().copied();
+        let mass: Vec<ValueId> = mass
+            .chain(self.mass.modal.iter().flatten().flatten().copied())
+            .collect();
+        let outputs = &self.outputs;
+        let rows = |rows: &Option<RowValues>| rows.as_ref().map(RowValues::all);
+        let mut functions = vec![
+            ("rates", Some(self.rate_roots())),
+            ("observables", Some(observables.clone())),
+            ("energy", Some(energy)),
+            ("power", Some(power)),
+            ("guards", Some(guards)),
+            ("mass_matrix", Some(mass)),
+            ("bias_forces", rows(&outputs.bias_forces)),
+            ("inverse_dynamics", rows(&outputs.inverse_dynamics)),
+            ("guard_rates", outputs.guard_rates.clone()),
+        ];
+        for jacobian in &outputs.jacobians {
+            let entries = jacobian.entries.iter().map(|entry| entry.value);
+            functions.push((jacobian.name, Some(entries.collect())));
+        }
+        let counted = functions.into_iter();
+        counted
+            .filter_map(|(name, roots)| Some((name, self.operations(&roots?))))
+            .collect()
     }
 
     fn operations_of(&self, id: ValueId) -> usize {

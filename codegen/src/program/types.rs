@@ -80,8 +80,11 @@ impl RowValues {
 /// Program of one variant.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Name of the model.
+    /// Prefix of the names in emitted C and name of emitted files: the name of the model unless
+    /// another one is given.
     pub name: String,
+    /// Name of the specification.
+    pub specification: String,
     /// Title of the model.
     pub title: String,
     /// SHA-256 of the specification in hexadecimal.

@@ -114,7 +114,7 @@ fn documentation(file: &File<'_>) -> Vec<String> {
         format!(
             "Emitted by eomgen {} from the specification `{}` (SHA-256 {}).",
             env!("CARGO_PKG_VERSION"),
-            program.name,
+            program.specification,
             program.spec_hash
         ),
         "Do not edit: change the specification and generate again.".to_owned(),

@@ -25,3 +25,8 @@ mod words;
 
 pub use crate::statements::EmitError;
 pub use emit::{ITEMS_MODULE, Packaging, emit};
+
+/// Returns true if a name is no word of Rust.
+pub fn is_identifier(name: &str) -> bool {
+    words::WORDS.identifier(name).is_ok()
+}

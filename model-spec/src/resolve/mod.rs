@@ -73,6 +73,7 @@ impl Builder {
             name: document.name.text,
             title: document.title,
             source: source.clone(),
+            settings: Vec::new(),
             coordinates: self.build_all(document.coordinates, Self::coordinate),
             inputs: self.build_all(document.inputs, Self::input),
             states: self.build_all(document.states, Self::state),

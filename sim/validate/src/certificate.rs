@@ -22,11 +22,16 @@ pub struct Certificate {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source; `None` if no source was emitted.
     pub source_sha256: Option<String>,
+    /// SHA-256 of the emitted C; `None` if no C was emitted.
+    pub c_source_sha256: Option<String>,
     /// Requested outputs, by their names in `--with`.
     pub with: Vec<String>,
     /// Values of all parameters, in SI, in the order of the specification.
     #[serde(serialize_with = "by_name")]
     pub parameters: Vec<(String, f64)>,
+    /// Parameters that were set, in their declared units.
+    #[serde(serialize_with = "by_name")]
+    pub settings: Vec<(String, f64)>,
     /// Result of all checks together.
     pub verdict: Verdict,
     /// True if the verdict is [`Verdict::Passed`].
@@ -35,6 +40,8 @@ pub struct Certificate {
     pub coverage: Option<Coverage>,
     /// Checks in the order in which they were run.
     pub checks: Vec<Check>,
+    /// Text of the specification, complete with the files that it extends.
+    pub specification: String,
 }
 
 /// Result of all checks together.
@@ -123,6 +130,12 @@ pub struct CertificateHeader {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source, if any.
     pub source_sha256: Option<String>,
+    /// SHA-256 of the emitted C, if any.
+    pub c_source_sha256: Option<String>,
+    /// Parameters that were set, in their declared units.
+    pub settings: Vec<(String, f64)>,
+    /// Text of the specification.
+    pub specification: String,
     /// Names of the requested outputs.
     pub with: Vec<String>,
     /// Names and values of all parameters, in SI.
@@ -155,6 +168,9 @@ impl Certificate {
             generator: concat!("eomgen ", env!("CARGO_PKG_VERSION")).to_owned(),
             specification_sha256: about.specification_sha256,
             source_sha256: about.source_sha256,
+            c_source_sha256: about.c_source_sha256,
+            settings: about.settings,
+            specification: about.specification,
             with: about.with,
             parameters: about.parameters,
             verdict,

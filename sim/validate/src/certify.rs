@@ -3,8 +3,8 @@
 use super::certificate::{Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst};
 use super::checks::outputs::CheckContext;
 use super::checks::{
-    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, outputs, regimes, states,
-    zeros,
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, emitted_c, exact, nesting, outputs, regimes,
+    states, zeros,
 };
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
@@ -12,6 +12,7 @@ use super::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
+pub use super::checks::emitted_c::{CCompiler, CSource};
 pub use super::checks::exact::{Derivative, ScaledRates};
 pub use super::checks::linked_program::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
@@ -43,6 +44,8 @@ pub struct Subject<'s> {
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// Emitted source with the parameters of the specification, or the reason for its absence.
     pub emitted: Result<Emitted, String>,
+    /// Emitted C, if there is any.
+    pub c_source: Option<&'s CSource>,
     /// Emitted source with kernels of regimes, or the reason for its absence.
     pub regimes: Result<Emitted, String>,
     /// State derivative of the exact solver, or the reason for its absence.
@@ -58,7 +61,8 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
         (vec![check], Coverage::default())
     });
     let emitted = subject.emitted.as_ref().ok();
-    let about = certificate_header(subject.model, subject.order, subject.parameters, emitted);
+    let sources = (emitted, subject.c_source);
+    let about = certificate_header(subject.model, subject.order, subject.parameters, sources);
     Certificate::new(about, Some(coverage), checks)
 }
 
@@ -67,16 +71,22 @@ pub fn certificate_header(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    emitted: Option<&Emitted>,
+    (rust, c): (Option<&Emitted>, Option<&CSource>),
 ) -> CertificateHeader {
+    let rust_hash = rust.map(|emitted| sha256(&emitted.source));
+    let c_hash = c.map(|emitted| sha256(&emitted.source));
     let names = model.parameters.iter().map(|known| known.name.clone());
     CertificateHeader {
         model: model.name.clone(),
         order,
         specification_sha256: model.hash(),
-        source_sha256: emitted.map(|emitted| sha256(&emitted.source)),
-        with: emitted
+        source_sha256: rust_hash.or(c_hash.clone()),
+        c_source_sha256: c_hash,
+        settings: model.settings.clone(),
+        specification: model.source.text.to_string(),
+        with: rust
             .and_then(|emitted| emitted.outputs.clone())
+            .or(c.map(|emitted| emitted.outputs.clone()))
             .unwrap_or_default(),
         parameters: names.zip(parameters.iter().copied()).collect(),
     }
@@ -112,6 +122,9 @@ fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
         }
         Err(reason) => emitted::skipped_checks(None, SkipKind::NotApplicable, reason),
     });
+    if let Some(source) = subject.c_source {
+        checks.push(emitted_c::check(&oracle, variant, source).map_err(describe_error)?);
+    }
     checks.push(match &subject.regimes {
         Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(describe_error)?,
         Err(reason) => regimes::skipped_check(reason),

@@ -108,7 +108,8 @@ pub fn first_line(text: &str) -> &str {
         .unwrap_or("no message")
 }
 
-fn run(command: &mut Command, input: &str) -> Result<Output, String> {
+/// Runs a command with `input` on its standard input, within the time limit.
+pub fn run(command: &mut Command, input: &str) -> Result<Output, String> {
     let name = command.get_program().to_os_string();
     let failed = |error: std::io::Error| format!("{}: {error}", Path::new(&name).display());
     let mut child = command

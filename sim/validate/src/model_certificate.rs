@@ -16,7 +16,9 @@ use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
-use crate::certify::{Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify};
+use crate::certify::{
+    CSource, Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify,
+};
 use crate::derived::Derived;
 use crate::derived_outputs::DerivedOutputs;
 use crate::outputs::Outputs;
@@ -60,7 +62,16 @@ pub fn certify_specification(
     certify_model(&model, &orders, &[]).map(Some)
 }
 
-/// Certifies an emitted source of `model` with `outputs`.
+/// Emitted sources of one variant, at least one.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    /// Rust, in any packaging that is a module or a crate.
+    pub rust: Option<String>,
+    /// C.
+    pub c: Option<CSource>,
+}
+
+/// Certifies an emitted Rust source of `model` with `outputs`.
 ///
 /// # Errors
 /// As [`certify_model`].
@@ -70,8 +81,25 @@ pub fn certify_source(
     outputs: &[Output],
     emitted: String,
 ) -> Result<Certificate, Error> {
+    let sources = Sources {
+        rust: Some(emitted),
+        c: None,
+    };
+    certify_sources(model, orders, outputs, &sources)
+}
+
+/// Certifies emitted sources of `model` with `outputs`.
+///
+/// # Errors
+/// As [`certify_model`].
+pub fn certify_sources(
+    model: &Model,
+    orders: &[usize],
+    outputs: &[Output],
+    sources: &Sources,
+) -> Result<Certificate, Error> {
     let order = common_order(model, orders)?;
-    let certificate = certificate(model, order, outputs, emitted)
+    let certificate = certificate(model, order, outputs, sources)
         .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
     Ok(certificate)
 }
@@ -92,7 +120,7 @@ fn certificate(
     model: &Model,
     order: usize,
     outputs: &[Output],
-    emitted: String,
+    sources: &Sources,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let reference_equations = reference_equations(model, order, &parameters);
@@ -103,7 +131,12 @@ fn certificate(
         Ok(propagator) => scaled_rates(&mut propagator.borrow_mut(), time, state, inputs),
         Err(reason) => Err(reason.clone()),
     };
-    let emitted = emitted_source(model, outputs, emitted);
+    let emitted = emitted_source(model, outputs, sources);
+    let inputs: Vec<String> = model
+        .inputs
+        .iter()
+        .map(|input| input.name.clone())
+        .collect();
     Ok(certify(&Subject {
         model,
         order,
@@ -112,8 +145,9 @@ fn certificate(
         references: &reference_equations.references,
         not_applicable: &reference_equations.not_applicable,
         outputs: (!outputs.is_empty()).then_some(&output_functions),
-        regimes: generate_kernels(model, order, &parameters, &emitted.input_fields),
-        emitted: Ok(emitted),
+        regimes: generate_kernels(model, order, &parameters, &inputs),
+        emitted: emitted.ok_or_else(|| "no Rust was emitted".to_owned()),
+        c_source: sources.c.as_ref(),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
             Err(reason) => Err(reason.clone()),
@@ -126,19 +160,24 @@ pub fn unchecked_certificate(
     model: &Model,
     order: usize,
     outputs: &[Output],
-    emitted: String,
+    sources: &Sources,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
-    let emitted = emitted_source(model, outputs, emitted);
-    let about = certificate_header(model, order, &parameters, Some(&emitted));
+    let emitted = emitted_source(model, outputs, sources);
+    let about = certificate_header(
+        model,
+        order,
+        &parameters,
+        (emitted.as_ref(), sources.c.as_ref()),
+    );
     Ok(Certificate::new(about, None, Vec::new()))
 }
 
-fn emitted_source(model: &Model, outputs: &[Output], source: String) -> Emitted {
+fn emitted_source(model: &Model, outputs: &[Output], sources: &Sources) -> Option<Emitted> {
     let inputs = model.inputs.iter();
     let names = outputs.iter().map(|output| output.name().to_owned());
-    Emitted {
-        source,
+    Some(Emitted {
+        source: sources.rust.clone()?,
         input_fields: inputs.map(|input| input.name.clone()).collect(),
         functions: vec![
             EmittedFunction::Rates,
@@ -149,7 +188,7 @@ fn emitted_source(model: &Model, outputs: &[Output], source: String) -> Emitted 
             EmittedFunction::MassMatrix,
         ],
         outputs: Some(names.collect()),
-    }
+    })
 }
 
 fn generate_kernels(

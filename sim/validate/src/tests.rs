@@ -34,6 +34,7 @@ fn certify_model(
         not_applicable: &[],
         outputs: None,
         emitted,
+        c_source: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })
@@ -83,6 +84,7 @@ fn certify_preload(kernel: &str, derivative: bool) -> Certificate {
         not_applicable: &[],
         outputs: None,
         emitted: Err("not emitted".into()),
+        c_source: None,
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
             input_fields: Vec::new(),
@@ -396,6 +398,7 @@ fn certify_faulty_outputs(wrong: &'static str) -> Certificate {
         not_applicable: &[],
         outputs: Some(&outputs),
         emitted: Err("not emitted".into()),
+        c_source: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })

@@ -129,7 +129,7 @@ fn generate_check_finds_no_difference() {
     let document: serde_json::Value =
         serde_json::from_slice(&output.stdout).expect("one JSON document");
     assert_eq!(document["different"], serde_json::json!([]), "{document}");
-    // The variants with their certificates, and the list of modules.
+    // The variants with their certificates, and the manifest.
     assert_eq!(document["files"], 2 * VARIANTS + 1);
     assert_eq!(output.status.code(), Some(0));
 }

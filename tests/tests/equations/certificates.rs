@@ -87,7 +87,7 @@ fn assert_checked_in(certificate: &Certificate) {
         0 => "planetary_arm_rigid".to_owned(),
         order => format!("planetary_arm_order_{order}"),
     };
-    let path = project().join(format!("generated/certificates/{name}.json"));
+    let path = project().join(format!("generated/src/variants/{name}/certificate.json"));
     let text = std::fs::read_to_string(&path).expect("the certificate is checked in");
     let found: serde_json::Value = serde_json::from_str(&text).expect("one document");
     let made = |check: &serde_json::Value| {

@@ -102,7 +102,7 @@ fn help_succeeds_and_has_an_example() {
     assert!(run_accepted(&["--version"]).starts_with("eomgen "));
     for command in COMMANDS
         .into_iter()
-        .chain(["dataset", "sweep", "merge", "paper", "tour"])
+        .chain(["family", "dataset", "sweep", "merge", "paper", "tour"])
     {
         let help = run_accepted(&[command, "--help"]);
         // The usage line contains the command, too.

@@ -59,6 +59,7 @@ pub fn lower_affine(
         },
         program: Program {
             name: model.name.clone(),
+            specification: model.name.clone(),
             title: model.title.clone(),
             spec_hash: model.hash(),
             parameters,

@@ -93,6 +93,7 @@ pub fn lower_with_outputs(
     let outputs = lowering.outputs(outputs);
     Program {
         name: model.name.clone(),
+        specification: model.name.clone(),
         title: model.title.clone(),
         spec_hash: model.hash(),
         parameters: program_parameters(model, parameter_values),

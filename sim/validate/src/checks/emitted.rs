@@ -23,13 +23,7 @@ pub fn check(
     functions: Option<BorrowedOutputs<'_>>,
     emitted: &Emitted,
 ) -> Result<Vec<Check>, OracleError> {
-    let mut sampler = Sampler::new(oracle, SEED)?;
-    let mut samples = Vec::with_capacity(STATES);
-    while samples.len() < STATES
-        && let Some(drawn) = sampler.draw_inside()?
-    {
-        samples.push(drawn.sample);
-    }
+    let samples = draw_samples(oracle)?;
     if samples.is_empty() {
         let reason = "no state in the model's domain was found";
         return Ok(skipped_checks(
@@ -59,7 +53,8 @@ pub fn check(
         Optimization::Full,
         &samples,
     );
-    let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
+    let worst = match found.and_then(|lines| compare(variant, &emitted.functions, &samples, &lines))
+    {
         Ok(worst) => worst,
         Err(message) => Worst::from_deviation(f64::INFINITY, message),
     };
@@ -93,9 +88,22 @@ fn call_statements(functions: &[EmittedFunction]) -> String {
     calls
 }
 
-fn compare(
+/// Returns at most [`STATES`] states in the model's domain.
+pub fn draw_samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let mut samples = Vec::with_capacity(STATES);
+    while samples.len() < STATES
+        && let Some(drawn) = sampler.draw_inside()?
+    {
+        samples.push(drawn.sample);
+    }
+    Ok(samples)
+}
+
+/// Counts the numbers in the printed `lines` of `functions` that differ from `variant`.
+pub fn compare(
     variant: &mut dyn Variant,
-    emitted: &Emitted,
+    functions: &[EmittedFunction],
     samples: &[Sample],
     lines: &str,
 ) -> Result<Worst, String> {
@@ -103,7 +111,7 @@ fn compare(
     let mut compared = 0;
     let mut differing = Vec::new();
     for (count, sample) in samples.iter().enumerate() {
-        for function in &emitted.functions {
+        for function in functions {
             let numbers = function.expected(variant, sample)?;
             let expected = format_bits(&numbers);
             let found = lines

@@ -127,7 +127,8 @@ pub fn run_linked(
     require_success("the compiled model", output)
 }
 
-fn require_success(what: &str, output: compiler::Output) -> Result<String, String> {
+/// Returns the output of a successful process, or the first line of its message.
+pub fn require_success(what: &str, output: compiler::Output) -> Result<String, String> {
     if output.success {
         Ok(output.stdout)
     } else {
@@ -138,7 +139,8 @@ fn require_success(what: &str, output: compiler::Output) -> Result<String, Strin
     }
 }
 
-fn format_samples(samples: &[Sample]) -> String {
+/// Returns times, states and inputs as bits, one sample per line.
+pub fn format_samples(samples: &[Sample]) -> String {
     let mut table = String::new();
     for sample in samples {
         let numbers = [&[sample.time][..], &sample.state, &sample.inputs].concat();

@@ -6,6 +6,7 @@
 //! - [`nesting`]: agreement between orders;
 //! - [`outputs`]: requested outputs;
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
+//! - [`emitted_c`]: emitted C;
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!
@@ -14,6 +15,7 @@
 
 pub mod balance;
 pub mod emitted;
+pub mod emitted_c;
 pub mod exact;
 pub mod linked_program;
 pub mod nesting;

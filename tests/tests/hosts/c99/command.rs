@@ -52,11 +52,7 @@ fn rust_only_options_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     for (options, reason) in [
-        (
-            ["--certify", "--json"].as_slice(),
-            "a certificate covers the emitted Rust",
-        ),
-        (&["--with", "bench"], "the benchmark is a crate"),
+        (["--with", "bench"].as_slice(), "the benchmark is a crate"),
         (
             &["--with", "jacobians,lanes"],
             "generic over the number type",
@@ -71,6 +67,24 @@ fn rust_only_options_are_rejected() {
         );
         assert!(!out.exists(), "{options:?} wrote files");
     }
+}
+
+#[test]
+fn certificate_covers_the_emitted_c() {
+    if !has_compilers() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = generate(folder.path(), &["--order", "1", "--certify"]);
+    assert!(output.status.success(), "{output:?}");
+    let text = std::fs::read_to_string(folder.path().join("certificate.json")).expect("a file");
+    let certificate: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(certificate["verdict"], "passed");
+    assert_eq!(certificate["source_sha256"], certificate["c_source_sha256"]);
+    let checks = certificate["checks"].as_array().expect("checks");
+    let compiled = checks.iter().find(|check| check["name"] == "emitted_c");
+    let compiled = compiled.expect("the C is compiled");
+    assert_eq!(compiled["value"], 0.0, "{compiled}");
 }
 
 #[test]

@@ -1,0 +1,218 @@
+//! Emits and certifies one variant of a family.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use eomgen_codegen::c::{self, Real};
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::Packaging;
+use eomgen_codegen::variant::Variant as Derived;
+use eomgen_model_spec::model::Model;
+use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::model_certificate::{Sources, certify_sources, unchecked_certificate};
+use serde_json::Value;
+
+use super::Options;
+use super::description::{Family, Precision, RustPackaging, Variant};
+use super::manifest::{CERTIFICATE, hash_file};
+use crate::arguments::{Extra, Target};
+use crate::certification::document;
+use crate::emission;
+use crate::error::{Error, Result};
+use crate::settings::with_settings;
+
+/// Emitted files of a variant.
+pub struct Built {
+    pub name: String,
+    /// Name of the model.
+    pub model: String,
+    pub orders: Vec<usize>,
+    pub states: usize,
+    /// Hashes of the files that the model was read from, by their paths relative to the family file.
+    pub inputs: BTreeMap<String, String>,
+    /// Contents by paths relative to the output folder, with the certificate.
+    pub files: BTreeMap<String, Vec<u8>>,
+    /// Operations of a call, by function.
+    pub operations: BTreeMap<&'static str, usize>,
+    /// Verdict of the certificate.
+    pub verdict: String,
+    pub passed: bool,
+    /// Rendered warnings about the specification.
+    pub warnings: Vec<String>,
+}
+
+/// Derives, emits and certifies a variant. A comparison runs no checks of certificates: it reads the verdict of the
+/// certificate in the output folder if that belongs to the emitted sources.
+pub fn build(family: &Family, variant: &Variant, options: &Options<'_>) -> Result<Built> {
+    let path = family.folder().join(&variant.spec);
+    let checked = eomgen_model_spec::load(&path).map_err(Error::Specification)?;
+    let warnings = match checked.warnings.is_empty() {
+        true => Vec::new(),
+        false => vec![checked.warnings.render(false)],
+    };
+    let model = with_settings(checked.model, &variant.settings)?;
+    let orders = model.orders(variant.order);
+    let orders = orders.map_err(|error| Error::model(&model.source, error))?;
+    let mut emitted = Emitted::new(variant, &model, &orders)?;
+    let certificate = certificate(variant, &model, &orders, &emitted, options)?;
+    emitted
+        .files
+        .insert(CERTIFICATE.to_owned(), certificate.text.into_bytes());
+    let inside = |(file, contents)| (format!("{}/{file}", variant.name), contents);
+    Ok(Built {
+        name: variant.name.clone(),
+        model: model.name.clone(),
+        states: emitted.states,
+        inputs: inputs(family, &model)?,
+        files: emitted.files.into_iter().map(inside).collect(),
+        operations: emitted.operations,
+        verdict: certificate.verdict,
+        passed: certificate.passed,
+        warnings,
+        orders,
+    })
+}
+
+/// Emitted sources by file names.
+struct Emitted {
+    files: BTreeMap<String, Vec<u8>>,
+    sources: Sources,
+    outputs: Vec<Output>,
+    operations: BTreeMap<&'static str, usize>,
+    states: usize,
+}
+
+impl Emitted {
+    fn new(variant: &Variant, model: &Model, orders: &[usize]) -> Result<Self> {
+        let hessians = Extra::Output(Output::Hessians);
+        let (of_casadi, others): (Vec<Extra>, Vec<Extra>) =
+            variant.with.iter().partition(|extra| **extra == hessians);
+        if !of_casadi.is_empty() && !variant.has(Target::Casadi) {
+            return Err(Error::input("`hessians` needs the target `casadi`"));
+        }
+        let derive = |outputs: &[Output]| {
+            let derived = Derived::derive_with(model, orders, outputs);
+            let mut derived = derived.map_err(Error::Specification)?;
+            derived.program.name.clone_from(&variant.prefix);
+            Ok::<Derived, Error>(derived)
+        };
+        // Lanes are functions of emitted Rust only.
+        let outputs = Extra::outputs(&others);
+        let derived = derive(&outputs)?;
+        let program = &derived.program;
+        let mut this = Self {
+            files: BTreeMap::new(),
+            sources: Sources::default(),
+            operations: program.operations_by_function().into_iter().collect(),
+            states: program.states(),
+            outputs,
+        };
+        if variant.has(Target::Rust) {
+            let (packaging, file) = match variant.packaging {
+                RustPackaging::Module => (Packaging::Module, "mod.rs"),
+                RustPackaging::Crate => (Packaging::Crate, "lib.rs"),
+            };
+            let text = emission::source(program, packaging)?;
+            this.files
+                .insert(file.to_owned(), text.clone().into_bytes());
+            this.sources.rust = Some(text);
+        }
+        if variant.has(Target::C99) {
+            emission::outputs(Target::C99, &others, false)?;
+            for (prefix, precision) in variant.c_prefixes() {
+                this.emit_c(&derived, &prefix, precision)?;
+            }
+        }
+        if variant.has(Target::Casadi) {
+            let derived = derive(&emission::outputs(Target::Casadi, &of_casadi, false)?)?;
+            this.files
+                .extend(emission::files(model, &derived, Target::Casadi)?);
+        }
+        Ok(this)
+    }
+
+    fn emit_c(&mut self, derived: &Derived, prefix: &str, precision: Precision) -> Result {
+        let real = match precision {
+            Precision::Double => Real::Double,
+            Precision::Single => Real::Single,
+        };
+        let mut program = derived.program.clone();
+        prefix.clone_into(&mut program.name);
+        let files =
+            c::emit_with(&program, real).map_err(|error| Error::input(error.to_string()))?;
+        if self.sources.c.is_none() {
+            let names = self.outputs.iter().map(|output| output.name().to_owned());
+            self.sources.c = Some(CSource {
+                name: prefix.to_owned(),
+                source: files.source.clone(),
+                header: files.header.clone(),
+                outputs: names.collect(),
+                compiler: CCompiler::default(),
+            });
+        }
+        self.files
+            .insert(format!("{prefix}.c"), files.source.into_bytes());
+        self.files
+            .insert(format!("{prefix}.h"), files.header.into_bytes());
+        Ok(())
+    }
+}
+
+struct CertificateText {
+    text: String,
+    verdict: String,
+    passed: bool,
+}
+
+fn certificate(
+    variant: &Variant,
+    model: &Model,
+    orders: &[usize],
+    emitted: &Emitted,
+    options: &Options<'_>,
+) -> Result<CertificateText> {
+    let Emitted {
+        sources, outputs, ..
+    } = emitted;
+    if !options.check {
+        let certificate = certify_sources(model, orders, outputs, sources)?;
+        return Ok(CertificateText {
+            text: document(&certificate)?,
+            verdict: certificate.verdict.name().to_owned(),
+            passed: certificate.passed,
+        });
+    }
+    let order = orders.first().copied().unwrap_or(0);
+    let expected = unchecked_certificate(model, order, outputs, sources);
+    let expected = expected.map_err(|error| Error::model(&model.source, error))?;
+    let expected =
+        serde_json::to_value(expected).map_err(|error| Error::input(error.to_string()))?;
+    let path = options.out.join(&variant.name).join(CERTIFICATE);
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let found: Value = serde_json::from_str(&text).unwrap_or_default();
+    let of_checks = ["passed", "verdict", "coverage", "checks"];
+    let is_same =
+        |(key, value): (&String, &Value)| of_checks.contains(&key.as_str()) || found[key] == *value;
+    let belongs = expected
+        .as_object()
+        .is_some_and(|fields| fields.iter().all(is_same));
+    let verdict = found["verdict"].as_str().filter(|_| belongs);
+    Ok(CertificateText {
+        verdict: verdict.unwrap_or("stale").to_owned(),
+        text,
+        // A comparison reports the verdict and writes nothing.
+        passed: true,
+    })
+}
+
+fn inputs(family: &Family, model: &Model) -> Result<BTreeMap<String, String>> {
+    let folder = family.folder();
+    let hash = |path: PathBuf| {
+        let name = path.strip_prefix(folder).unwrap_or(&path);
+        let name = name.to_string_lossy().replace('\\', "/");
+        let hash = hash_file(&path)
+            .ok_or_else(|| Error::input(format!("cannot read {}", path.display())))?;
+        Ok((name, hash))
+    };
+    model.files().into_iter().map(hash).collect()
+}

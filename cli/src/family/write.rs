@@ -1,0 +1,99 @@
+//! Writes the files of a family. Every file replaces the present one when it is complete; the manifest is last.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::build::Built;
+use super::description::{Family, RustPackaging};
+use super::manifest::{self, Manifest, hash_file};
+use crate::arguments::Target;
+use crate::error::{Error, Result, warn};
+use crate::output::write_file;
+
+/// Returns the file that declares the modules of a family; none without modules.
+pub fn root_module(family: &Family) -> BTreeMap<String, Vec<u8>> {
+    let mut text = format!(
+        "//! Variants of the family `{}`, emitted by `eomgen family`. Do not edit: generate again.\n\n\
+         #![allow(dead_code)]\n\n",
+        family.name
+    );
+    let is_module = |packaging: RustPackaging| packaging == RustPackaging::Module;
+    let variants = family
+        .variants
+        .iter()
+        .filter(|v| v.has(Target::Rust) && is_module(v.packaging));
+    let mut count = 0;
+    for variant in variants {
+        count += 1;
+        text += "#[rustfmt::skip]\n";
+        if variant.prefix != variant.name {
+            text += &format!("#[path = \"{}/mod.rs\"]\n", variant.name);
+        }
+        text += &format!("pub mod {};\n", variant.prefix);
+    }
+    match count {
+        0 => BTreeMap::new(),
+        _ => BTreeMap::from([("mod.rs".to_owned(), text.into_bytes())]),
+    }
+}
+
+fn files<'f>(
+    built: &'f [Built],
+    root: &'f BTreeMap<String, Vec<u8>>,
+) -> impl Iterator<Item = (&'f String, &'f Vec<u8>)> {
+    built.iter().flat_map(|built| &built.files).chain(root)
+}
+
+/// Returns the emitted files that differ from those in the folder.
+pub fn different_files(
+    built: &[Built],
+    root: &BTreeMap<String, Vec<u8>>,
+    out: &Path,
+) -> BTreeSet<String> {
+    let differs = |(path, contents): &(&String, &Vec<u8>)| {
+        std::fs::read(out.join(path)).map_or(true, |present| present != **contents)
+    };
+    files(built, root)
+        .filter(differs)
+        .map(|(path, _)| path.clone())
+        .collect()
+}
+
+/// Writes all files that differ.
+pub fn write(built: &[Built], root: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result {
+    let different = different_files(built, root, out);
+    for (path, contents) in files(built, root).filter(|(path, _)| different.contains(*path)) {
+        write_file(&out.join(path), contents)?;
+    }
+    Ok(())
+}
+
+/// Removes files of an earlier run that no variant has. Edited files stay.
+pub fn remove(paths: &[String], manifest: &Manifest, out: &Path) -> Result {
+    for path in paths {
+        let place = out.join(path);
+        match hash_file(&place) {
+            None => continue,
+            Some(hash) if manifest.file_hash(path) == Some(&*hash) => {
+                std::fs::remove_file(&place)
+                    .map_err(|error| Error::file("remove", &place, &error))?;
+                // Succeeds only if the folder of the variant is empty.
+                let _ = place.parent().map(std::fs::remove_dir);
+            }
+            Some(_) => warn(&format!(
+                "warning: {} belongs to no variant and was edited: it stays",
+                place.display()
+            )),
+        }
+    }
+    Ok(())
+}
+
+/// Writes the manifest if it changed.
+pub fn manifest(text: &str, out: &Path) -> Result {
+    let path = out.join(manifest::FILE);
+    if std::fs::read_to_string(&path).is_ok_and(|present| present == text) {
+        return Ok(());
+    }
+    write_file(&path, text.as_bytes())
+}

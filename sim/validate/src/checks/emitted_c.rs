@@ -1,0 +1,158 @@
+//! Bit-for-bit comparison of the compiled emitted C with the variant that it was emitted from. The
+//! check is skipped without a compiler and fails if the source does not compile.
+
+use std::path::Path;
+use std::process::Command;
+
+use super::emitted::{compare, draw_samples};
+use super::linked_program::{EmittedFunction, format_samples, require_success};
+use crate::certificate::{Check, SkipKind, Worst};
+use crate::compiler::{self, execute, run, write};
+use crate::oracle::{Oracle, OracleError};
+use crate::variant::Variant;
+
+const NAME: &str = "emitted_c";
+
+/// Emitted C with the command that compiles it.
+#[derive(Clone, Debug)]
+pub struct CSource {
+    /// Prefix of its names, and name of the header.
+    pub name: String,
+    /// Text of `NAME.c`.
+    pub source: String,
+    /// Text of `NAME.h`.
+    pub header: String,
+    /// Requested outputs, by their names in `--with`.
+    pub outputs: Vec<String>,
+    /// Compiler.
+    pub compiler: CCompiler,
+}
+
+/// C compiler with its options.
+#[derive(Clone, Debug)]
+pub struct CCompiler {
+    program: String,
+    options: Vec<String>,
+}
+
+impl Default for CCompiler {
+    /// Returns `cc`, or `CC` of the environment, with the options of the documentation.
+    fn default() -> Self {
+        let program = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+        let options = ["-std=c99", "-O2", "-ffp-contract=off"];
+        Self {
+            program,
+            options: options.map(str::to_owned).to_vec(),
+        }
+    }
+}
+
+impl CCompiler {
+    /// Splits a command such as `gcc -O2`; `None` if it is blank.
+    pub fn from_command(command: &str) -> Option<Self> {
+        let mut words = command.split_whitespace().map(str::to_owned);
+        Some(Self {
+            program: words.next()?,
+            options: words.collect(),
+        })
+    }
+
+    /// Returns program and options.
+    pub fn command(&self) -> String {
+        let words = std::iter::once(&self.program).chain(&self.options);
+        words.map(String::as_str).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Compiles an empty file, which any usable compiler can.
+    fn probe(&self, folder: &Path) -> Result<(), String> {
+        let probe = folder.join("probe.c");
+        write(&probe, "typedef int probe;\n")?;
+        let mut command = Command::new(&self.program);
+        let arguments = ["-c", "-o", "probe.o", "probe.c"];
+        let output = run(
+            command
+                .args(&self.options)
+                .args(arguments)
+                .current_dir(folder),
+            "",
+        )?;
+        require_success("the C compiler", output).map(drop)
+    }
+
+    fn compile(&self, folder: &Path, arguments: &[&str]) -> Result<compiler::Output, String> {
+        let mut command = Command::new(&self.program);
+        run(
+            command
+                .args(&self.options)
+                .args(arguments)
+                .current_dir(folder),
+            "",
+        )
+    }
+}
+
+/// Functions that the check calls, in the order of the harness.
+const FUNCTIONS: [EmittedFunction; 6] = [
+    EmittedFunction::Rates,
+    EmittedFunction::Observables,
+    EmittedFunction::Energy,
+    EmittedFunction::Power,
+    EmittedFunction::Guards,
+    EmittedFunction::MassMatrix,
+];
+
+/// Compiles `emitted` and counts the numbers that differ from `variant` by a bit.
+pub fn check(
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    emitted: &CSource,
+) -> Result<Check, OracleError> {
+    let samples = draw_samples(oracle)?;
+    if samples.is_empty() {
+        return Ok(not_run("no state in the model's domain was found"));
+    }
+    let folder = match tempfile::tempdir() {
+        Ok(folder) => folder,
+        Err(error) => {
+            return Ok(not_run(&format!(
+                "cannot create a temporary folder: {error}"
+            )));
+        }
+    };
+    if let Err(reason) = emitted.compiler.probe(folder.path()) {
+        return Ok(not_run(&reason));
+    }
+    let found = run_harness(folder.path(), emitted, &format_samples(&samples));
+    let worst = found.and_then(|lines| compare(variant, &FUNCTIONS, &samples, &lines));
+    let worst = worst.unwrap_or_else(|message| Worst::from_deviation(f64::INFINITY, message));
+    Ok(Check::from_deviation(NAME, worst, 0.0))
+}
+
+fn not_run(reason: &str) -> Check {
+    Check::with_skip(NAME.to_owned(), 0.0, SkipKind::NotRun, reason.to_owned())
+}
+
+fn run_harness(folder: &Path, emitted: &CSource, samples: &str) -> Result<String, String> {
+    let CSource {
+        name,
+        source,
+        header,
+        compiler,
+        ..
+    } = emitted;
+    write(&folder.join(format!("{name}.h")), header)?;
+    write(&folder.join("model.c"), source)?;
+    let harness = include_str!("harness/c99.c")
+        .replace("NAME_", &format!("{name}_"))
+        .replace("NAME.h", &format!("{name}.h"));
+    write(&folder.join("harness.c"), &harness)?;
+    let compiled = compiler.compile(folder, &["-I.", "-c", "-o", "model.o", "model.c"])?;
+    require_success("the emitted source", compiled)?;
+    let linked = compiler.compile(
+        folder,
+        &["-I.", "-o", "harness", "harness.c", "model.o", "-lm"],
+    )?;
+    require_success("the harness", linked)?;
+    let output = execute(&folder.join("harness"), samples)?;
+    require_success("the compiled model", output)
+}
