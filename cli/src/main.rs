@@ -66,6 +66,8 @@ fn main() -> ExitCode {
         Command::Derive(options) => commands::derive::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
         Command::Family(options) => commands::family::run(&options),
+        Command::Verify(options) => commands::verify::run(&options),
+        Command::Identify(options) => commands::identify::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
         Command::Linearise(options) => commands::linearise::run(&options),

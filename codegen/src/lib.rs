@@ -61,6 +61,7 @@
 
 pub mod c;
 pub mod examination;
+pub mod identity;
 pub mod independence;
 pub mod mechanics;
 pub mod program;

@@ -13,7 +13,9 @@ use std::ffi::OsString;
 use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
-pub use models::{Check, Derive, Extra, Family, Format, Generate, Page, Target, Validate};
+pub use models::{
+    Check, Derive, Extra, Family, Format, Generate, Identify, Page, Target, Validate, Verify,
+};
 pub use motions::{Linearise, Modes, Simulate, Trim};
 pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};
 pub use records::{Compare, Dataset, Discover};
@@ -81,6 +83,16 @@ pub enum Command {
         after_help = "Examples:\n  eomgen family slew_family.toml --out models\n  eomgen family slew_family.toml --out models --check\ndocs/families.md describes the file."
     )]
     Family(Family),
+    /// Compile an emitted source as it is and repeat the checks of its certificate on it.
+    #[command(
+        after_help = "Examples:\n  eomgen verify models/slew_3/mod.rs models/slew_3/certificate.json\n  eomgen verify models/slew_3/slew_3.c models/slew_3/certificate.json --cc \"gcc -O2 -ffp-contract=off\""
+    )]
+    Verify(Verify),
+    /// List the emitted variants in an object file, a library or a firmware image.
+    #[command(
+        after_help = "Examples:\n  eomgen identify firmware.elf\n  eomgen identify firmware.bin --certificates models"
+    )]
+    Identify(Identify),
     /// Check the derived equations against independent ones and write a certificate.
     #[command(
         after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json"

@@ -145,6 +145,33 @@ pub struct Family {
     pub output: Json,
 }
 
+/// Options of `verify`.
+#[derive(Args)]
+pub struct Verify {
+    /// Emitted source: Rust (`.rs`), or C (`.c`) with its header in the same folder.
+    pub file: PathBuf,
+    /// Certificate of the source.
+    pub certificate: PathBuf,
+    /// C compiler with its options, as in your build. Default: `cc` or the program in CC, with
+    /// `-std=c99 -O2 -ffp-contract=off`.
+    #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
+    pub cc: Option<String>,
+    #[command(flatten)]
+    pub output: Json,
+}
+
+/// Options of `identify`.
+#[derive(Args)]
+pub struct Identify {
+    /// Object file, library, program or firmware image.
+    pub image: PathBuf,
+    /// Folder with certificates: names the certificate of each variant; exit with status 1 if one is missing.
+    #[arg(long, value_name = "DIR")]
+    pub certificates: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: Json,
+}
+
 /// Options of `validate`.
 #[derive(Args)]
 pub struct Validate {

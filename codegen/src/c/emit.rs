@@ -9,6 +9,7 @@ use super::names::{WORDS, fill_template};
 use super::regimes::regime;
 use super::stages::definition;
 use super::types::fill_functions;
+use crate::identity::{seal, unsealed};
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
@@ -65,11 +66,17 @@ pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
     for (head, elements, _) in lists(program) {
         text += &format!("{head} = {};\n", initialiser(&elements));
     }
+    text += &comment(&["Identity, for `eomgen identify`.".to_owned()]);
+    text += &format!(
+        "const char {}_identity[] = \"{}\";\n",
+        program.name,
+        unsealed(program)
+    );
     text += &defined;
     text += "#undef R\n";
     Ok(Files {
         header: layout::source(&header),
-        source: layout::source(&text),
+        source: seal(&layout::source(&text)),
     })
 }
 

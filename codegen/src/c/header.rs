@@ -5,11 +5,11 @@ use super::emit::Real;
 use super::jacobians;
 use super::names::fill_template;
 use super::regimes::{REGIME, regime_head};
-use super::stages::declaration;
+use super::stages::{declaration, nest_lines};
 use super::types;
 use super::types::structures;
 use crate::program::Program;
-use crate::statements::{EmitResult, File, Stage};
+use crate::statements::{EmitResult, File, Indices, Stage, indices};
 
 /// Returns title and origin of a file, by lines.
 pub(super) fn documentation(program: &Program) -> Vec<String> {
@@ -137,6 +137,28 @@ fn sizes(file: &File<'_>) -> String {
     for (head, _, doc) in lists(program) {
         text += &comment(&[doc.to_owned()]);
         text += &format!("extern {head};\n");
+    }
+    text += &comment(&[
+        "Identity, for `eomgen identify`; `source` is the SHA-256 of the C file without the line of its identity."
+            .to_owned(),
+    ]);
+    text += &fill_template(program, "extern const char NAME_identity[];\n");
+    text + &index_constants(program)
+}
+
+/// Writes one enumeration for each kind of index, `NAME_STATE_X` and so on.
+fn index_constants(program: &Program) -> String {
+    let mut text = String::new();
+    for Indices { kind, doc, entries } in indices(program) {
+        let stem = format!("{}_{}", program.name, kind.to_uppercase());
+        let last = entries.len() - 1;
+        let constant = |(place, (_, constant)): (usize, &(String, String))| {
+            let comma = if place < last { "," } else { "" };
+            format!("{stem}_{constant} = {place}{comma}\n")
+        };
+        let lines: String = entries.iter().enumerate().map(constant).collect();
+        text += &comment(&[doc.to_owned()]);
+        text += &nest_lines("enum {", &lines, "};");
     }
     text
 }

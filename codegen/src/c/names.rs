@@ -17,7 +17,8 @@ pub(super) const WORDS: Words = Words {
         this thread_local throw true try typedef typeid typename typeof union unix unsigned \
         using virtual void volatile wchar_t while xor xor_eq NULL",
     taken: "t state inputs coefficients parameters rates values observables i j k block regime \
-        accelerations direction input_direction weights product input_product guards numbers R",
+        accelerations direction input_direction weights product input_product guards numbers \
+        identity R",
     prefixed: true,
 };
 

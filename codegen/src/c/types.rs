@@ -158,7 +158,9 @@ fn prepared(file: &File<'_>, head: &str, needed: &mut RequiredFunctions) -> Emit
     let mut used = UsedNames::from_preparation(&prepared);
     let writer = Writer::new(program);
     let computed = used.retain(prepared.computed);
-    let mut lines = String::new();
+    // The reference keeps the identity in programs from which the linker removes unused items.
+    let kept = "const char *volatile identity = NAME_identity;\n(void)identity;\n";
+    let mut lines = fill_template(program, kept);
     if !used.contains("parameters") {
         lines += "(void)parameters;\n";
     }

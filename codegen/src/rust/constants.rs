@@ -1,7 +1,9 @@
 //! Constants of an emitted file: sizes and names.
 
 use super::expression::array;
-use crate::statements::File;
+use crate::identity::unsealed;
+use crate::statements::layout::block;
+use crate::statements::{File, Indices, indices};
 
 pub(super) fn constants(file: &File<'_>) -> String {
     let program = file.program;
@@ -38,6 +40,31 @@ pub(super) fn constants(file: &File<'_>) -> String {
         program.spec_hash,
         env!("CARGO_PKG_VERSION"),
     ) + &names(file)
+        + &index_modules(file)
+        + &identity(file)
+}
+
+/// Writes one module of constants for each kind of index: names of parameters and of states may be equal.
+fn index_modules(file: &File<'_>) -> String {
+    let mut text = String::new();
+    for Indices { kind, doc, entries } in indices(file.program) {
+        let constant = |(place, (name, constant)): (usize, &(String, String))| {
+            format!("/// `{name}`\npub const {constant}: usize = {place};\n")
+        };
+        let lines: String = entries.iter().enumerate().map(constant).collect();
+        text += &format!("/// {doc}\n#[allow(non_upper_case_globals)]\n");
+        text += &block(&format!("pub mod {kind} {{"), &lines, "}");
+    }
+    text
+}
+
+fn identity(file: &File<'_>) -> String {
+    let text = unsealed(file.program);
+    format!(
+        "/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.\n\
+         pub static IDENTITY: [u8; {}] = *b\"{text}\";\n",
+        text.len()
+    )
 }
 
 fn names(file: &File<'_>) -> String {

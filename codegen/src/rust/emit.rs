@@ -14,6 +14,7 @@ use super::scalar::{COEFFICIENT, SCALAR};
 use super::stages;
 use super::types;
 use super::words::WORDS;
+use crate::identity;
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::layout::block;
@@ -49,7 +50,9 @@ pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError
         ));
     }
     let file = File::new(program, &WORDS)?;
-    Ok(layout::source(&write_marked_source(&file, packaging)?))
+    Ok(identity::seal(&layout::source(&write_marked_source(
+        &file, packaging,
+    )?)))
 }
 
 fn write_marked_source(file: &File<'_>, packaging: Packaging) -> EmitResult<String> {

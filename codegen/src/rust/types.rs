@@ -166,7 +166,9 @@ fn prepare(file: &File<'_>, statements: &str) -> String {
     );
     let nobody = !with_coefficients && !with_parameters && statements.contains("T::");
     let declared = if nobody { "type T = f64;\n" } else { "" };
-    block(&opening, &format!("{declared}{statements}"), "}")
+    // The reference keeps the identity in programs from which the linker removes unused items.
+    let kept = "let _ = core::hint::black_box(&IDENTITY);\n";
+    block(&opening, &format!("{kept}{declared}{statements}"), "}")
 }
 
 fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> EmitResult<String> {

@@ -100,6 +100,8 @@ fn names_used_by_emitted_code_compile() {
         "OBSERVABLE_NAMES",
         "SPECIFICATION_SHA256",
         "GENERATOR_VERSION",
+        "IDENTITY",
+        "identity",
         "INPUTS",
         "INPUT_NAMES",
         "PARAMETERS",

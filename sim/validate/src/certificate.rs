@@ -24,6 +24,8 @@ pub struct Certificate {
     pub source_sha256: Option<String>,
     /// SHA-256 of the emitted C; `None` if no C was emitted.
     pub c_source_sha256: Option<String>,
+    /// Hashes of the sources in their identities, as `eomgen identify` prints them.
+    pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
     pub with: Vec<String>,
     /// Values of all parameters, in SI, in the order of the specification.
@@ -132,6 +134,8 @@ pub struct CertificateHeader {
     pub source_sha256: Option<String>,
     /// SHA-256 of the emitted C, if any.
     pub c_source_sha256: Option<String>,
+    /// Hashes of the sources in their identities.
+    pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
     pub settings: Vec<(String, f64)>,
     /// Text of the specification.
@@ -169,6 +173,7 @@ impl Certificate {
             specification_sha256: about.specification_sha256,
             source_sha256: about.source_sha256,
             c_source_sha256: about.c_source_sha256,
+            identities: about.identities,
             settings: about.settings,
             specification: about.specification,
             with: about.with,
@@ -303,6 +308,7 @@ mod tests {
             source_sha256: Some("4567".into()),
             with: vec!["jacobians".into()],
             parameters: vec![("l".into(), 0.5)],
+            ..CertificateHeader::default()
         }
     }
 

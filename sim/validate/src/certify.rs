@@ -9,6 +9,7 @@ use super::checks::{
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
 use super::variant::Variant;
+use eomgen_codegen::identity::find;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
@@ -82,6 +83,15 @@ pub fn certificate_header(
         specification_sha256: model.hash(),
         source_sha256: rust_hash.or(c_hash.clone()),
         c_source_sha256: c_hash,
+        identities: [
+            rust.map(|emitted| &emitted.source),
+            c.map(|emitted| &emitted.source),
+        ]
+        .into_iter()
+        .flatten()
+        .flat_map(|source| find(source.as_bytes()))
+        .map(|identity| identity.source)
+        .collect(),
         settings: model.settings.clone(),
         specification: model.source.text.to_string(),
         with: rust

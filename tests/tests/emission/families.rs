@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
+use eomgen_tests::models::{path, project};
 use eomgen_tests::program::eomgen;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -459,6 +460,241 @@ fn unchanged_family_of_two_thousand_is_compared_quickly() {
     let (status, said) = family(folder.path(), &["--check"]);
     assert_eq!(status, Some(0), "{said}");
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+/// Returns exit status and output of the program.
+fn said(arguments: &[&Path], more: &[&str]) -> (Option<i32>, String) {
+    let output = eomgen()
+        .args(arguments)
+        .args(more)
+        .output()
+        .expect("the program can be run");
+    let text = [output.stdout, output.stderr].concat();
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&text).into_owned(),
+    )
+}
+
+fn verify(file: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let certificate = file.with_file_name("certificate.json");
+    said(&[Path::new("verify"), file, &certificate], more)
+}
+
+#[test]
+fn embedded_files_are_verified_and_faults_are_found() {
+    let copy = copy();
+    let models = copy.path().join("models");
+    let rust = models.join("beam_1/mod.rs");
+    let (status, text) = verify(&rust, &[]);
+    assert_eq!(status, Some(0), "{text}");
+    assert!(
+        text.contains("emitted_rust") && text.contains("hash: as certified"),
+        "{text}"
+    );
+    // A comment changes the hash only.
+    edit(&rust, "/// Number of states", "/// Count of states");
+    let (status, text) = verify(&rust, &[]);
+    assert_eq!(status, Some(1), "{text}");
+    assert!(
+        text.contains("hash: DIFFERENT") && text.contains("\npassed\n"),
+        "{text}"
+    );
+    if Command::new("cc").arg("--version").output().is_err() {
+        return;
+    }
+    let c = models.join("beam_3/long_beam.c");
+    let (status, text) = verify(&c, &["--json"]);
+    assert_eq!(status, Some(0), "{text}");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let checks = document["checks"].as_array().expect("checks");
+    assert!(
+        checks
+            .iter()
+            .any(|check| check["name"] == "emitted_c" && check["passed"] == true)
+    );
+    assert_eq!(verify(&c, &["--cc", "cc -std=c99 -O0"]).0, Some(0));
+    // The default of a parameter that was set.
+    edit(&c, "R(0.001)", "R(0.002)");
+    let (status, text) = verify(&c, &[]);
+    assert_eq!(status, Some(1), "{text}");
+    assert!(text.contains("FAILED"), "{text}");
+    let (status, text) = verify(&c, &["--cc", "no-such-compiler"]);
+    assert_eq!(status, Some(1), "{text}");
+    assert!(text.contains("NOT RUN"), "{text}");
+}
+
+#[test]
+fn wrong_files_are_not_verified() {
+    let copy = copy();
+    let models = copy.path().join("models");
+    let rust = models.join("beam_1/mod.rs");
+    let certificate = models.join("beam_1/certificate.json");
+    let of = |file: &Path, certificate: &Path, more: &[&str]| {
+        said(&[Path::new("verify"), file, certificate], more)
+    };
+    let other = models.join("beam_1/beam_1.txt");
+    std::fs::write(&other, "text").expect("written");
+    for (file, certificate, more, expected) in [
+        (&rust, &rust, &[][..], "mod.rs:1:1: this is no certificate"),
+        (&models.join("none.rs"), &certificate, &[], "cannot read"),
+        (&rust, &models.join("none.json"), &[], "cannot read"),
+        (
+            &rust,
+            &models.join("manifest.json"),
+            &[],
+            "has no `specification`",
+        ),
+        (&other, &certificate, &[], "neither Rust nor C"),
+        (&rust, &certificate, &["--cc", "gcc"], "--cc is for C"),
+        (
+            &models.join("beam_1/beam_1.c"),
+            &certificate,
+            &["--cc", " "],
+            "--cc is blank",
+        ),
+    ] {
+        let (status, text) = of(file, certificate, more);
+        assert_eq!(status, Some(2), "{text}");
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+    edit(&certificate, "value = 900", "value = 901");
+    let (status, text) = of(&rust, &certificate, &[]);
+    assert_eq!(status, Some(2), "{text}");
+    assert!(text.contains("the certificate was edited"), "{text}");
+}
+
+#[test]
+fn linked_programs_keep_the_identities() {
+    let models = WRITTEN.path().join("models");
+    let work = tempfile::tempdir().expect("a folder");
+    let identify = |image: &Path| {
+        let (status, text) = said(
+            &[
+                Path::new("identify"),
+                image,
+                Path::new("--certificates"),
+                &models,
+            ],
+            &[],
+        );
+        (status, text)
+    };
+    let rust = work.path().join("main.rs");
+    let text = format!(
+        "#[path = {:?}]\nmod models;\nuse models::long_beam as m;\nfn main() {{\n\
+         let c = m::Coefficients::prepare(&m::Parameters::default());\n\
+         print!(\"{{}}\", m::rates(0.0, &[0.0; m::STATES], &m::Inputs {{ u: 0.5 }}, &c)[m::state::MOTOR_DOT]);\n}}\n",
+        models.join("mod.rs")
+    );
+    std::fs::write(&rust, text).expect("written");
+    let program = work.path().join("rust_program");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    run(Command::new(rustc)
+        .args([
+            "-O",
+            "-C",
+            "lto=fat",
+            "-C",
+            "link-dead-code=no",
+            "--edition",
+            "2024",
+            "-o",
+        ])
+        .arg(&program)
+        .arg(&rust));
+    let (status, text) = identify(&program);
+    assert_eq!(status, Some(0), "{text}");
+    assert!(
+        text.starts_with("long_beam: eomgen ") && text.contains("beam_3/certificate.json"),
+        "{text}"
+    );
+    assert!(
+        !text.contains("beam_1"),
+        "unused variants are not in the program: {text}"
+    );
+    let (status, text) = identify(&rust);
+    assert_eq!(status, Some(1), "{text}");
+    assert!(text.contains("contains no identity"), "{text}");
+    if Command::new("cc").arg("--version").output().is_err() {
+        return;
+    }
+    let source = work.path().join("main.c");
+    std::fs::write(&source, LINKED_C).expect("written");
+    let program = work.path().join("c_program");
+    let mut compile = Command::new("cc");
+    compile.args([
+        "-std=c99",
+        "-O2",
+        "-ffunction-sections",
+        "-fdata-sections",
+        "-Wl,--gc-sections",
+        "-s",
+    ]);
+    compile
+        .arg("-I")
+        .arg(models.join("beam_1"))
+        .arg("-I")
+        .arg(models.join("beam_3"))
+        .arg(&source);
+    for file in [
+        "beam_1/beam_1.c",
+        "beam_3/long_beam.c",
+        "beam_3/long_beam_f32.c",
+    ] {
+        compile.arg(models.join(file));
+    }
+    run(compile.arg("-o").arg(&program));
+    let (status, text) = said(&[Path::new("identify"), &program], &["--json"]);
+    assert_eq!(status, Some(0), "{text}");
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let mut names: Vec<&str> = document["variants"]
+        .as_array()
+        .expect("variants")
+        .iter()
+        .filter_map(|v| v["name"].as_str())
+        .collect();
+    names.sort_unstable();
+    assert_eq!(names, ["beam_1", "long_beam", "long_beam_f32"]);
+}
+
+/// A controller that is written once drives the same coordinate at orders 3 and 7.
+#[test]
+fn controller_with_named_indices_serves_all_orders() {
+    if Command::new("cc").arg("--version").output().is_err() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = std::fs::read_to_string(project().join("docs/families.md")).expect("a page");
+    for order in ["3", "7"] {
+        let out = folder.path().join(order);
+        let spec = path("hub_beam_tip_mass");
+        let arguments = [Path::new("generate"), &spec, Path::new("--out"), &out];
+        let (status, text) = said(&arguments, &["--target", "c99", "--order", order]);
+        assert_eq!(status, Some(0), "{text}");
+        let program = folder.path().join(format!("control{order}"));
+        run(Command::new("cc")
+            .args([
+                "-std=c99",
+                "-O2",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-DMODEL=hub_beam_tip_mass",
+            ])
+            .args(["-DHEADER=\"hub_beam_tip_mass.h\"", "-I"])
+            .arg(&out)
+            .arg(project().join("examples/with_c/position_control.c"))
+            .arg(out.join("hub_beam_tip_mass.c"))
+            .arg("-o")
+            .arg(&program));
+        let printed = run(&mut Command::new(&program));
+        assert!(
+            printed.starts_with(&format!("order {order}: theta = 0.")),
+            "{printed}"
+        );
+        assert!(page.contains(&printed), "{printed}");
+    }
 }
 
 fn run(command: &mut Command) -> String {

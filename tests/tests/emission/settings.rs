@@ -34,10 +34,12 @@ fn emitted_defaults_are_those_of_set() {
         .zip(changed.lines())
         .filter(|(a, b)| a != b)
         .collect();
-    let [(_, default), ..] = differing[..] else {
-        panic!("nothing changed")
+    // The default, and the hash in the identity.
+    let [(_, identity), (_, default)] = differing[..] else {
+        panic!("{differing:?}")
     };
-    assert!(default.contains("0.45"), "{differing:?}");
+    assert!(identity.contains("IDENTITY"), "{identity}");
+    assert_eq!(default.trim(), "a: 0.45,");
     // The same number in another form gives the same bytes.
     assert_eq!(source(&["--set", "a=0.45"]), changed);
 }

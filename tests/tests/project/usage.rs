@@ -100,10 +100,9 @@ fn unknown_commands_and_options_are_rejected() {
 fn help_succeeds_and_has_an_example() {
     assert!(run_accepted(&["--help"]).contains("simulate"));
     assert!(run_accepted(&["--version"]).starts_with("eomgen "));
-    for command in COMMANDS
-        .into_iter()
-        .chain(["family", "dataset", "sweep", "merge", "paper", "tour"])
-    {
+    for command in COMMANDS.into_iter().chain([
+        "family", "verify", "identify", "dataset", "sweep", "merge", "paper", "tour",
+    ]) {
         let help = run_accepted(&[command, "--help"]);
         // The usage line contains the command, too.
         let example = help.split_once("Example").map(|(_, example)| example);

@@ -71,6 +71,69 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "c",
 ];
 
+/// Indices of the states, and of their time derivatives in the rates.
+#[allow(non_upper_case_globals)]
+pub mod state {
+    /// `theta`
+    pub const THETA: usize = 0;
+    /// `q_1`
+    pub const Q_1: usize = 1;
+    /// `q_2`
+    pub const Q_2: usize = 2;
+    /// `theta_dot`
+    pub const THETA_DOT: usize = 3;
+    /// `q_1_dot`
+    pub const Q_1_DOT: usize = 4;
+    /// `q_2_dot`
+    pub const Q_2_DOT: usize = 5;
+}
+
+/// Indices of the inputs.
+#[allow(non_upper_case_globals)]
+pub mod input {
+    /// `u`
+    pub const U: usize = 0;
+}
+
+/// Indices of the parameters.
+#[allow(non_upper_case_globals)]
+pub mod parameter {
+    /// `J_h`
+    pub const J_H: usize = 0;
+    /// `rho`
+    pub const RHO: usize = 1;
+    /// `A`
+    pub const A: usize = 2;
+    /// `l`
+    pub const L: usize = 3;
+    /// `E`
+    pub const E: usize = 4;
+    /// `I`
+    pub const I: usize = 5;
+    /// `M_t`
+    pub const M_T: usize = 6;
+    /// `J_t`
+    pub const J_T: usize = 7;
+    /// `c`
+    pub const C: usize = 8;
+}
+
+/// Indices of the observables.
+#[allow(non_upper_case_globals)]
+pub mod observable {
+    /// `tip`
+    pub const TIP: usize = 0;
+    /// `tip_slope`
+    pub const TIP_SLOPE: usize = 1;
+    /// `energy`
+    pub const ENERGY: usize = 2;
+    /// `power`
+    pub const POWER: usize = 3;
+}
+
+/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
+pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=66a0e5265f3de34c3465414f865fa2625b961ab8195c65d3ff6fab626a0e833d generator=0.2.0;";
+
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -229,6 +292,7 @@ pub struct Coefficients<T = f64> {
 impl<T: Scalar> Coefficients<T> {
     /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
+        let _ = core::hint::black_box(&IDENTITY);
         let J_h = parameters.J_h;
         let J_t = parameters.J_t;
         let rho = parameters.rho;

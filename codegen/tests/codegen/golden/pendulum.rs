@@ -49,6 +49,42 @@ pub const PARAMETERS: usize = 5;
 /// Names of the parameters, in their order.
 pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = ["m", "a", "I", "k", "g"];
 
+/// Indices of the states, and of their time derivatives in the rates.
+#[allow(non_upper_case_globals)]
+pub mod state {
+    /// `theta`
+    pub const THETA: usize = 0;
+    /// `theta_dot`
+    pub const THETA_DOT: usize = 1;
+}
+
+/// Indices of the parameters.
+#[allow(non_upper_case_globals)]
+pub mod parameter {
+    /// `m`
+    pub const M: usize = 0;
+    /// `a`
+    pub const A: usize = 1;
+    /// `I`
+    pub const I: usize = 2;
+    /// `k`
+    pub const K: usize = 3;
+    /// `g`
+    pub const G: usize = 4;
+}
+
+/// Indices of the observables.
+#[allow(non_upper_case_globals)]
+pub mod observable {
+    /// `energy`
+    pub const ENERGY: usize = 0;
+    /// `power`
+    pub const POWER: usize = 1;
+}
+
+/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
+pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=0ee2f80fdbd6187a3aac7de9bfa5023dfc876a70f07062ac5c8f99d42d9deefe generator=0.2.0;";
+
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -129,6 +165,7 @@ pub struct Coefficients<T = f64> {
 impl<T: Scalar> Coefficients<T> {
     /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
+        let _ = core::hint::black_box(&IDENTITY);
         let s_1 = parameters.k;
         let m = parameters.m;
         let a = parameters.a;

@@ -1,6 +1,7 @@
 impl<T: Scalar> Coefficients<T> {
     /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
+        let _ = core::hint::black_box(&IDENTITY);
         let m = parameters.m;
         let s_1 = T::number(0.5) * m;
         let z_s = parameters.z_s;

@@ -104,6 +104,130 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "omega",
 ];
 
+/// Indices of the states, and of their time derivatives in the rates.
+#[allow(non_upper_case_globals)]
+pub mod state {
+    /// `x_sp`
+    pub const X_SP: usize = 0;
+    /// `x_pr`
+    pub const X_PR: usize = 1;
+    /// `x_c`
+    pub const X_C: usize = 2;
+    /// `q_1`
+    pub const Q_1: usize = 3;
+    /// `q_2`
+    pub const Q_2: usize = 4;
+    /// `q_3`
+    pub const Q_3: usize = 5;
+    /// `q_4`
+    pub const Q_4: usize = 6;
+    /// `q_5`
+    pub const Q_5: usize = 7;
+    /// `q_6`
+    pub const Q_6: usize = 8;
+    /// `x_sp_dot`
+    pub const X_SP_DOT: usize = 9;
+    /// `x_pr_dot`
+    pub const X_PR_DOT: usize = 10;
+    /// `x_c_dot`
+    pub const X_C_DOT: usize = 11;
+    /// `q_1_dot`
+    pub const Q_1_DOT: usize = 12;
+    /// `q_2_dot`
+    pub const Q_2_DOT: usize = 13;
+    /// `q_3_dot`
+    pub const Q_3_DOT: usize = 14;
+    /// `q_4_dot`
+    pub const Q_4_DOT: usize = 15;
+    /// `q_5_dot`
+    pub const Q_5_DOT: usize = 16;
+    /// `q_6_dot`
+    pub const Q_6_DOT: usize = 17;
+}
+
+/// Indices of the parameters.
+#[allow(non_upper_case_globals)]
+pub mod parameter {
+    /// `z_s`
+    pub const Z_S: usize = 0;
+    /// `z_p`
+    pub const Z_P: usize = 1;
+    /// `z_r`
+    pub const Z_R: usize = 2;
+    /// `m`
+    pub const M: usize = 3;
+    /// `alpha`
+    pub const ALPHA: usize = 4;
+    /// `M_s`
+    pub const M_S: usize = 5;
+    /// `M_p`
+    pub const M_p: usize = 6;
+    /// `m_c`
+    pub const M_C: usize = 7;
+    /// `m_p`
+    pub const m_p: usize = 8;
+    /// `k_sp`
+    pub const K_SP: usize = 9;
+    /// `k_pr`
+    pub const K_PR: usize = 10;
+    /// `c_sp`
+    pub const C_SP: usize = 11;
+    /// `c_pr`
+    pub const C_PR: usize = 12;
+    /// `b_sp`
+    pub const B_SP: usize = 13;
+    /// `b_pr`
+    pub const B_PR: usize = 14;
+    /// `rho`
+    pub const RHO: usize = 15;
+    /// `A`
+    pub const A: usize = 16;
+    /// `l`
+    pub const L: usize = 17;
+    /// `E`
+    pub const E: usize = 18;
+    /// `I`
+    pub const I: usize = 19;
+    /// `a_m`
+    pub const A_M: usize = 20;
+    /// `b_m`
+    pub const B_M: usize = 21;
+    /// `F_w`
+    pub const F_W: usize = 22;
+    /// `omega`
+    pub const OMEGA: usize = 23;
+}
+
+/// Indices of the observables.
+#[allow(non_upper_case_globals)]
+pub mod observable {
+    /// `theta_s`
+    pub const THETA_S: usize = 0;
+    /// `theta_p`
+    pub const THETA_P: usize = 1;
+    /// `theta_c`
+    pub const THETA_C: usize = 2;
+    /// `tip`
+    pub const TIP: usize = 3;
+    /// `dtheta`
+    pub const DTHETA: usize = 4;
+    /// `f_la`
+    pub const F_LA: usize = 5;
+    /// `f_la_signed`
+    pub const F_LA_SIGNED: usize = 6;
+    /// `F_sp`
+    pub const F_SP: usize = 7;
+    /// `F_pr`
+    pub const F_PR: usize = 8;
+    /// `energy`
+    pub const ENERGY: usize = 9;
+    /// `power`
+    pub const POWER: usize = 10;
+}
+
+/// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_6 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=22a6cdcc6aa77fd6574622818256726d683578946f8835b688ce660a7f327587 generator=0.2.0;";
+
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -363,6 +487,7 @@ pub struct Coefficients<T = f64> {
 impl<T: Scalar> Coefficients<T> {
     /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
+        let _ = core::hint::black_box(&IDENTITY);
         let m = parameters.m;
         let s_1 = T::number(0.5) * m;
         let z_s = parameters.z_s;

@@ -67,15 +67,7 @@ impl CCompiler {
     fn probe(&self, folder: &Path) -> Result<(), String> {
         let probe = folder.join("probe.c");
         write(&probe, "typedef int probe;\n")?;
-        let mut command = Command::new(&self.program);
-        let arguments = ["-c", "-o", "probe.o", "probe.c"];
-        let output = run(
-            command
-                .args(&self.options)
-                .args(arguments)
-                .current_dir(folder),
-            "",
-        )?;
+        let output = self.compile(folder, &["-c", "-o", "probe.o", "probe.c"])?;
         require_success("the C compiler", output).map(drop)
     }
 
@@ -146,12 +138,20 @@ fn run_harness(folder: &Path, emitted: &CSource, samples: &str) -> Result<String
         .replace("NAME_", &format!("{name}_"))
         .replace("NAME.h", &format!("{name}.h"));
     write(&folder.join("harness.c"), &harness)?;
-    let compiled = compiler.compile(folder, &["-I.", "-c", "-o", "model.o", "model.c"])?;
+    // The evaluator computes in double precision.
+    let double = format!("-D{name}_REAL=double");
+    let first = match compiler
+        .options
+        .iter()
+        .any(|option| option.contains("_REAL="))
+    {
+        true => vec!["-I."],
+        false => vec!["-I.", &*double],
+    };
+    let compile = |arguments: &[&str]| compiler.compile(folder, &[&first, arguments].concat());
+    let compiled = compile(&["-c", "-o", "model.o", "model.c"])?;
     require_success("the emitted source", compiled)?;
-    let linked = compiler.compile(
-        folder,
-        &["-I.", "-o", "harness", "harness.c", "model.o", "-lm"],
-    )?;
+    let linked = compile(&["-o", "harness", "harness.c", "model.o", "-lm"])?;
     require_success("the harness", linked)?;
     let output = execute(&folder.join("harness"), samples)?;
     require_success("the compiled model", output)

@@ -1,0 +1,192 @@
+//! `eomgen verify`: the checks of a certificate on the emitted source as it is.
+
+use std::path::Path;
+
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::{Source, sha256};
+use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::model_certificate::{Sources, certify_sources};
+use serde_json::{Value, json};
+
+use crate::arguments::Verify;
+use crate::certification::summary;
+use crate::document::SCHEMA;
+use crate::error::{Error, Result, print_json, print_text, warn};
+use crate::progress::Note;
+
+pub fn run(options: &Verify) -> Result {
+    let certificate = Certificate::read(&options.certificate)?;
+    let text = read(&options.file)?;
+    let (sources, expected) = sources(options, &certificate, text.clone())?;
+    let found = sha256(&text);
+    let is_same = expected == found;
+    let repeated = {
+        let _note = Note::new(format!("verifying {}", options.file.display()));
+        let orders = vec![certificate.order; certificate.model.fields.len()];
+        certify_sources(&certificate.model, &orders, &certificate.outputs, &sources)?
+    };
+    if options.output.json {
+        let mut document =
+            serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
+        document["schema"] = json!(SCHEMA);
+        document["file"] = json!(options.file.display().to_string());
+        document["hash"] = json!({"expected": expected, "found": found, "same": is_same});
+        document["passed"] = json!(repeated.passed && is_same);
+        print_json(&document)?;
+    } else {
+        let hash = match is_same {
+            true => format!("hash: as certified, {found}\n"),
+            false => format!("hash: DIFFERENT, {found} instead of {expected}\n"),
+        };
+        print_text(&(summary(&repeated) + &hash))?;
+    }
+    if !is_same {
+        warn(&format!(
+            "error: {} is not the certified source: it was edited or generated again",
+            options.file.display()
+        ));
+    }
+    match repeated.passed && is_same {
+        true => Ok(()),
+        false => Err(Error::Failed),
+    }
+}
+
+/// Content of a certificate that decides its checks.
+struct Certificate {
+    /// Model with the values that were set.
+    model: Model,
+    order: usize,
+    outputs: Vec<Output>,
+    source_sha256: String,
+    c_source_sha256: Option<String>,
+}
+
+impl Certificate {
+    fn read(path: &Path) -> Result<Self> {
+        let text = read(path)?;
+        let shown = path.display();
+        let document: Value = serde_json::from_str(&text).map_err(|error| {
+            Error::input(format!(
+                "{shown}:{}:{}: this is no certificate: {error}",
+                error.line(),
+                error.column()
+            ))
+        })?;
+        let cure = "give a certificate of `eomgen generate --certify` or `eomgen family`";
+        let missing =
+            |key: &str| Error::input(format!("{shown}: the certificate has no `{key}`; {cure}"));
+        let string = |key: &str| {
+            document[key]
+                .as_str()
+                .map(str::to_owned)
+                .ok_or_else(|| missing(key))
+        };
+        let specification = string("specification")?;
+        let with = document["with"].as_array().ok_or_else(|| missing("with"))?;
+        let outputs = with.iter().map(|name| {
+            let name = name.as_str().unwrap_or_default();
+            name.parse::<Output>()
+                .map_err(|error| Error::input(format!("{shown}: {error}")))
+        });
+        let outputs = outputs.collect::<Result<Vec<Output>>>()?;
+        let order = document["order"]
+            .as_u64()
+            .and_then(|order| usize::try_from(order).ok());
+        let order = order.ok_or_else(|| missing("order"))?;
+        let source = Source::new(format!("{shown}, specification"), specification);
+        if source.hash() != string("specification_sha256")? && !specification_has_tables(&source) {
+            return Err(Error::input(format!(
+                "{shown}: the specification in the certificate does not have the hash `specification_sha256`: \
+                 the certificate was edited"
+            )));
+        }
+        let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
+        let settings = document["settings"]
+            .as_object()
+            .ok_or_else(|| missing("settings"))?;
+        let settings: Vec<(&str, f64)> = settings
+            .iter()
+            .filter_map(|(name, value)| Some((name.as_str(), value.as_f64()?)))
+            .collect();
+        let model = checked.model.with_parameters(&settings);
+        let model = model.map_err(|error| Error::model(&checked.model.source, error))?;
+        model
+            .orders((!model.fields.is_empty()).then_some(order))
+            .map_err(|error| Error::model(&model.source, error))?;
+        Ok(Self {
+            model,
+            order,
+            outputs,
+            source_sha256: string("source_sha256")?,
+            c_source_sha256: document["c_source_sha256"].as_str().map(str::to_owned),
+        })
+    }
+}
+
+/// Returns true if the specification reads tables, whose hashes are part of its hash.
+fn specification_has_tables(source: &Source) -> bool {
+    source.text.contains("table")
+}
+
+/// Returns the source to check and the hash that the certificate states for its language.
+fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<(Sources, String)> {
+    let path = &options.file;
+    let shown = path.display();
+    let extension = path.extension().and_then(|ending| ending.to_str());
+    match extension {
+        Some("rs") if options.cc.is_some() => Err(Error::input(format!(
+            "--cc is for C; {shown} is Rust, which `rustc` or the program in RUSTC compiles"
+        ))),
+        Some("rs") => Ok((
+            Sources {
+                rust: Some(text),
+                c: None,
+            },
+            certificate.source_sha256.clone(),
+        )),
+        Some("c") => {
+            let name = path
+                .file_stem()
+                .and_then(|name| name.to_str())
+                .unwrap_or_default();
+            let compiler = match &options.cc {
+                None => CCompiler::default(),
+                Some(command) => CCompiler::from_command(command).ok_or_else(|| {
+                    Error::input("--cc is blank: give a command such as \"gcc -O2\"")
+                })?,
+            };
+            let names = certificate
+                .outputs
+                .iter()
+                .map(|output| output.name().to_owned());
+            let source = CSource {
+                name: name.to_owned(),
+                source: text,
+                header: read(&path.with_extension("h"))?,
+                outputs: names.collect(),
+                compiler,
+            };
+            let expected = certificate.c_source_sha256.clone().ok_or_else(|| {
+                Error::input(format!(
+                    "the certificate covers no C, but {shown} is C; give the certificate that was written with it"
+                ))
+            })?;
+            Ok((
+                Sources {
+                    rust: None,
+                    c: Some(source),
+                },
+                expected,
+            ))
+        }
+        _ => Err(Error::input(format!(
+            "{shown} is neither Rust nor C: give a file that ends in .rs or .c"
+        ))),
+    }
+}
+
+fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|error| Error::file("read", path, &error))
+}
