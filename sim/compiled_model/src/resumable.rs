@@ -110,7 +110,7 @@ enum Engine {
     },
     General {
         run: Box<GeneralRun>,
-        simulation: GeneralSimulation,
+        simulation: Box<GeneralSimulation>,
     },
 }
 
@@ -127,6 +127,7 @@ impl<'m> Instance<'m> {
     ) -> Result<Simulation<'m>, Error> {
         let check = options.settings(Method::default()).check();
         check.map_err(|error| Error::Request(error.to_string()))?;
+        self.check_held_inputs(&inputs, (t, t))?;
         let is_held = !inputs.is_time_varying();
         let exact = match options.solver {
             Solver::Exact if !is_held => {
@@ -207,7 +208,7 @@ impl<'m> Instance<'m> {
             into_error(stop)
         })?;
         let changes = std::mem::take(&mut run.initial_changes);
-        let run = Box::new(run);
+        let (run, simulation) = (Box::new(run), Box::new(simulation));
         Ok((Engine::General { run, simulation }, changes))
     }
 }

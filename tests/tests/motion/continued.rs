@@ -243,6 +243,13 @@ fn calls_with_invalid_requests_change_nothing() {
     let compiled = load(&CASES[1]);
     let run = compiled.with_declared_parameters().expect("an instance");
     let start = (0.0, run.initial_state());
+    let infinite = HeldInputs::constant(vec![f64::INFINITY]);
+    let refused = run.start_simulation(start, infinite, SolverOptions::default());
+    let refused = refused.err().expect("an infinite input").to_string();
+    assert!(
+        refused.contains("the input `force` is infinite"),
+        "{refused}"
+    );
     let mut simulation = run
         .start_simulation(start, run.default_inputs(), SolverOptions::default())
         .expect("a simulation");
