@@ -4,12 +4,14 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use eomgen_codegen::rust::EmitError;
 use eomgen_discover::error::DiscoverError;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Severity};
 use eomgen_model_spec::hidden_characters::{escape_hidden, escape_hidden_in_strings};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
 use eomgen_records::Refusal;
+use eomgen_targets::EmissionError;
 use serde_json::{Value, json};
 
 use crate::document::SCHEMA;
@@ -34,6 +36,21 @@ impl From<eomgen_compiled_model::Error> for Error {
             Model::Specification(found) => Self::Specification(found),
             Model::Request(reason) | Model::Stopped { reason, .. } => Self::Input(reason),
         }
+    }
+}
+
+impl From<EmissionError> for Error {
+    fn from(error: EmissionError) -> Self {
+        match error {
+            EmissionError::Request(reason) => Self::Input(reason),
+            EmissionError::Specification(found) => Self::Specification(found),
+        }
+    }
+}
+
+impl From<EmitError> for Error {
+    fn from(error: EmitError) -> Self {
+        Self::Input(error.to_string())
     }
 }
 

@@ -3,7 +3,6 @@
 //! `arguments` defines the command line, `commands` has one file per command, `model` loads and derives a
 //! specification, `motion` simulates it, `output` writes files, `error` defines errors and exit statuses.
 
-mod archive;
 mod arguments;
 mod audit;
 mod bench_files;
@@ -19,7 +18,6 @@ mod event_log;
 mod family;
 mod field_shapes;
 mod figures;
-mod fmu;
 mod history;
 mod linearisation;
 mod mode_figure;

@@ -1,6 +1,7 @@
 //! NumPy archives (`.npz`) of `.npy` files, version 1.0 (NumPy Enhancement Proposal 1).
 
-use crate::archive::pack;
+use eomgen_targets::archive::pack;
+
 use crate::error::Result;
 
 /// Alignment of the data in an `.npy` file, bytes.
@@ -15,11 +16,8 @@ pub enum Array<'a> {
 
 pub fn archive(arrays: &[(&str, Array<'_>)]) -> Result<Vec<u8>> {
     let files = arrays.iter();
-    pack(
-        files
-            .map(|(name, array)| (format!("{name}.npy"), array.file()))
-            .collect(),
-    )
+    let files = files.map(|(name, array)| (format!("{name}.npy"), array.file()));
+    Ok(pack(files.collect())?)
 }
 
 impl Array<'_> {

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use eomgen_codegen::mechanics::outputs::{Output, UnknownOutput};
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_targets::parse_output;
 
 use super::shared::{Json, ModelFile, Order, ParameterValues, StateValues};
 
@@ -56,6 +57,18 @@ pub enum Target {
     Fmu3,
 }
 
+impl From<Target> for eomgen_targets::Target {
+    fn from(target: Target) -> Self {
+        match target {
+            Target::Rust => Self::Rust,
+            Target::C99 => Self::C99,
+            Target::Casadi => Self::Casadi,
+            Target::Fmu2 => Self::Fmu2,
+            Target::Fmu3 => Self::Fmu3,
+        }
+    }
+}
+
 /// Additional output of `generate`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extra {
@@ -80,13 +93,11 @@ impl std::str::FromStr for Extra {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        match name {
-            "bench" => return Ok(Self::Bench),
-            "hessians" => return Ok(Self::Output(Output::Hessians)),
-            _ => {}
+        if name == "bench" {
+            return Ok(Self::Bench);
         }
-        let output = name.parse().map(Self::Output);
-        output.map_err(|error: UnknownOutput| format!("{error}, hessians, bench"))
+        let output = parse_output(name).map(Self::Output);
+        output.map_err(|error| format!("{error}, bench"))
     }
 }
 

@@ -1,10 +1,10 @@
 //! `eomgen page`: an interactive simulation of a model as an HTML page.
 
+use eomgen_targets::{reject_corners, reject_impacts};
 use serde_json::json;
 
 use crate::arguments::Page;
 use crate::document::SCHEMA;
-use crate::emission::{without_corners, without_impacts};
 use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
@@ -16,11 +16,11 @@ use crate::settings::{with_settings, with_stabilisation};
 pub fn run(options: &Page) -> Result {
     let destination = Destination::for_output(&options.out, options.output.json)?;
     let model = with_settings(load(&options.model.spec)?.model, &options.parameters.set)?;
-    without_impacts(&model, "a page")?;
+    reject_impacts(&model, "a page")?;
     let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    without_corners(compiled.program(), "a page")?;
+    reject_corners(compiled.program(), "a page")?;
     let run = compiled.with_declared_parameters()?;
     let requested = initial_state(&run, &options.initial.state)?;
     // The page moves the state again after a change of a slider.

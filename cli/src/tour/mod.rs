@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::report::Report;
-use eomgen_codegen::rust::Packaging;
+use eomgen_codegen::rust::{self, Packaging};
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
@@ -20,7 +20,6 @@ use eomgen_validate::meaning::describe;
 use eomgen_validate::model_certificate::certify_model;
 
 use crate::count::count;
-use crate::emission::source;
 use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{describe_work, simulate, table};
@@ -81,7 +80,7 @@ pub fn run(out: &Path) -> Result<TourResult> {
     watch.lap("read and check the specification");
     let compiled = derive(checked.model, &[ORDER])?;
     watch.lap("derive the equations and lower them to a program");
-    let rust = source(compiled.program(), Packaging::Crate)?;
+    let rust = rust::emit(compiled.program(), Packaging::Crate)?;
     watch.lap("emit Rust");
     drop(note);
     let note = Note::new("validating against independent equations");

@@ -13,11 +13,11 @@ mod quantities;
 
 use eomgen_codegen::report::Report;
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
+use eomgen_codegen::wasm;
 use eomgen_compiled_model::CompiledModel;
 use eomgen_page::{ScriptedDocument, equations, formula, play, scripted_document};
 use maud::{Markup, html};
 
-use crate::emission::module;
 use crate::error::Result;
 use quantities::Quantities;
 
@@ -83,7 +83,7 @@ impl InteractivePart {
         quantities: &Quantities<'_>,
         speed: f64,
     ) -> Result<Self> {
-        let module = module(compiled.program())?;
+        let module = wasm::emit(compiled.program())?;
         let is_at_rest = first_motion::is_at_rest(compiled, initial)?;
         let body = html! {
             noscript {

@@ -9,7 +9,7 @@ use eomgen_model_spec::model::{Model, ParameterValue};
 use eomgen_model_spec::unit::Unit as Measurement;
 
 use super::units::{Measure, Units};
-use crate::error::{Error, Result};
+use crate::error::{EmissionError, Result};
 
 /// Kind of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ impl Unit {
         let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
         let state = model
             .initial_state(&orders)
-            .map_err(|error| Error::model(&model.source, error))?;
+            .map_err(|error| EmissionError::model(&model.source, error))?;
         let mut list = List::default();
         let seconds = Measurement::parse("s").ok();
         list.add("time", Kind::Time, "Time", seconds.as_ref());

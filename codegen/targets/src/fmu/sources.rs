@@ -5,7 +5,7 @@ use eomgen_codegen::program::Program;
 
 use super::variables::{Kind, Unit};
 use super::version::Version;
-use crate::error::{Error, Result};
+use crate::error::{EmissionError, Result};
 
 /// Compiled file. It includes the others, so that only the functions of the standard are exported.
 pub const MAIN: &str = "fmu.c";
@@ -26,8 +26,7 @@ const RUNTIME: [(&str, &str); 8] = [
 ];
 
 pub fn files(program: &Program, unit: &Unit, version: Version) -> Result<Vec<(String, String)>> {
-    let c::Files { source, header } =
-        c::emit(program).map_err(|error| Error::input(error.to_string()))?;
+    let c::Files { source, header } = c::emit(program).map_err(EmissionError::request)?;
     let name = &program.name;
     let interface = match version {
         Version::Two => ("fmi2.c", include_str!("runtime/fmi2.c")),

@@ -19,18 +19,24 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 
 use crate::archive::pack;
-use crate::error::{Result, warn};
+use crate::error::Result;
+use crate::file::EmittedFile;
 
 pub use version::Version;
 
 /// Outputs that a unit needs.
 pub const OUTPUTS: [Output; 3] = [Output::GuardRates, Output::Jacobians, Output::Regimes];
 
-/// Returns name and bytes of a unit.
+/// Returns a unit. `warn` receives the reason if it has no binary.
 ///
 /// # Errors
 /// Names that C does not allow, or an invalid initial state.
-pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(String, Vec<u8>)> {
+pub fn file(
+    model: &Model,
+    variant: &Variant,
+    version: Version,
+    warn: &dyn Fn(&str),
+) -> Result<EmittedFile> {
     let program = &variant.program;
     let unit = variables::Unit::new(model, variant)?;
     let sources = sources::files(program, &unit, version)?;
@@ -55,5 +61,8 @@ pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(Strin
     for (name, text) in sources {
         files.push((format!("sources/{name}"), text.into_bytes()));
     }
-    Ok((format!("{}.fmu", program.name), pack(files)?))
+    Ok(EmittedFile {
+        name: format!("{}.fmu", program.name),
+        contents: pack(files)?,
+    })
 }

@@ -6,7 +6,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
 use super::variables::{Kind, Unit, Variable};
-use crate::error::{Error, Result};
+use crate::error::{EmissionError, Result};
 
 pub type Xml = Writer<Cursor<Vec<u8>>>;
 
@@ -27,7 +27,7 @@ pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
     let declaration = BytesDecl::new("1.0", Some("UTF-8"), None);
     xml.write_event(Event::Decl(declaration))
         .and_then(|()| write(&mut xml))
-        .map_err(|error| Error::input(format!("cannot describe the unit: {error}")))?;
+        .map_err(|error| EmissionError::Request(format!("cannot describe the unit: {error}")))?;
     let mut bytes = xml.into_inner().into_inner();
     bytes.push(b'\n');
     Ok(bytes)

@@ -1,0 +1,130 @@
+//! Emitted files of the targets, the outputs to derive for them, and unsupported combinations.
+
+use eomgen_codegen::c;
+use eomgen_codegen::mechanics::outputs::UnknownOutput;
+use eomgen_codegen::program::{Output, Program};
+use eomgen_codegen::rust::{self, Packaging};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
+
+use crate::error::{EmissionError, Result};
+use crate::file::EmittedFile;
+use crate::fmu::{self, Version};
+use crate::target::Target;
+
+/// Returns the emitted files of a variant that has the [`outputs`] of the target. The file with the equations is
+/// first. `warn` receives warnings.
+///
+/// # Errors
+/// A model that the target does not support, or names that its language does not allow.
+pub fn emit(
+    model: &Model,
+    variant: &Variant,
+    target: Target,
+    warn: &dyn Fn(&str),
+) -> Result<Vec<EmittedFile>> {
+    let program = &variant.program;
+    let name = &program.name;
+    match target {
+        Target::Rust => {
+            let source = rust::emit(program, Packaging::Crate).map_err(EmissionError::request)?;
+            Ok(vec![EmittedFile::text("lib.rs".to_owned(), source)])
+        }
+        Target::C99 => {
+            let c::Files { source, header } = c::emit(program).map_err(EmissionError::request)?;
+            Ok(vec![
+                EmittedFile::text(format!("{name}.c"), source),
+                EmittedFile::text(format!("{name}.h"), header),
+            ])
+        }
+        Target::Casadi => {
+            let source = c::emit_casadi(program).map_err(EmissionError::request)?;
+            Ok(vec![EmittedFile::text(format!("{name}_casadi.c"), source)])
+        }
+        Target::Fmu2 => unit(model, variant, Version::Two, warn),
+        Target::Fmu3 => unit(model, variant, Version::Three, warn),
+    }
+}
+
+fn unit(
+    model: &Model,
+    variant: &Variant,
+    version: Version,
+    warn: &dyn Fn(&str),
+) -> Result<Vec<EmittedFile>> {
+    reject_impacts(model, "a functional mock-up unit")?;
+    reject_corners(&variant.program, "a functional mock-up unit")?;
+    Ok(vec![fmu::file(model, variant, version, warn)?])
+}
+
+/// Rejects a model with impacts for `what`, which supports no jumps of rates.
+///
+/// # Errors
+/// The first impact.
+pub fn reject_impacts(model: &Model, what: &str) -> Result<()> {
+    model.impacts.first().map_or(Ok(()), |impact| {
+        Err(EmissionError::Request(format!(
+            "the model has impacts (`{}`), which {what} does not support: bodies would pass through each \
+             other; use `eomgen simulate`",
+            impact.name
+        )))
+    })
+}
+
+/// Rejects a program whose energies jump at a surface for `what`, which supports no jumps of rates.
+///
+/// # Errors
+/// The first such surface.
+pub fn reject_corners(program: &Program, what: &str) -> Result<()> {
+    let mut guards = program.guards.iter();
+    guards.find(|guard| guard.is_corner).map_or(Ok(()), |guard| {
+        Err(EmissionError::Request(format!(
+            "the energies of the model jump where `{}` is zero, and the rates with them, which {what} does not \
+             support: use `eomgen simulate`",
+            guard.formula
+        )))
+    })
+}
+
+/// Returns the additional output with this name.
+///
+/// # Errors
+/// An unknown name, with the known ones.
+pub fn parse_output(name: &str) -> Result<Output, String> {
+    if name == "hessians" {
+        return Ok(Output::Hessians);
+    }
+    name.parse()
+        .map_err(|error: UnknownOutput| format!("{error}, hessians"))
+}
+
+/// Returns the outputs to derive for a target and additional outputs `with`.
+///
+/// # Errors
+/// An output that the target does not support.
+pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
+    let has = |output: Output| with.contains(&output);
+    let reason = match target {
+        Target::Rust | Target::C99 if has(Output::Hessians) => {
+            "--with hessians needs --target casadi"
+        }
+        Target::Rust => return Ok(with.to_vec()),
+        _ if has(Output::Lanes) => {
+            "--with lanes needs --target rust: its functions are generic over the number type, \
+             which C does not support"
+        }
+        Target::C99 => return Ok(with.to_vec()),
+        Target::Casadi if with.iter().all(|output| *output == Output::Hessians) => {
+            return Ok([&c::CASADI_OUTPUTS[..], with].concat());
+        }
+        Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
+        Target::Fmu2 | Target::Fmu3 => {
+            "--with is not available for a functional mock-up unit: the standard defines its functions"
+        }
+        Target::Casadi => {
+            "--target casadi accepts --with hessians only: its functions are rates and \
+             jac_rates"
+        }
+    };
+    Err(EmissionError::Request(reason.to_owned()))
+}

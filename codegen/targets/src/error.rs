@@ -1,0 +1,32 @@
+//! Errors of emitting files.
+
+use std::fmt::Display;
+
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::variant::ModelError;
+use thiserror::Error;
+
+pub type Result<T, E = EmissionError> = std::result::Result<T, E>;
+
+/// Reason why no files are emitted.
+#[derive(Clone, Debug, Error)]
+pub enum EmissionError {
+    /// Combination of model, target and outputs that is not supported, with its cure.
+    #[error("{0}")]
+    Request(String),
+    /// Invalid values of the specification.
+    #[error("{0}")]
+    Specification(Diagnostics),
+}
+
+impl EmissionError {
+    pub(crate) fn request(reason: impl Display) -> Self {
+        Self::Request(reason.to_string())
+    }
+
+    /// Error of a model with the given values.
+    pub(crate) fn model(source: &Source, error: ModelError) -> Self {
+        Self::Specification(Diagnostics::from_one(source.clone(), error.diagnostic()))
+    }
+}
