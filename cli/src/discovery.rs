@@ -3,13 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use eomgen_discover::report::result::Validation;
 use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
-use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::Verdict;
-use eomgen_validate::model_certificate::certify_specification;
 use serde_json::{Value, json};
 
 use crate::error::{Error, Result, warn};
@@ -63,13 +59,7 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     };
     let found = discover_until(specification, dataset, &effects, task.seed, &warn, &stop);
     let mut found = found.map_err(Error::discovery)?;
-    let extended = Source::new(path.as_str(), found.extended.as_str());
-    let certificate = certify_specification(extended, order)?;
-    found.validation = certificate.map(|certificate| Validation {
-        has_passed: certificate.verdict != Verdict::Failed,
-        checks: certificate.run_checks(),
-        failed: certificate.failed_checks(),
-    });
+    found.certify(&path, order)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     let out = task.out;

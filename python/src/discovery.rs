@@ -2,13 +2,9 @@
 
 use std::path::Path;
 
-use eomgen_discover::report::result::{Discovery, Validation};
-use eomgen_discover::{Specification, catalogue, discover_until};
+use eomgen_discover::{Discovery, Specification, catalogue, discover_until};
 use eomgen_model_spec::hidden_characters::escape_hidden;
-use eomgen_model_spec::source::Source;
 use eomgen_records::read_dataset;
-use eomgen_validate::certificate::Verdict;
-use eomgen_validate::model_certificate::certify_specification;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -66,12 +62,8 @@ fn search(
     let found = discover_until(specification, dataset, &effects, seed, &say, line.stop);
     let mut found = found.map_err(error::discovery)?;
     line.check();
-    let extended = Source::new(declared.source.path.clone(), found.extended.as_str());
-    let certificate = certify_specification(extended, model.order()).map_err(error::model)?;
-    found.validation = certificate.map(|certificate| Validation {
-        has_passed: certificate.verdict != Verdict::Failed,
-        checks: certificate.run_checks(),
-        failed: certificate.failed_checks(),
-    });
+    found
+        .certify(&declared.source.path, model.order())
+        .map_err(error::model)?;
     Ok(found)
 }

@@ -2,10 +2,11 @@
 //! the [`result`] types filled in `discovery`, the [`location`] of the difference, the extended
 //! specification ([`write_back`]) and its simulation ([`mod@resimulation`]), the remaining gap
 //! (`remaining_gap`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
-//! `pictures` and the `overlay` of measurement and simulation, formatted numbers (`quantity`),
+//! `pictures` and the `overlay` of measurement and simulation, checks of the extended equations (`certification`), formatted numbers (`quantity`),
 //! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
 //! delay (`common_delay`) or lead (`held_input`), the interactive model (`playback`), and the next `experiment`.
 
+mod certification;
 mod common_delay;
 mod discovery;
 mod experiment;
