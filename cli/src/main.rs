@@ -35,9 +35,7 @@ mod sample_statistics;
 mod samples;
 mod settings;
 mod significant;
-mod step_inputs;
 mod sweep_files;
-mod sweep_job;
 mod table;
 mod tour;
 

@@ -17,19 +17,23 @@ pub fn load(path: &Path) -> Result<Checked> {
     Ok(checked)
 }
 
-/// Returns the orders of a model's fields, from the text of `--order`.
-pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
-    let order = match text {
-        None => None,
-        Some(text) => Some(text.trim().parse::<usize>().map_err(|_| {
+/// Parses the text of `--order`.
+pub fn order(text: Option<&str>) -> Result<Option<usize>> {
+    let parse = |text: &str| {
+        text.trim().parse::<usize>().map_err(|_| {
             Error::input(format!(
                 "--order {text}: expected a whole number from 0 to {}",
                 eomgen_model_spec::model::MAX_ORDER
             ))
-        })?),
+        })
     };
+    text.map(parse).transpose()
+}
+
+/// Returns the orders of a model's fields, from the text of `--order`.
+pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
     model
-        .orders(order)
+        .orders(order(text)?)
         .map_err(|error| Error::model(&model.source, error))
 }
 

@@ -2,11 +2,8 @@
 
 use eomgen_compiled_model::{
     CompiledModel, Departure, Equilibrium, EquilibriumRequest, Error as Failure, Instance,
-    OperatingPoint, Setting,
+    OperatingPoint, StateRequest,
 };
-use eomgen_model_spec::assignment::{Assignment, QuantityReader};
-use eomgen_model_spec::dimension::Dimension;
-use eomgen_model_spec::unit::Unit;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
@@ -15,7 +12,7 @@ use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
-use crate::settings::{as_borrowed, split, with_settings};
+use crate::settings::with_settings;
 
 /// Loads a specification with parameters set and derives it.
 pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledModel> {
@@ -24,79 +21,47 @@ pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledM
     derive(model, &orders)
 }
 
-/// Word of `--state` that selects the nearest equilibrium.
-const TRIM: &str = "trim";
-
-/// Reads every `NAME=EXPR` of an option. Returns names and values, in SI, of states, inputs and `t`.
-pub fn values(run: &Instance<'_>, option: &str, assigned: &[String]) -> Result<Vec<(String, f64)>> {
-    let (compiled, model) = (run.model(), run.model().model());
-    let states = model.state_units(compiled.orders());
-    let reader = QuantityReader::new(model).map_err(Error::Specification)?;
-    let value = |given: &Assignment| -> Result<(String, f64)> {
-        let unit = match compiled.find_setting(given.name()) {
-            Ok(Setting::State(place)) => states[place].clone(),
-            Ok(Setting::Input(place)) => model.inputs[place].unit.clone(),
-            Ok(Setting::Time) => Unit::coherent(Dimension::TIME),
-            Err(error) => {
-                let unknown = given.name_error(error.to_string(), None);
-                return Err(Error::Specification(unknown));
-            }
-        };
-        let value = reader.read(given, &unit).map_err(Error::Specification)?;
-        Ok((given.name().to_owned(), value))
-    };
-    split(option, assigned)?.iter().map(value).collect()
-}
-
-/// Splits the values of `--state` into assignments, in SI, and whether the word `trim` is among them.
-fn assignments(run: &Instance<'_>, state: &[String]) -> Result<(Vec<(String, f64)>, bool)> {
-    let (words, assigned): (Vec<String>, Vec<String>) =
-        state.iter().cloned().partition(|text| text.trim() == TRIM);
-    Ok((values(run, "--state", &assigned)?, !words.is_empty()))
-}
-
 /// Returns the point of `--state`: the initial state with every `NAME=EXPR`, moved onto the constraints, or
 /// the nearest equilibrium.
 pub fn point(run: &Instance<'_>, state: &[String]) -> Result<OperatingPoint> {
-    let (given, is_trimmed) = assignments(run, state)?;
-    let given = as_borrowed(&given);
-    match is_trimmed {
-        false => consistent(run, run.operating_point(&given)?),
-        true => Ok(equilibrium_near(run, &given)?.point),
+    let request = StateRequest::parse("--state", state)?;
+    match found(run.requested_point(&request))? {
+        (point, None) => consistent(run, point),
+        (point, Some(equilibrium)) => {
+            report_equilibrium(&equilibrium);
+            Ok(point)
+        }
     }
-}
-
-fn equilibrium_near(run: &Instance<'_>, start: &[(&str, f64)]) -> Result<Equilibrium> {
-    let fixed = &[];
-    equilibrium(
-        run,
-        EquilibriumRequest {
-            start_values: start,
-            fixed_values: fixed,
-        },
-    )
 }
 
 /// Finds an equilibrium; the command fails if there is none.
 pub fn equilibrium(run: &Instance<'_>, request: EquilibriumRequest<'_>) -> Result<Equilibrium> {
-    match run.find_equilibrium(request) {
-        Err(Failure::Stopped { reason, .. }) => Err(Error::Stopped(reason)),
-        Err(other) => Err(other.into()),
-        Ok(found) => {
-            if !found.nonzero_rates.is_empty() {
-                let rates = found.nonzero_rates.join(", ");
-                warn(&format!(
-                    "note: the equilibrium is a steady motion, not rest: {rates} are constant"
-                ));
-            }
-            if found.depends_on_time {
-                warn(&format!(
-                    "warning: the forces depend on time: the state is an equilibrium at t = {} s only",
-                    found.point.t
-                ));
-            }
-            Ok(found)
-        }
+    let found = found(run.find_equilibrium(request))?;
+    report_equilibrium(&found);
+    Ok(found)
+}
+
+/// Converts a search without a result to a negative result.
+fn found<T>(result: std::result::Result<T, Failure>) -> Result<T> {
+    result.map_err(|error| match error {
+        Failure::Stopped { reason, .. } => Error::Stopped(reason),
+        other => other.into(),
+    })
+}
+
+/// Notes a steady motion, and warns about forces that depend on time.
+fn report_equilibrium(found: &Equilibrium) {
+    if !found.nonzero_rates.is_empty() {
+        let rates = found.nonzero_rates.join(", ");
+        warn(&format!(
+            "note: the equilibrium is a steady motion, not rest: {rates} are constant"
+        ));
+    }
+    if found.depends_on_time {
+        warn(&format!(
+            "warning: the forces depend on time: the state is an equilibrium at t = {} s only",
+            found.point.t
+        ));
     }
 }
 
@@ -140,19 +105,12 @@ fn describe(found: &Departure) -> String {
 
 /// Returns the initial state with every `NAME=EXPR` of `--state`, or the nearest equilibrium.
 pub fn initial_state(run: &Instance<'_>, state: &[String]) -> Result<Vec<f64>> {
-    let (given, is_trimmed) = assignments(run, state)?;
-    for (name, _) in &given {
-        if !matches!(run.model().find_setting(name)?, Setting::State(_)) {
-            return Err(Error::input(format!(
-                "--state {name}: expected a coordinate, a mode, a rate or another state"
-            )));
-        }
+    let request = StateRequest::parse("--state", state)?;
+    let (state, equilibrium) = found(run.requested_state(&request))?;
+    if let Some(equilibrium) = &equilibrium {
+        report_equilibrium(equilibrium);
     }
-    let given = as_borrowed(&given);
-    match is_trimmed {
-        false => Ok(run.operating_point(&given)?.state),
-        true => Ok(equilibrium_near(run, &given)?.point.state),
-    }
+    Ok(state)
 }
 
 /// Moves a point onto the constraints of the model, with a note about the states that moved.
@@ -197,22 +155,4 @@ pub fn inputs(compiled: &CompiledModel) -> (Vec<&str>, Vec<String>) {
     inputs
         .map(|input| (&*input.name, input.unit.to_string()))
         .unzip()
-}
-
-/// Returns the names of the amplitudes of a mode shape: coordinates, then first-order states.
-pub fn shape_names(compiled: &CompiledModel) -> Vec<String> {
-    let (mut names, degrees) = (
-        compiled.state_names(),
-        compiled.program().degrees_of_freedom(),
-    );
-    names.drain(degrees..2 * degrees);
-    names
-}
-
-/// Returns the units of the amplitudes of a mode shape.
-pub fn shape_units(compiled: &CompiledModel) -> Vec<String> {
-    let degrees = compiled.program().degrees_of_freedom();
-    let mut units = compiled.state_units();
-    units.drain(degrees..2 * degrees);
-    units
 }

@@ -16,10 +16,10 @@ const DEFAULT_INTERVALS: f64 = 1000.0;
 
 /// Returns the inputs: from a record, or constant.
 pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
-    match &options.record {
+    match &options.inputs.record {
         Some(dataset) => {
             let (inputs, warnings) =
-                read_inputs(dataset, &options.record_name, model).map_err(Error::records)?;
+                read_inputs(dataset, &options.inputs.record_name, model).map_err(Error::records)?;
             for warning in warnings {
                 warn(&format!("warning: {warning}"));
             }
@@ -38,14 +38,14 @@ pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
 pub fn times(options: &Simulate, inputs: &HeldInputs) -> Result<Vec<f64>> {
     let span = span(options, inputs)?;
     match options.rows.interval {
-        None if options.record.is_some() => record_times(inputs, span),
+        None if options.inputs.record.is_some() => record_times(inputs, span),
         step => even_times(span, step),
     }
 }
 
 /// Returns start and end of the simulation, in s.
 fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
-    let recorded = options.record.as_ref().map(|_| inputs.times());
+    let recorded = options.inputs.record.as_ref().map(|_| inputs.times());
     let start = recorded
         .and_then(|times| times.first())
         .copied()

@@ -1,12 +1,7 @@
 //! Values given as `NAME=EXPR`, and inputs.
 
-use eomgen_model_spec::assignment::Assignment;
-use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::diagnostic::Diagnostics;
-use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
+use eomgen_compiled_model::split_assignments;
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
-use eomgen_model_spec::source::Source;
-use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::{Error, Result, warn};
 
@@ -21,17 +16,8 @@ pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
 
 /// Reads every `NAME=EXPR` of `--set`. Returns names and values in declared units.
 pub fn settings(model: &Model, assignments: &[String]) -> Result<Vec<(String, f64)>> {
-    let given = split("--set", assignments)?;
+    let given = split_assignments("--set", assignments)?;
     model.read_settings(&given).map_err(Error::Specification)
-}
-
-/// Parses every `NAME=EXPR` of an option.
-pub fn split(option: &str, assignments: &[String]) -> Result<Vec<Assignment>> {
-    let split = assignments
-        .iter()
-        .map(|text| Assignment::split(option, text));
-    let split: std::result::Result<Vec<_>, _> = split.collect();
-    split.map_err(Error::Specification)
 }
 
 pub fn as_borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
@@ -57,65 +43,6 @@ pub fn with_stabilisation(model: Model) -> Result<Model> {
     model
         .with_parameters(&[(STABILISATION_RATE, DEFAULT_STABILISATION_RATE)])
         .map_err(|error| Error::model(&model.source, error))
-}
-
-/// Returns the model with inputs replaced by the `NAME=EXPR` of `--input`.
-pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
-    for text in prescribed {
-        let given = Assignment::split("--input", text).map_err(Error::Specification)?;
-        let edit = Edit::PrescribeInput(PrescribeInput {
-            name: given.name().to_owned(),
-            value: given.value().to_owned(),
-        });
-        let edited = edit::apply(&model.source, &[edit]);
-        let edited = edited.map_err(|error| not_prescribed(&error, &given, &model))?;
-        let source = model.source.with_text(edited);
-        let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
-        model = checked.model;
-    }
-    Ok(model)
-}
-
-/// Returns the error of `--input` at its place in the option's text.
-fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
-    let found = match error {
-        EditError::Invalid(found) => given.relocated(found),
-        EditError::Expression { text, diagnostic } => {
-            let source = Source::new("--input", text.as_str());
-            given.relocated(&Diagnostics::from_one(source, (**diagnostic).clone()))
-        }
-        EditError::MissingTerm { .. } => Some(given.name_error(messages(error, model), None)),
-        _ => None,
-    };
-    match found {
-        Some(found) => Error::Specification(found),
-        None => Error::input(format!(
-            "--input {}: {}",
-            given.text(),
-            messages(error, model)
-        )),
-    }
-}
-
-/// Returns the messages of an edit, without places: these refer to the edited text.
-fn messages(error: &EditError, model: &Model) -> String {
-    match error {
-        EditError::Invalid(found) => {
-            let messages: Vec<String> = found.list().iter().map(Diagnostic::summary).collect();
-            messages.join("; ")
-        }
-        EditError::MissingTerm { name, .. } => {
-            let inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
-            let inputs: Vec<&str> = inputs.map(|input| input.name.as_str()).collect();
-            let meant = did_you_mean(name, inputs.iter().copied());
-            let cure = meant.unwrap_or_else(|| match inputs.is_empty() {
-                true => "it has none; remove --input".to_owned(),
-                false => format!("it has {}", inputs.join(", ")),
-            });
-            format!("the model has no input `{name}`; {cure}")
-        }
-        error => error.to_string(),
-    }
 }
 
 /// Warns about inputs that are not driven, with their values.

@@ -4,9 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use eomgen_codegen::program::evaluator::Evaluator;
-use eomgen_compiled_model::{CompiledModel, Error, Instance, JacobianEvaluator, Orders};
+use eomgen_compiled_model::{
+    CompiledModel, Error, Instance, JacobianEvaluator, Orders, split_assignments,
+    with_prescribed_inputs,
+};
 use eomgen_model_spec::Checked;
-use eomgen_model_spec::edit::{Edit, EditError, PrescribeInput, SetParameter, apply};
+use eomgen_model_spec::edit::{Edit, SetParameter, apply};
 use eomgen_model_spec::model::ParameterValue;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::suggest;
@@ -58,6 +61,11 @@ impl Model {
     /// Compiled model at its declared parameter values.
     pub fn compiled(&self) -> &CompiledModel {
         &self.compiled
+    }
+
+    /// Parameters that were set, in declared units.
+    pub fn settings(&self) -> &[(String, f64)] {
+        &self.settings
     }
 
     /// Returns the compiled model at its parameter values.
@@ -167,25 +175,15 @@ impl Model {
 
     /// Returns the model with inputs replaced by expressions of time and parameters.
     fn with_inputs(&self, py: Python<'_>, given: Vec<(String, String)>) -> PyResult<Self> {
-        let mut source = self
-            .compiled
-            .model()
-            .source
-            .with_text(self.specification()?);
+        let declared = self.compiled.model();
+        let source = declared.source.with_text(self.specification()?);
+        let given = given.iter().map(|(name, value)| format!("{name}={value}"));
+        let given: Vec<String> = given.collect();
         let derived = || {
-            for (name, value) in given {
-                let edit = Edit::PrescribeInput(PrescribeInput {
-                    name: name.clone(),
-                    value,
-                });
-                let edited = apply(&source, &[edit]).map_err(|error| {
-                    Error::Request(format!("the input {name}: {}", messages(&error)))
-                })?;
-                source = source.with_text(edited);
-            }
-            let checked = eomgen_model_spec::check(source)?;
-            let orders = Orders::PerField(self.compiled.orders());
-            CompiledModel::derive(checked.model, orders)
+            let given = split_assignments("inputs", &given)?;
+            let model = eomgen_model_spec::check(source)?.model;
+            let model = with_prescribed_inputs(model, &given)?;
+            CompiledModel::derive(model, Orders::PerField(self.compiled.orders()))
         };
         let compiled = py.detach(derived).map_err(error::model)?;
         let none = Vec::new();
@@ -240,6 +238,12 @@ impl Model {
         self.compiled.state_names().into_iter().zip(units).collect()
     }
 
+    /// Number of first-order states, which are last.
+    #[getter]
+    fn first_order_states(&self) -> usize {
+        self.compiled.model().states.len()
+    }
+
     /// Names and units of the inputs.
     #[getter]
     fn inputs(&self) -> Vec<(&str, &str)> {
@@ -280,17 +284,6 @@ impl Model {
     fn initial(&self) -> PyResult<Vec<f64>> {
         let instance = self.instance().map_err(error::model)?;
         Ok(instance.initial_state().to_vec())
-    }
-}
-
-/// Returns the messages of an edit without places, which refer to the edited text.
-fn messages(error: &EditError) -> String {
-    match error {
-        EditError::Invalid(found) => {
-            let messages = found.list().iter().map(|one| one.message.clone());
-            messages.collect::<Vec<_>>().join("; ")
-        }
-        error => error.to_string(),
     }
 }
 

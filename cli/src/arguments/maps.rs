@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::shared::{Json, ModelFile, ParameterValues};
+use super::shared::{InputValues, Json, ModelFile, ParameterValues, StateValues};
 
 /// System that runs the shards of a sweep on many machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -56,6 +56,10 @@ pub struct Sweep {
     pub out: PathBuf,
     #[command(flatten)]
     pub parameters: ParameterValues,
+    #[command(flatten)]
+    pub initial: StateValues,
+    #[command(flatten)]
+    pub inputs: InputValues,
     /// Parameter that holds the angular frequency of the forcing.
     #[arg(long, value_name = "NAME", default_value = "omega")]
     pub frequency: String,
@@ -65,8 +69,8 @@ pub struct Sweep {
     /// Number of forcing periods to measure.
     #[arg(long, value_name = "PERIODS", default_value_t = 60)]
     pub periods: usize,
-    /// Simulated time in s, instead of forcing periods. `lyapunov` uses its second half; --section uses all of
-    /// it.
+    /// End of the simulation in s, instead of forcing periods. `lyapunov` uses its second half; --section uses all
+    /// of it. Default with --record: the end of the record.
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Poincaré section: a coordinate or a rate crosses a value upwards, or downwards with `:down`. An angle

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::shared::{Integration, Json, ModelFile, OutputInterval, ParameterValues, StateValues};
+use super::shared::{
+    InputValues, Integration, Json, ModelFile, OutputInterval, ParameterValues, StateValues,
+};
 
 /// Options of `simulate`.
 #[derive(Args)]
@@ -26,21 +28,8 @@ pub struct Simulate {
     pub parameters: ParameterValues,
     #[command(flatten)]
     pub initial: StateValues,
-    /// Expression of `t` and parameters that drives an input. If an expression has no parameters, its value is in the
-    /// input's unit, with t in s; `5*above(t - 1)` is a step. Repeatable.
-    #[arg(long, value_name = "NAME=EXPR")]
-    pub input: Vec<String>,
-    /// Dataset file with a record that drives the inputs.
-    #[arg(long, value_name = "DATASET.toml")]
-    pub record: Option<PathBuf>,
-    /// Name of the record in the dataset file.
-    #[arg(
-        long,
-        value_name = "NAME",
-        default_value = "train[0]",
-        requires = "record"
-    )]
-    pub record_name: String,
+    #[command(flatten)]
+    pub inputs: InputValues,
     #[command(flatten)]
     pub rows: OutputInterval,
     #[command(flatten)]

@@ -49,6 +49,26 @@ pub struct StateValues {
     pub state: Vec<String>,
 }
 
+/// Inputs over time.
+#[derive(Args)]
+pub struct InputValues {
+    /// Expression of `t` and parameters that drives an input. If an expression has no parameters, its value is in the
+    /// input's unit, with t in s; `5*above(t - 1)` is a step. Repeatable.
+    #[arg(long, value_name = "NAME=EXPR")]
+    pub input: Vec<String>,
+    /// Dataset file with a record that drives the inputs.
+    #[arg(long, value_name = "DATASET.toml")]
+    pub record: Option<PathBuf>,
+    /// Name of the record in the dataset file.
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "train[0]",
+        requires = "record"
+    )]
+    pub record_name: String,
+}
+
 /// Output interval.
 #[derive(Args)]
 pub struct OutputInterval {

@@ -2,17 +2,14 @@
 
 use std::cmp::Ordering;
 
-use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_compiled_model::CompiledModel;
 use serde_json::{Value, json};
 
 use crate::arguments::Modes;
-use crate::error::{Error, Result, print_json, print_text};
+use crate::error::{Result, print_json, print_text};
 use crate::mode_figure::figure;
-use crate::operating_point::{
-    head, is_equilibrium, model, point, shape_names, shape_units, values_by_name,
-};
+use crate::operating_point::{head, is_equilibrium, model, point, values_by_name};
 use crate::output::Destination;
 use crate::regime::{Side, regime, summary};
 
@@ -24,10 +21,7 @@ pub fn run(options: &Modes) -> Result {
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
-    let found = run.linearise(at.point())?;
-    let degrees = compiled.program().degrees_of_freedom();
-    let modes = constrained_modes(&found.a, &found.constraint_matrix(&compiled), degrees)
-        .map_err(|error| Error::input(error.to_string()))?;
+    let modes = run.natural_modes(at.point())?;
     let regime = regime(&run, &at)?;
     if let Some(drawing) = &drawing {
         drawing.write(figure(&run, &regime, &modes)?.as_bytes())?;
@@ -39,8 +33,10 @@ pub fn run(options: &Modes) -> Result {
     let mut document = head(&compiled);
     document.insert("at".to_owned(), values_by_name(&compiled, &at));
     document.insert("equilibrium".to_owned(), json!(is_equilibrium));
-    document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
-    let units = json!({ "coordinates": shape_units(&compiled) });
+    let (coordinates, units): (Vec<String>, Vec<String>) =
+        compiled.amplitudes().into_iter().unzip();
+    document.insert("coordinates".to_owned(), json!(coordinates));
+    let units = json!({ "coordinates": units });
     document.insert("units".to_owned(), units);
     let regime = regime.iter().map(Side::json);
     document.insert("regime".to_owned(), regime.collect());
@@ -79,7 +75,7 @@ const MAX_PLAIN_AMPLITUDE: f64 = 1e5;
 
 fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
-    let (names, units) = (shape_names(compiled), shape_units(compiled));
+    let (names, units): (Vec<String>, Vec<String>) = compiled.amplitudes().into_iter().unzip();
     for mode in modes {
         let sizes: Vec<f64> = mode.shape.iter().map(|value| value.norm()).collect();
         let parts: Vec<String> = largest(&units, &sizes)

@@ -1,6 +1,9 @@
 //! `eomgen simulate`: a trajectory as CSV or Parquet.
 
-use eomgen_compiled_model::{CompiledModel, DEFAULT_TOLERANCE, Motion, Request};
+use eomgen_compiled_model::{
+    CompiledModel, DEFAULT_TOLERANCE, Motion, Request, StepInputs, split_assignments,
+    with_prescribed_inputs,
+};
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::json;
@@ -18,8 +21,7 @@ use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
-use crate::settings::{with_inputs, with_settings};
-use crate::step_inputs::{hold, step_inputs};
+use crate::settings::{as_borrowed, settings, with_settings};
 use crate::table::Table;
 
 pub fn run(options: &Simulate) -> Result {
@@ -91,25 +93,27 @@ fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
 /// other inputs of `--input` become definitions.
 fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
     let declared = load(&options.model.spec)?.model;
-    let settings = &options.parameters.set;
     let derive_with_orders = |model: Model| {
-        let model = with_settings(model, settings)?;
+        let model = with_settings(model, &options.parameters.set)?;
         let orders = orders(&model, options.model.order.text())?;
         derive(model, &orders)
     };
-    let may_hold = options.record.is_none()
+    let may_hold = options.inputs.record.is_none()
         && matches!(options.integration.solver, Solver::Auto | Solver::Exact);
+    let prescribed = split_assignments("--input", &options.inputs.input)?;
+    let settings = settings(&declared, &options.parameters.set)?;
+    let settings = as_borrowed(&settings);
     let steps = match may_hold {
-        true => step_inputs(&declared, &options.input, settings)?,
+        true => StepInputs::find(&declared, &prescribed, &settings)?,
         false => None,
     };
-    if let Some(held) = steps.and_then(|steps| hold(&steps)) {
+    if let Some(steps) = steps {
         let compiled = derive_with_orders(declared.clone())?;
         if compiled.piecewise_linear().is_ok() {
-            return Ok((compiled, held));
+            return Ok((compiled, steps.held(&settings)?));
         }
     }
-    let compiled = derive_with_orders(with_inputs(declared, &options.input)?)?;
+    let compiled = derive_with_orders(with_prescribed_inputs(declared, &prescribed)?)?;
     let inputs = inputs(options, compiled.model())?;
     Ok((compiled, inputs))
 }

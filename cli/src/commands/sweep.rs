@@ -1,18 +1,18 @@
 //! `eomgen sweep`: measures over a grid or random samples of parameters, in parallel and in shards.
 
-use eomgen_sweep::{Folder, Shard};
+use eomgen_model_spec::model::Model;
+use eomgen_sweep::{Folder, Shard, Span, SweepError, SweepRequest};
 use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
 use crate::count::count;
 use crate::document::SCHEMA;
 use crate::engines::{self, Submission};
-use crate::error::{Result, print_json, print_text};
-use crate::model::load;
+use crate::error::{Error, Result, print_json, print_text, warn};
+use crate::model::{load, order};
 use crate::progress::Bar;
-use crate::settings::{as_borrowed, settings};
+use crate::settings::settings;
 use crate::sweep_files::finish;
-use crate::sweep_job::{input_error, job, measures, model, points};
 
 pub fn run(options: &Sweep) -> Result {
     engines::check(options)?;
@@ -22,12 +22,12 @@ pub fn run(options: &Sweep) -> Result {
         .map_or(Ok(Shard::WHOLE), Shard::parse);
     let shard = shard.map_err(input_error)?;
     let declared = load(&options.model.spec)?.model;
-    let set = settings(&declared, &options.parameters.set)?;
-    let set = as_borrowed(&set);
-    let points = points(options, &declared, &set)?;
-    let model = model(options, &declared, &points, &set)?;
-    let measures = measures(options, &model, &points)?;
-    let job = job(&model, &points, &set, &measures)?;
+    let sweep = eomgen_sweep::Sweep::new(&declared, request(options, &declared)?)?;
+    for warning in &sweep.warnings {
+        warn(&format!("warning: {warning}"));
+    }
+    let measures = sweep.measures().map_err(input_error)?;
+    let job = sweep.job(&measures).map_err(input_error)?;
     let folder = Folder::open(&options.out, job).map_err(input_error)?;
     if let Some(engine) = options.engine {
         let Submission { document, text } = engines::submit(engine, options)?;
@@ -63,6 +63,33 @@ pub fn run(options: &Sweep) -> Result {
         finished.json(),
         &(summary + &finished.text()),
     )
+}
+
+fn input_error(error: SweepError) -> Error {
+    Error::input(error.to_string())
+}
+
+/// Returns the request of the command line.
+fn request(options: &Sweep, declared: &Model) -> Result<SweepRequest> {
+    Ok(SweepRequest {
+        vary: options.vary.clone(),
+        samples: options.samples,
+        seed: options.seed,
+        measures: options.measure.clone(),
+        set: settings(declared, &options.parameters.set)?,
+        order: order(options.model.order.text())?,
+        frequency: options.frequency.clone(),
+        span: Span {
+            transient: options.transient,
+            periods: options.periods,
+        },
+        until: options.until,
+        section: options.section.clone(),
+        inputs: options.inputs.input.clone(),
+        record: (options.inputs.record.clone())
+            .map(|record| (record, options.inputs.record_name.clone())),
+        state: options.initial.state.clone(),
+    })
 }
 
 /// Prints the result.

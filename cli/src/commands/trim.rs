@@ -1,19 +1,21 @@
 //! `eomgen trim`: an equilibrium of a model and its stability.
 
-use eomgen_compiled_model::{CompiledModel, Equilibrium, EquilibriumRequest, Stability};
+use eomgen_compiled_model::{
+    CompiledModel, Equilibrium, EquilibriumRequest, Stability, split_assignments,
+};
 use serde_json::{Value, json};
 
 use crate::arguments::Trim;
 use crate::error::{Result, print_json, print_text};
-use crate::operating_point::{equilibrium, head, inputs, model, values, values_by_name};
+use crate::operating_point::{equilibrium, head, inputs, model, values_by_name};
 use crate::settings::as_borrowed;
 use crate::significant::significant;
 
 pub fn run(options: &Trim) -> Result {
     let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
-    let start = values(&run, "--state", &options.start.state)?;
-    let fixed = values(&run, "--fix", &options.fix)?;
+    let start = run.read_quantities(&split_assignments("--state", &options.start.state)?)?;
+    let fixed = run.read_quantities(&split_assignments("--fix", &options.fix)?)?;
     let request = EquilibriumRequest {
         start_values: &as_borrowed(&start),
         fixed_values: &as_borrowed(&fixed),

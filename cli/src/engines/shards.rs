@@ -44,6 +44,16 @@ impl Commands {
         for set in &options.parameters.set {
             add("--set", set);
         }
+        for state in &options.initial.state {
+            add("--state", state);
+        }
+        for input in &options.inputs.input {
+            add("--input", input);
+        }
+        if let Some(record) = &options.inputs.record {
+            add("--record", &text(&absolute(record)?)?);
+            add("--record-name", &options.inputs.record_name);
+        }
         if let Some(order) = options.model.order.text() {
             add("--order", order);
         }

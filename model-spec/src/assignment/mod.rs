@@ -53,6 +53,11 @@ impl Assignment {
         }
     }
 
+    /// Returns the option that contains it.
+    pub fn option(&self) -> &str {
+        &self.source.path
+    }
+
     /// Returns the name.
     pub fn name(&self) -> &str {
         &self.source.text[self.name.start..self.name.end]

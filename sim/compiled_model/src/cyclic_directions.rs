@@ -90,26 +90,21 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Returns true if a full turn of a coordinate changes no rate at these states.
+    /// Returns true if a full turn of a coordinate changes no rate at these points.
     ///
     /// # Errors
     /// Same as [`Instance::evaluator`].
     pub fn repeats_after_turn(
         &self,
         coordinate: usize,
-        states: &[(f64, &[f64])],
+        points: &[OperatingPoint],
     ) -> Result<bool, Error> {
         let mut evaluator = self.interpreter()?;
-        let mut pairs = Vec::with_capacity(states.len());
-        for (t, state) in states {
-            let at = OperatingPoint {
-                t: *t,
-                state: state.to_vec(),
-                inputs: self.model().default_inputs(),
-            };
+        let mut pairs = Vec::with_capacity(points.len());
+        for at in points {
             let mut turned = at.clone();
             turned.state[coordinate] += std::f64::consts::TAU;
-            pairs.push([&at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
+            pairs.push([at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
         }
         let count = pairs.first().map_or(0, |[rates, _]| rates.len());
         Ok((0..count).all(|row| {
@@ -276,9 +271,9 @@ weight = "-w*cos(theta)"
             "{wheels:?}"
         );
         assert!(found.contains(&vec![0.0, 0.0, 1.0, 0.0]), "{found:?}");
-        let states = [(0.0, &at.state[..])];
+        let points = [at];
         let repeats = |coordinate| {
-            run.repeats_after_turn(coordinate, &states)
+            run.repeats_after_turn(coordinate, &points)
                 .expect("an answer")
         };
         assert_eq!([0, 1, 3].map(repeats), [false, false, true]);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::model::{ParameterValue, STABILISATION_RATE};
+use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
@@ -39,6 +39,8 @@ impl Deref for ModelHandle<'_> {
 #[derive(Clone)]
 pub struct Instance<'m> {
     pub(crate) model: ModelHandle<'m>,
+    /// Changed parameters, in declared units.
+    settings: Vec<(String, f64)>,
     /// Independent parameters, SI.
     parameters: Vec<f64>,
     /// All parameters of the specification, SI.
@@ -120,8 +122,11 @@ impl<'m> Instance<'m> {
         }
         let values = model.parameter_values().map_err(refused)?;
         let initial = model.initial_state(compiled.orders()).map_err(refused)?;
+        let owned = settings.iter();
+        let owned = owned.map(|(name, value)| ((*name).to_owned(), *value));
         let mut instance = Self {
             model: compiled,
+            settings: owned.collect(),
             parameters: Vec::new(),
             initial,
             values,
@@ -135,6 +140,18 @@ impl<'m> Instance<'m> {
     /// Returns the compiled model.
     pub fn model(&self) -> &CompiledModel {
         &self.model
+    }
+
+    /// Returns the specification's model at these parameter values.
+    ///
+    /// # Errors
+    /// Invalid parameter values.
+    pub fn valued_model(&self) -> Result<Model, Error> {
+        let settings = self.settings.iter();
+        let settings: Vec<(&str, f64)> = settings.map(|(name, v)| (&**name, *v)).collect();
+        let declared = self.model.model();
+        let valued = declared.with_parameters(&settings);
+        valued.map_err(|error| Error::from_model_error(declared, error))
     }
 
     /// Returns the independent parameters, SI, in the order of

@@ -14,6 +14,8 @@ const MAX_PIECES: u32 = 4096;
 /// Times of the measurements of growth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasurementTimes {
+    /// Start of the motion, s.
+    pub start: f64,
     /// Time before the first measurement, s. The vector aligns in its second half.
     pub transient: f64,
     /// Time between two measurements, s.
@@ -49,7 +51,7 @@ impl From<SolveError> for GrowthError {
     }
 }
 
-/// Measures the growth of a tangent vector along the motion from `initial` at t = 0.
+/// Measures the growth of a tangent vector along the motion from `initial` at its start.
 ///
 /// The system must implement its own Jacobian: finite differences would cross switching surfaces.
 /// `felt` is true for each state that a rate or a switching function depends on; the others, such
@@ -67,29 +69,31 @@ pub fn measure_growth(
     settings: &Settings,
 ) -> Result<GrowthMeasurements, GrowthError> {
     let MeasurementTimes {
+        start,
         transient,
         interval,
         intervals,
     } = *stretches;
-    let problem = if !(transient >= 0.0 && interval > 0.0 && (transient + interval).is_finite()) {
-        Some("expected a transient of 0 s or more and an interval above 0 s")
-    } else if felt.len() != initial.len() || !felt.contains(&true) {
-        Some("no rate depends on any state")
-    } else {
-        None
-    };
+    let problem =
+        if !(transient >= 0.0 && interval > 0.0 && (start + transient + interval).is_finite()) {
+            Some("expected a transient of 0 s or more and an interval above 0 s")
+        } else if felt.len() != initial.len() || !felt.contains(&true) {
+            Some("no rate depends on any state")
+        } else {
+            None
+        };
     if let Some(problem) = problem {
         let problem = problem.to_owned();
         return Err(SolveError::Request { problem }.into());
     }
-    let mut carried = MotionWithTangent::new(system, initial, felt, settings);
-    carried.simulate_motion(0.5 * transient)?;
+    let mut carried = MotionWithTangent::new(system, (start, initial), felt, settings);
+    carried.simulate_motion(start + 0.5 * transient)?;
     let turns = (0.5 * transient / interval).ceil();
     for turn in 1..=turns as usize {
-        carried.simulate_interval(0.5 * transient * (1.0 + turn as f64 / turns))?;
+        carried.simulate_interval(start + 0.5 * transient * (1.0 + turn as f64 / turns))?;
     }
-    let growths =
-        (1..=intervals).map(|index| carried.simulate_interval(transient + index as f64 * interval));
+    let growths = (1..=intervals)
+        .map(|index| carried.simulate_interval(start + transient + index as f64 * interval));
     Ok(GrowthMeasurements {
         growth_exponents: growths.collect::<Result<_, _>>()?,
         switches: carried.switches,
@@ -112,7 +116,12 @@ struct MotionWithTangent<'a> {
 impl<'a> MotionWithTangent<'a> {
     /// Starts with the first unit vector of the states that count, turned slightly towards the
     /// others.
-    fn new(system: &'a dyn System, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
+    fn new(
+        system: &'a dyn System,
+        (start, initial): (f64, &[f64]),
+        felt: &'a [bool],
+        settings: &Settings,
+    ) -> Self {
         let mut turned = std::iter::once(1.0).chain((2..).map(|k: u32| 0.1 / f64::from(k)));
         let mut entry = |felt: &bool| {
             if *felt {
@@ -125,7 +134,7 @@ impl<'a> MotionWithTangent<'a> {
             system,
             felt,
             settings: *settings,
-            t: 0.0,
+            t: start,
             y: initial.to_vec(),
             v: felt.iter().map(&mut entry).collect(),
             sizes: initial.iter().map(|y| y.abs()).collect(),
@@ -288,6 +297,7 @@ mod tests {
         };
         let period = std::f64::consts::TAU / (1.0_f64 - 0.15 * 0.15).sqrt();
         let stretches = MeasurementTimes {
+            start: 0.0,
             transient: 2.0,
             interval: period,
             intervals: 5,
@@ -311,6 +321,7 @@ mod tests {
                 side: Cell::new(0.0),
             };
             let stretches = MeasurementTimes {
+                start: 0.0,
                 transient: 0.0,
                 interval: 10.0,
                 intervals: 1,

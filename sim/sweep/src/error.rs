@@ -65,6 +65,12 @@ pub enum SweepError {
     },
 }
 
+impl From<SweepError> for eomgen_compiled_model::Error {
+    fn from(error: SweepError) -> Self {
+        Self::Request(error.to_string())
+    }
+}
+
 impl SweepError {
     pub(super) fn file_error(action: &'static str, path: &Path, error: &dyn fmt::Display) -> Self {
         Self::File {

@@ -37,6 +37,9 @@ pub struct Plan {
     /// Random samples, if there is no grid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<Samples>,
+    /// Inputs and initial state, if they are not those of the specification.
+    #[serde(flatten)]
+    pub conditions: PlannedConditions,
     /// Columns of the varied parameters, with declared units.
     pub parameters: Vec<Column>,
     /// Descriptions of the measures.
@@ -45,7 +48,28 @@ pub struct Plan {
     pub statuses: Vec<(u8, String)>,
 }
 
+/// Inputs and initial state of a sweep, as requested.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlannedConditions {
+    /// Inputs given by expressions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<String>,
+    /// Name of the record that drives the inputs, and a hash of its samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<String>,
+    /// Initial states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub state: Vec<String>,
+}
+
 impl Plan {
+    /// Sets inputs and initial state.
+    #[must_use]
+    pub fn with_conditions(mut self, conditions: PlannedConditions) -> Self {
+        self.conditions = conditions;
+        self
+    }
+
     /// Creates a plan of this version of the program. `specification` is
     /// [`Model::hash`](eomgen_model_spec::model::Model::hash), the hash of all files of the model.
     pub fn new(
@@ -69,6 +93,7 @@ impl Plan {
                 .collect(),
             vary: points.axes().to_vec(),
             samples: points.samples().cloned(),
+            conditions: PlannedConditions::default(),
             parameters,
             measures,
             statuses: Failure::CODES
@@ -92,6 +117,12 @@ impl Plan {
             ("--set", self.set == other.set),
             ("--vary", self.vary == other.vary),
             ("--samples or --seed", self.samples == other.samples),
+            ("--input", self.conditions.inputs == other.conditions.inputs),
+            (
+                "--record",
+                self.conditions.record == other.conditions.record,
+            ),
+            ("--state", self.conditions.state == other.conditions.state),
             ("--measure or its options", self.measures == other.measures),
         ];
         let different = same.iter().filter(|(_, same)| !same);

@@ -4,35 +4,33 @@
 //! Modules in the order of the computation:
 //!
 //! - [`points`]: a [`grid`] of varied [`parameters`], or random [`samples`];
+//! - [`conditions`]: initial states and inputs of the motions;
 //! - [`measure`]: interface of the measures [`poincare`], [`lyapunov`] and [`over_time`];
 //!   `forcing`, [`span`] and [`window`] select their times;
+//! - [`sweep`](mod@sweep): points, conditions and measures from a request;
 //! - [`job`]: all of this as data, with an identifying hash;
 //! - [`folder`] and `part`: the job and its finished chunks as files;
 //! - [`shard`]: selection of chunks for one run; [`run`](mod@run): their computation;
 //!   [`merge`](mod@merge): all chunks in one table.
 //!
 //! ```
-//! use eomgen_compiled_model::{CompiledModel, Orders};
-//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Points, Shard, Span, Window, merge, run};
-//! use eomgen_sweep::{job::Plan, parameters};
+//! use eomgen_model_spec::source::Source;
+//! use eomgen_sweep::{Folder, Shard, Span, Sweep, SweepRequest, merge, run};
 //!
 //! let shipped = eomgen_model_spec::models::PLANETARY_ARM;
-//! let model = CompiledModel::from_text("planetary_arm.toml", shipped.text, Orders::Uniform(0))?;
-//! let grid = Points::Grid(Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?);
-//! let span = Span { transient: 2, periods: 20 };
-//! let window = Window::Periods { forcing: "omega".to_owned(), span };
-//! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, &window)?)];
-//! let plan = Plan::new(
-//!     model.model().hash(),
-//!     &model.model().name,
-//!     model.orders(),
-//!     &[],
-//!     parameters::columns(model.model(), &grid)?,
-//!     &grid,
-//!     measures.iter().map(|measure| measure.describe()).collect(),
-//! );
+//! let model = eomgen_model_spec::check(Source::new("planetary_arm.toml", shipped.text))?.model;
+//! let request = SweepRequest {
+//!     vary: vec!["b_sp=10e-6:50e-6:3".to_owned()],
+//!     measures: vec!["lyapunov".to_owned()],
+//!     order: Some(0),
+//!     frequency: "omega".to_owned(),
+//!     span: Span { transient: 2, periods: 20 },
+//!     ..SweepRequest::default()
+//! };
+//! let sweep = Sweep::new(&model, request)?;
+//! let measures = sweep.measures()?;
 //! # let path = std::env::temp_dir().join(format!("eomgen-sweep-{}", std::process::id()));
-//! let folder = Folder::open(&path, Job::new(plan)?)?;
+//! let folder = Folder::open(&path, sweep.job(&measures)?)?;
 //! run(&folder, &measures, Shard::WHOLE, 0, &mut |_, _| {})?;
 //! let table = merge(&folder)?;
 //! assert_eq!(table.column("b_sp").map(<[f64]>::len), Some(3));
@@ -46,6 +44,7 @@
 //! previous points, chunks do not depend on the number of threads, and the table is in the order of
 //! the points. Threads, shards, interruptions and resumed runs therefore give the same bytes.
 
+pub mod conditions;
 pub mod error;
 mod failure;
 pub mod folder;
@@ -64,8 +63,10 @@ pub mod run;
 pub mod samples;
 pub mod shard;
 pub mod span;
+pub mod sweep;
 pub mod window;
 
+pub use conditions::{Conditions, InputSource};
 pub use error::SweepError;
 pub use folder::Folder;
 pub use grid::{Axis, Grid};
@@ -80,4 +81,5 @@ pub use run::{RunSummary, run};
 pub use samples::{SampledParameter, Samples};
 pub use shard::Shard;
 pub use span::Span;
+pub use sweep::{Sweep, SweepRequest};
 pub use window::Window;

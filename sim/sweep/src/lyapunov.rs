@@ -5,6 +5,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use crate::conditions::{Conditions, Start};
 use crate::error::SweepError;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
@@ -19,6 +20,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Lyapunov exponent of a model at many parameter values.
 pub struct Lyapunov<'a> {
     model: &'a CompiledModel,
+    conditions: &'a Conditions,
     times: Times,
 }
 
@@ -27,8 +29,13 @@ impl<'a> Lyapunov<'a> {
     ///
     /// # Errors
     /// An invalid window, or a model that cannot be differentiated.
-    pub fn new(model: &'a CompiledModel, window: &Window) -> Result<Self, SweepError> {
-        let times = Times::from_window(model.model(), window, "lyapunov", MIN_GROWTHS)?;
+    pub fn new(
+        model: &'a CompiledModel,
+        conditions: &'a Conditions,
+        window: &Window,
+    ) -> Result<Self, SweepError> {
+        let known = (model.model(), conditions);
+        let times = Times::from_window(known, window, "lyapunov", MIN_GROWTHS)?;
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
                 "--measure lyapunov: the model has constraints (`{}`), which this measure does not \
@@ -49,15 +56,24 @@ impl<'a> Lyapunov<'a> {
                  rates with them, which this measure does not support yet"
             )));
         }
-        if model.piecewise_linear().is_err() {
+        let measure = Self {
+            model,
+            conditions,
+            times,
+        };
+        if !measure.is_exact() {
             let refused = |error| SweepError::Request(format!("--measure lyapunov: {error}"));
             model.differentiate().map_err(refused)?;
         }
-        Ok(Self { model, times })
+        Ok(measure)
+    }
+
+    fn is_exact(&self) -> bool {
+        self.model.piecewise_linear().is_ok() && !self.conditions.are_time_varying()
     }
 
     fn method_and_options(&self) -> (&'static str, Vec<(String, String)>) {
-        if self.model.piecewise_linear().is_ok() {
+        if self.is_exact() {
             return ("carried exactly", Vec::new());
         }
         let options = [
@@ -112,13 +128,14 @@ impl Measure for Lyapunov<'_> {
 impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
-        let stretches = self.times.stretches(&instance)?;
+        let stretches = self.times.stretches(&instance, self.conditions)?;
+        let start = self.conditions.start_at(&instance, settings)?;
         let GrowthMeasurements {
             growth_exponents: growths,
             switches,
-        } = match self.model.piecewise_linear() {
-            Ok(_) => exact_growth(&instance, &stretches)?,
-            Err(_) => variational_growth(&instance, &stretches)?,
+        } = match self.is_exact() {
+            true => exact_growth(&instance, &start, &stretches)?,
+            false => variational_growth(&instance, &start, &stretches)?,
         };
         let exponent =
             mean_exponent(&growths, stretches.interval).map_err(|_| Failure::Undefined)?;
@@ -134,6 +151,7 @@ impl Worker for &Lyapunov<'_> {
 
 fn exact_growth(
     instance: &Instance<'_>,
+    start: &Start,
     stretches: &MeasurementTimes,
 ) -> Result<GrowthMeasurements, Failure> {
     let request = Request {
@@ -142,8 +160,9 @@ fn exact_growth(
         interval_count: stretches.intervals,
         exponent_count: 1,
     };
-    let (mut propagator, inputs) = (instance.propagator()?, instance.default_inputs());
-    let growth = propagator.measure_lyapunov(instance.initial_state(), 0.0, &inputs, &request)?;
+    let mut propagator = instance.propagator()?;
+    let growth =
+        propagator.measure_lyapunov(&start.state, stretches.start, &start.inputs, &request)?;
     Ok(GrowthMeasurements {
         growth_exponents: growth
             .growth_exponents
@@ -156,13 +175,11 @@ fn exact_growth(
 
 fn variational_growth(
     instance: &Instance<'_>,
+    start: &Start,
     stretches: &MeasurementTimes,
 ) -> Result<GrowthMeasurements, Failure> {
-    let (evaluator, inputs) = (
-        RefCell::new(instance.evaluator()?),
-        instance.default_inputs(),
-    );
-    let system = DrivenModel::new(&evaluator, &inputs)
+    let evaluator = RefCell::new(instance.evaluator()?);
+    let system = DrivenModel::new(&evaluator, &start.inputs)
         .with_typical_sizes(instance.model().typical_sizes())
         .with_sides(instance.sided_model()?)
         .without_holding()
@@ -173,7 +190,7 @@ fn variational_growth(
     );
     Ok(measure_growth(
         &system,
-        instance.initial_state(),
+        &start.state,
         &felt,
         stretches,
         &settings,

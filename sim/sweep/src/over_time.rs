@@ -6,6 +6,7 @@ use eomgen_analysis::time_history::{greatest, root_mean_square};
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::suggest::did_you_mean;
 
+use crate::conditions::Conditions;
 use crate::error::SweepError;
 use crate::failure::finished_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
@@ -58,6 +59,7 @@ enum Quantity {
 /// Statistic of a quantity at many parameter values.
 pub struct OverTime<'a> {
     model: &'a CompiledModel,
+    conditions: &'a Conditions,
     statistic: Statistic,
     quantity: Quantity,
     name: String,
@@ -71,18 +73,18 @@ impl<'a> OverTime<'a> {
     /// # Errors
     /// A quantity that the model does not have, or an invalid window.
     pub fn new(
-        model: &'a CompiledModel,
+        driven: (&'a CompiledModel, &'a Conditions),
         asked: &str,
         window: &Window,
     ) -> Option<Result<Self, SweepError>> {
         let (statistic, name) = asked.split_once(':')?;
         let mut statistics = Statistic::ALL.into_iter();
         let statistic = statistics.find(|known| known.name() == statistic)?;
-        Some(Self::build(model, statistic, name, window))
+        Some(Self::build(driven, statistic, name, window))
     }
 
     fn build(
-        model: &'a CompiledModel,
+        (model, conditions): (&'a CompiledModel, &'a Conditions),
         statistic: Statistic,
         name: &str,
         window: &Window,
@@ -108,9 +110,10 @@ impl<'a> OverTime<'a> {
                 model.model().name
             )));
         };
-        let times = Times::from_window(model.model(), window, &asked, 1)?;
+        let times = Times::from_window((model.model(), conditions), window, &asked, 1)?;
         Ok(Self {
             model,
+            conditions,
             statistic,
             quantity,
             name: name.to_owned(),
@@ -121,15 +124,28 @@ impl<'a> OverTime<'a> {
 
     /// Returns the times of the samples in s, and the index of the first one in the window.
     fn sample_times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
-        let (begin, end) = self.times.range(instance)?;
+        let (begin, end) = self.times.range(instance, self.conditions)?;
+        if let Some(record) = self.record_times() {
+            let times = record.iter().copied().take_while(|t| *t <= end);
+            return Ok((times.collect(), 0));
+        }
+        let start = self.conditions.start();
         let sample = |place: usize| match place {
             SAMPLES_IN_WINDOW => end,
             _ => begin + (end - begin) * place as f64 / SAMPLES_IN_WINDOW as f64,
         };
         let looked_at = (0..=SAMPLES_IN_WINDOW).map(sample);
-        let before = usize::from(begin > 0.0);
-        let times = std::iter::repeat_n(0.0, before).chain(looked_at);
+        let before = usize::from(begin > start);
+        let times = std::iter::repeat_n(start, before).chain(looked_at);
         Ok((times.collect(), before))
+    }
+
+    /// Returns the times of a record that are sampled, as in `simulate`.
+    fn record_times(&self) -> Option<&[f64]> {
+        match self.times {
+            Times::Until(_) => self.conditions.record_times(),
+            Times::Periods(..) => None,
+        }
     }
 
     fn values_over_time(
@@ -156,12 +172,22 @@ impl Measure for OverTime<'_> {
         let option = |name: &str, value: String| (name.to_owned(), value);
         let asked = format!("{}:{}", self.statistic.name(), self.name);
         let about = format!("{} {}", self.statistic.about(), self.name);
+        let (sampled, samples) = match self.record_times() {
+            Some(_) => (
+                "at the samples of the record".to_owned(),
+                "record".to_owned(),
+            ),
+            None => (
+                format!("of {SAMPLES_IN_WINDOW} samples and one"),
+                (SAMPLES_IN_WINDOW + 1).to_string(),
+            ),
+        };
         Description {
-            about: format!("{about}, of {SAMPLES_IN_WINDOW} samples and one"),
+            about: format!("{about}, {sampled}"),
             options: BTreeMap::from_iter(self.times.options().into_iter().chain([
                 option("solver", Solver::Auto.name().to_owned()),
                 option("tolerance", format!("{TOLERANCE:?}")),
-                option("samples", (SAMPLES_IN_WINDOW + 1).to_string()),
+                option("samples", samples),
             ])),
             columns: vec![Column::new(&asked, &self.unit, about)],
             drawn: vec![asked.clone()],
@@ -179,11 +205,11 @@ impl Worker for &OverTime<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let (times, first) = self.sample_times(&instance)?;
-        let inputs = instance.default_inputs();
+        let start = self.conditions.start_at(&instance, settings)?;
         let request = Request {
-            initial: instance.initial_state(),
+            initial: &start.state,
             times: &times,
-            inputs: &inputs,
+            inputs: &start.inputs,
             solver: Solver::Auto,
             tolerance: TOLERANCE,
             max_step: f64::INFINITY,

@@ -6,7 +6,7 @@ use super::error::SweepError;
 pub const MAX_PERIODS: usize = 1_000_000;
 
 /// Transient and measured time, in forcing periods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     /// Periods before the measurement.
     pub transient: usize,

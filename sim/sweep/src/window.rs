@@ -4,6 +4,7 @@ use eomgen_compiled_model::Instance;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::variational::MeasurementTimes;
 
+use crate::conditions::Conditions;
 use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
 use crate::measure::Failure;
@@ -15,7 +16,7 @@ const GROWTH_INTERVALS: usize = 100;
 /// Time window of a measure.
 #[derive(Clone, Debug)]
 pub enum Window {
-    /// From t = 0 to this time, in s.
+    /// From the start to this time, in s.
     Until(f64),
     /// Forcing periods after a transient.
     Periods {
@@ -29,7 +30,7 @@ pub enum Window {
 /// Time window with resolved names.
 #[derive(Clone, Debug)]
 pub enum Times {
-    /// From t = 0 to this time, in s.
+    /// From the start to this time, in s.
     Until(f64),
     /// Periods of the forcing.
     Periods(Frequency, Span),
@@ -41,13 +42,13 @@ impl Times {
     /// # Errors
     /// An invalid window, or a parameter that is not a frequency.
     pub fn from_window(
-        model: &Model,
+        (model, conditions): (&Model, &Conditions),
         window: &Window,
         asked: &str,
         least: usize,
     ) -> Result<Self, SweepError> {
         match window {
-            Window::Until(end) => check_time(*end).map(Self::Until),
+            Window::Until(end) => check_end(*end, conditions).map(Self::Until),
             Window::Periods { forcing, span } => {
                 span.check(asked, least)?;
                 let known = frequency(model, forcing).map_err(|error| {
@@ -76,29 +77,47 @@ impl Times {
     /// Returns the first and the last time of the window, in s.
     ///
     /// # Errors
-    /// [`Failure::Undefined`] if the frequency is not positive.
-    pub fn range(&self, instance: &Instance<'_>) -> Result<(f64, f64), Failure> {
-        Ok(match self {
-            Self::Until(end) => (0.0, *end),
+    /// [`Failure::Undefined`] if the frequency is not positive, or if the record ends before.
+    pub fn range(
+        &self,
+        instance: &Instance<'_>,
+        conditions: &Conditions,
+    ) -> Result<(f64, f64), Failure> {
+        let start = conditions.start();
+        let (begin, end) = match self {
+            Self::Until(end) => (start, *end),
             Self::Periods(frequency, span) => {
                 let period = frequency.period(instance)?;
-                let begin = span.transient as f64 * period;
+                let begin = start + span.transient as f64 * period;
                 (begin, begin + span.periods as f64 * period)
             }
-        })
+        };
+        require_inputs(end, conditions)?;
+        Ok((begin, end))
     }
 
     /// Returns the intervals of growth: once per period, or over the second half of the time.
-    pub fn stretches(&self, instance: &Instance<'_>) -> Result<MeasurementTimes, Failure> {
+    ///
+    /// # Errors
+    /// Same as [`Times::range`].
+    pub fn stretches(
+        &self,
+        instance: &Instance<'_>,
+        conditions: &Conditions,
+    ) -> Result<MeasurementTimes, Failure> {
+        let start = conditions.start();
+        self.range(instance, conditions)?;
         Ok(match self {
             Self::Until(end) => MeasurementTimes {
-                transient: 0.5 * end,
-                interval: 0.5 * end / GROWTH_INTERVALS as f64,
+                start,
+                transient: 0.5 * (end - start),
+                interval: 0.5 * (end - start) / GROWTH_INTERVALS as f64,
                 intervals: GROWTH_INTERVALS,
             },
             Self::Periods(frequency, span) => {
                 let period = frequency.period(instance)?;
                 MeasurementTimes {
+                    start,
                     transient: span.transient as f64 * period,
                     interval: period,
                     intervals: span.periods,
@@ -108,12 +127,32 @@ impl Times {
     }
 }
 
-/// Checks that a time, in s, is positive and finite.
-pub fn check_time(until: f64) -> Result<f64, SweepError> {
-    if until > 0.0 && until.is_finite() {
-        return Ok(until);
+/// Checks that the end of a motion, in s, is after its start and at most at the end of the record.
+///
+/// # Errors
+/// The option `--until` with the limit.
+pub fn check_end(until: f64, conditions: &Conditions) -> Result<f64, SweepError> {
+    let start = conditions.start();
+    if !(until > start && until.is_finite()) {
+        return Err(SweepError::Request(format!(
+            "--until {until:?}: expected a time in s greater than {start}"
+        )));
     }
-    Err(SweepError::Request(format!(
-        "--until {until:?}: expected a time in s greater than 0"
-    )))
+    match conditions.end().filter(|end| until > *end) {
+        None => Ok(until),
+        Some(end) => Err(SweepError::Request(format!(
+            "--until {until:?}: the record ends at {end:?} s; give an earlier time"
+        ))),
+    }
+}
+
+/// Checks that the inputs do not end before a time, in s.
+///
+/// # Errors
+/// [`Failure::Undefined`] after the end of the record.
+pub fn require_inputs(end: f64, conditions: &Conditions) -> Result<(), Failure> {
+    match conditions.end().is_some_and(|last| end > last) {
+        true => Err(Failure::Undefined),
+        false => Ok(()),
+    }
 }

@@ -12,6 +12,7 @@ use eomgen_sim::ode::{Settings, SolveError, SurfaceMode, System, simulate};
 
 use super::quantity::state_index;
 use super::rotation::{MotionSamples, is_periodic_angle};
+use crate::conditions::Start;
 use crate::error::SweepError;
 use crate::measure::Failure;
 
@@ -72,7 +73,7 @@ impl Crossing {
     /// Returns true if all crossings are at one value, or at values with equal equations.
     fn is_one_value(
         &self,
-        instance: &Instance<'_>,
+        (instance, start): (&Instance<'_>, &Start),
         seen: &CrossingResult,
     ) -> Result<bool, Failure> {
         let is_near = |point: &Vec<f64>| (point[self.state] - self.value).abs() < 0.5 * TAU;
@@ -80,6 +81,7 @@ impl Crossing {
             return Ok(true);
         }
         let looks = MotionSamples {
+            start,
             times: &seen.times,
             states: &seen.points,
         };
@@ -101,20 +103,20 @@ pub struct CrossingResult {
     pub states_between: Vec<Vec<f64>>,
 }
 
-/// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle.
+/// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle. `span` is in s.
 pub fn find_crossings(
-    instance: &Instance<'_>,
+    driven: (&Instance<'_>, &Start),
     crossing: &Crossing,
     (transient, kept): (usize, usize),
-    until: f64,
+    span: (f64, f64),
     settings: &Settings,
 ) -> Result<CrossingResult, Failure> {
     let find = |in_every_turn| {
         let wanted = (transient, kept);
-        follow_crossings(instance, (crossing, in_every_turn), wanted, until, settings)
+        follow_crossings(driven, (crossing, in_every_turn), wanted, span, settings)
     };
-    let mut seen = find(instance.is_angle(crossing.state))?;
-    if !crossing.is_one_value(instance, &seen)? {
+    let mut seen = find(driven.0.is_angle(crossing.state))?;
+    if !crossing.is_one_value(driven, &seen)? {
         seen = find(false)?;
     }
     if seen.points.len() < transient + kept {
@@ -129,26 +131,24 @@ pub fn find_crossings(
 
 /// Returns crossings, in every turn or only at the value itself, until there are enough.
 fn follow_crossings(
-    instance: &Instance<'_>,
+    (instance, start): (&Instance<'_>, &Start),
     (crossing, in_every_turn): (&Crossing, bool),
     wanted: (usize, usize),
-    until: f64,
+    span: (f64, f64),
     settings: &Settings,
 ) -> Result<CrossingResult, Failure> {
-    let (evaluator, inputs) = (
-        RefCell::new(instance.evaluator()?),
-        instance.default_inputs(),
-    );
+    let evaluator = RefCell::new(instance.evaluator()?);
+    let Start { state, inputs } = start;
     let watched = SectionSystem {
-        system: instance.driven_model(&evaluator, &inputs)?,
+        system: instance.driven_model(&evaluator, inputs)?,
         surface: Surface {
             crossing,
             turn_start: in_every_turn.then(Cell::default),
         },
         found_crossings: RefCell::default(),
     };
-    let (initial, _) = instance.find_consistent_state(instance.initial_state(), 0.0, &inputs)?;
-    let between = watched.follow(&initial, until, wanted, settings)?;
+    let (initial, _) = instance.find_consistent_state(state, span.0, inputs)?;
+    let between = watched.follow(&initial, span, wanted, settings)?;
     let (times, points) = watched.found_crossings.into_inner().into_iter().unzip();
     Ok(CrossingResult {
         times,
@@ -218,7 +218,7 @@ impl<S: System> SectionSystem<'_, S> {
     fn follow(
         &self,
         initial: &[f64],
-        until: f64,
+        (start, until): (f64, f64),
         (transient, kept): (usize, usize),
         settings: &Settings,
     ) -> Result<Vec<Vec<f64>>, SolveError> {
@@ -228,7 +228,8 @@ impl<S: System> SectionSystem<'_, S> {
             if count() >= transient + kept {
                 break;
             }
-            let time = |share: f64| until * (part as f64 + share) / TIME_PARTS as f64;
+            let length = until - start;
+            let time = |share: f64| start + length * (part as f64 + share) / TIME_PARTS as f64;
             let span = (time(0.0), time(1.0));
             let samples: Vec<f64> = (0..=SAMPLES_PER_PART)
                 .map(|look| match look {

@@ -15,11 +15,12 @@ use self::crossing::{Crossing, find_crossings};
 use self::numbers::{MAX_RELATIVE_DISTANCE, find_repetition, linear_comparisons, statistics};
 use self::quantity::Quantity;
 use self::rotation::{MotionSamples, remove_drift};
+use crate::conditions::{Conditions, Start};
 use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::span::Span;
-use crate::window::check_time;
+use crate::window::{check_end, require_inputs};
 use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
@@ -57,6 +58,7 @@ enum ResolvedSection {
 /// Section of a model's motion at many parameter values.
 pub struct Poincare<'a> {
     model: &'a CompiledModel,
+    conditions: &'a Conditions,
     measure_name: String,
     quantity: Quantity,
     places: ResolvedSection,
@@ -73,7 +75,7 @@ impl<'a> Poincare<'a> {
     /// # Errors
     /// A missing coordinate, rate or forcing, an invalid section or an invalid span.
     pub fn new(
-        model: &'a CompiledModel,
+        driven: (&'a CompiledModel, &'a Conditions),
         asked: &str,
         section: &Section,
         span: Span,
@@ -85,7 +87,7 @@ impl<'a> Poincare<'a> {
             _ => return None,
         };
         Some(Self::build(
-            model,
+            driven,
             (asked, name),
             section,
             span,
@@ -94,7 +96,7 @@ impl<'a> Poincare<'a> {
     }
 
     fn build(
-        model: &'a CompiledModel,
+        (model, conditions): (&'a CompiledModel, &'a Conditions),
         (asked, name): (&str, Option<&str>),
         section: &Section,
         span: Span,
@@ -123,15 +125,17 @@ impl<'a> Poincare<'a> {
                 })?;
                 ResolvedSection::Forcing(known)
             }
-            Section::Crossing { event, until } => {
-                ResolvedSection::Crossing(Crossing::parse(model, event)?, check_time(*until)?)
-            }
+            Section::Crossing { event, until } => ResolvedSection::Crossing(
+                Crossing::parse(model, event)?,
+                check_end(*until, conditions)?,
+            ),
         };
         Ok(Self {
             quantity: quantity.map_err(|reason| refused(format!("--measure {asked}: {reason}")))?,
             places,
             measure_name: asked.to_owned(),
             model,
+            conditions,
             span,
             keep_points,
             settings: Settings::default(),
@@ -211,9 +215,9 @@ impl Measure for Poincare<'_> {
         };
         let (seen, options) = match &self.places {
             ResolvedSection::Forcing(frequency) => {
-                let mut options = match self.model.piecewise_linear() {
-                    Ok(_) => vec![option("solver", "exact".to_owned())],
-                    Err(_) => general(),
+                let mut options = match self.is_exact() {
+                    true => vec![option("solver", "exact".to_owned())],
+                    false => general(),
                 };
                 options.push(option("frequency", frequency.name().to_owned()));
                 let at = format!(
@@ -263,14 +267,17 @@ impl Measure for Poincare<'_> {
 impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
+        let start = self.conditions.start_at(&instance, settings)?;
         let SectionPoints {
             points,
             repetition,
             time,
         } = match &self.places {
-            ResolvedSection::Forcing(frequency) => self.points_per_period(&instance, frequency)?,
+            ResolvedSection::Forcing(frequency) => {
+                self.points_per_period(&instance, &start, frequency)?
+            }
             ResolvedSection::Crossing(crossing, until) => {
-                self.points_at_crossings(&instance, crossing, *until)?
+                self.points_at_crossings(&instance, &start, crossing, *until)?
             }
         };
         let statistics = statistics(&points).ok_or(Failure::Undefined)?;
@@ -297,16 +304,25 @@ struct SectionPoints {
 }
 
 impl Poincare<'_> {
+    /// Returns true if the motion is solved exactly.
+    fn is_exact(&self) -> bool {
+        matches!(self.places, ResolvedSection::Forcing(_))
+            && self.model.piecewise_linear().is_ok()
+            && !self.conditions.are_time_varying()
+    }
+
     fn points_per_period(
         &self,
         instance: &Instance<'_>,
+        start: &Start,
         frequency: &Frequency,
     ) -> Result<SectionPoints, Failure> {
         let times = self.sample_times(frequency.period(instance)?);
-        let motion = self.motion(instance, &times)?;
+        let motion = self.motion(instance, start, &times)?;
         let seen: Vec<[f64; 2]> = self.quantity_values(&motion.states);
         let points = seen.iter().step_by(SAMPLES_PER_PERIOD).copied().collect();
         let looks = MotionSamples {
+            start,
             times: &motion.times,
             states: &motion.states,
         };
@@ -320,9 +336,7 @@ impl Poincare<'_> {
         (seen, mut points): (&[[f64; 2]], Vec<[f64; 2]>),
         time: Option<f64>,
     ) -> Result<SectionPoints, Failure> {
-        let is_exact = matches!(self.places, ResolvedSection::Forcing(_))
-            && self.model.piecewise_linear().is_ok();
-        let resolution = match is_exact {
+        let resolution = match self.is_exact() {
             true => EXACT_RESOLUTION,
             false => 10.0 * self.settings.tolerance,
         };
@@ -343,11 +357,13 @@ impl Poincare<'_> {
     fn points_at_crossings(
         &self,
         instance: &Instance<'_>,
+        start: &Start,
         crossing: &Crossing,
         until: f64,
     ) -> Result<SectionPoints, Failure> {
         let wanted = (self.span.transient, self.span.periods);
-        let found = find_crossings(instance, crossing, wanted, until, &self.settings)?;
+        let span = (self.conditions.start(), until);
+        let found = find_crossings((instance, start), crossing, wanted, span, &self.settings)?;
         let (points, between) = (
             self.quantity_values(&found.points),
             self.quantity_values(&found.states_between),
@@ -356,6 +372,7 @@ impl Poincare<'_> {
         let time = found.times.last().zip(found.times.first());
         let time = time.map(|(last, first)| (last - first) / (found.times.len() - 1) as f64);
         let looks = MotionSamples {
+            start,
             times: &found.times,
             states: &found.points,
         };
@@ -369,20 +386,24 @@ impl Poincare<'_> {
             .collect()
     }
 
-    fn motion(&self, instance: &Instance<'_>, times: &[f64]) -> Result<Trajectory, Failure> {
-        let span = (0.0, times.last().copied().ok_or(Failure::Undefined)?);
-        let (initial, quiet) = (instance.initial_state(), &mut |_: f64| {});
-        if self.model.piecewise_linear().is_ok() {
+    fn motion(
+        &self,
+        instance: &Instance<'_>,
+        start: &Start,
+        times: &[f64],
+    ) -> Result<Trajectory, Failure> {
+        let end = times.last().copied().ok_or(Failure::Undefined)?;
+        let span = (self.conditions.start(), end);
+        require_inputs(end, self.conditions)?;
+        let quiet = &mut |_: f64| {};
+        let Start { state, inputs } = start;
+        if self.is_exact() {
             let mut propagator = instance.propagator()?;
-            let inputs = instance.default_inputs();
-            return Ok(propagator.simulate(initial, span, times, &inputs, quiet)?);
+            return Ok(propagator.simulate(state, span, times, inputs, quiet)?);
         }
-        let (evaluator, inputs) = (
-            RefCell::new(instance.evaluator()?),
-            instance.default_inputs(),
-        );
-        let system = instance.driven_model(&evaluator, &inputs)?;
-        let (initial, _) = instance.find_consistent_state(initial, 0.0, &inputs)?;
+        let evaluator = RefCell::new(instance.evaluator()?);
+        let system = instance.driven_model(&evaluator, inputs)?;
+        let (initial, _) = instance.find_consistent_state(state, span.0, inputs)?;
         Ok(simulate(
             &system,
             &initial,
@@ -395,10 +416,11 @@ impl Poincare<'_> {
 
     /// Returns the times of all samples in s; every [`LOOKS`]th, from the first, is on the section.
     fn sample_times(&self, period: f64) -> Vec<f64> {
+        let start = self.conditions.start();
         let look = |look: usize| {
             let periods = self.span.transient + look / SAMPLES_PER_PERIOD;
-            (periods as f64 + (look % SAMPLES_PER_PERIOD) as f64 / SAMPLES_PER_PERIOD as f64)
-                * period
+            let share = (look % SAMPLES_PER_PERIOD) as f64 / SAMPLES_PER_PERIOD as f64;
+            start + (periods as f64 + share) * period
         };
         (0..self.span.periods * SAMPLES_PER_PERIOD)
             .map(look)

@@ -8,15 +8,29 @@ use eomgen_compiled_model::{Instance, OperatingPoint};
 
 use super::numbers::{CoordinateComparison, extents, wrap_angle};
 use super::quantity::Quantity;
+use crate::conditions::Start;
 use crate::measure::Failure;
 
 /// Number of states at which the equations are compared after a turn.
 const COMPARED_STATES: usize = 8;
 
 pub struct MotionSamples<'m> {
+    /// Start and inputs of the motion.
+    pub start: &'m Start,
     /// Times of the samples, in s.
     pub times: &'m [f64],
     pub states: &'m [Vec<f64>],
+}
+
+impl MotionSamples<'_> {
+    /// Returns the point of a state, with the inputs at its time.
+    fn point(&self, t: f64, state: Vec<f64>) -> OperatingPoint {
+        OperatingPoint {
+            t,
+            state,
+            inputs: self.start.inputs.evaluate(t).into_owned(),
+        }
+    }
 }
 
 /// Replaces the comparison of a drifting coordinate, and removes full turns from the points.
@@ -39,7 +53,7 @@ pub fn remove_drift(
         return Ok(());
     }
     if is_angle {
-        let start = instance.initial_state()[place];
+        let start = looks.start.state[place];
         for point in points {
             point[shown] = wrap_angle(point[shown], start);
         }
@@ -63,15 +77,11 @@ pub fn is_periodic_angle(
         state
     };
     let step = (looks.states.len() / COMPARED_STATES).max(1);
-    let (mut times, mut states) = (Vec::new(), Vec::new());
-    for (t, state) in looks.times.iter().zip(looks.states).step_by(step) {
-        times.extend([*t; COMPARED_STATES]);
-        states.extend((0..COMPARED_STATES).map(|part| turned(state, part)));
-    }
-    let compared: Vec<(f64, &[f64])> = times
-        .into_iter()
-        .zip(states.iter().map(|s| &s[..]))
-        .collect();
+    let samples = looks.times.iter().zip(looks.states).step_by(step);
+    let compared = samples.flat_map(|(t, state)| {
+        (0..COMPARED_STATES).map(move |part| looks.point(*t, turned(state, part)))
+    });
+    let compared: Vec<OperatingPoint> = compared.collect();
     Ok(is_cyclic(instance, looks, place)? || instance.repeats_after_turn(place, &compared)?)
 }
 
@@ -83,11 +93,7 @@ fn is_cyclic(
     let Some((t, state)) = looks.times.iter().zip(looks.states).next_back() else {
         return Ok(false);
     };
-    let at = OperatingPoint {
-        t: *t,
-        state: state.clone(),
-        inputs: instance.model().default_inputs(),
-    };
+    let at = looks.point(*t, state.clone());
     // A model without Jacobians has no known cyclic direction.
     let directions = instance.find_cyclic_directions(&at).unwrap_or_default();
     Ok(directions.iter().any(|direction| direction[place] != 0.0))
@@ -99,12 +105,9 @@ fn has_equal_equations_after_turn(
     place: usize,
 ) -> Result<bool, Failure> {
     let step = (looks.states.len() / COMPARED_STATES).max(1);
-    let compared: Vec<(f64, &[f64])> = looks
-        .times
-        .iter()
-        .zip(looks.states)
-        .step_by(step)
-        .map(|(t, state)| (*t, &state[..]))
+    let samples = looks.times.iter().zip(looks.states).step_by(step);
+    let compared: Vec<OperatingPoint> = samples
+        .map(|(t, state)| looks.point(*t, state.clone()))
         .collect();
     Ok(instance.repeats_after_turn(place, &compared)?)
 }

@@ -1,6 +1,7 @@
 //! `eomgen sweep` and `eomgen merge`: equal bytes for any threads, shards and kills, numbers
 //! against the closed form of a forced oscillator, and rejected options.
 
+mod conditions;
 mod exponents;
 mod over_time;
 mod place;

@@ -1,0 +1,85 @@
+//! Inputs given by expressions of time and parameters, as `NAME=EXPR`.
+
+use eomgen_model_spec::assignment::Assignment;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::suggest::did_you_mean;
+
+use crate::error::Error;
+
+/// Splits every `NAME=VALUE` of an option. `option`, for example `--input`, replaces the file name in
+/// messages.
+///
+/// # Errors
+/// A text that is not `NAME=VALUE`.
+pub fn split_assignments(option: &str, texts: &[String]) -> Result<Vec<Assignment>, Error> {
+    let split = texts.iter().map(|text| Assignment::split(option, text));
+    split
+        .collect::<Result<_, Diagnostics>>()
+        .map_err(Error::Specification)
+}
+
+/// Returns the model with each of these inputs replaced by a definition.
+///
+/// # Errors
+/// An unknown or repeated input, or an invalid expression, with its place in the option.
+pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<Model, Error> {
+    for given in given {
+        let edit = Edit::PrescribeInput(PrescribeInput {
+            name: given.name().to_owned(),
+            value: given.value().to_owned(),
+        });
+        let edited = edit::apply(&model.source, &[edit]);
+        let edited = edited.map_err(|error| not_prescribed(&error, given, &model))?;
+        let source = model.source.with_text(edited);
+        model = eomgen_model_spec::check(source)?.model;
+    }
+    Ok(model)
+}
+
+/// Returns the error of an input at its place in the option's text.
+fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
+    let found = match error {
+        EditError::Invalid(found) => given.relocated(found),
+        EditError::Expression { text, diagnostic } => {
+            let source = Source::new("", text.as_str());
+            given.relocated(&Diagnostics::from_one(source, (**diagnostic).clone()))
+        }
+        EditError::MissingTerm { .. } => {
+            Some(given.name_error(messages(error, given, model), None))
+        }
+        _ => None,
+    };
+    match found {
+        Some(found) => Error::Specification(found),
+        None => Error::Request(format!(
+            "{} {}: {}",
+            given.option(),
+            given.text(),
+            messages(error, given, model)
+        )),
+    }
+}
+
+/// Returns the messages of an edit, without places: these refer to the edited text.
+fn messages(error: &EditError, given: &Assignment, model: &Model) -> String {
+    match error {
+        EditError::Invalid(found) => {
+            let messages: Vec<String> = found.list().iter().map(Diagnostic::summary).collect();
+            messages.join("; ")
+        }
+        EditError::MissingTerm { name, .. } => {
+            let inputs = model.inputs.iter().filter(|input| input.rate_of.is_none());
+            let inputs: Vec<&str> = inputs.map(|input| input.name.as_str()).collect();
+            let meant = did_you_mean(name, inputs.iter().copied());
+            let cure = meant.unwrap_or_else(|| match inputs.is_empty() {
+                true => format!("it has none; remove {}", given.option()),
+                false => format!("it has {}", inputs.join(", ")),
+            });
+            format!("the model has no input `{name}`; {cure}")
+        }
+        error => error.to_string(),
+    }
+}

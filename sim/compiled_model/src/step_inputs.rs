@@ -1,0 +1,188 @@
+//! Inputs given by expressions that are constant between steps, such as `0.2*above(t - 0.1)`. The exact solver
+//! holds them between these times.
+
+use eomgen_model_spec::assignment::Assignment;
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::evaluate::evaluate;
+use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
+use eomgen_sim::inputs::HeldInputs;
+
+use crate::error::Error;
+use crate::prescribed_inputs::with_prescribed_inputs;
+
+/// Inputs that are constant between the times of their steps, at any parameter values.
+pub struct StepInputs {
+    /// One entry per input of the model, in its order.
+    inputs: Vec<StepInput>,
+}
+
+struct StepInput {
+    /// Model in which the input is a definition.
+    driven: Model,
+    /// Function of time.
+    value: Expr,
+}
+
+impl StepInput {
+    /// Returns the values of the parameters of the function, SI.
+    fn parameters(&self, settings: &[(&str, f64)]) -> Result<Vec<f64>, Error> {
+        let refused = |error| Error::from_model_error(&self.driven, error);
+        let valued = self.driven.with_parameters(settings).map_err(refused)?;
+        valued.parameter_values().map_err(refused)
+    }
+}
+
+impl StepInputs {
+    /// Returns the inputs that `given` prescribes, if it prescribes all inputs of the model and each is constant
+    /// between steps, one of them with a step at these parameter values.
+    ///
+    /// # Errors
+    /// Same as [`with_prescribed_inputs`].
+    pub fn find(
+        model: &Model,
+        given: &[Assignment],
+        settings: &[(&str, f64)],
+    ) -> Result<Option<Self>, Error> {
+        let mut found: Vec<Option<StepInput>> = model.inputs.iter().map(|_| None).collect();
+        let mut has_step = false;
+        for given in given {
+            let driven = with_prescribed_inputs(model.clone(), std::slice::from_ref(given))?;
+            let name = given.name();
+            let place = model.inputs.iter().position(|input| input.name == name);
+            let definition = driven.definitions.iter().find(|own| own.name == name);
+            let (Some(place), Some(definition)) = (place, definition) else {
+                return Ok(None);
+            };
+            let value = definition.value.clone();
+            let input = StepInput { driven, value };
+            let is_repeated = found[place].is_some();
+            let has_rate = model.inputs[place].rate.is_some();
+            let (Ok(parameters), false, false) =
+                (input.parameters(settings), has_rate, is_repeated)
+            else {
+                return Ok(None);
+            };
+            let Some(times) = step_times(&input.value, &parameters) else {
+                return Ok(None);
+            };
+            has_step |= !times.is_empty();
+            found[place] = Some(input);
+        }
+        let found: Option<Vec<StepInput>> = found.into_iter().collect();
+        Ok(found.filter(|_| has_step).map(|inputs| Self { inputs }))
+    }
+
+    /// Returns the inputs at parameter values in declared units, held between all steps.
+    ///
+    /// # Errors
+    /// Inadmissible parameter values.
+    pub fn held(&self, settings: &[(&str, f64)]) -> Result<HeldInputs, Error> {
+        let parameters = self.inputs.iter().map(|input| input.parameters(settings));
+        let parameters = parameters.collect::<Result<Vec<_>, _>>()?;
+        let each = || self.inputs.iter().zip(&parameters);
+        let steps = each().flat_map(|(input, own)| step_times(&input.value, own));
+        let mut times: Vec<f64> = steps.flatten().collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let values = |t: f64| each().map(move |(input, own)| value_at(&input.value, t, own));
+        let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else {
+            return Ok(HeldInputs::constant(values(0.0).collect()));
+        };
+        // A time between two steps, and one before the first.
+        let next = times.iter().skip(1).copied().chain([last + 2.0]);
+        let between = times.iter().zip(next);
+        let between = between.map(|(time, next)| 0.5 * (time + next));
+        let samples = std::iter::once(first - 1.0).chain(between);
+        let rows: Vec<f64> = samples.flat_map(values).collect();
+        times.insert(0, first - 1.0);
+        let constant = || HeldInputs::constant(values(first).collect());
+        Ok(HeldInputs::new(times, rows, self.inputs.len()).unwrap_or_else(constant))
+    }
+}
+
+/// Returns the times at which an expression steps; `None` if it also varies between them, or depends on
+/// more than parameters and time.
+fn step_times(expr: &Expr, parameters: &[f64]) -> Option<Vec<f64>> {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Pi | ExprKind::Parameter(_) => Some(Vec::new()),
+        ExprKind::Negate(operand) => step_times(operand, parameters),
+        ExprKind::Binary(_, left, right) => {
+            let left = step_times(left, parameters)?;
+            Some([left, step_times(right, parameters)?].concat())
+        }
+        ExprKind::Call(Function::Above, arguments) => {
+            let [argument] = &arguments[..] else {
+                return None;
+            };
+            if !is_affine(argument) {
+                return None;
+            }
+            let [start, later] = [0.0, 1.0].map(|t| value_at(argument, t, parameters));
+            let time = -start / (later - start);
+            // Without the time the argument is constant.
+            Some(time.is_finite().then_some(time).into_iter().collect())
+        }
+        ExprKind::Call(_, arguments) => {
+            let all = arguments.iter().map(|own| step_times(own, parameters));
+            Some(all.collect::<Option<Vec<_>>>()?.concat())
+        }
+        _ => None,
+    }
+}
+
+/// Returns true if an expression of parameters and time is a polynomial of degree 1 in time.
+fn is_affine(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Pi | ExprKind::Parameter(_) | ExprKind::Time => true,
+        ExprKind::Negate(operand) => is_affine(operand),
+        ExprKind::Binary(operator, left, right) => {
+            let is_constant = |side: &Expr| is_affine(side) && !mentions_time(side);
+            match operator {
+                BinaryOperator::Add | BinaryOperator::Subtract => {
+                    is_affine(left) && is_affine(right)
+                }
+                BinaryOperator::Multiply => {
+                    (is_constant(left) && is_affine(right))
+                        || (is_affine(left) && is_constant(right))
+                }
+                BinaryOperator::Divide => is_affine(left) && is_constant(right),
+                BinaryOperator::Power => is_constant(left) && is_constant(right),
+            }
+        }
+        _ => false,
+    }
+}
+
+fn mentions_time(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Time => true,
+        ExprKind::Negate(operand) => mentions_time(operand),
+        ExprKind::Binary(_, left, right) => mentions_time(left) || mentions_time(right),
+        ExprKind::Call(_, arguments) => arguments.iter().any(mentions_time),
+        _ => false,
+    }
+}
+
+/// Returns the value of an expression of parameters and time.
+fn value_at(expr: &Expr, t: f64, parameters: &[f64]) -> f64 {
+    let mut at_time = expr.clone();
+    set_time(&mut at_time, t);
+    evaluate(&at_time, parameters)
+}
+
+fn set_time(expr: &mut Expr, t: f64) {
+    match &mut expr.kind {
+        ExprKind::Time => expr.kind = ExprKind::Number(t),
+        ExprKind::Negate(operand) => set_time(operand, t),
+        ExprKind::Binary(_, left, right) => {
+            set_time(left, t);
+            set_time(right, t);
+        }
+        ExprKind::Call(_, arguments) => {
+            for argument in arguments {
+                set_time(argument, t);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,282 @@
+//! Sweep of a model: points, conditions and measures from texts, as on the command line.
+
+use std::path::Path;
+
+use eomgen_compiled_model::{
+    CompiledModel, Error, Orders, StateRequest, StepInputs, split_assignments,
+    with_prescribed_inputs,
+};
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use eomgen_records::{Refusal, read_inputs};
+
+use crate::conditions::{Conditions, InputSource};
+use crate::error::SweepError;
+use crate::grid::{Axis, Grid};
+use crate::job::{Job, Plan, PlannedConditions};
+use crate::lyapunov::Lyapunov;
+use crate::measure::Measure;
+use crate::over_time::{OverTime, measure_names};
+use crate::parameters::columns;
+use crate::poincare::{Poincare, Section};
+use crate::points::Points;
+use crate::samples::Samples;
+use crate::span::Span;
+use crate::window::{Window, check_end};
+
+/// Measures other than statistics over time.
+const MEASURES: [&str; 3] = ["lyapunov", "poincare", "poincare:NAME"];
+
+/// Request for a sweep. Messages name the options of `eomgen sweep`.
+#[derive(Clone, Debug, Default)]
+pub struct SweepRequest {
+    /// Axes of a grid, `NAME[,NAME...]=FROM:TO:COUNT[:log]`; empty with samples.
+    pub vary: Vec<String>,
+    /// Number of random samples, instead of a grid.
+    pub samples: Option<usize>,
+    /// Seed of the samples.
+    pub seed: u64,
+    /// Names of the measures.
+    pub measures: Vec<String>,
+    /// Parameters with other values than in the specification, in declared units.
+    pub set: Vec<(String, f64)>,
+    /// Order of every field; none for the orders of the specification.
+    pub order: Option<usize>,
+    /// Parameter that is the angular frequency of the forcing.
+    pub frequency: String,
+    /// Discarded and measured forcing periods or crossings.
+    pub span: Span,
+    /// End of the motion in s, instead of forcing periods. Default with a record: its end.
+    pub until: Option<f64>,
+    /// Poincaré section, `NAME=VALUE[:up|:down]`.
+    pub section: Option<String>,
+    /// Inputs given by expressions, `NAME=EXPR`.
+    pub inputs: Vec<String>,
+    /// Dataset file, and the name of the record that drives the inputs.
+    pub record: Option<(std::path::PathBuf, String)>,
+    /// Initial states, `NAME=EXPR`, and the word `trim`.
+    pub state: Vec<String>,
+}
+
+impl SweepRequest {
+    fn settings(&self) -> Vec<(&str, f64)> {
+        let set = self.set.iter();
+        set.map(|(name, value)| (&**name, *value)).collect()
+    }
+}
+
+/// Model, points and conditions of a requested sweep.
+pub struct Sweep {
+    request: SweepRequest,
+    model: CompiledModel,
+    points: Points,
+    conditions: Conditions,
+    specification: String,
+    /// Warnings about inputs.
+    pub warnings: Vec<String>,
+}
+
+impl Sweep {
+    /// Derives the model of a request and reads its conditions.
+    ///
+    /// # Errors
+    /// An invalid request with its place, or a model that cannot be derived.
+    pub fn new(declared: &Model, request: SweepRequest) -> Result<Self, Error> {
+        let set = request.settings();
+        let points = points(declared, &request, &set)?;
+        // Bounds are intervals: if both ends of an axis are admissible, all values between them are.
+        let at = |point: usize| [&set[..], &points.settings(point)].concat();
+        with_parameters(declared, &at(points.count() - 1))?;
+        let first = at(0);
+        let derived = |model: &Model| {
+            let orders = request.order.map_or(Orders::Declared, Orders::Uniform);
+            let model = with_parameters(model, &first)?;
+            CompiledModel::derive_without_inertia_check(model, orders)
+        };
+        let (model, inputs, warnings) = driven_model(declared, &request, &first, derived)?;
+        let conditions = Conditions {
+            state: StateRequest::parse("--state", &request.state)?,
+            inputs,
+        };
+        if let Some(until) = request.until {
+            check_end(until, &conditions)?;
+        }
+        // Reports invalid names and values now instead of at every point.
+        match model.with_parameters(&points.settings(0)) {
+            Ok(instance) => match instance.requested_state(&conditions.state) {
+                Err(error @ (Error::Specification(_) | Error::Request(_))) => return Err(error),
+                Err(Error::Stopped { .. }) | Ok(_) => {}
+            },
+            Err(error) => return Err(error),
+        }
+        Ok(Self {
+            specification: declared.hash(),
+            model,
+            points,
+            conditions,
+            warnings,
+            request,
+        })
+    }
+
+    /// Returns the measures in the order of the request.
+    ///
+    /// # Errors
+    /// A measure that is unknown or not applicable.
+    pub fn measures(&self) -> Result<Vec<Box<dyn Measure + '_>>, SweepError> {
+        let names = self.request.measures.iter();
+        names.map(|name| self.measure(name)).collect()
+    }
+
+    fn measure(&self, name: &str) -> Result<Box<dyn Measure + '_>, SweepError> {
+        let lines = self.points.axes().iter();
+        let lines = lines.filter(|axis| axis.count > 1).count();
+        let (span, forcing) = (self.request.span, self.request.frequency.clone());
+        let until = self.request.until.or(self.conditions.end());
+        let window = match until {
+            Some(end) => Window::Until(end),
+            None => Window::Periods {
+                forcing: forcing.clone(),
+                span,
+            },
+        };
+        let section = match (&self.request.section, until) {
+            (None, _) => Section::Forcing(forcing),
+            (Some(event), Some(until)) => Section::Crossing {
+                event: event.clone(),
+                until,
+            },
+            (Some(event), None) => {
+                return Err(SweepError::Request(format!(
+                    "--section {event}: --until is missing: the time in s in which crossings are located"
+                )));
+            }
+        };
+        let (model, conditions) = (&self.model, &self.conditions);
+        if name == "lyapunov" {
+            return Ok(Box::new(Lyapunov::new(model, conditions, &window)?));
+        }
+        if let Some(measure) = Poincare::new((model, conditions), name, &section, span, lines == 1)
+        {
+            return Ok(Box::new(measure?));
+        }
+        let measure = OverTime::new((model, conditions), name, &window);
+        Ok(Box::new(measure.ok_or_else(|| unknown_measure(name))??))
+    }
+
+    /// Returns the job of these measures.
+    ///
+    /// # Errors
+    /// Repeated measures.
+    pub fn job(&self, measures: &[Box<dyn Measure + '_>]) -> Result<Job, SweepError> {
+        let record = self.request.record.as_ref();
+        let record = record.zip(self.conditions.record_times());
+        let record = record.map(|((_, name), _)| {
+            let InputSource::Record(inputs) = &self.conditions.inputs else {
+                return name.clone();
+            };
+            format!("{name} {}", Source::new("", format!("{inputs:?}")).hash())
+        });
+        let plan = Plan::new(
+            self.specification.clone(),
+            &self.model.model().name,
+            self.model.orders(),
+            &self.request.settings(),
+            columns(self.model.model(), &self.points)?,
+            &self.points,
+            measures.iter().map(|measure| measure.describe()).collect(),
+        );
+        Job::new(plan.with_conditions(PlannedConditions {
+            inputs: self.request.inputs.clone(),
+            record,
+            state: self.request.state.clone(),
+        }))
+    }
+}
+
+/// Returns the points of a model with parameters set.
+fn points(declared: &Model, request: &SweepRequest, set: &[(&str, f64)]) -> Result<Points, Error> {
+    if let Some(count) = request.samples {
+        let model = with_parameters(declared, set)?;
+        return Ok(Points::Samples(Samples::new(&model, count, request.seed)?));
+    }
+    let axes = request.vary.iter().map(|text| Axis::parse(text));
+    let grid = Grid::new(axes.collect::<Result<Vec<_>, _>>()?)?;
+    let mut given = set.iter();
+    if let Some((name, _)) = given.find(|(name, _)| grid.names().any(|varied| varied == *name)) {
+        return Err(Error::Request(format!(
+            "`{name}` is both set and varied; give only one of --set and --vary"
+        )));
+    }
+    Ok(Points::Grid(grid))
+}
+
+fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model, Error> {
+    model
+        .with_parameters(settings)
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()).into())
+}
+
+/// Derives the model with its inputs, as `simulate` does: inputs with steps are held between these if all motions can
+/// be solved exactly then; other expressions become definitions. Returns warnings about inputs too.
+fn driven_model(
+    declared: &Model,
+    request: &SweepRequest,
+    first: &[(&str, f64)],
+    derived: impl Fn(&Model) -> Result<CompiledModel, Error>,
+) -> Result<(CompiledModel, InputSource, Vec<String>), Error> {
+    let prescribed = split_assignments("--input", &request.inputs)?;
+    let steps = match request.record {
+        None => StepInputs::find(declared, &prescribed, first)?,
+        Some(_) => None,
+    };
+    if let Some(steps) = steps {
+        let model = derived(declared)?;
+        if model.piecewise_linear().is_ok() {
+            let set = request.set.clone();
+            return Ok((model, InputSource::Steps(steps, set), Vec::new()));
+        }
+    }
+    let model = derived(&with_prescribed_inputs(declared.clone(), &prescribed)?)?;
+    let Some((dataset, name)) = &request.record else {
+        let warnings = undriven_inputs(model.model());
+        return Ok((model, InputSource::Default, warnings));
+    };
+    let (inputs, warnings) = read_record(dataset, name, model.model())?;
+    Ok((model, InputSource::Record(inputs), warnings))
+}
+
+fn read_record(
+    dataset: &Path,
+    name: &str,
+    model: &Model,
+) -> Result<(eomgen_sim::inputs::HeldInputs, Vec<String>), Error> {
+    read_inputs(dataset, name, model).map_err(|refusal| match refusal {
+        Refusal::Description(found) => Error::Specification(found),
+        Refusal::Record(message) => Error::Request(message),
+    })
+}
+
+/// Returns a warning for every input that is not driven.
+fn undriven_inputs(model: &Model) -> Vec<String> {
+    let values = model.typical_inputs(0.0).unwrap_or_default();
+    let own = model.inputs.iter().zip(values);
+    let own = own.filter(|(input, _)| input.rate_of.is_none());
+    own.map(|(input, value)| {
+        let name = &input.name;
+        format!(
+            "input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."
+        )
+    })
+    .collect()
+}
+
+fn unknown_measure(name: &str) -> SweepError {
+    let known = MEASURES.into_iter().map(str::to_owned);
+    let known: Vec<String> = known.chain(measure_names()).collect();
+    SweepError::Request(format!(
+        "--measure {name}: unknown measure; expected one of {}",
+        known.join(", ")
+    ))
+}

@@ -1,0 +1,349 @@
+//! Inputs and initial states of a sweep (`--input`, `--record`, `--state`) against rows of `simulate`.
+
+use std::fs;
+
+use eomgen_tests::program::run_accepted;
+
+use super::place::{SweepFolder, accept, column, merge_command, refuse, table};
+
+/// k x = u - m x'' - c x', and a rotating disc that the force does not drive.
+const DRIVEN: &str = r#"
+[model]
+name = "driven"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+c = { value = 500, unit = "g/s" }
+k = { value = 4, unit = "N/m" }
+h = { value = 0, unit = "N/m^3", doc = "cubic stiffness" }
+F = { value = 3, unit = "N" }
+d = { value = 0.7, unit = "s" }
+omega = { value = 2, unit = "rad/s" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2 + 1/4*h*x^4"
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+[forces]
+motor = { on = "x", value = "u" }
+"#;
+
+/// The same without a cubic term.
+fn linear() -> String {
+    DRIVEN.replace(" + 1/4*h*x^4", "").replace(
+        "h = { value = 0, unit = \"N/m^3\", doc = \"cubic stiffness\" }\n",
+        "",
+    )
+}
+
+const RECORD: &str = r#"
+[records]
+train = ["train.csv", "late.csv"]
+[time]
+column = "t"
+unit = "s"
+[inputs.u]
+column = "u"
+unit = "N"
+hold = "zero-order"
+"#;
+
+fn folder(specification: &str) -> SweepFolder {
+    let place = SweepFolder::new();
+    let write = |name: &str, text: &str| fs::write(place.path_to(name), text).expect("a file");
+    write("driven.toml", specification);
+    write("dataset.toml", RECORD);
+    let record = |start: f64| {
+        let row = |row: u32| {
+            let t = f64::from(row) / 64.0;
+            format!("{:?},{:?}\n", start + t, 2.0 * (5.0 * t).sin() + t)
+        };
+        "t,u\n".to_owned() + &(0..257).map(row).collect::<String>()
+    };
+    write("train.csv", &record(0.0));
+    write("late.csv", &record(1.5));
+    place
+}
+
+/// Returns the arguments of a command with the model, `--out` and more options.
+fn arguments(place: &SweepFolder, command: &str, out: &str, more: &[&str]) -> Vec<String> {
+    let file = |name: &str| place.path_to(name).display().to_string();
+    let start = [command.to_owned(), file("driven.toml")];
+    let end = ["--out".to_owned(), file(out)];
+    let more = more.iter().map(|more| match *more {
+        "dataset.toml" => file(more),
+        more => more.to_owned(),
+    });
+    start.into_iter().chain(end).chain(more).collect()
+}
+
+/// Returns the column of a table of `simulate`.
+fn simulated(place: &SweepFolder, more: &[&str], name: &str) -> Vec<f64> {
+    accept(&arguments(place, "simulate", "rows.csv", more));
+    let text = fs::read_to_string(place.path_to("rows.csv")).expect("a table");
+    let header = text.lines().next().unwrap_or_default();
+    let place = header.split(',').position(|known| known == name);
+    let place = place.unwrap_or_else(|| panic!("{name} in {header}"));
+    let number = |line: &str| {
+        line.split(',')
+            .nth(place)
+            .and_then(|text| text.parse().ok())
+    };
+    let numbers = text.lines().skip(1).map(number);
+    numbers.collect::<Option<_>>().expect("numbers")
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::MIN, f64::max)
+}
+
+#[test]
+fn driven_sweeps_match_rows_of_simulate() {
+    let until = ["--until", "4"];
+    for (specification, conditions) in [
+        // Held steps, whose time is a parameter, and an exact solution.
+        (linear(), &["--input", "u=F*above(t - d)"][..]),
+        (
+            linear(),
+            &[
+                "--input",
+                "u=0.5*sin(3*t)",
+                "--state",
+                "x_dot=-0.2*omega*1 m",
+            ],
+        ),
+        (
+            DRIVEN.to_owned(),
+            &[
+                "--input",
+                "u=F*above(t - d)",
+                "--set",
+                "h=5",
+                "--state",
+                "x=-d*0.1 m/s",
+            ],
+        ),
+        (
+            DRIVEN.to_owned(),
+            &["--set", "h=5", "--record", "dataset.toml"],
+        ),
+        (
+            linear(),
+            &[
+                "--record",
+                "dataset.toml",
+                "--state",
+                "x=F/k",
+                "--state",
+                "x_dot=0.1",
+            ],
+        ),
+    ] {
+        let place = folder(&specification);
+        let vary = ["--vary", "d=0.3:1.1:2", "--vary", "k=2:9:2"];
+        let measures = ["--measure", "max:x,final:x_dot,final:energy"];
+        let all = [&vary[..], &measures, &until, conditions].concat();
+        accept(&arguments(&place, "sweep", "map", &all));
+        let swept = table(&place.path_to("map"));
+        for (point, (d, k)) in [("0.3", "2"), ("0.3", "9"), ("1.1", "2"), ("1.1", "9")]
+            .into_iter()
+            .enumerate()
+        {
+            let values = [format!("d={d}"), format!("k={k}")];
+            let set = ["--set", &values[0], "--set", &values[1]];
+            let more = [&until[..], conditions, &set].concat();
+            let near = |name: &str, right: f64| {
+                let found = column(&swept, name)[point];
+                assert!(
+                    (found - right).abs() <= 1e-12 * right.abs().max(1e-3),
+                    "{conditions:?}, {values:?}: {name} {found}, expected {right}"
+                );
+            };
+            near("max:x", greatest(&simulated(&place, &more, "x")));
+            let last = |name: &str| *simulated(&place, &more, name).last().expect("a row");
+            near("final:x_dot", last("x_dot"));
+            near("final:energy", last("energy"));
+        }
+    }
+}
+
+#[test]
+fn record_gives_start_and_end() {
+    let place = folder(DRIVEN);
+    let record = ["--record", "dataset.toml", "--record-name", "train[1]"];
+    let vary = [
+        "--vary",
+        "h=0:8:2",
+        "--measure",
+        "final:x,lyapunov,poincare:x",
+    ];
+    let section = [
+        "--section",
+        "x_dot=0:down",
+        "--transient",
+        "0",
+        "--periods",
+        "2",
+    ];
+    let all = [&record[..], &vary, &section].concat();
+    accept(&arguments(&place, "sweep", "map", &all));
+    let swept = table(&place.path_to("map"));
+    for (point, h) in ["h=0", "h=8"].into_iter().enumerate() {
+        let rows = simulated(&place, &[&record[..], &["--set", h]].concat(), "x");
+        let found = column(&swept, "final:x")[point];
+        let last = rows.last().expect("a row");
+        assert!((found - last).abs() < 1e-12, "{h}: {found}, {last}");
+    }
+    // Without a cubic term perturbations decay as exp(-c t/(2 m)), whatever the input.
+    let exponent = column(&swept, "lambda_1")[0];
+    assert!((exponent + 0.25).abs() < 0.05, "{exponent}");
+    assert_eq!(column(&swept, "poincare:x_status"), [0.0, 0.0]);
+    let late = ["--until", "9"];
+    let message = refuse(&arguments(
+        &place,
+        "sweep",
+        "other",
+        &[&all[..], &late].concat(),
+    ));
+    assert!(message.contains("the record ends at 5.5 s"), "{message}");
+}
+
+/// Amplitude of the steady response of the linear model to u = F sin(omega t), on the section t = k 2 pi/omega.
+#[test]
+fn forcing_by_an_input_has_closed_form_section() {
+    let place = folder(&linear());
+    let vary = [
+        "--vary",
+        "omega=1:3:3",
+        "--measure",
+        "poincare,lyapunov",
+        "--input",
+        "u=F*sin(omega*t)",
+    ];
+    let span = ["--transient", "60", "--periods", "30", "--state", "x=0.3"];
+    accept(&arguments(
+        &place,
+        "sweep",
+        "map",
+        &[&vary[..], &span].concat(),
+    ));
+    let swept = table(&place.path_to("map"));
+    for (point, omega) in [1.0_f64, 2.0, 3.0].into_iter().enumerate() {
+        let (stiffness, damping) = (4.0 - omega * omega, 0.5 * omega);
+        let expected = -3.0 * damping / (stiffness.powi(2) + damping.powi(2));
+        let found = column(&swept, "poincare_mean")[point];
+        assert!(
+            (found - expected).abs() < 1e-7,
+            "{omega}: {found}, expected {expected}"
+        );
+        let exponent = column(&swept, "lambda_1")[point];
+        assert!((exponent + 0.25).abs() < 1e-2, "{exponent}");
+    }
+}
+
+#[test]
+fn trimmed_state_is_the_equilibrium_of_each_point() {
+    let place = folder(DRIVEN);
+    let held = [
+        "--vary", "k=2:8:3", "--input", "u=F", "--state", "trim", "--until", "3",
+    ];
+    let measures = ["--measure", "max:x,rms:x"];
+    accept(&arguments(
+        &place,
+        "sweep",
+        "map",
+        &[&held[..], &measures].concat(),
+    ));
+    let swept = table(&place.path_to("map"));
+    for (point, k) in [2.0, 5.0, 8.0].into_iter().enumerate() {
+        for name in ["max:x", "rms:x"] {
+            assert!(
+                (column(&swept, name)[point] - 3.0 / k).abs() < 1e-8,
+                "{name} at {k}"
+            );
+        }
+    }
+}
+
+#[test]
+fn shards_of_a_driven_sweep_give_the_same_bytes() {
+    let place = folder(DRIVEN);
+    let options = [
+        "--vary",
+        "h=0:5:4",
+        "--measure",
+        "max:x",
+        "--record",
+        "dataset.toml",
+        "--state",
+        "x=F/k",
+        "--input",
+        "u=F*above(t - d)",
+    ];
+    let of_record: Vec<&str> = options[..options.len() - 2].to_vec();
+    let of_input: Vec<&str> = [&options[..4], &options[6..], &["--until", "2"]].concat();
+    for (name, options) in [("record", of_record), ("input", of_input)] {
+        accept(&arguments(&place, "sweep", name, &options));
+        let shards = format!("{name}_shards");
+        for shard in ["2/2", "1/2"] {
+            let more = [&options[..], &["--shard", shard, "--threads", "2"]].concat();
+            accept(&arguments(&place, "sweep", &shards, &more));
+        }
+        accept(&merge_command(&place.path_to(&shards)));
+        for file in ["sweep.parquet", "sweep.csv", "sweep.json"] {
+            let bytes = |folder: &str| fs::read(place.path_to(folder).join(file)).expect("a file");
+            assert!(bytes(name) == bytes(&shards), "{name}: {file}");
+        }
+        let other = [&options[..], &["--state", "x_dot=1"]].concat();
+        let message = refuse(&arguments(&place, "sweep", name, &other));
+        assert!(message.contains("differences: --state"), "{message}");
+    }
+}
+
+#[test]
+fn invalid_conditions_are_rejected_with_their_place() {
+    let place = folder(DRIVEN);
+    let options = ["--vary", "h=0:5:4", "--measure", "max:x", "--until", "1"];
+    for (more, parts) in [
+        (
+            &["--input", "v=1"][..],
+            &["--input:1:1", "has no input `v`"][..],
+        ),
+        (&["--input", "u=2*zz"], &["--input:1:5", "zz"]),
+        (&["--input", "u"], &["expected NAME=VALUE"]),
+        (
+            &["--state", "y=1"],
+            &["--state:1:1", "no state and no input `y`"],
+        ),
+        (&["--state", "x=2*kk"], &["--state:1:5", "kk"]),
+        (&["--state", "u=1"], &["expected a coordinate"]),
+        (&["--record", "nothing.toml"], &["nothing.toml"]),
+        (
+            &["--record", "dataset.toml", "--record-name", "test[0]"],
+            &["test[0]"],
+        ),
+        (&["--record-name", "train[1]"], &["--record"]),
+    ] {
+        let message = refuse(&arguments(
+            &place,
+            "sweep",
+            "map",
+            &[&options[..], more].concat(),
+        ));
+        for part in parts {
+            assert!(
+                message.contains(part),
+                "{more:?}: {part} is missing in\n{message}"
+            );
+        }
+        assert!(!place.path_to("map").exists(), "{more:?}");
+    }
+    let help = run_accepted(&["sweep", "--help"]);
+    for option in ["--input", "--record", "--record-name", "--state"] {
+        assert!(help.contains(option), "{option}");
+    }
+}
