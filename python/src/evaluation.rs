@@ -141,6 +141,30 @@ pub fn observables(
     py.detach(compute).map_err(error::model)
 }
 
+/// Computes the mass matrix at every state, each row by row.
+#[pyfunction]
+pub fn mass_matrix(
+    py: Python<'_>,
+    model: &Model,
+    t: PyReadonlyArray1<'_, f64>,
+    x: PyReadonlyArray2<'_, f64>,
+    u: PyReadonlyArray2<'_, f64>,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let rows = Rows::new(model, &t, &x, &u)?;
+    let width = model.compiled().program().degrees_of_freedom().pow(2);
+    let out = output(&mut out, &rows, width)?;
+    if out.is_empty() {
+        return Ok(());
+    }
+    let compute = || {
+        model.evaluate(|evaluator| {
+            rows.for_each(out, width, |point, out| evaluator.mass_matrix(point, out));
+        })
+    };
+    py.detach(compute).map_err(error::model)
+}
+
 /// Computes a Jacobian at every state, each matrix row by row.
 #[pyfunction]
 pub fn jacobian(

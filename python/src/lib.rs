@@ -3,32 +3,43 @@
 
 use pyo3::prelude::*;
 
+mod certification;
+mod comparison;
 mod discovery;
 mod equations;
 mod equilibrium;
 mod error;
 mod evaluation;
 mod evaluators;
+mod generation;
 mod inputs;
 mod interruption;
 mod linearisation;
 mod model;
+mod modes;
 mod resumable;
 mod simulation;
+mod sweeping;
 
 /// Python module.
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use crate::certification::validate;
+    #[pymodule_export]
+    use crate::comparison::compare;
+    #[pymodule_export]
     use crate::discovery::discover;
     #[pymodule_export]
-    use crate::equations::equations;
+    use crate::equations::{derive, equations};
     #[pymodule_export]
     use crate::equilibrium::trim;
     #[pymodule_export]
     use crate::error::{DiscoveryError, SimulationError, SpecificationError};
     #[pymodule_export]
-    use crate::evaluation::{jacobian, observables, rates};
+    use crate::evaluation::{jacobian, mass_matrix, observables, rates};
+    #[pymodule_export]
+    use crate::generation::generate;
     #[pymodule_export]
     use crate::linearisation::linearise;
     #[pymodule_export]
@@ -36,7 +47,14 @@ mod _native {
     #[pymodule_export]
     use crate::resumable::Simulation;
     #[pymodule_export]
+    use crate::modes::modes;
+    #[pymodule_export]
     use crate::simulation::simulate;
+    #[pymodule_export]
+    use crate::sweeping::sweep;
+    /// Version of the package.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
     /// Highest order of a field.
     #[pymodule_export]
     const MAX_ORDER: usize = eomgen_model_spec::model::MAX_ORDER;

@@ -9,27 +9,37 @@
 All numbers are in SI units, except parameters, which are in their declared units.
 """
 
+from ._native import VERSION as __version__
 from ._native import DiscoveryError, SimulationError, SpecificationError
+from .certificate import Certificate
+from .comparison import Comparison
 from .discovery import Discovery, discover
 from .equilibrium import Equilibrium
 from .linearisation import Linearisation
 from .model import Model, SpecificationWarning, load
+from .modes import Mode
 from .records import record_to_csv
 from .simulation import Simulation
+from .sweep import Sweep
 from .trajectory import Event, Trajectory
 
 __all__ = [
+    "Certificate",
+    "Comparison",
     "Discovery",
     "DiscoveryError",
     "Equilibrium",
     "Event",
     "Linearisation",
+    "Mode",
     "Model",
     "Simulation",
     "SimulationError",
     "SpecificationError",
     "SpecificationWarning",
+    "Sweep",
     "Trajectory",
+    "__version__",
     "discover",
     "load",
     "record_to_csv",

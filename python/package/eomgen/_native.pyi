@@ -1,6 +1,6 @@
 """Compiled part of the package. Arguments are contiguous float64 arrays in SI units and are not converted."""
 
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 _Array = NDArray[np.float64]
 
 MAX_ORDER: int
+VERSION: str
 
 class SpecificationError(ValueError): ...
 
@@ -61,6 +62,8 @@ class Model:
     @property
     def states(self) -> List[Tuple[str, str]]: ...
     @property
+    def first_order_states(self) -> int: ...
+    @property
     def inputs(self) -> List[Tuple[str, str]]: ...
     @property
     def observables(self) -> List[Tuple[str, str]]: ...
@@ -75,6 +78,38 @@ def nearest(wrong: str, known: List[str]) -> Optional[str]: ...
 def rates(model: Model, t: _Array, x: _Array, u: _Array, out: _Array) -> None: ...
 def observables(model: Model, t: _Array, x: _Array, u: _Array, out: _Array) -> None: ...
 def jacobian(model: Model, name: str, t: _Array, x: _Array, u: _Array, out: _Array) -> None: ...
+def mass_matrix(model: Model, t: _Array, x: _Array, u: _Array, out: _Array) -> None: ...
+def derive(model: Model, format: str) -> str: ...
+def validate(model: Model, extras: List[str]) -> str: ...
+def generate(
+    model: Model, target: str, extras: List[str]
+) -> Tuple[List[Tuple[str, Sequence[int]]], List[str]]: ...
+def compare(
+    model: Model, dataset: str, seed: int, progress: Callable[[str], object]
+) -> Tuple[str, str]: ...
+def modes(
+    model: Model, t: float, x: _Array, u: _Array
+) -> Tuple[
+    List[Tuple[str, str]],
+    List[Tuple[float, float, Tuple[float, float], List[Tuple[float, float]]]],
+]: ...
+def sweep(
+    model: Model,
+    vary: List[str],
+    samples: Optional[int],
+    seed: int,
+    measures: List[str],
+    frequency: str,
+    span: Tuple[int, int],
+    until: Optional[float],
+    section: Optional[str],
+    inputs: List[str],
+    record: Optional[Tuple[str, str]],
+    state: List[str],
+    out: str,
+    threads: int,
+    progress: Callable[[int, int], object],
+) -> Tuple[List[Tuple[str, str]], List[List[float]], List[str]]: ...
 def linearise(
     model: Model, t: float, x: _Array, u: _Array
 ) -> Tuple[List[float], List[float], List[float], List[float], List[float], List[float]]: ...

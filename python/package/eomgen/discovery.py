@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import time
-from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Union
 
 from . import _arguments, _native
+from ._files import write_all
 from ._progress import Lines
 from .model import Model, load
 
@@ -80,17 +80,10 @@ class Discovery:
         """Writes `discovery.json`, `extended.toml`, `report.html` and the experiments to a folder. Each file
         replaces an earlier one only when it is complete.
         """
-        folder = Path(out)
-        folder.mkdir(parents=True, exist_ok=True)
         document = json.dumps(self.document, indent=2, ensure_ascii=False, sort_keys=True) + "\n"
         texts = [(EXTENDED, self.extended), (PAGE, self.report), *self.experiments.items()]
-        for name, text in [*texts, (DOCUMENT, document)]:
-            temporary = folder / f".{name}.part"
-            try:
-                temporary.write_bytes(text.encode("utf-8"))
-                os.replace(temporary, folder / name)
-            finally:
-                temporary.unlink(missing_ok=True)
+        files = [*texts, (DOCUMENT, document)]
+        write_all(out, {name: text.encode("utf-8") for name, text in files})
 
     def __repr__(self) -> str:
         found = ", ".join(f"{effect['effect']} on {effect['on']}" for effect in self.effects)

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any, List, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _native
 from ._arguments import Call
+from ._files import write_all
+from .certificate import Certificate
+from .comparison import Comparison, compare
 from .equilibrium import Equilibrium
 from .linearisation import Linearisation
+from .modes import Mode
 from .simulation import Simulation
+from .sweep import Sweep, sweep
 from .trajectory import Trajectory, simulate
 
 __all__ = ["Model", "SpecificationWarning", "load"]
@@ -173,6 +180,24 @@ class Model:
         found = found.reshape(shape)
         return found[0] if call.single else found
 
+    def mass_matrix(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
+        """Computes the mass matrix: (coordinates, coordinates) or (n, coordinates, coordinates), where the coordinates
+        include the modes. The arguments are those of `rates`.
+        """
+        call = self._call(t, x, u)
+        size = (len(self._states) - self._native.first_order_states) // 2
+        found = np.empty((len(call.x), size * size))
+        _native.mass_matrix(self._native, call.t, call.x, call.u, found)
+        found = found.reshape(len(call.x), size, size)
+        return found[0] if call.single else found
+
+    def derive(self, format: str = "text") -> Any:
+        """Returns the equations of motion with their coefficients: "text" and "latex" give a text, "json" the content
+        of the document of `eomgen derive --format json`.
+        """
+        text = _native.derive(self._native, format)
+        return json.loads(text) if format == "json" else text
+
     def linearise(
         self, t: float = 0.0, x: Any = None, u: Any = None
     ) -> Linearisation:
@@ -187,6 +212,112 @@ class Model:
         state, inputs = call.x[0], call.u[0]
         found = _native.linearise(self._native, time, state, inputs)
         return Linearisation(self._states, self._inputs, self._observables, state, inputs, *found)
+
+    def modes(self, t: float = 0.0, x: Any = None, u: Any = None) -> List[Mode]:
+        """Computes the natural modes of the model linearised at a state, lowest frequency first. The arguments are
+        those of `linearise`.
+        """
+        time = _arguments.real("t", t)
+        call = self._call(time, self.state(x), u)
+        amplitudes, found = _native.modes(self._native, time, call.x[0], call.u[0])
+        names = tuple(name for name, _ in amplitudes)
+        return [
+            Mode(frequency, damping, complex(*eigenvalue), np.array([complex(*v) for v in shape]), names)
+            for frequency, damping, eigenvalue, shape in found
+        ]
+
+    def validate(self, extras: Sequence[str] = ()) -> Certificate:
+        """Checks the equations and the emitted Rust against an independent computation.
+
+        extras: additional emitted functions, as in `generate`.
+        """
+        return Certificate(json.loads(_native.validate(self._native, list(extras))))
+
+    def generate(
+        self,
+        out: Union[str, "os.PathLike[str]"],
+        target: str = "rust",
+        extras: Sequence[str] = (),
+    ) -> List[Path]:
+        """Writes the emitted source of the model to a folder and returns the paths of the files. The file with the
+        equations is first.
+
+        target: "rust", "c99", "casadi", "fmu2" or "fmu3". extras: functions to emit in addition to the usual ones,
+        such as "jacobians"; the names are those of `eomgen generate --with`.
+        """
+        files, noted = _native.generate(self._native, target, list(extras))
+        for warning in noted:
+            warnings.warn(warning, stacklevel=2)
+        return write_all(out, {name: bytes(contents) for name, contents in files})
+
+    def compare(
+        self,
+        dataset: Union[str, "os.PathLike[str]"],
+        out: Union[str, "os.PathLike[str]", None] = None,
+        *,
+        seed: int = 1,
+        progress: Optional[Callable[[str], object]] = None,
+    ) -> Comparison:
+        """Compares the model with measured records.
+
+        dataset: path of the dataset file. out: folder for `comparison.json` and `report.html`; None writes no files.
+        seed: seed of the noise in the simulated records that give the noise floor. progress: function that is called
+        with each progress message.
+
+        Raises SpecificationError for an invalid dataset file, ValueError for invalid records, and DiscoveryError if the
+        model cannot be simulated over the records.
+        """
+        return compare(self._native, dataset, out, seed, progress)
+
+    def sweep(
+        self,
+        vary: Any = None,
+        measure: Union[str, Sequence[str]] = (),
+        *,
+        samples: Optional[int] = None,
+        seed: int = 1,
+        frequency: str = "omega",
+        transient: int = 60,
+        periods: int = 60,
+        until: Optional[float] = None,
+        section: Optional[str] = None,
+        state: Any = None,
+        inputs: Any = None,
+        record: Any = None,
+        out: Union[str, "os.PathLike[str]", None] = None,
+        threads: Optional[int] = None,
+        progress: Optional[Callable[[float], object]] = None,
+    ) -> Sweep:
+        """Computes measures over a grid or over random samples of parameters, like `eomgen sweep`.
+
+        vary: mapping of a name, or of several names with commas, to (from, to, count) or (from, to, count, "log"), in
+        declared units. samples: number of random samples of the uncertain parameters, instead of a grid; seed: their
+        seed. measure: one or more of "lyapunov", "poincare", "poincare:NAME", "max:NAME", "rms:NAME", "final:NAME".
+
+        frequency: parameter that is the angular frequency of the forcing. transient, periods: discarded and measured
+        forcing periods. until: end of the simulation in s, instead of forcing periods. section: Poincare section,
+        "NAME=VALUE", "NAME=VALUE:up" or "NAME=VALUE:down".
+
+        state: mapping of names to numbers or expressions of parameters, or "trim" for the nearest equilibrium. inputs:
+        mapping of names to numbers or expressions of t and parameters. record: dataset file whose first training record
+        drives the inputs, or (file, name) for another record.
+
+        out: folder of the sweep, in which an interrupted run is resumed; `eomgen merge` writes its tables and figures.
+        None keeps no files. threads: number of threads; the result does not depend on it. progress: function of the
+        completed fraction, 0 to 1.
+
+        Raises SpecificationError or ValueError for an invalid request. Ctrl-C interrupts the sweep
+        after the points that are being computed.
+        """
+        return sweep(
+            self._native,
+            (vary, samples, seed),
+            measure,
+            (frequency, transient, periods, until, section),
+            (inputs, record, state),
+            (out, threads),
+            progress,
+        )
 
     def trim(
         self,

@@ -1,0 +1,21 @@
+"""Files of results."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import List, Mapping, Union
+
+
+def write_all(out: Union[str, "os.PathLike[str]"], files: Mapping[str, bytes]) -> List[Path]:
+    """Writes files to a folder and returns their paths. Each replaces an earlier one only when it is complete."""
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, contents in files.items():
+        temporary = folder / f".{name}.part"
+        try:
+            temporary.write_bytes(contents)
+            os.replace(temporary, folder / name)
+        finally:
+            temporary.unlink(missing_ok=True)
+    return [folder / name for name in files]

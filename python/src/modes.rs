@@ -1,0 +1,48 @@
+//! Natural modes of a model.
+
+use eomgen_analysis::natural_modes::NaturalMode;
+use eomgen_codegen::program::evaluator::Point;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::model::Model;
+
+/// Frequency (Hz), damping ratio, eigenvalue (1/s) and shape, complex numbers as real and imaginary parts.
+type ModeTuple = (f64, f64, (f64, f64), Vec<(f64, f64)>);
+
+/// Computes the natural modes about a time, state and inputs. Returns names and units of the amplitudes too.
+#[pyfunction]
+pub fn modes(
+    py: Python<'_>,
+    model: &Model,
+    t: f64,
+    x: PyReadonlyArray1<'_, f64>,
+    u: PyReadonlyArray1<'_, f64>,
+) -> PyResult<(Vec<(String, String)>, Vec<ModeTuple>)> {
+    let point = Point {
+        t,
+        state: x.as_slice()?,
+        inputs: u.as_slice()?,
+    };
+    let program = model.compiled().program();
+    if point.state.len() != program.states() || point.inputs.len() != program.inputs.len() {
+        return Err(PyValueError::new_err("state or inputs of another model"));
+    }
+    let found = py.detach(|| model.instance()?.natural_modes(point));
+    let found = found.map_err(error::model)?;
+    let modes = found.iter().map(describe_mode).collect();
+    Ok((model.compiled().amplitudes(), modes))
+}
+
+fn describe_mode(mode: &NaturalMode) -> ModeTuple {
+    let shape = mode.shape.iter().map(|value| (value.re, value.im));
+    let eigenvalue = (mode.eigenvalue.re, mode.eigenvalue.im);
+    (
+        mode.frequency(),
+        mode.damping(),
+        eigenvalue,
+        shape.collect(),
+    )
+}

@@ -1,0 +1,87 @@
+//! Sweeps over parameters.
+
+use std::path::{Path, PathBuf};
+
+use eomgen_compiled_model::Error;
+use eomgen_sweep::{Folder, Shard, Span, Sweep, SweepError, SweepRequest, Table, merge, run};
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::interruption::{Connection, interruptible};
+use crate::model::Model;
+
+/// Names and units of the columns, the columns, and warnings about inputs.
+type SweepTuple = (Vec<(String, String)>, Vec<Vec<f64>>, Vec<String>);
+
+/// Computes measures over a grid or over random samples, in the folder `out`; resumes an interrupted sweep.
+/// `progress` is called with the numbers of computed points and of all points to compute.
+#[pyfunction]
+#[pyo3(signature = (
+    model, vary, samples, seed, measures, frequency, span, until, section, inputs, record, state, out, threads,
+    progress
+))]
+#[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
+pub fn sweep(
+    py: Python<'_>,
+    model: &Model,
+    vary: Vec<String>,
+    samples: Option<usize>,
+    seed: u64,
+    measures: Vec<String>,
+    frequency: String,
+    span: (usize, usize),
+    until: Option<f64>,
+    section: Option<String>,
+    inputs: Vec<String>,
+    record: Option<(PathBuf, String)>,
+    state: Vec<String>,
+    out: PathBuf,
+    threads: usize,
+    progress: Py<PyAny>,
+) -> PyResult<SweepTuple> {
+    let request = SweepRequest {
+        vary,
+        samples,
+        seed,
+        measures,
+        set: model.settings().to_vec(),
+        order: model.order(),
+        frequency,
+        span: Span {
+            transient: span.0,
+            periods: span.1,
+        },
+        until,
+        section,
+        inputs,
+        record,
+        state,
+    };
+    let hear = |py: Python<'_>, counts: (usize, usize)| progress.call1(py, counts).map(drop);
+    let found = interruptible(py, hear, |line| {
+        compute(model, request, &out, threads, line)
+    })?;
+    let (units, Table { columns, .. }, warnings) = found.map_err(error::model)?;
+    Ok((units, columns, warnings))
+}
+
+fn compute(
+    model: &Model,
+    request: SweepRequest,
+    out: &Path,
+    threads: usize,
+    line: &Connection<'_, (usize, usize)>,
+) -> Result<(Vec<(String, String)>, Table, Vec<String>), Error> {
+    let sweep = Sweep::new(model.compiled().model(), request)?;
+    let measures = sweep.measures()?;
+    let folder = Folder::open(out, sweep.job(&measures)?)?;
+    let columns = folder.job().columns().into_iter();
+    let units = columns.map(|column| (column.name, column.unit)).collect();
+    let mut report = |computed: usize, whole: usize| {
+        line.check();
+        line.report((computed, whole));
+    };
+    run(&folder, &measures, Shard::WHOLE, threads, &mut report)?;
+    let table = merge(&folder).map_err(|error: SweepError| Error::from(error))?;
+    Ok((units, table, sweep.warnings.clone()))
+}
