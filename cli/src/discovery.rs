@@ -83,6 +83,8 @@ fn seconds(limit: f64) -> Result<Duration> {
 /// Reads the specification's text, the truncation order and the dataset.
 fn inputs(task: &Task<'_>) -> Result<(String, Option<usize>, Dataset)> {
     let model = load(task.spec)?.model;
+    let controlled = model.reject_controllers("a comparison with records");
+    controlled.map_err(|error| Error::model(&model.source, error))?;
     let text = model.source.text.to_string();
     orders(&model, task.order)?;
     let order = task.order.and_then(|order| order.trim().parse().ok());

@@ -80,10 +80,12 @@ pub fn columns(instance: &Instance<'_>) -> Vec<String> {
     let mut columns = vec!["t".to_owned()];
     columns.extend(model.state_names());
     columns.extend(model.observable_names());
+    let states = model.model().controller_states().into_iter();
+    columns.extend(states.map(|(name, _)| name.to_owned()));
     columns
 }
 
-/// Returns a table with time, state and observables of every sample.
+/// Returns a table with time, state, observables and states of controllers of every sample.
 pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
     let columns = columns(instance);
     let mut row = Vec::with_capacity(columns.len());
@@ -93,6 +95,8 @@ pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
         row.push(t);
         row.extend_from_slice(state);
         row.extend_from_slice(observables);
+        let states = motion.controller_states.rows.get(table.rows());
+        row.extend(states.into_iter().flatten());
         table.push(&row);
     })?;
     Ok(table)

@@ -17,6 +17,13 @@ use crate::settings::with_settings;
 /// Loads a specification with parameters set and derives it.
 pub fn model(file: &ModelFile, parameters: &ParameterValues) -> Result<CompiledModel> {
     let model = with_settings(load(&file.spec)?.model, &parameters.set)?;
+    if let Some(controller) = model.controllers.first() {
+        warn(&format!(
+            "note: the controllers of the model (`{}`) are not part of its equations; the inputs that they drive are \
+             free here",
+            controller.name
+        ));
+    }
     let orders = orders(&model, file.order.text())?;
     derive(model, &orders)
 }

@@ -14,8 +14,8 @@ const MAX_VALUES: f64 = 1e8;
 /// Number of intervals without `--interval`.
 const DEFAULT_INTERVALS: f64 = 1000.0;
 
-/// Returns the inputs: from a record, or constant.
-pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
+/// Returns the inputs: from a record, or constant. `driven` are names of inputs that need no warning.
+pub fn inputs(options: &Simulate, model: &Model, driven: &[&str]) -> Result<HeldInputs> {
     match &options.inputs.record {
         Some(dataset) => {
             let (inputs, warnings) =
@@ -28,7 +28,7 @@ pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
         None => {
             let values =
                 (model.typical_inputs(0.0)).map_err(|error| Error::model(&model.source, error))?;
-            warn_of_inputs(model);
+            warn_of_inputs(model, driven);
             Ok(HeldInputs::constant(values))
         }
     }

@@ -45,11 +45,14 @@ pub fn with_stabilisation(model: Model) -> Result<Model> {
         .map_err(|error| Error::model(&model.source, error))
 }
 
-/// Warns about inputs that are not driven, with their values.
-pub fn warn_of_inputs(model: &Model) {
+/// Warns about inputs that are not driven, except those of `driven`, with their values.
+pub fn warn_of_inputs(model: &Model, driven: &[&str]) {
     let values = model.typical_inputs(0.0).unwrap_or_default();
-    let own = model.inputs.iter().zip(values);
-    for (input, value) in own.filter(|(input, _)| input.rate_of.is_none()) {
+    let own = model.inputs.iter().zip(values).enumerate();
+    let own = own.filter(|(place, (input, _))| {
+        input.rate_of.is_none() && !model.is_controlled(*place) && !driven.contains(&&*input.name)
+    });
+    for (_, (input, value)) in own {
         let name = &input.name;
         warn(&format!(
             "warning: input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."

@@ -7,8 +7,8 @@ use crate::evaluate::evaluate;
 use crate::ids::InputId;
 use crate::infer::UnitPhrase;
 use crate::model::{
-    Basis, CoefficientKind, Expr, ExprKind, Input, Model, ObservedRate, Ordinate, ParameterValue,
-    STABILISATION_RATE,
+    Basis, CoefficientKind, Expr, ExprKind, Input, MeasuredQuantity, Model, ObservedRate, Ordinate,
+    ParameterValue, STABILISATION_RATE,
 };
 use crate::suggest::did_you_mean;
 
@@ -112,6 +112,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
         definitions: vec![false; model.definitions.len()],
     };
     for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
+    used.mark_controllers(model);
     let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
     // Given rates of an input may be unused; a used rate counts as a use of the input.
     let used_with_rates = |input: InputId| {
@@ -150,6 +151,22 @@ struct UsageMarks {
 }
 
 impl UsageMarks {
+    /// Marks what controllers measure and drive.
+    fn mark_controllers(&mut self, model: &Model) {
+        for controller in &model.controllers {
+            for output in &controller.outputs {
+                self.inputs[output.input] = true;
+            }
+            for quantity in &controller.measured {
+                match quantity {
+                    MeasuredQuantity::Parameter(index) => self.parameters[*index] = true,
+                    MeasuredQuantity::Input(index) => self.inputs[*index] = true,
+                    _ => {}
+                }
+            }
+        }
+    }
+
     fn mark(&mut self, part: &Expr) {
         match part.kind {
             ExprKind::Parameter(index) => self.parameters[index] = true,
@@ -209,6 +226,15 @@ pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     }
     for observable in &model.observables {
         see(&observable.value);
+    }
+    for controller in &model.controllers {
+        let times = [&controller.period, &controller.offset, &controller.delay];
+        times.into_iter().for_each(|time| see(&time.value));
+        let initial = controller
+            .states
+            .iter()
+            .filter_map(|state| state.initial.as_ref());
+        initial.for_each(&mut *see);
     }
     for coefficient in &model.coefficients {
         for_each_of_coefficient(&coefficient.kind, see);

@@ -3,6 +3,7 @@
 
 use toml_edit::Document as Toml;
 
+use crate::control::read_controller;
 use crate::diagnostic::{Diagnostic, Diagnostics, quote};
 use crate::entries::{
     read_body, read_coefficient, read_constraint, read_coordinate, read_definition, read_field,
@@ -77,6 +78,7 @@ impl<'d> Reader<'d> {
             observables: self.collect("observables", read_observable),
             coefficients: self.collect("coefficients", read_coefficient),
             sensors: self.collect("sensors", read_sensor),
+            controllers: self.collect("controllers", read_controller),
             drawing: self.drawing(),
             name: model.as_ref().map(|(name, _)| name.clone())?,
             title: model.map(|(_, title)| title).unwrap_or_default(),

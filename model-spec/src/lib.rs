@@ -31,7 +31,7 @@
 //! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`]
 //! run all steps; [`diagnostic`] reports the findings.
 //!
-//! Further modules: [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
+//! Further modules: [`control`] (sampled controllers), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
 //! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
 //! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
 //! [`interval`] (bounds of expressions), [`mod@keys`] and [`sections`] (table of the sections and keys), [`toml_file`], [`mod@table`], [`record`] and
@@ -44,6 +44,7 @@ pub mod ast;
 mod bases;
 mod checks;
 mod constants;
+pub mod control;
 pub mod diagnostic;
 pub mod dimension;
 mod document;

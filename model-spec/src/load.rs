@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
+use crate::control::check_units;
 use crate::diagnostic::{DeclarationKind, Diagnostic, Diagnostics};
 use crate::document;
 use crate::extension;
@@ -63,6 +64,9 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     motion::check(&mut resolved.model, &mut found);
     units_check::check(&mut resolved, &mut found);
     let (model, inertias) = (resolved.model, resolved.inertias);
+    if found.is_empty() {
+        check_units(&model, &mut found);
+    }
     check_sensors(&model, &mut found);
     check_drawing(&model, &mut found);
     if found.is_empty() {

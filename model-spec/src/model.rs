@@ -82,6 +82,8 @@ pub struct Model {
     pub coefficients: Vec<Coefficient>,
     /// Gain, bias and delay of measured channels.
     pub sensors: Vec<Sensor>,
+    /// Sampled controllers. They are no part of the equations.
+    pub controllers: Vec<Controller>,
     /// Drawing of the machine, if the specification has one. Derivation and emission do not use it.
     pub drawing: Option<Drawing>,
     /// Parameters in dependency order.
@@ -511,6 +513,135 @@ pub struct Sensor {
     pub delay: f64,
     /// Position of the observable's name in the text.
     pub span: Span,
+}
+
+/// Sampled controller. At the times `offset` + k `period`, k = 0, 1, ..., it computes all new states and all outputs
+/// from the values before that time. An output acts `delay` later, and is held until the next one acts.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    /// ASCII name.
+    pub name: String,
+    /// Description.
+    pub doc: String,
+    /// Time between two samples.
+    pub period: SampleTime,
+    /// Time of the first sample.
+    pub offset: SampleTime,
+    /// Time between a sample and the action of its outputs.
+    pub delay: SampleTime,
+    /// Quantities in the expressions.
+    pub measured: Vec<MeasuredQuantity>,
+    /// States.
+    pub states: Vec<ControllerState>,
+    /// Outputs.
+    pub outputs: Vec<ControllerOutput>,
+    /// Position of the name in the text.
+    pub span: Span,
+}
+
+/// Time of a controller (parameters only).
+#[derive(Clone, Debug)]
+pub struct SampleTime {
+    /// Value in `unit`; an expression without a unit of its own is in SI.
+    pub value: Expr,
+    /// Unit of a plain number.
+    pub unit: Unit,
+    /// Position in the text.
+    pub span: Span,
+}
+
+/// State of a controller.
+#[derive(Clone, Debug)]
+pub struct ControllerState {
+    /// ASCII name, unique in the model.
+    pub name: String,
+    /// Unit (coherent SI).
+    pub unit: Unit,
+    /// Value after a sample.
+    pub next: SampledExpression,
+    /// Initial value (parameters only), 0 if absent.
+    pub initial: Option<Expr>,
+    /// Description.
+    pub doc: String,
+    /// Position of the name in the text.
+    pub span: Span,
+}
+
+/// Output of a controller.
+#[derive(Clone, Debug)]
+pub struct ControllerOutput {
+    /// Input that it drives.
+    pub input: InputId,
+    /// Value of the input, SI.
+    pub value: SampledExpression,
+    /// Position of the name in the text.
+    pub span: Span,
+}
+
+/// Expression of a controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledExpression {
+    /// Form of the expression.
+    pub kind: SampledKind,
+    /// Position in the text.
+    pub span: Span,
+}
+
+/// Forms of an expression of a controller.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SampledKind {
+    /// Number in SI.
+    Number(f64),
+    /// Quantity, an index into [`Controller::measured`].
+    Measured(usize),
+    /// `-operand`.
+    Negate(Box<SampledExpression>),
+    /// `left operator right`.
+    Binary(
+        BinaryOperator,
+        Box<SampledExpression>,
+        Box<SampledExpression>,
+    ),
+    /// Function of one or two arguments.
+    Call(Function, Vec<SampledExpression>),
+    /// `clamp(x, low, high)`: x, at least low and at most high.
+    Clamp([Box<SampledExpression>; 3]),
+    /// `quantise(x, step)`: the multiple of step that is nearest to x; halves away from zero.
+    Quantise([Box<SampledExpression>; 2]),
+}
+
+/// Quantity in the expressions of a controller.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeasuredQuantity {
+    /// Time of the sample.
+    Time,
+    /// Time between two samples.
+    Period,
+    /// Parameter.
+    Parameter(ParameterId),
+    /// Input before the sample.
+    Input(InputId),
+    /// Coordinate.
+    Coordinate(CoordinateId),
+    /// Rate of a coordinate.
+    CoordinateRate(CoordinateId),
+    /// First-order state.
+    State(StateId),
+    /// Mode coordinate of a field, numbered from 1, or its rate.
+    Mode {
+        /// Index of the field.
+        field: usize,
+        /// Number of the mode.
+        number: usize,
+        /// True for the rate.
+        is_rate: bool,
+        /// Position of its first use in the text.
+        span: Span,
+    },
+    /// Observable, by name.
+    Observable(String),
+    /// State of this controller, by its index.
+    Own(usize),
 }
 
 /// Expression with every name resolved.

@@ -33,6 +33,8 @@ pub enum Symbol {
     Coefficient(CoefficientId),
     Multiplier(ConstraintId),
     Residual(ConstraintId),
+    /// State of a controller.
+    ControllerState,
 }
 
 impl Symbol {
@@ -50,6 +52,7 @@ impl Symbol {
             Self::Coefficient(_) => "a coefficient",
             Self::Multiplier(_) => "the multiplier of a constraint",
             Self::Residual(_) => "the residual of a constraint",
+            Self::ControllerState => "a state of a controller",
         }
     }
 }
@@ -112,6 +115,10 @@ impl Names {
                 names.add(&name, symbol, found);
             }
         }
+        let controllers = document.controllers.iter();
+        for state in controllers.flat_map(|controller| &controller.states) {
+            names.add(&state.name, Symbol::ControllerState, found);
+        }
         names.check_terms(document, found);
         names.check_observables(document, found);
         names.check_generated(document, found);
@@ -129,6 +136,16 @@ impl Names {
 
     pub fn is_observable(&self, name: &str) -> bool {
         self.observables.contains(name)
+    }
+
+    /// Returns the names of the observables.
+    pub fn observable_names(&self) -> impl Iterator<Item = &str> {
+        self.observables.iter().map(String::as_str)
+    }
+
+    /// Returns true for a prescribed motion and its rates.
+    pub fn is_prescribed(&self, input: InputId) -> bool {
+        self.input_rate(input).is_some() || self.input_rates.contains(&Some(input))
     }
 
     pub fn known_names(&self) -> impl Iterator<Item = &str> {
@@ -212,6 +229,9 @@ impl Names {
             .chain(&document.dissipation);
         let terms = terms.chain(&document.constraints);
         let terms = terms.chain(document.impacts.iter().map(|impact| &impact.distance));
+        for controller in &document.controllers {
+            found.push_error(check_word(&controller.name));
+        }
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.push_error(check_word(&term.name));
         }

@@ -33,6 +33,7 @@ pub struct Document {
     pub observables: Vec<(RawTerm, Option<StringValue>)>,
     pub coefficients: Vec<RawCoefficient>,
     pub sensors: Vec<RawSensor>,
+    pub controllers: Vec<RawController>,
     pub drawing: Option<RawDrawing>,
 }
 
@@ -270,4 +271,31 @@ pub struct RawSensor {
     pub bias: f64,
     /// Delay in s, negative for an early signal; 0 if absent.
     pub delay: f64,
+}
+
+#[derive(Debug)]
+pub struct RawController {
+    pub name: Name,
+    pub period: RawTime,
+    pub offset: RawTime,
+    pub delay: RawTime,
+    pub states: Vec<RawControllerState>,
+    pub outputs: Vec<(Name, Quantity)>,
+    pub doc: String,
+}
+
+/// Time with the unit of a plain number; s if absent.
+#[derive(Debug)]
+pub struct RawTime {
+    pub value: Quantity,
+    pub unit: Option<StringValue>,
+}
+
+#[derive(Debug)]
+pub struct RawControllerState {
+    pub name: Name,
+    pub unit: Option<StringValue>,
+    pub next: Quantity,
+    pub initial: Option<Quantity>,
+    pub doc: String,
 }

@@ -8,7 +8,7 @@ use crate::document::MAX_ENTRIES;
 use crate::keys::{Key, Keys, Kind};
 use crate::model::MAX_ORDER;
 use crate::names::MAX_NAME;
-use crate::sections::SECTIONS;
+use crate::sections::{SAMPLE_TIME, SECTIONS};
 
 /// Returns the schema, in draft 2020-12 of JSON Schema. Many TOML editors support only older
 /// drafts: it uses only keywords with one meaning in all drafts since 6, and no constraints next to
@@ -47,6 +47,7 @@ pub fn kinds() -> Value {
         "positive_number": { "description": "number greater than 0", "type": "number", "exclusiveMinimum": 0 },
         "range": { "description": "lower and upper end, in SI, as expressions of parameters", "type": "array", "items": expression(), "minItems": 2, "maxItems": 2 },
         "rate_count": { "description": "2", "const": 2 },
+        "sample_time": { "description": "time in s, expression of parameters, or table with `value` and `unit`", "anyOf": [expression(), table(&SAMPLE_TIME)] },
         "scalar_or_vector": { "description": "expression, or components of a vector", "anyOf": [expression(), { "type": "array", "items": expression(), "minItems": 2, "maxItems": 3 }] },
         "text": { "description": "string", "type": "string" },
         "unit": { "description": "unit, such as \"kg m^2\" or \"N s/mm\"", "type": "string", "maxLength": MAX_NAME },

@@ -137,6 +137,32 @@ pub(crate) static SENSOR: Keys = Keys::new(&[
     Key::new("bias", "number", "0", "offset in the unit of the channel; 0 if absent"),
     Key::new("delay", "number", "0", "delay in s, negative if earlier than the inputs and other channels; 0 if absent"),
 ]);
+/// Keys of a time of a controller.
+pub(crate) static SAMPLE_TIME: Keys = Keys::new(&[
+    Key::new("value", "expression", "1", "time in `unit`, or an expression of parameters in SI").required(),
+    Key::new("unit", "unit", "\"ms\"", "unit of time; s if absent"),
+]);
+pub(crate) static CONTROLLER_STATE: Keys = Keys::new(&[
+    UNIT,
+    Key::new("next", "expression", "\"e_i + period*(r - theta)\"", "value after a sample").required(),
+    Key::new("initial", "expression", "0", "initial value, in SI; 0 if absent"),
+    DOC,
+]);
+pub(crate) static CONTROLLER_OUTPUT: Keys = Keys::new(&[
+    Key::new("value", "expression", "\"-k_p*theta\"", "value of the input, held until the next one").required(),
+])
+.or_value("expression");
+pub(crate) static CONTROLLER: Keys = Keys {
+    any_of: &["states", "outputs"],
+    ..Keys::new(&[
+        Key::new("period", "sample_time", "{ value = 1, unit = \"ms\" }", "time between two samples").required(),
+        Key::new("offset", "sample_time", "0", "time of the first sample; 0 if absent"),
+        Key::new("delay", "sample_time", "0", "time between a sample and the action of its outputs; 0 if absent"),
+        Key::nested("states", Kind::Entries(&CONTROLLER_STATE), "", "states of difference equations"),
+        Key::nested("outputs", Kind::Entries(&CONTROLLER_OUTPUT), "", "inputs of the model that the controller drives"),
+        DOC,
+    ])
+};
 pub(crate) static DRAWING: Keys = Keys::new(&[
     Key::nested("points", Kind::Entries(&POINT), "", "points that move; the point `origin` at (0, 0) always exists"),
     Key::new("lines", "lines", "{ arm = [\"origin\", \"tip\"] }", "lines, each with the names of two or more points"),
@@ -165,5 +191,6 @@ pub static SECTIONS: Keys = Keys::new(&[
     Key::nested("observables", Kind::Entries(&OBSERVABLE), "Vectors", "output quantities; `energy` and `power` are always added"),
     Key::nested("coefficients", Kind::Entries(&COEFFICIENT), "Named coefficients", "names for factors of the derived equations"),
     Key::nested("sensors", Kind::Entries(&SENSOR), "", "sensors of channels: measured(t) = gain * quantity(t - delay) + bias"),
+    Key::nested("controllers", Kind::Entries(&CONTROLLER), "Controllers", "sampled controllers"),
     Key::nested("drawing", Kind::Table(&DRAWING), "A drawing", "drawing of the machine for `eomgen page`"),
 ]);

@@ -320,6 +320,7 @@ impl Model {
     pub(crate) fn check_numbers(&self) -> Result<(), ModelError> {
         let values = self.parameter_values()?;
         let state = self.initial_state(&vec![0; self.fields.len()])?;
+        self.check_controllers(&values)?;
         for (coordinate, initial) in self.coordinates.iter().zip(&state) {
             let name = &coordinate.name;
             if let Some(range) = &coordinate.range {

@@ -25,6 +25,7 @@ pub fn compare(
     let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
     interruptible(py, hear, |line| -> PyResult<(String, String)> {
         let declared = model.compiled().model();
+        model.reject_controllers("a comparison with records")?;
         let dataset = read_dataset(Path::new(dataset), declared).map_err(error::records)?;
         let say = |text: &str| {
             line.check();

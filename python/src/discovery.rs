@@ -48,6 +48,7 @@ fn search(
     line: &Connection<'_, String>,
 ) -> PyResult<Discovery> {
     let declared = model.compiled().model();
+    model.reject_controllers("a comparison with records")?;
     let dataset = read_dataset(dataset, declared).map_err(error::records)?;
     let say = |text: &str| line.report(escape_hidden(text).into_owned());
     for note in &dataset.notes {

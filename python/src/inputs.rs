@@ -20,14 +20,15 @@ pub type InputEntry = (String, usize, Py<PyAny>);
 /// Number of points of the spline through prescribed motion whose function returns no rates.
 const SPLINE_POINTS: usize = 16_385;
 
-/// Failed call of an input function.
+/// Failed call of a function.
 struct Failure {
-    input: String,
+    /// Role of the function, in messages.
+    what: String,
     t: f64,
     error: PyErr,
 }
 
-/// First failure among the functions of a motion.
+/// First failure among the functions of a motion, which a failed call records.
 #[derive(Clone, Default)]
 pub struct Failures(Arc<Mutex<Option<Failure>>>);
 
@@ -36,25 +37,25 @@ impl Failures {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn note(&self, failure: Failure) {
-        self.lock().get_or_insert(failure);
+    /// Records the failed call of a function with this role at a time (s).
+    pub fn note(&self, what: &str, t: f64, error: PyErr) {
+        let what = what.to_owned();
+        self.lock().get_or_insert(Failure { what, t, error });
     }
 
-    /// Returns the exception of the first failure, if any. It names the input and the time; its cause is the
+    /// Returns the exception of the first failure, if any. It names the function and the time; its cause is the
     /// exception of the function. A `BaseException` that is no `Exception`, such as `KeyboardInterrupt`, is
     /// returned unchanged.
     pub fn take(&self, py: Python<'_>) -> Option<PyErr> {
-        let Failure { input, t, error } = self.lock().take()?;
+        let Failure { what, t, error } = self.lock().take()?;
         if !error.is_instance_of::<PyException>(py) {
             return Some(error);
         }
-        let message = format!("the input {input} at t = {t}: {}", error.value(py));
+        let message = format!("{what} at t = {t}: {}", error.value(py));
         let raised = match is_refused(py, &error) {
             Some(true) => PyValueError::new_err(message),
             Some(false) => PyTypeError::new_err(message),
-            None => {
-                SimulationError::new_err(format!("the input {input} at t = {t} raised {error}"))
-            }
+            None => SimulationError::new_err(format!("{what} at t = {t} raised {error}")),
         };
         if is_refused(py, &error).is_none() {
             raised.set_cause(py, Some(error));
@@ -109,8 +110,8 @@ impl InputFunction for PythonFunction {
             }
             Err(error) => {
                 out.fill(f64::NAN);
-                let input = self.input.clone();
-                self.failures.note(Failure { input, t, error });
+                self.failures
+                    .note(&format!("the input {}", self.input), t, error);
             }
         }
     }
@@ -138,16 +139,22 @@ impl PythonFunction {
                 }
             }
         }
-        match out.iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(RefusedValue::new_err(format!(
-                "{value}: expected a finite number"
-            ))),
-            None => Ok(()),
-        }
+        require_finite(out)
     }
 }
 
-fn number(found: &Bound<'_, PyAny>) -> PyResult<f64> {
+/// Rejects results that are not finite.
+pub fn require_finite(values: &[f64]) -> PyResult<()> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(RefusedValue::new_err(format!(
+            "{value}: expected a finite number"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Converts a result to a number.
+pub fn number(found: &Bound<'_, PyAny>) -> PyResult<f64> {
     let wrong = |_| {
         let kind = found.get_type();
         RefusedType::new_err(format!("expected a number, not {kind}"))

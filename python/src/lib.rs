@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 mod certification;
 mod comparison;
+mod controller;
 mod discovery;
 mod equations;
 mod equilibrium;

@@ -9,6 +9,7 @@ use eomgen_compiled_model::{
     with_prescribed_inputs,
 };
 use eomgen_model_spec::Checked;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::edit::{Edit, SetParameter, apply};
 use eomgen_model_spec::model::ParameterValue;
 use eomgen_model_spec::source::Source;
@@ -66,6 +67,16 @@ impl Model {
     /// Parameters that were set, in declared units.
     pub fn settings(&self) -> &[(String, f64)] {
         &self.settings
+    }
+
+    /// Rejects a model with controllers for `what`.
+    pub fn reject_controllers(&self, what: &str) -> PyResult<()> {
+        let declared = self.compiled.model();
+        let controlled = declared.reject_controllers(what);
+        controlled.map_err(|found| {
+            let found = Diagnostics::from_one(declared.source.clone(), found.diagnostic());
+            error::specification(&found)
+        })
     }
 
     /// Returns the compiled model at its parameter values.
@@ -159,7 +170,7 @@ impl Model {
                     let model = model.map_err(|error| error.diagnostic());
                     let model = model.map_err(|wrong| {
                         let source = declared.source.clone();
-                        eomgen_model_spec::diagnostic::Diagnostics::from_one(source, wrong)
+                        Diagnostics::from_one(source, wrong)
                     })?;
                     let orders = Orders::PerField(self.compiled.orders());
                     Arc::new(CompiledModel::derive(model, orders)?)
@@ -236,6 +247,22 @@ impl Model {
     fn states(&self) -> Vec<(String, String)> {
         let units = self.compiled.state_units();
         self.compiled.state_names().into_iter().zip(units).collect()
+    }
+
+    /// Names of the inputs that controllers of the specification drive.
+    #[getter]
+    fn controlled_inputs(&self) -> Vec<&str> {
+        let model = self.compiled.model();
+        let inputs = model.inputs.iter().enumerate();
+        let driven = inputs.filter(|(place, _)| model.is_controlled(*place));
+        driven.map(|(_, input)| &*input.name).collect()
+    }
+
+    /// Names and units of the states of the controllers.
+    #[getter]
+    fn controller_states(&self) -> Vec<(&str, &str)> {
+        let states = self.compiled.model().controller_states().into_iter();
+        states.map(|(name, unit)| (name, &*unit.text)).collect()
     }
 
     /// Number of first-order states, which are last.

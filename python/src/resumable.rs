@@ -27,6 +27,7 @@ impl Simulation {
         inputs: PyReadonlyArray1<'_, f64>,
         settings: (String, f64, f64),
     ) -> PyResult<Self> {
+        model.reject_controllers("a simulation that continues from call to call")?;
         let (solver, tolerance, max_step) = settings;
         let instance = model.shared_instance().map_err(error::model)?;
         let options = SolverOptions {

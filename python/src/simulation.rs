@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
-    Audit, Error, LoggedEvent, Motion, Overlap, Request, Solver, SolverChoice,
+    Audit, Error, LoggedEvent, Motion, Overlap, Request, SampledController, Solver, SolverChoice,
 };
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
@@ -11,8 +11,9 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::controller::{ControllerEntry, PythonController};
 use crate::error;
-use crate::inputs::{InputEntry, with_functions};
+use crate::inputs::{Failures, InputEntry, with_functions};
 use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
@@ -20,7 +21,7 @@ use crate::model::Model;
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
-/// observables, a row for each sample; events; warnings.
+/// observables, a row for each sample; events; warnings; names and values of the states of controllers.
 type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
@@ -30,6 +31,8 @@ type SimulationTuple<'py> = (
     Bound<'py, PyArray2<f64>>,
     Vec<EventTuple>,
     Vec<String>,
+    Vec<String>,
+    Bound<'py, PyArray2<f64>>,
 );
 
 /// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
@@ -47,7 +50,7 @@ pub type EventTuple = (
 #[pyfunction]
 #[pyo3(signature = (
     model, initial, times, input_times, input_values, functions, breaks, solver, tolerance,
-    max_step, progress
+    max_step, controller, progress
 ))]
 #[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
 pub fn simulate<'py>(
@@ -62,6 +65,7 @@ pub fn simulate<'py>(
     solver: &str,
     tolerance: f64,
     max_step: f64,
+    controller: Option<ControllerEntry>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<SimulationTuple<'py>> {
     let count = model.compiled().model().inputs.len();
@@ -100,7 +104,8 @@ pub fn simulate<'py>(
         let told = progress.as_ref().map(|progress| progress.call1(py, (t,)));
         told.transpose().map(drop)
     };
-    let found = interruptible(py, hear, |line| follow(model, &request, line))?;
+    let controller = controller.map(|entry| (entry, failures.clone()));
+    let found = interruptible(py, hear, |line| follow(model, &request, controller, line))?;
     if let Some(raised) = failures.take(py) {
         return Err(raised);
     }
@@ -111,6 +116,9 @@ pub fn simulate<'py>(
     let width = observables.len() / rows.max(1);
     let choice = motion.solver_choice.as_ref().map(describe_choice);
     let events = list_events(model, &motion);
+    let controlled = &motion.controller_states;
+    let controller_states = controlled.rows.concat().to_pyarray(py);
+    let controller_states = controller_states.reshape([rows, controlled.names.len()])?;
     let stopped = motion.early_stop.map(|stopped| (stopped.t, stopped.reason));
     Ok((
         motion.solver.name(),
@@ -123,6 +131,8 @@ pub fn simulate<'py>(
         observables.to_pyarray(py).reshape([rows, width])?,
         events,
         warnings,
+        motion.controller_states.names,
+        controller_states,
     ))
 }
 
@@ -142,17 +152,30 @@ pub fn parse_solver(name: &str) -> PyResult<Solver> {
 fn follow(
     model: &Model,
     request: &Request<'_>,
+    controller: Option<(ControllerEntry, Failures)>,
     line: &Connection<'_, f64>,
 ) -> Result<(Motion, Vec<f64>, Vec<String>), Error> {
     let instance = model.instance()?;
     let mut told = Instant::now();
-    let motion = instance.simulate_until_stop(request, &mut |t| {
+    let mut progress = |t: f64| {
         line.check();
         if told.elapsed() > REPORT_INTERVAL {
             told = Instant::now();
             line.report(t);
         }
-    })?;
+    };
+    let motion = match controller {
+        None => instance.simulate_until_stop(request, &mut progress)?,
+        Some((entry, failures)) => {
+            let check = || line.check();
+            let mut own = PythonController::new(entry, failures, &check);
+            let mut declared = instance.controllers()?;
+            let all = declared.iter_mut();
+            let mut all: Vec<_> = all.map(|one| one as &mut dyn SampledController).collect();
+            all.push(&mut own);
+            instance.simulate_controlled(request, &mut all, &mut progress)?
+        }
+    };
     let mut observables = Vec::new();
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
     let overlap = instance.find_first_overlap(&motion, request.tolerance)?;

@@ -119,6 +119,44 @@ impl HeldInputs {
         self
     }
 
+    /// Returns these inputs around a time (s) at which their held values change from one row to another. Prescribed
+    /// motion and functions continue.
+    #[must_use]
+    pub fn with_held_step(&self, t: f64, before: &[f64], after: &[f64]) -> Self {
+        Self {
+            times: vec![t.next_down(), t],
+            values: [before, after].concat(),
+            ..self.clone()
+        }
+    }
+
+    /// Returns these inputs up to the first of some changes, each a time (s, ascending) with a row of held values, and then
+    /// those of the changes. Prescribed motion and functions continue.
+    #[must_use]
+    pub fn with_held_steps(&self, changes: &[(f64, Vec<f64>)]) -> Self {
+        let Some((first, _)) = changes.first() else {
+            return self.clone();
+        };
+        let mut kept = self.times.iter().take_while(|time| *time < first).count();
+        let mut changed = Self {
+            times: self.times[..kept].to_vec(),
+            values: self.values[..kept * self.count].to_vec(),
+            ..self.clone()
+        };
+        if kept == 0 {
+            kept = 1;
+            changed.times.push(first.next_down());
+            changed
+                .values
+                .extend_from_slice(&self.values[..kept * self.count]);
+        }
+        for (time, row) in changes {
+            changed.times.push(*time);
+            changed.values.extend_from_slice(row);
+        }
+        changed
+    }
+
     /// Returns true if an input varies between samples.
     pub fn is_time_varying(&self) -> bool {
         !(self.prescribed.is_empty() && self.functions.is_empty())

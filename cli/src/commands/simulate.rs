@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::{
     CompiledModel, DEFAULT_TOLERANCE, Motion, Request, StepInputs, split_assignments,
-    with_prescribed_inputs,
+    with_input_functions, with_prescribed_inputs,
 };
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
@@ -90,7 +90,7 @@ fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
 }
 
 /// Returns the model and its inputs. Inputs with steps are held between these if the exact solver applies then;
-/// other inputs of `--input` become definitions.
+/// other inputs of `--input` become definitions, or functions of time if the model has controllers.
 fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
     let declared = load(&options.model.spec)?.model;
     let derive_with_orders = |model: Model| {
@@ -98,8 +98,9 @@ fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
         let orders = orders(&model, options.model.order.text())?;
         derive(model, &orders)
     };
+    let has_controllers = !declared.controllers.is_empty();
     let may_hold = options.inputs.record.is_none()
-        && matches!(options.integration.solver, Solver::Auto | Solver::Exact);
+        && (has_controllers || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
     let prescribed = split_assignments("--input", &options.inputs.input)?;
     let settings = settings(&declared, &options.parameters.set)?;
     let settings = as_borrowed(&settings);
@@ -109,12 +110,20 @@ fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
     };
     if let Some(steps) = steps {
         let compiled = derive_with_orders(declared.clone())?;
-        if compiled.piecewise_linear().is_ok() {
+        if has_controllers || compiled.piecewise_linear().is_ok() {
             return Ok((compiled, steps.held(&settings)?));
         }
     }
+    if has_controllers {
+        // Controllers measure the inputs, so that these remain inputs.
+        let compiled = derive_with_orders(declared.clone())?;
+        let names: Vec<&str> = prescribed.iter().map(|given| given.name()).collect();
+        let inputs = inputs(options, compiled.model(), &names)?;
+        let inputs = with_input_functions(inputs, &declared, &prescribed, &settings)?;
+        return Ok((compiled, inputs));
+    }
     let compiled = derive_with_orders(with_prescribed_inputs(declared, &prescribed)?)?;
-    let inputs = inputs(options, compiled.model())?;
+    let inputs = inputs(options, compiled.model(), &[])?;
     Ok((compiled, inputs))
 }
 

@@ -25,6 +25,12 @@ pub fn emit(
 ) -> Result<Vec<EmittedFile>> {
     let program = &variant.program;
     let name = &program.name;
+    if let (false, Some(controller)) = (target.is_unit(), model.controllers.first()) {
+        warn(&format!(
+            "note: the controllers of the model (`{}`) are not emitted: the files contain the machine without them",
+            controller.name
+        ));
+    }
     match target {
         Target::Rust => {
             let source = rust::emit(program, Packaging::Crate).map_err(EmissionError::request)?;
@@ -52,6 +58,8 @@ fn unit(
     version: Version,
     warn: &dyn Fn(&str),
 ) -> Result<Vec<EmittedFile>> {
+    let controlled = model.reject_controllers("a functional mock-up unit");
+    controlled.map_err(|error| EmissionError::model(&model.source, error))?;
     reject_impacts(model, "a functional mock-up unit")?;
     reject_corners(&variant.program, "a functional mock-up unit")?;
     Ok(vec![fmu::file(model, variant, version, warn)?])

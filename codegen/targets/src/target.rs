@@ -19,6 +19,11 @@ impl Target {
     /// Every target.
     pub const ALL: [Self; 5] = [Self::Rust, Self::C99, Self::Casadi, Self::Fmu2, Self::Fmu3];
 
+    /// Returns true for functional mock-up units.
+    pub fn is_unit(self) -> bool {
+        matches!(self, Self::Fmu2 | Self::Fmu3)
+    }
+
     /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {

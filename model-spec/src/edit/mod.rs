@@ -85,6 +85,8 @@ pub enum Edit {
     SetSensor(SetSensor),
     /// Replaces an input by an expression.
     PrescribeInput(PrescribeInput),
+    /// Removes all controllers.
+    RemoveControllers,
 }
 
 /// Input given by an expression. If the expression contains only numbers and `t`, it gives the
@@ -336,5 +338,9 @@ fn apply_one(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
         Edit::SetParameter(parameter) => set::parameter(document, parameter),
         Edit::SetSensor(sensor) => set::sensor(document, sensor),
         Edit::PrescribeInput(input) => prescribe::prescribe(document, input),
+        Edit::RemoveControllers => {
+            document.remove("controllers");
+            Ok(())
+        }
     }
 }

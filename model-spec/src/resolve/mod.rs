@@ -7,19 +7,20 @@ mod drawing;
 mod fields;
 mod quantities;
 
+use crate::control::resolve_controller;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
 use crate::ids::{ConstraintId, DefinitionId, ParameterId};
 use crate::model::{
-    Constraint, ContactFriction, Definition, Expr, ExprKind, Force, Impact, MULTIPLIER, Model,
-    Observable, Parameter, ParameterValue, RESIDUAL, Sensor, Term,
+    Constraint, ContactFriction, Controller, Definition, Expr, ExprKind, Force, Impact, MULTIPLIER,
+    Model, Observable, Parameter, ParameterValue, RESIDUAL, Sensor, Term,
 };
 use crate::names::Names;
 use crate::order::{Reference, cycle_error, sort_by_references};
-use crate::quantity::{Quantity, StringValue};
+use crate::quantity::{Name, Quantity, StringValue};
 use crate::rate_order::{Expanded, rate_order};
-use crate::raw::{Document, RawImpact, RawSensor, RawTerm};
+use crate::raw::{Document, RawController, RawImpact, RawSensor, RawTerm};
 use crate::source::Source;
 use crate::space::{Demands, Inertia};
 use crate::span::Span;
@@ -62,6 +63,11 @@ struct Builder {
 impl Builder {
     fn model(&mut self, document: Document, source: &Source) -> ResolvedModel {
         let drawing = self.drawing(&document);
+        let inputs: Vec<Name> = document
+            .inputs
+            .iter()
+            .map(|input| input.name.clone())
+            .collect();
         let observables = self.build_all(document.observables, Self::observable);
         let (mut observables, mut declared): (Vec<_>, Vec<_>) = observables.into_iter().unzip();
         let constraints = self.build_all(document.constraints, Self::constraint);
@@ -89,6 +95,7 @@ impl Builder {
             observables,
             coefficients: self.coefficients(document.coefficients),
             sensors: document.sensors.into_iter().map(sensor).collect(),
+            controllers: self.controllers(document.controllers, &inputs),
             drawing,
             parameter_order: Vec::new(),
             definition_order: Vec::new(),
@@ -108,6 +115,20 @@ impl Builder {
             same_unit_vectors: Vec::new(),
             inertias: Vec::new(),
         }
+    }
+
+    fn controllers(&mut self, all: Vec<RawController>, inputs: &[Name]) -> Vec<Controller> {
+        let mut controllers: Vec<Controller> = Vec::with_capacity(all.len());
+        let mut driven = Vec::new();
+        for raw in all {
+            let found = &mut self.found;
+            let controller = resolve_controller(raw, &self.names, inputs, &driven, found);
+            if let Some(controller) = controller {
+                driven.extend(controller.outputs.iter().cloned());
+                controllers.push(controller);
+            }
+        }
+        controllers
     }
 
     fn demands(&mut self, demands: Demands, resolved: &mut ResolvedModel) {

@@ -1,6 +1,7 @@
 //! Reading specifications: grammar, names, units, messages, edits.
 
 mod broken;
+mod controllers;
 mod edits;
 mod extension;
 mod properties;

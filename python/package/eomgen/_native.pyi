@@ -62,6 +62,10 @@ class Model:
     @property
     def states(self) -> List[Tuple[str, str]]: ...
     @property
+    def controlled_inputs(self) -> List[str]: ...
+    @property
+    def controller_states(self) -> List[Tuple[str, str]]: ...
+    @property
     def first_order_states(self) -> int: ...
     @property
     def inputs(self) -> List[Tuple[str, str]]: ...
@@ -129,6 +133,9 @@ def simulate(
     solver: str,
     tolerance: float,
     max_step: float,
+    controller: Optional[
+        Tuple[Callable[..., object], List[int], Tuple[float, float, float]]
+    ],
     progress: Optional[Callable[[float], object]],
 ) -> Tuple[
     str,
@@ -139,6 +146,8 @@ def simulate(
     _Array,
     List[Tuple[float, str, str, str, str, List[float]]],
     List[str],
+    List[str],
+    _Array,
 ]: ...
 def discover(
     model: Model, dataset: str, seed: int, progress: Callable[[str], object]

@@ -106,7 +106,8 @@ class Model:
         """Units of parameters, states, inputs and observables, by name."""
         named = [(name, unit) for name, _, unit in self._native.parameters]
         native = self._native
-        return MappingProxyType(dict(named + native.states + native.inputs + native.observables))
+        rest = native.inputs + native.observables + native.controller_states
+        return MappingProxyType(dict(named + native.states + rest))
 
     @property
     def orders(self) -> Tuple[int, ...]:
@@ -371,6 +372,11 @@ class Model:
         start: float = 0.0,
         max_step: Optional[float] = None,
         breaks: Any = None,
+        controller: Optional[Callable[..., Any]] = None,
+        period: Optional[float] = None,
+        offset: float = 0.0,
+        delay: float = 0.0,
+        controls: Any = None,
         sample: Optional[float] = None,
         initial: Any = None,
     ) -> Trajectory:
@@ -390,20 +396,27 @@ class Model:
         called at the times that the solver needs; `breaks` lists the times at which one jumps. For prescribed
         motion a function returns (s, s', s''). Missing inputs are 0.
 
+        controller: function of (t, x, y) that is called at the times offset + k period (s), with the time, the state and
+        the observables before the sample. It returns the inputs `controls`, as a mapping of names to numbers, as a
+        sequence or as one number. They act `delay` (s) later and are held until the next ones act. Default of `controls`:
+        all inputs that nothing else drives. Controllers of the specification run too.
+
         progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
         progress line in terminals and notebooks for simulations longer than two seconds.
 
         Warns if the energy changes without work or if bodies overlap.
 
         Raises SimulationError if the solver stops; its `trajectory` holds the samples up to then. An exception
-        of an input function is its cause. Ctrl-C interrupts the simulation.
+        of an input function or of the controller is its cause. Ctrl-C interrupts the simulation.
         """
         # `sample` and `initial` are earlier names.
         interval = _arguments.renamed("interval", interval, "sample", sample)
         state = _arguments.renamed("state", state, "initial", initial)
         span = (start, until, interval)
         settings = (solver, tolerance, max_step)
-        return simulate(self, span, settings, self.state(state), (inputs, breaks), progress)
+        control = (controller, period, offset, delay, controls)
+        driven = (inputs, breaks)
+        return simulate(self, span, settings, self.state(state), driven, control, progress)
 
     def simulation(
         self,

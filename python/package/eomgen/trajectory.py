@@ -49,17 +49,19 @@ class Trajectory:
     t: times, (n,), s. states: (n, states). observables: (n, observables). `r["tip"]` is the column of an
     observable or of a state; observables take precedence. solver: name of the solver. reason: why "auto"
     selected it; None for a requested solver.
-    switches: number of events at surfaces.
+    switches: number of events at surfaces. controller_states: states of the controllers of the specification, after the
+    samples at each time, (n, count); `r["e_i"]` is one of them.
     """
 
     def __init__(
         self,
         names: Tuple[Tuple[str, ...], Tuple[str, ...]],
         units: Mapping[str, str],
-        found: Tuple[str, Optional[str], Any, Array, Array, Array, List[Any], List[str]],
+        found: Tuple[Any, ...],
     ):
         self.solver, self.reason, _, self.t, self.states, self.observables, events = found[:7]
         self.state_names, self.observable_names = names
+        self.controller_state_names, self.controller_states = tuple(found[8]), found[9]
         self._events = events
         self.switches = sum(event[2] != "input" for event in events)
         self._units = units
@@ -71,14 +73,16 @@ class Trajectory:
 
     @property
     def names(self) -> Tuple[str, ...]:
-        """Names of all columns: states, then observables."""
-        return self.state_names + self.observable_names
+        """Names of all columns: states, observables, states of controllers."""
+        return self.state_names + self.observable_names + self.controller_state_names
 
     def __getitem__(self, name: str) -> Array:
         if name in self.observable_names:
             return self.observables[:, self.observable_names.index(name)]
         if name in self.state_names:
             return self.states[:, self.state_names.index(name)]
+        if name in self.controller_state_names:
+            return self.controller_states[:, self.controller_state_names.index(name)]
         if name == "t":
             return self.t
         raise KeyError(_arguments.unknown("state or observable", name, self.names))
@@ -91,7 +95,8 @@ class Trajectory:
         import pandas
 
         index = pandas.Index(self.t, name="t")
-        numbers = np.concatenate([self.states, self.observables], axis=1)
+        parts = [self.states, self.observables, self.controller_states]
+        numbers = np.concatenate(parts, axis=1)
         return pandas.DataFrame(numbers, index=index, columns=list(self.names))
 
     def plot(self, *names: str, axes: Any = None) -> Any:
@@ -131,10 +136,12 @@ def simulate(
     settings: Tuple[Any, Any, Any],
     initial: Array,
     driven: Tuple[Any, Any],
+    control: Tuple[Any, Any, Any, Any, Any],
     progress: Optional[Callable[[float], object]],
 ) -> Trajectory:
     """Simulates a model over a span (start, until, interval) with settings (solver, tolerance, max_step),
-    driven by (inputs, breaks). `Model.simulate` describes the arguments."""
+    driven by (inputs, breaks) and by a controller with (function, period, offset, delay, inputs). `Model.simulate`
+    describes the arguments."""
     solver, tolerance, max_step = settings
     if not isinstance(solver, str):
         raise TypeError(f"solver = {solver!r}: expected the name of a solver")
@@ -150,7 +157,10 @@ def simulate(
     times = sample_times(*span, len(model.states) + len(model.observable_names))
     given, breaks = driven
     native, names, given = prescribe(model, given)
-    input_times, input_values, functions = driving(names, given, times)
+    entry = controller_entry(names, given, model._native.controlled_inputs, control)
+    driven_names = [names[place] for place in entry[1]] if entry is not None else []
+    known = {**{name: 0.0 for name in (*driven_names, *model._native.controlled_inputs)}, **given}
+    input_times, input_values, functions = driving(names, known, times)
     with Fraction("simulating", times[-1], progress) as line:
         found = _native.simulate(
             native,
@@ -163,6 +173,7 @@ def simulate(
             solver,
             tolerance,
             longest,
+            entry,
             line.tell,
         )
     for warning in found[7]:
@@ -175,6 +186,57 @@ def simulate(
         error.trajectory = trajectory
         raise error
     return trajectory
+
+
+def controller_entry(
+    names: Sequence[str],
+    given: Mapping[str, Any],
+    declared: Sequence[str],
+    control: Tuple[Any, Any, Any, Any, Any],
+) -> Any:
+    """Returns function, indices of the driven inputs and times of a controller, or None."""
+    function, period, offset, delay, controls = control
+    if function is None:
+        if period is not None or controls is not None:
+            raise TypeError("period and controls need controller, a function of (t, x, y)")
+        return None
+    if not callable(function):
+        raise TypeError(f"controller: expected a function, not {type(function).__name__}")
+    if period is None:
+        raise TypeError("controller needs period, the time between two samples in s")
+    schedule = tuple(
+        _arguments.real(what, time)
+        for what, time in (("period", period), ("offset", offset), ("delay", delay))
+    )
+    if schedule[0] <= 0.0:
+        raise ValueError(f"period = {schedule[0]}: expected a time in s above 0")
+    for what, time in zip(("offset", "delay"), schedule[1:]):
+        if time < 0.0:
+            raise ValueError(f"{what} = {time}: expected a time in s of 0 or more")
+    if controls is None:
+        driven = [name for name in names if name not in given and name not in declared]
+    else:
+        driven = [controls] if isinstance(controls, str) else list(controls)
+        _arguments.check_names("input", driven, names)
+    for name in driven:
+        if name in given or name in declared:
+            other = "inputs" if name in given else "a controller of the specification"
+            raise ValueError(f"the input {name} is driven by the controller and by {other}")
+
+    def sampled(t: float, x: Array, y: Array) -> List[Any]:
+        found = function(t, x, y)
+        if isinstance(found, Mapping):
+            _arguments.check_names("controlled input", found, driven)
+            missing = [name for name in driven if name not in found]
+            if missing:
+                raise ValueError(f"no value for {', '.join(missing)}")
+            return [found[name] for name in driven]
+        values = list(np.atleast_1d(found))
+        if len(values) != len(driven):
+            raise ValueError(f"{len(values)} values, expected {len(driven)} for {', '.join(driven)}")
+        return values
+
+    return sampled, [list(names).index(name) for name in driven], schedule
 
 
 def sample_times(start: Any, until: Any, interval: Any, columns: int) -> Array:

@@ -42,6 +42,7 @@
 
 mod audit;
 mod contacts;
+mod controllers;
 mod corners;
 mod cyclic_directions;
 mod driven_model;
@@ -73,6 +74,7 @@ mod stop_reasons;
 mod typical_sizes;
 
 pub use audit::{Audit, Imbalance};
+pub use controllers::{DeclaredController, Sample, SampledController};
 pub use driven_model::DrivenModel;
 pub use equilibrium::{Departure, Equilibrium, EquilibriumRequest, Stability};
 pub use error::Error;
@@ -82,13 +84,13 @@ pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator};
 pub use linearisation::Linearisation;
 pub use model::{CompiledModel, Orders};
-pub use motion::{EarlyStop, Motion, Solver, SolverChoice, StopCause};
+pub use motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
 pub use operating_point::{OperatingPoint, Setting};
 pub use overlaps::Overlap;
 pub use prescribed_inputs::{split_assignments, with_prescribed_inputs};
 pub use projection::InitialChange;
 pub use resumable::{Simulation, SolverOptions};
 pub use simulation::{DEFAULT_TOLERANCE, Request};
-pub use step_inputs::StepInputs;
+pub use step_inputs::{StepInputs, with_input_functions};
 pub use sticking::{SidedModel, StickingMotion};
 pub use typical_sizes::TypicalSizes;

@@ -69,6 +69,17 @@ pub struct Motion {
     pub initial_changes: Vec<InitialChange>,
     /// Energy balance, if requested.
     pub audit: Option<Audit>,
+    /// States of the controllers.
+    pub controller_states: ControllerStates,
+}
+
+/// States of the controllers of a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ControllerStates {
+    /// Names.
+    pub names: Vec<String>,
+    /// Values at each sample of the motion, after the samples of the controllers at its time, SI.
+    pub rows: Vec<Vec<f64>>,
 }
 
 impl Motion {

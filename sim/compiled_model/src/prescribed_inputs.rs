@@ -39,6 +39,29 @@ pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<
     Ok(model)
 }
 
+/// Returns the model without controllers, with one of these inputs replaced by a definition.
+///
+/// # Errors
+/// Same as [`with_prescribed_inputs`], and an input that a controller drives.
+pub(crate) fn with_one_prescribed_input(model: &Model, given: &Assignment) -> Result<Model, Error> {
+    let mut inputs = model.inputs.iter();
+    let place = inputs.position(|input| input.name == given.name());
+    if place.is_some_and(|place| model.is_controlled(place)) {
+        let message = format!("a controller drives the input `{}`", given.name());
+        let help = "remove this option, or the output of the controller";
+        return Err(given.name_error(message, Some(help.to_owned())).into());
+    }
+    let alone = match model.controllers.is_empty() {
+        true => model.clone(),
+        false => {
+            let edited = edit::apply(&model.source, &[Edit::RemoveControllers]);
+            let edited = edited.map_err(|error| Error::Request(error.to_string()))?;
+            eomgen_model_spec::check(model.source.with_text(edited))?.model
+        }
+    };
+    with_prescribed_inputs(alone, std::slice::from_ref(given))
+}
+
 /// Returns the error of an input at its place in the option's text.
 fn not_prescribed(error: &EditError, given: &Assignment, model: &Model) -> Error {
     let found = match error {

@@ -425,6 +425,24 @@ impl Simulation<'_> {
         self.follow_input_jump()
     }
 
+    /// Changes the inputs from the time reached on to others, which may vary with time. Adds the events of the change to
+    /// `trajectory`.
+    ///
+    /// # Errors
+    /// A motion that cannot follow the jump.
+    pub(crate) fn change_inputs(
+        &mut self,
+        inputs: HeldInputs,
+        trajectory: &mut Trajectory,
+    ) -> Result<(), Error> {
+        self.present_inputs = inputs.evaluate(self.time()).into_owned();
+        self.inputs = inputs;
+        let followed = self.follow_input_jump();
+        trajectory.events.append(&mut self.log.events);
+        trajectory.jumps.append(&mut self.log.jumps);
+        followed
+    }
+
     fn follow_input_jump(&mut self) -> Result<(), Error> {
         let begin = self.time();
         let model = self.instance.model();

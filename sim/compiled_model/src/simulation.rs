@@ -9,10 +9,11 @@ use eomgen_sim::ode::{Method, ObservedStep, Settings, Surface, Trajectory, simul
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
 use crate::audit::{Audit, Auditor, EnergyAndPower};
+use crate::controllers::SampledController;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{EarlyStop, Motion, Solver, SolverChoice, StopCause};
+use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
 };
@@ -85,8 +86,8 @@ impl Instance<'_> {
             .into_complete()
     }
 
-    /// Simulates a request and returns the samples up to the time that the solver reaches. Calls
-    /// `progress` with the time reached, s.
+    /// Simulates a request and returns the samples up to the time that the solver reaches. The controllers of the
+    /// specification drive their inputs. Calls `progress` with the time reached, s.
     ///
     /// # Errors
     /// An invalid request, a solver that does not support the model, or a solver that stops before
@@ -96,6 +97,12 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        if !self.model().model().controllers.is_empty() {
+            let mut declared = self.controllers()?;
+            let all = declared.iter_mut();
+            let mut all: Vec<_> = all.map(|own| own as &mut dyn SampledController).collect();
+            return self.simulate_controlled(request, &mut all, progress);
+        }
         (request.settings().check()).map_err(|error| Error::Request(error.to_string()))?;
         self.check_held_inputs(request.inputs, request.time_span())?;
         let asked = |method| Settings {
@@ -291,11 +298,12 @@ fn new_motion(
         early_stop: None,
         initial_changes: Vec::new(),
         audit,
+        controller_states: ControllerStates::default(),
     }
 }
 
 /// Returns the motion up to the stop; an error if the solver stopped before its first step.
-fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> {
+pub(crate) fn with_early_stop(mut motion: Motion, why: EarlyStop) -> Result<Motion, Error> {
     // An invalid request may be found after the first sample.
     if motion.trajectory.times.len() <= usize::from(why.t.is_none()) {
         return Err(Error::Stopped {

@@ -1,19 +1,21 @@
 //! Inputs given by expressions that are constant between steps, such as `0.2*above(t - 0.1)`. The exact solver
 //! holds them between these times.
 
+use std::sync::Arc;
+
 use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::evaluate::evaluate;
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
-use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::inputs::{HeldInputs, InputFunction};
 
 use crate::error::Error;
-use crate::prescribed_inputs::with_prescribed_inputs;
+use crate::prescribed_inputs::with_one_prescribed_input;
 
 /// Inputs that are constant between the times of their steps, at any parameter values.
 pub struct StepInputs {
-    /// One entry per input of the model, in its order.
-    inputs: Vec<StepInput>,
+    /// One entry per input of the model, in its order; `None` if a controller drives it.
+    inputs: Vec<Option<StepInput>>,
 }
 
 struct StepInput {
@@ -33,11 +35,11 @@ impl StepInput {
 }
 
 impl StepInputs {
-    /// Returns the inputs that `given` prescribes, if it prescribes all inputs of the model and each is constant
-    /// between steps, one of them with a step at these parameter values.
+    /// Returns the inputs that `given` prescribes, if it prescribes all inputs of the model that no controller
+    /// drives and each is constant between steps, one of them with a step at these parameter values.
     ///
     /// # Errors
-    /// Same as [`with_prescribed_inputs`].
+    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs).
     pub fn find(
         model: &Model,
         given: &[Assignment],
@@ -46,7 +48,7 @@ impl StepInputs {
         let mut found: Vec<Option<StepInput>> = model.inputs.iter().map(|_| None).collect();
         let mut has_step = false;
         for given in given {
-            let driven = with_prescribed_inputs(model.clone(), std::slice::from_ref(given))?;
+            let driven = with_one_prescribed_input(model, given)?;
             let name = given.name();
             let place = model.inputs.iter().position(|input| input.name == name);
             let definition = driven.definitions.iter().find(|own| own.name == name);
@@ -68,8 +70,11 @@ impl StepInputs {
             has_step |= !times.is_empty();
             found[place] = Some(input);
         }
-        let found: Option<Vec<StepInput>> = found.into_iter().collect();
-        Ok(found.filter(|_| has_step).map(|inputs| Self { inputs }))
+        let mut places = found.iter().enumerate();
+        let drives_all = places.all(|(place, input)| input.is_some() || model.is_controlled(place));
+        // Controllers measure inputs, so that constant ones remain inputs too.
+        let is_held = has_step || !model.controllers.is_empty();
+        Ok((drives_all && is_held).then_some(Self { inputs: found }))
     }
 
     /// Returns the inputs at parameter values in declared units, held between all steps.
@@ -77,14 +82,22 @@ impl StepInputs {
     /// # Errors
     /// Inadmissible parameter values.
     pub fn held(&self, settings: &[(&str, f64)]) -> Result<HeldInputs, Error> {
-        let parameters = self.inputs.iter().map(|input| input.parameters(settings));
+        let parameters = self.inputs.iter().map(|input| match input {
+            Some(input) => input.parameters(settings),
+            None => Ok(Vec::new()),
+        });
         let parameters = parameters.collect::<Result<Vec<_>, _>>()?;
         let each = || self.inputs.iter().zip(&parameters);
-        let steps = each().flat_map(|(input, own)| step_times(&input.value, own));
+        let steps = each().filter_map(|(input, own)| step_times(&input.as_ref()?.value, own));
         let mut times: Vec<f64> = steps.flatten().collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let values = |t: f64| each().map(move |(input, own)| value_at(&input.value, t, own));
+        let values = |t: f64| {
+            each().map(move |(input, own)| {
+                let input = input.as_ref();
+                input.map_or(0.0, |input| value_at(&input.value, t, own))
+            })
+        };
         let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else {
             return Ok(HeldInputs::constant(values(0.0).collect()));
         };
@@ -98,6 +111,57 @@ impl StepInputs {
         let constant = || HeldInputs::constant(values(first).collect());
         Ok(HeldInputs::new(times, rows, self.inputs.len()).unwrap_or_else(constant))
     }
+}
+
+/// Input given by an expression of parameters and time.
+#[derive(Debug)]
+struct ExpressionInput {
+    value: Expr,
+    /// Values of the parameters of `value`, SI.
+    parameters: Vec<f64>,
+}
+
+impl InputFunction for ExpressionInput {
+    fn write(&self, t: f64, out: &mut [f64]) {
+        out.fill(value_at(&self.value, t, &self.parameters));
+    }
+}
+
+/// Adds inputs given by expressions to others, so that controllers can measure them; `settings` are parameters in
+/// declared units.
+///
+/// # Errors
+/// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs), and prescribed motion, whose rates an expression does not give here.
+pub fn with_input_functions(
+    mut inputs: HeldInputs,
+    model: &Model,
+    given: &[Assignment],
+    settings: &[(&str, f64)],
+) -> Result<HeldInputs, Error> {
+    for given in given {
+        let driven = with_one_prescribed_input(model, given)?;
+        let name = given.name();
+        let place = model.inputs.iter().position(|input| input.name == name);
+        let definition = driven.definitions.iter().find(|own| own.name == name);
+        let (Some(place), Some(definition)) = (place, definition) else {
+            continue;
+        };
+        if model.inputs[place].rate.is_some() {
+            let reason =
+                "prescribed motion by an expression is not supported in a model with controllers";
+            return Err(given.name_error(reason.to_owned(), None).into());
+        }
+        let input = StepInput {
+            value: definition.value.clone(),
+            driven,
+        };
+        let function = ExpressionInput {
+            parameters: input.parameters(settings)?,
+            value: input.value,
+        };
+        inputs = inputs.with_function(place, 1, Arc::new(function));
+    }
+    Ok(inputs)
 }
 
 /// Returns the times at which an expression steps; `None` if it also varies between them, or depends on

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::conditions::{Conditions, Start};
 use crate::error::SweepError;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
-use crate::window::{Times, Window};
+use crate::window::{Times, Window, reject_controllers};
 use eomgen_analysis::exponent::{MIN_GROWTHS, mean_exponent};
 use eomgen_compiled_model::{CompiledModel, DrivenModel, Instance};
 use eomgen_sim::ode::Settings;
@@ -36,6 +36,7 @@ impl<'a> Lyapunov<'a> {
     ) -> Result<Self, SweepError> {
         let known = (model.model(), conditions);
         let times = Times::from_window(known, window, "lyapunov", MIN_GROWTHS)?;
+        reject_controllers(model, "lyapunov")?;
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
                 "--measure lyapunov: the model has constraints (`{}`), which this measure does not \

@@ -219,7 +219,7 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model, Err
 }
 
 /// Derives the model with its inputs, as `simulate` does: inputs with steps are held between these if all motions can
-/// be solved exactly then; other expressions become definitions. Returns warnings about inputs too.
+/// be solved exactly then, or if controllers may measure them; other expressions become definitions. Returns warnings about inputs too.
 fn driven_model(
     declared: &Model,
     request: &SweepRequest,
@@ -233,7 +233,7 @@ fn driven_model(
     };
     if let Some(steps) = steps {
         let model = derived(declared)?;
-        if model.piecewise_linear().is_ok() {
+        if model.piecewise_linear().is_ok() || !declared.controllers.is_empty() {
             let set = request.set.clone();
             return Ok((model, InputSource::Steps(steps, set), Vec::new()));
         }
@@ -262,8 +262,10 @@ fn read_record(
 fn undriven_inputs(model: &Model) -> Vec<String> {
     let values = model.typical_inputs(0.0).unwrap_or_default();
     let own = model.inputs.iter().zip(values);
-    let own = own.filter(|(input, _)| input.rate_of.is_none());
-    own.map(|(input, value)| {
+    let own = own
+        .enumerate()
+        .filter(|(place, (input, _))| input.rate_of.is_none() && !model.is_controlled(*place));
+    own.map(|(_, (input, value))| {
         let name = &input.name;
         format!(
             "input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."

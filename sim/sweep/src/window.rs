@@ -1,6 +1,6 @@
 //! Time window of a measure: forcing periods after a transient, or a time from the start.
 
-use eomgen_compiled_model::Instance;
+use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_model_spec::model::Model;
 use eomgen_sim::variational::MeasurementTimes;
 
@@ -155,4 +155,13 @@ pub fn require_inputs(end: f64, conditions: &Conditions) -> Result<(), Failure> 
         true => Err(Failure::Undefined),
         false => Ok(()),
     }
+}
+
+/// Rejects a model with controllers for a measure that does not run them.
+///
+/// # Errors
+/// The first controller.
+pub fn reject_controllers(model: &CompiledModel, measure: &str) -> Result<(), SweepError> {
+    let controlled = model.model().reject_controllers("this measure");
+    controlled.map_err(|error| SweepError::Request(format!("--measure {measure}: {error}")))
 }

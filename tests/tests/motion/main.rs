@@ -4,6 +4,7 @@ mod chambers;
 mod constraints;
 mod contact_friction;
 mod continued;
+mod controllers;
 mod corners;
 mod drawn_motion;
 mod energy_audit;

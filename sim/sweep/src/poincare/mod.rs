@@ -20,7 +20,7 @@ use crate::error::SweepError;
 use crate::forcing::{Frequency, frequency};
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::span::Span;
-use crate::window::{check_end, require_inputs};
+use crate::window::{check_end, reject_controllers, require_inputs};
 use eomgen_analysis::poincare::LONGEST_PERIOD;
 use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
@@ -103,6 +103,7 @@ impl<'a> Poincare<'a> {
         keep_points: bool,
     ) -> Result<Self, SweepError> {
         let refused = |reason: String| SweepError::Request(reason);
+        reject_controllers(model, asked)?;
         span.check(asked, 2)?;
         if keep_points && span.periods > MAX_POINTS_KEPT {
             return Err(refused(format!(

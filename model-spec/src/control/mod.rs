@@ -1,0 +1,119 @@
+//! Sampled controllers: difference equations of measured quantities, with outputs that are inputs of the model. `read`
+//! reads their entries, `resolve` their names, `units` checks units, `expression` evaluates.
+
+mod expression;
+mod names;
+mod read;
+mod resolve;
+mod units;
+
+pub(crate) use read::read_controller;
+pub(crate) use resolve::resolve_controller;
+pub(crate) use units::check_units;
+
+use crate::evaluate::evaluate;
+use crate::model::{Controller, Model, SampleTime, SampledExpression};
+use crate::unit::Unit;
+use crate::variant::ModelError;
+
+/// Times of a controller at parameter values, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// Time between two samples.
+    pub period: f64,
+    /// Time of the first sample.
+    pub offset: f64,
+    /// Time between a sample and the action of its outputs.
+    pub delay: f64,
+}
+
+impl Controller {
+    /// Returns the times at parameter values, SI.
+    ///
+    /// # Errors
+    /// A period that is not positive, a negative offset or delay, each with its place.
+    pub fn schedule(&self, parameters: &[f64]) -> Result<Schedule, ModelError> {
+        let value = |time: &SampleTime, what: &str, is_admissible: fn(f64) -> bool, rule: &str| {
+            let value = time.unit.to_si(evaluate(&time.value, parameters));
+            if value.is_finite() && is_admissible(value) {
+                return Ok(value);
+            }
+            let message = format!("the {what} of the controller `{}` is {value} s", self.name);
+            Err(ModelError::new(message)
+                .help(format!("give {rule}"))
+                .at(time.span))
+        };
+        Ok(Schedule {
+            period: value(&self.period, "period", |t| t > 0.0, "a time above 0")?,
+            offset: value(&self.offset, "offset", |t| t >= 0.0, "a time of 0 or more")?,
+            delay: value(&self.delay, "delay", |t| t >= 0.0, "a time of 0 or more")?,
+        })
+    }
+
+    /// Returns the initial values of the states at parameter values, SI.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn initial_states(&self, parameters: &[f64]) -> Result<Vec<f64>, ModelError> {
+        let states = self.states.iter().map(|state| {
+            let Some(initial) = &state.initial else {
+                return Ok(0.0);
+            };
+            match evaluate(initial, parameters) {
+                value if value.is_finite() => Ok(value),
+                value => {
+                    let message = format!("the initial value of `{}` is {value}", state.name);
+                    Err(ModelError::new(message)
+                        .help("give a finite number")
+                        .at(initial.span))
+                }
+            }
+        });
+        states.collect()
+    }
+
+    /// Returns all expressions over sampled quantities.
+    pub fn expressions(&self) -> impl Iterator<Item = &SampledExpression> {
+        let outputs = self.outputs.iter().map(|output| &output.value);
+        self.states.iter().map(|state| &state.next).chain(outputs)
+    }
+}
+
+impl Model {
+    /// Returns names and units of the states of all controllers, in the order of the specification.
+    pub fn controller_states(&self) -> Vec<(&str, &Unit)> {
+        let states = self.controllers.iter().flat_map(|known| &known.states);
+        states.map(|state| (&*state.name, &state.unit)).collect()
+    }
+
+    /// Returns true if a controller drives an input.
+    pub fn is_controlled(&self, input: usize) -> bool {
+        let mut outputs = self.controllers.iter().flat_map(|known| &known.outputs);
+        outputs.any(|output| output.input.index() == input)
+    }
+
+    /// Rejects a model with controllers for `what`, which does not run them.
+    ///
+    /// # Errors
+    /// The first controller.
+    pub fn reject_controllers(&self, what: &str) -> Result<(), ModelError> {
+        self.controllers.first().map_or(Ok(()), |controller| {
+            let message = format!(
+                "the model has controllers (`{}`), which {what} does not support",
+                controller.name
+            );
+            Err(ModelError::new(message)
+                .help("use `eomgen simulate`, or remove [controllers]")
+                .at(controller.span))
+        })
+    }
+
+    /// Checks the times and initial states of all controllers.
+    pub(crate) fn check_controllers(&self, parameters: &[f64]) -> Result<(), ModelError> {
+        for controller in &self.controllers {
+            controller.schedule(parameters)?;
+            controller.initial_states(parameters)?;
+        }
+        Ok(())
+    }
+}

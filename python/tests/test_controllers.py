@@ -1,0 +1,116 @@
+"""Controllers of a specification and Python functions as controllers."""
+
+import numpy as np
+import pytest
+
+import eomgen
+
+MASS = """
+[model]
+name = "mass"
+[parameters]
+m = { value = 2, unit = "kg", min = 0 }
+k_p = { value = 30, unit = "N/m" }
+k_d = { value = 15, unit = "N s/m" }
+[coordinates]
+x = { unit = "m", initial = 0.3 }
+[inputs]
+r = { unit = "m" }
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[forces]
+motor = { on = "x", value = "u" }
+[observables]
+error = "r - x"
+"""
+
+LOOP = """
+[controllers.pd]
+period = { value = 50, unit = "ms" }
+delay = { value = 20, unit = "ms" }
+states = { last = { unit = "m", next = "error" } }
+outputs = { u = "k_p*error - k_d*dot(x)" }
+"""
+
+
+def pd(t, x, y):
+    return {"u": 30 * y[0] - 15 * x[1]}
+
+
+@pytest.mark.parametrize("solver", ["exact", "rk", "radau"])
+def test_function_gives_the_motion_of_the_declared_controller(solver):
+    declared = eomgen.load(MASS + LOOP)
+    right = declared.simulate(until=2, interval=0.01, solver=solver, inputs={"r": 1.0})
+    assert right.names[-1] == "last" and right["last"][0] == 0.7
+    assert np.allclose(right["last"][5:10], 1 - right["x"][5])
+    m = eomgen.load(MASS)
+    found = m.simulate(
+        until=2, interval=0.01, solver=solver, inputs={"r": 1.0}, controller=pd, period=0.05, delay=0.02
+    )
+    assert np.array_equal(found.states, right.states)
+    assert found.solver == solver and right.to_pandas().shape == (201, 6)
+
+
+def test_controller_is_called_at_each_sample_with_values_before_it():
+    seen = []
+
+    def controller(t, x, y):
+        seen.append((t, *x))
+        return 0.5 * len(seen)
+
+    r = eomgen.load(MASS).simulate(
+        until=0.5, interval=0.05, inputs={"r": 0.0}, controller=controller, period=0.1, offset=0.05
+    )
+    assert np.allclose([t for t, *_ in seen], [0.05, 0.15, 0.25, 0.35, 0.45])
+    assert np.allclose(seen[1][1:], [0.3 + 0.25 * 0.01 / 2, 0.25 * 0.1])
+    assert np.allclose(r.states[3], seen[1][1:])
+
+
+@pytest.mark.parametrize(
+    "controller, error, said",
+    [
+        (lambda t, x, y: float("nan") if t > 0.5 else 0.0, ValueError, "the controller at t = 0.6.*: nan|NaN"),
+        (lambda t, x, y: "1", TypeError, "the controller at t = 0"),
+        (lambda t, x, y: {"v": 1.0}, eomgen.SimulationError, "the controller at t = 0.*no controlled input `v`"),
+        (lambda t, x, y: [1.0, 2.0], eomgen.SimulationError, "2 values, expected 1 for u"),
+        (lambda t, x, y: 1 / (t - 0.3 > 1e-9 or 0) if t > 0.25 else 0.0, eomgen.SimulationError, "at t = 0.3"),
+    ],
+)
+def test_failures_name_the_controller_and_the_time(controller, error, said):
+    m = eomgen.load(MASS)
+    with pytest.raises(error, match=said) as raised:
+        m.simulate(until=1, inputs={"r": 0.0}, controller=controller, period=0.1)
+    if error is eomgen.SimulationError:
+        assert raised.value.__cause__ is not None
+
+
+@pytest.mark.parametrize(
+    "arguments, error, said",
+    [
+        ({"controller": pd}, TypeError, "needs period"),
+        ({"period": 0.1}, TypeError, "need controller"),
+        ({"controller": 3, "period": 0.1}, TypeError, "expected a function"),
+        ({"controller": pd, "period": 0}, ValueError, "period = 0.0: expected a time in s above 0"),
+        ({"controller": pd, "period": 0.1, "delay": -1}, ValueError, "delay = -1.0"),
+        ({"controller": pd, "period": 0.1, "controls": ["v"]}, ValueError, "no input `v`"),
+        ({"controller": pd, "period": 0.1, "controls": "r"}, ValueError, "the input r is driven"),
+    ],
+)
+def test_invalid_controllers_are_rejected(arguments, error, said):
+    with pytest.raises(error, match=said):
+        eomgen.load(MASS).simulate(until=1, inputs={"r": 0.0}, **arguments)
+
+
+def test_second_controller_of_an_input_is_rejected():
+    m = eomgen.load(MASS + LOOP)
+    with pytest.raises(ValueError, match="the input u is driven by the controller and by a controller"):
+        m.simulate(until=1, inputs={"r": 0.0}, controller=pd, period=0.1, controls="u")
+    with pytest.raises(eomgen.SpecificationError, match="controllers"):
+        m.compare("nothing.toml")
+
+
+def test_ctrl_c_interrupts_a_controlled_simulation(interrupt):
+    m = eomgen.load(MASS)
+    with pytest.raises(KeyboardInterrupt), interrupt(0.5):
+        m.simulate(until=1e5, interval=1e3, inputs={"r": 0.0}, controller=pd, period=1e-3)

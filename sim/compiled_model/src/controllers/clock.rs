@@ -1,0 +1,152 @@
+//! Order of samples and actions of several controllers.
+
+use std::collections::VecDeque;
+
+use eomgen_model_spec::control::Schedule;
+
+/// Largest difference of times at one instant, as a fraction of the shortest period: far below any wanted difference,
+/// and above the rounding errors of the times.
+const COINCIDENCE: f64 = 1e-9;
+
+/// Outputs that will act.
+pub struct PendingOutputs {
+    /// Time of the action, s.
+    time: f64,
+    /// Index of the controller.
+    pub controller: usize,
+    /// Values of its inputs.
+    pub values: Vec<f64>,
+}
+
+/// Samples and actions to come.
+pub struct Clock {
+    schedules: Vec<Schedule>,
+    /// Number of the next sample of each controller.
+    next: Vec<f64>,
+    /// Outputs that will act, in the order of their samples.
+    pending: VecDeque<PendingOutputs>,
+    shortest: f64,
+}
+
+impl Clock {
+    /// Starts at a time (s), with the first sample of each controller that is not before it.
+    pub fn new(schedules: Vec<Schedule>, start: f64) -> Self {
+        let periods = schedules.iter().map(|schedule| schedule.period);
+        let shortest = periods.reduce(f64::min).unwrap_or(0.0);
+        let mut clock = Self {
+            next: Vec::with_capacity(schedules.len()),
+            pending: VecDeque::new(),
+            schedules,
+            shortest,
+        };
+        let within = clock.tolerance(start);
+        let first = |schedule: &Schedule| {
+            ((start - within - schedule.offset) / schedule.period)
+                .ceil()
+                .max(0.0)
+        };
+        clock.next = clock.schedules.iter().map(first).collect();
+        clock
+    }
+
+    /// Returns the largest difference (s) of times that are one instant.
+    pub fn tolerance(&self, t: f64) -> f64 {
+        let rounding = 8.0 * f64::EPSILON * t.abs();
+        rounding.max(COINCIDENCE * self.shortest)
+    }
+
+    fn sample_time(&self, controller: usize) -> f64 {
+        let schedule = self.schedules[controller];
+        schedule.offset + self.next[controller] * schedule.period
+    }
+
+    /// Returns the time (s) of the next sample or action.
+    pub fn next_instant(&self) -> Option<f64> {
+        let samples = (0..self.schedules.len()).map(|controller| self.sample_time(controller));
+        let actions = self.pending.iter().map(|pending| pending.time);
+        samples.chain(actions).reduce(f64::min)
+    }
+
+    /// Returns the controllers with a sample at an instant, and moves them to their next samples.
+    pub fn take_samples(&mut self, instant: f64) -> Vec<usize> {
+        let within = self.tolerance(instant);
+        let is_due = |controller: &usize| self.sample_time(*controller) <= instant + within;
+        let due: Vec<usize> = (0..self.schedules.len()).filter(is_due).collect();
+        for controller in &due {
+            self.next[*controller] += 1.0;
+        }
+        due
+    }
+
+    /// Adds outputs of a sample at `instant`, which act after the delay of their controller.
+    pub fn add(&mut self, instant: f64, controller: usize, values: Vec<f64>) {
+        self.pending.push_back(PendingOutputs {
+            time: instant + self.schedules[controller].delay,
+            controller,
+            values,
+        });
+    }
+
+    /// Returns the outputs that act at an instant, in the order of their samples.
+    pub fn take_actions(&mut self, instant: f64) -> Vec<PendingOutputs> {
+        let within = self.tolerance(instant);
+        let all = std::mem::take(&mut self.pending);
+        let (due, later): (Vec<_>, Vec<_>) = all
+            .into_iter()
+            .partition(|pending| pending.time <= instant + within);
+        self.pending = later.into();
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn schedule(period: f64, offset: f64, delay: f64) -> Schedule {
+        Schedule {
+            period,
+            offset,
+            delay,
+        }
+    }
+
+    #[test]
+    fn rounded_sample_times_coincide() {
+        // 3*0.1 is greater than 0.3.
+        let mut clock = Clock::new(vec![schedule(0.1, 0.0, 0.0), schedule(0.3, 0.0, 0.0)], 0.0);
+        let mut taken = Vec::new();
+        while taken.len() < 7 {
+            let instant = clock.next_instant().expect("a sample");
+            taken.push(clock.take_samples(instant));
+        }
+        let (both, one) = (vec![0, 1], vec![0]);
+        let one_two = [both.clone(), one.clone(), one.clone()];
+        assert_eq!(taken[..6], [&one_two[..], &one_two[..]].concat());
+        assert_eq!(taken[6], both);
+    }
+
+    #[test]
+    fn outputs_act_after_their_delay() {
+        let mut clock = Clock::new(vec![schedule(1.0, 0.25, 1.5)], 0.0);
+        assert_eq!(clock.next_instant(), Some(0.25));
+        assert_eq!(clock.take_samples(0.25), [0]);
+        clock.add(0.25, 0, vec![7.0]);
+        assert_eq!(clock.next_instant(), Some(1.25));
+        assert!(clock.take_actions(1.25).is_empty());
+        assert_eq!(clock.take_samples(1.25), [0]);
+        assert_eq!(clock.next_instant(), Some(1.75));
+        assert!(clock.take_samples(1.75).is_empty());
+        let due = clock.take_actions(1.75);
+        assert_eq!((due.len(), due[0].values[0]), (1, 7.0));
+    }
+
+    #[test]
+    fn first_sample_is_not_before_the_start() {
+        let first = |start: f64| Clock::new(vec![schedule(0.1, 0.05, 0.0)], start).next_instant();
+        assert_eq!(first(0.0), Some(0.05));
+        assert_eq!(first(-3.0), Some(0.05));
+        let later = first(10.0).expect("a sample");
+        assert!((later - 10.05).abs() < 1e-12, "{later}");
+    }
+}
