@@ -150,9 +150,12 @@ impl<'a> MotionWithTangent<'a> {
         if end <= self.t {
             return Ok(());
         }
-        let samples: Vec<f64> = (0..=SIZE_SAMPLES)
-            .map(|look| end * look as f64 / SIZE_SAMPLES as f64)
-            .collect();
+        let begin = self.t;
+        let sample = |look: usize| match look {
+            SIZE_SAMPLES => end,
+            _ => begin + (end - begin) * look as f64 / SIZE_SAMPLES as f64,
+        };
+        let samples: Vec<f64> = (0..=SIZE_SAMPLES).map(sample).collect();
         let span = (self.t, end);
         let quiet = &mut |_: f64| {};
         let motion = simulate(self.system, &self.y, span, &samples, &self.settings, quiet)?;
