@@ -51,7 +51,10 @@ pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Outp
             "--with bench needs --target rust: the benchmark is a crate",
         ));
     }
-    Ok(eomgen_targets::outputs(target.into(), &Extra::outputs(with))?)
+    Ok(eomgen_targets::outputs(
+        target.into(),
+        &Extra::outputs(with),
+    )?)
 }
 
 /// Returns the size of the first file, in words.

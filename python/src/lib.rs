@@ -46,9 +46,9 @@ mod _native {
     #[pymodule_export]
     use crate::model::{Model, nearest};
     #[pymodule_export]
-    use crate::resumable::Simulation;
-    #[pymodule_export]
     use crate::modes::modes;
+    #[pymodule_export]
+    use crate::resumable::Simulation;
     #[pymodule_export]
     use crate::simulation::simulate;
     #[pymodule_export]

@@ -519,7 +519,8 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
         ),
         (
             vec![
-                "simulate", &spec, "--solver", "rk", "--set", "m=0", "--until", "1", "--out", &other,
+                "simulate", &spec, "--solver", "rk", "--set", "m=0", "--until", "1", "--out",
+                &other,
             ],
             "no inertia",
         ),
