@@ -12,6 +12,9 @@ use crate::model::Model;
 /// Frequency (Hz), damping ratio, eigenvalue (1/s) and shape, complex numbers as real and imaginary parts.
 type ModeTuple = (f64, f64, (f64, f64), Vec<(f64, f64)>);
 
+/// Name and unit of a column.
+type NameAndUnit = (String, String);
+
 /// Computes the natural modes about a time, state and inputs. Returns names and units of the amplitudes too.
 #[pyfunction]
 pub fn modes(
@@ -20,7 +23,7 @@ pub fn modes(
     t: f64,
     x: PyReadonlyArray1<'_, f64>,
     u: PyReadonlyArray1<'_, f64>,
-) -> PyResult<(Vec<(String, String)>, Vec<ModeTuple>)> {
+) -> PyResult<(Vec<NameAndUnit>, Vec<ModeTuple>)> {
     let point = Point {
         t,
         state: x.as_slice()?,

@@ -11,7 +11,10 @@ use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
 /// Names and units of the columns, the columns, and warnings about inputs.
-type SweepTuple = (Vec<(String, String)>, Vec<Vec<f64>>, Vec<String>);
+type SweepTuple = (Vec<NameAndUnit>, Vec<Vec<f64>>, Vec<String>);
+
+/// Name and unit of a column.
+type NameAndUnit = (String, String);
 
 /// Computes measures over a grid or over random samples, in the folder `out`; resumes an interrupted sweep.
 /// `progress` is called with the numbers of computed points and of all points to compute.
@@ -71,7 +74,7 @@ fn compute(
     out: &Path,
     threads: usize,
     line: &Connection<'_, (usize, usize)>,
-) -> Result<(Vec<(String, String)>, Table, Vec<String>), Error> {
+) -> Result<(Vec<NameAndUnit>, Table, Vec<String>), Error> {
     let sweep = Sweep::new(model.compiled().model(), request)?;
     let measures = sweep.measures()?;
     let folder = Folder::open(out, sweep.job(&measures)?)?;
