@@ -12,14 +12,17 @@ use eomgen_validate::certify::{CCompiler, CSource};
 use eomgen_validate::model_certificate::{Sources, certify_sources, unchecked_certificate};
 use serde_json::Value;
 
-use super::Options;
 use super::description::{Family, Precision, RustPackaging, Variant};
-use super::manifest::{CERTIFICATE, hash_file};
+use super::hashes::hash_file;
+use super::options::Options;
 use crate::arguments::{Extra, Target};
 use crate::certification::document;
 use crate::emission;
 use crate::error::{Error, Result};
 use crate::settings::with_settings;
+
+/// Name of a certificate.
+const CERTIFICATE: &str = "certificate.json";
 
 /// Emitted files of a variant.
 pub struct Built {

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::Options;
 use super::build::Built;
 use super::description::{Family, Variant};
-use super::manifest::{Hashes, Manifest, hash_file};
+use super::hashes::{Hashes, hash_file};
+use super::manifest::Manifest;
+use super::options::Options;
 
 /// Kind of a difference.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! `manifest.json`: hashes of specifications and emitted files, sizes, orders and operations. It contains no time
 //! and no absolute path.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use eomgen_model_spec::source::sha256;
 use serde_json::{Value, json};
@@ -14,9 +14,6 @@ use crate::error::{Error, Result};
 
 /// Name of the manifest.
 pub const FILE: &str = "manifest.json";
-
-/// Name of a certificate.
-pub const CERTIFICATE: &str = "certificate.json";
 
 const GENERATOR: &str = concat!("eomgen ", env!("CARGO_PKG_VERSION"));
 
@@ -189,34 +186,4 @@ impl Manifest {
         let name = path.split('/').next()?;
         self.entry(name)?["files"][path]["sha256"].as_str()
     }
-}
-
-/// Hashes of input files, each read once.
-pub struct Hashes {
-    folder: PathBuf,
-    known: HashMap<String, Option<String>>,
-}
-
-impl Hashes {
-    /// `folder`: folder of the family file.
-    pub fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            known: HashMap::new(),
-        }
-    }
-
-    /// Returns the hash of a file; `None` if it cannot be read.
-    pub fn of(&mut self, path: &str) -> Option<&str> {
-        let Self { folder, known } = self;
-        let hash = known
-            .entry(path.to_owned())
-            .or_insert_with(|| hash_file(&folder.join(path)));
-        hash.as_deref()
-    }
-}
-
-/// Returns the SHA-256 of a file; `None` if it cannot be read.
-pub fn hash_file(path: &Path) -> Option<String> {
-    std::fs::read(path).ok().map(sha256)
 }

@@ -1,12 +1,14 @@
 //! `eomgen family`: all variants of a family file, with certificates and a manifest.
 //!
-//! `description` reads the family file, `build` emits and certifies one variant, `manifest` records hashes and
+//! `description` reads the family file, `build` emits and certifies one variant, `manifest` records `hashes` and
 //! counts, `comparison` lists differences, `write` replaces files.
 
 mod build;
 mod comparison;
 mod description;
+mod hashes;
 mod manifest;
+mod options;
 mod write;
 
 use std::collections::BTreeSet;
@@ -23,24 +25,13 @@ use crate::progress::Note;
 use build::{Built, build};
 use comparison::{Findings, changes, compare_built, table};
 use description::{Family, Variant};
-use manifest::{Hashes, Manifest};
+use hashes::Hashes;
+use manifest::Manifest;
+
+pub use options::Options;
 
 /// Largest number of variants that are generated at the same time.
 const MAX_THREADS: usize = 8;
-
-/// Options of a run.
-pub struct Options<'o> {
-    /// Family file.
-    pub file: &'o Path,
-    /// Output folder.
-    pub out: &'o Path,
-    /// Compare instead of writing.
-    pub check: bool,
-    /// Also generate variants without a change.
-    pub force: bool,
-    /// Print a JSON document.
-    pub json: bool,
-}
 
 /// Writes or compares the variants of a family.
 pub fn run(options: &Options<'_>) -> Result {

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::build::Built;
 use super::description::{Family, RustPackaging};
-use super::manifest::{self, Manifest, hash_file};
+use super::hashes::hash_file;
+use super::manifest::{self, Manifest};
 use crate::arguments::Target;
 use crate::error::{Error, Result, warn};
 use crate::output::write_file;
