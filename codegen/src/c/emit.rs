@@ -6,6 +6,7 @@ use super::functions::functions;
 use super::header::{documentation, header, lists};
 use super::jacobians;
 use super::names::{WORDS, fill_template};
+use super::real::Real;
 use super::regimes::regime;
 use super::stages::definition;
 use super::types::fill_functions;
@@ -24,15 +25,6 @@ pub struct Files {
     pub header: String,
     /// Content of `NAME.c`.
     pub source: String,
-}
-
-/// Number type of the emitted C if the including code defines none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Real {
-    /// `double`.
-    Double,
-    /// `float`.
-    Single,
 }
 
 /// Writes a program as C99 that is also valid C++, in double precision.

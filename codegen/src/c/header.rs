@@ -1,9 +1,9 @@
 //! Header of the emitted C: sizes, names, structures, declarations.
 
 use super::comments::{comment, resolve_links};
-use super::emit::Real;
 use super::jacobians;
 use super::names::fill_template;
+use super::real::Real;
 use super::regimes::{REGIME, regime_head};
 use super::stages::{declaration, nest_lines};
 use super::types;

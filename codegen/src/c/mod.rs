@@ -14,6 +14,7 @@ mod functions;
 mod header;
 mod jacobians;
 mod names;
+mod real;
 mod regimes;
 mod sine_and_cosine;
 mod stages;
@@ -21,7 +22,8 @@ mod types;
 
 pub use crate::statements::EmitError;
 pub use casadi::{CASADI_OUTPUTS, emit_casadi};
-pub use emit::{Files, Real, emit, emit_with};
+pub use emit::{Files, emit, emit_with};
+pub use real::Real;
 
 /// Returns true if a name is no word of C or C++.
 pub fn is_identifier(name: &str) -> bool {

@@ -40,7 +40,12 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 16] = [
+const TESTED_ELSEWHERE: [(&str, &str); 17] = [
+    // `generate --all --check` compares the variants of the same file.
+    (
+        "cargo run --release -- family generated/family.toml ",
+        "tests/tests/emission/checked_in_variants.rs",
+    ),
     (
         "cargo install --path cli",
         "tests/tests/project/installed.rs",
@@ -211,7 +216,7 @@ fn folder_with_project() -> Measured {
     for (name, text) in [("wrong", WRONG), ("misspelt", MISSPELT), ("circle", CIRCLE)] {
         measured.write(&format!("{name}.toml"), text.as_bytes());
     }
-    for folder in ["model-spec", "examples"] {
+    for folder in ["model-spec", "examples", "generated"] {
         let link = std::os::unix::fs::symlink(project().join(folder), measured.file(folder));
         link.expect("a link");
     }
