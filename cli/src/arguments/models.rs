@@ -50,8 +50,8 @@ pub enum Target {
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
     /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
     Casadi,
-    /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with sources,
-    /// and with a binary for this machine if there is a C compiler `cc`.
+    /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with
+    /// the specification and the library that moves it, for this machine.
     Fmu2,
     /// The same for FMI 3.0.
     Fmu3,

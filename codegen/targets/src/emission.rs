@@ -47,22 +47,16 @@ pub fn emit(
             let source = c::emit_casadi(program).map_err(EmissionError::request)?;
             Ok(vec![EmittedFile::text(format!("{name}_casadi.c"), source)])
         }
-        Target::Fmu2 => unit(model, variant, Version::Two, warn),
-        Target::Fmu3 => unit(model, variant, Version::Three, warn),
+        Target::Fmu2 => unit(model, variant, Version::Two),
+        Target::Fmu3 => unit(model, variant, Version::Three),
     }
 }
 
-fn unit(
-    model: &Model,
-    variant: &Variant,
-    version: Version,
-    warn: &dyn Fn(&str),
-) -> Result<Vec<EmittedFile>> {
+fn unit(model: &Model, variant: &Variant, version: Version) -> Result<Vec<EmittedFile>> {
     let controlled = model.reject_controllers("a functional mock-up unit");
     controlled.map_err(|error| EmissionError::model(&model.source, error))?;
-    reject_impacts(model, "a functional mock-up unit")?;
-    reject_corners(&variant.program, "a functional mock-up unit")?;
-    Ok(vec![fmu::file(model, variant, version, warn)?])
+    let orders = variant.equations.graph.orders();
+    Ok(vec![fmu::file(model, orders, version)?])
 }
 
 /// Rejects a model with impacts for `what`, which supports no jumps of rates.
@@ -125,7 +119,7 @@ pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
         Target::Casadi if with.iter().all(|output| *output == Output::Hessians) => {
             return Ok([&c::CASADI_OUTPUTS[..], with].concat());
         }
-        Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
+        Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(Vec::new()),
         Target::Fmu2 | Target::Fmu3 => {
             "--with is not available for a functional mock-up unit: the standard defines its functions"
         }

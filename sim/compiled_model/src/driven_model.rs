@@ -65,8 +65,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         Some(auditor.borrow().audit().clone())
     }
 
-    /// Writes the observables, with the forces during sticking.
-    pub(crate) fn write_observables(&self, (t, state): (f64, &[f64]), out: &mut [f64]) {
+    /// Writes the observables at a time (s) and a state, with the forces during sticking.
+    pub fn write_observables(&self, (t, state): (f64, &[f64]), out: &mut [f64]) {
         match self.surface_states() {
             Some(sliding) => {
                 let inputs = &self.inputs.borrow().evaluate(t);
@@ -196,6 +196,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
                 .audit_corner((t, y), (before, work), energies);
         }
         arrived != y
+    }
+
+    /// Returns cause and cure if the motion stopped because bodies overlap or at a corner.
+    pub fn stop_message(&self) -> Option<String> {
+        self.overlap_message().or_else(|| self.corner_message())
+    }
+
+    /// Returns true if neither surfaces nor closed contacts hold the motion, so that the model's own Jacobians apply.
+    pub fn is_free(&self) -> bool {
+        let sliding = self.sliding.as_ref();
+        sliding.is_none_or(|sliding| sliding.borrow().is_free()) && !self.has_closed_contacts()
     }
 
     fn has_closed_contacts(&self) -> bool {
@@ -336,7 +347,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
 
 impl<E> DrivenModel<E, HeldInputs> {
     /// Replaces the inputs.
-    pub(crate) fn set_inputs(&mut self, inputs: HeldInputs) {
+    pub fn set_inputs(&mut self, inputs: HeldInputs) {
         self.inputs = inputs;
     }
 }
@@ -456,6 +467,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         sliding.is_some_and(|sliding| sliding.is_singular(guard))
     }
 
+    fn is_distance(&self, guard: usize) -> bool {
+        let contact = guard.checked_sub(self.evaluator().guard_count());
+        let contacts = self.contacts.as_ref().map(RefCell::borrow);
+        contact.is_some_and(|contact| contacts.is_some_and(|known| contact < known.names.len()))
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         let mut evaluator = self.evaluator();
         let size = evaluator.program().degrees_of_freedom();
@@ -550,6 +567,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     fn fix_sides(&self, sides: Option<&[f64]>) {
         if let Some(sliding) = &self.sliding {
             sliding.borrow_mut().fix_sides(sides);
+        }
+    }
+
+    fn assume_modes(&self, modes: &[SurfaceMode]) {
+        if modes.is_empty() {
+            return;
+        }
+        let own = self.evaluator().guard_count();
+        if let Some(contacts) = &self.contacts {
+            contacts.borrow_mut().assume_modes(&modes[own..]);
+        }
+        if let Some(sliding) = &self.sliding {
+            sliding.borrow_mut().assume_modes(modes);
         }
     }
 

@@ -3,7 +3,9 @@
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Method, Settings, Simulation as GeneralSimulation, Surface, Trajectory};
+use eomgen_sim::ode::{
+    Method, Settings, Simulation as GeneralSimulation, Surface, SurfaceMode, System, Trajectory,
+};
 use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
 
 use crate::driven_model::DrivenModel;
@@ -283,6 +285,34 @@ impl Simulation<'_> {
             Engine::General { run, simulation } => {
                 run.system.write_observables((t, simulation.state()), out);
             }
+        }
+    }
+
+    /// Writes the rates at the time reached to `out`. During sticking they use the friction force that holds the
+    /// motion.
+    pub fn write_rates(&mut self, out: &mut [f64]) {
+        let t = self.time();
+        match &mut self.engine {
+            Engine::Exact {
+                motion, observed, ..
+            } => {
+                let point = Point {
+                    t,
+                    state: motion.state(),
+                    inputs: &self.present_inputs,
+                };
+                observed.rates(point, out);
+            }
+            Engine::General { run, simulation } => run.system.rates(t, simulation.state(), out),
+        }
+    }
+
+    /// Returns the modes of the switching surfaces, for a start at the same point; empty if the solver decides them
+    /// by the state.
+    pub fn modes(&self) -> &[SurfaceMode] {
+        match &self.engine {
+            Engine::Exact { .. } => &[],
+            Engine::General { simulation, .. } => simulation.modes(),
         }
     }
 

@@ -7,7 +7,8 @@
 //! switching functions over its interior, a polynomial in `bernstein` form; `grazing` and
 //! `resolution` by samples, for functions without bounds. `location` finds the root on the interior and makes steps that
 //! end at the surface; `passage` applies the event there. `driver` combines these into a
-//! [`Trajectory`], with `limits` and `stiffness`. `simulation` runs it once, or from call to call. No step averages over a kink or jump
+//! [`Trajectory`], with `limits` and `stiffness`. `simulation` runs it once, or from call to call.
+//! `external_motion` keeps sides and modes for a caller that makes the steps. No step averages over a kink or jump
 //! of the right-hand side, which would reduce the order of the method.
 //!
 //! # Tolerance
@@ -30,6 +31,7 @@ mod error;
 mod event_search;
 mod events;
 mod examination;
+mod external_motion;
 mod flutter;
 mod grazing;
 mod history;
@@ -55,6 +57,7 @@ mod watch;
 
 pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
 pub use events::{Event, Jump, SurfaceMode};
+pub use external_motion::ExternalMotion;
 pub use names::{Names, Surface, SurfaceKind, UnsupportedSticking};
 pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
 pub use simulation::{Simulation, simulate, simulate_into};

@@ -67,6 +67,12 @@ pub trait System {
         false
     }
 
+    /// Returns true if a switching function is the distance of an impact. Bounces may become arbitrarily low, so that
+    /// events are applied on the surface.
+    fn is_distance(&self, _guard: usize) -> bool {
+        false
+    }
+
     /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
     /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
     /// the system does not check.
@@ -102,6 +108,10 @@ pub trait System {
     /// rates of the side on which the state is. If a system with switching functions ignores it, steps near surfaces are
     /// short and only as accurate as the tolerance.
     fn fix_sides(&self, _sides: Option<&[f64]>) {}
+
+    /// Sets the modes in which a motion continues, before its first evaluation: surfaces that hold or are closed there do
+    /// so from the start, if the state is on them up to errors of its computation. Empty if no modes are known.
+    fn assume_modes(&self, _modes: &[SurfaceMode]) {}
 
     /// Updates the modes of the surfaces at `t` and `y`, where inputs may jump: rest ends if a force exceeds its limit.
     fn update_modes(&self, _t: f64, _y: &[f64]) {}
@@ -156,6 +166,10 @@ impl<S: System + ?Sized> System for &S {
         (**self).is_singular(guard)
     }
 
+    fn is_distance(&self, guard: usize) -> bool {
+        (**self).is_distance(guard)
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         (**self).find_indefinite_coordinate(t, y)
     }
@@ -178,6 +192,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn fix_sides(&self, sides: Option<&[f64]>) {
         (**self).fix_sides(sides);
+    }
+
+    fn assume_modes(&self, modes: &[SurfaceMode]) {
+        (**self).assume_modes(modes);
     }
 
     fn update_modes(&self, t: f64, y: &[f64]) {

@@ -20,6 +20,7 @@ pub struct WatchedSystem<'a, S: System + ?Sized> {
 }
 
 /// The regime of the present step, and the errors of its trials.
+#[derive(Default)]
 pub struct Record {
     regime: RefCell<Regime>,
     horizon: Cell<f64>,
@@ -68,6 +69,25 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     pub fn pause(self) -> Record {
         self.fix_sides(false);
         self.record
+    }
+
+    /// Returns the system.
+    pub fn system(&self) -> &S {
+        self.system
+    }
+
+    /// Sets the sides of the surfaces that have one in `modes`, one per surface.
+    pub fn assume_sides(&self, modes: &[SurfaceMode]) {
+        for (guard, mode) in modes.iter().enumerate() {
+            let side = match mode {
+                SurfaceMode::Negative => -1.0,
+                SurfaceMode::Positive => 1.0,
+                _ => continue,
+            };
+            self.record.regime.borrow_mut()[guard] = side;
+            self.record.last_sides.borrow_mut()[guard] = side;
+        }
+        self.fix_sides(true);
     }
 
     /// Clears the errors of earlier trials.

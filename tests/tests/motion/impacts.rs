@@ -755,9 +755,7 @@ fn hosts_without_impacts_reject_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out").display().to_string();
     for arguments in [
-        &["generate", &spec, "--target", "fmu3", "--out", &out][..],
-        &["generate", &spec, "--target", "fmu2", "--out", &out],
-        &["page", &spec, "--out", &out],
+        &["page", &spec, "--out", &out][..],
         &[
             "sweep",
             &spec,

@@ -18,8 +18,8 @@ pub type Attribute = (&'static str, String);
 pub const TOOL: &str = concat!("eomgen ", env!("CARGO_PKG_VERSION"));
 
 /// Description of the solver in the binary.
-const SOLVER: &str = "Co-simulation solves the equations by the embedded Runge-Kutta method of orders 5 and 4 by \
-    Dormand and Prince, with error control and located switches.";
+const SOLVER: &str = "Co-simulation moves the model like eomgen simulate: with the exact solver if the model is piecewise \
+    linear, and otherwise with error control and located events.";
 
 /// Writes a document.
 pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
@@ -27,7 +27,7 @@ pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
     let declaration = BytesDecl::new("1.0", Some("UTF-8"), None);
     xml.write_event(Event::Decl(declaration))
         .and_then(|()| write(&mut xml))
-        .map_err(|error| EmissionError::Request(format!("cannot describe the unit: {error}")))?;
+        .map_err(|error| EmissionError::request(format!("cannot describe the unit: {error}")))?;
     let mut bytes = xml.into_inner().into_inner();
     bytes.push(b'\n');
     Ok(bytes)
@@ -122,7 +122,7 @@ pub fn default_experiment(xml: &mut Xml) -> Written {
     let attributes = [
         ("startTime", number(0.0)),
         ("stopTime", number(1.0)),
-        ("tolerance", number(super::sources::TOLERANCE)),
+        ("tolerance", number(eomgen_unit::DEFAULT_TOLERANCE)),
     ];
     empty(xml, "DefaultExperiment", &attributes)
 }
@@ -165,6 +165,7 @@ pub fn quantity(variable: &Variable) -> Vec<Attribute> {
     for (name, value) in [
         ("min", variable.min),
         ("max", variable.max),
+        ("nominal", variable.nominal),
         ("start", variable.start),
     ] {
         attributes.extend(value.map(|value| (name, number(value))));

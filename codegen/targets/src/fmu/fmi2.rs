@@ -4,7 +4,6 @@ use super::description::{
     Attribute, Written, Xml, clean, default_experiment, document, element, empty, identity, list,
     log_categories, quantity, role, summary, unit_definitions,
 };
-use super::sources::MAIN;
 use super::variables::{Kind, Unit};
 use crate::error::Result;
 
@@ -44,11 +43,7 @@ fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Writ
     ] {
         attributes.push((can, "true".to_owned()));
     }
-    element(xml, name, &attributes, |xml| {
-        element(xml, "SourceFiles", &[], |xml| {
-            empty(xml, "File", &[("name", MAIN.to_owned())])
-        })
-    })
+    empty(xml, name, &attributes)
 }
 
 fn variables(xml: &mut Xml, unit: &Unit) -> Written {

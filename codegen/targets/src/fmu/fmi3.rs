@@ -1,11 +1,9 @@
-//! Description of a unit in version 3.0, and of the compilation of its sources. Variables refer to each other by value
-//! references.
+//! Description of a unit in version 3.0. Variables refer to each other by value references.
 
 use super::description::{
     Attribute, Written, Xml, clean, default_experiment, document, element, empty, identity, list,
     log_categories, quantity, role, summary, unit_definitions,
 };
-use super::sources::MAIN;
 use super::variables::{Kind, Unit};
 use crate::error::Result;
 
@@ -29,22 +27,6 @@ pub fn description(unit: &Unit) -> Result<Vec<u8>> {
             default_experiment(xml)?;
             variables(xml, unit)?;
             structure(xml, unit)
-        })
-    })
-}
-
-/// Returns `sources/buildDescription.xml`.
-pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
-    document(|xml| {
-        let root = [("fmiVersion", "3.0".to_owned())];
-        element(xml, "fmiBuildDescription", &root, |xml| {
-            let identifier = [("modelIdentifier", unit.name.clone())];
-            element(xml, "BuildConfiguration", &identifier, |xml| {
-                let language = [("language", "C99".to_owned())];
-                element(xml, "SourceFileSet", &language, |xml| {
-                    empty(xml, "SourceFile", &[("name", MAIN.to_owned())])
-                })
-            })
         })
     })
 }

@@ -1,45 +1,38 @@
-//! Functional mock-up units: an archive of the emitted C with the functions of the standard, the description of its
-//! variables, and a binary.
+//! Functional mock-up units: an archive of the description of the variables, the specification, and the library that
+//! simulates it.
 //!
 //! `variables` lists the variables of a unit, `units` their units of measurement; `description`, `fmi2` and `fmi3` write
-//! both as XML; `sources` arranges the C; `binary` compiles it; [`crate::archive`] packs all files. The folder `runtime`
-//! contains the C that is common to all units.
+//! both as XML; `library` finds the library, which is built from the crate `eomgen-unit`; [`crate::archive`] packs all
+//! files.
 
-mod binary;
 mod description;
 mod fmi2;
 mod fmi3;
-mod sources;
+mod library;
 mod units;
 mod variables;
 mod version;
 
-use eomgen_codegen::mechanics::outputs::Output;
-use eomgen_codegen::variant::Variant;
-use eomgen_model_spec::model::Model;
+use eomgen_compiled_model::{CompiledModel, Orders};
+use eomgen_model_spec::edit::{self, Edit, SetParameter};
+use eomgen_model_spec::model::{Model, ParameterValue};
 
 use crate::archive::pack;
-use crate::error::Result;
+use crate::error::{EmissionError, Result};
 use crate::file::EmittedFile;
 
 pub use version::Version;
 
-/// Outputs that a unit needs.
-pub const OUTPUTS: [Output; 3] = [Output::GuardRates, Output::Jacobians, Output::Regimes];
-
-/// Returns a unit. `warn` receives the reason if it has no binary.
+/// Returns a unit of a model at these orders of its fields.
 ///
 /// # Errors
-/// Names that C does not allow, or an invalid initial state.
-pub fn file(
-    model: &Model,
-    variant: &Variant,
-    version: Version,
-    warn: &dyn Fn(&str),
-) -> Result<EmittedFile> {
-    let program = &variant.program;
-    let unit = variables::Unit::new(model, variant)?;
-    let sources = sources::files(program, &unit, version)?;
+/// No library, values that cannot be written into the specification, or tables that cannot be read.
+pub fn file(model: &Model, orders: &[usize], version: Version) -> Result<EmittedFile> {
+    let library = library::read(&model.name, version)?;
+    let model = write_parameters(model)?;
+    let compiled = CompiledModel::derive(model, Orders::PerField(orders));
+    let compiled = compiled.map_err(EmissionError::request)?;
+    let unit = variables::Unit::new(&compiled)?;
     let mut files = vec![(
         "modelDescription.xml".to_owned(),
         match version {
@@ -47,22 +40,52 @@ pub fn file(
             Version::Three => fmi3::description(&unit)?,
         },
     )];
-    if version == Version::Three {
-        let text = fmi3::build_description(&unit)?;
-        files.push(("sources/buildDescription.xml".to_owned(), text));
-    }
-    match binary::compile(&program.name, &sources, version) {
-        Ok((name, contents)) => files.push((name, contents)),
-        Err(reason) => warn(&format!(
-            "warning: {}.fmu contains sources but no binary: {reason}",
-            program.name
-        )),
-    }
-    for (name, text) in sources {
-        files.push((format!("sources/{name}"), text.into_bytes()));
-    }
+    files.push(library);
+    files.extend(resources(compiled.model())?);
     Ok(EmittedFile {
-        name: format!("{}.fmu", program.name),
+        name: format!("{}.fmu", compiled.program().name),
         contents: pack(files)?,
     })
+}
+
+/// Returns the model with its values of parameters in the text of its specification, which the unit contains.
+fn write_parameters(model: &Model) -> Result<Model> {
+    let checked = eomgen_model_spec::check(model.source.clone());
+    let declared = checked.map_err(EmissionError::Specification)?.model;
+    let edits: Vec<Edit> = (model.parameters.iter().zip(&declared.parameters))
+        .filter_map(|(own, known)| match (&own.value, &known.value) {
+            (ParameterValue::Number(value), ParameterValue::Number(known)) if value == known => None,
+            (ParameterValue::Number(value), _) => Some(Edit::SetParameter(SetParameter {
+                name: own.name.clone(),
+                value: own.unit.from_si(*value),
+                source: String::new(),
+            })),
+            _ => None,
+        })
+        .collect();
+    if edits.is_empty() {
+        return Ok(declared);
+    }
+    let edited = edit::apply(&model.source, &edits).map_err(EmissionError::request)?;
+    let checked = eomgen_model_spec::check(model.source.with_text(edited));
+    Ok(checked.map_err(EmissionError::Specification)?.model)
+}
+
+/// Returns the specification and the tables that it names.
+fn resources(model: &Model) -> Result<Vec<(String, Vec<u8>)>> {
+    let text = model.source.text.as_bytes().to_vec();
+    let mut files = vec![(format!("resources/{}.toml", model.name), text)];
+    let folder = model.source.folder.as_deref().unwrap_or("".as_ref());
+    for table in model.fields.iter().filter_map(|field| field.basis.table()) {
+        let name = format!("resources/{}", table.file);
+        if files.iter().any(|(known, _)| *known == name) {
+            continue;
+        }
+        let contents = std::fs::read(folder.join(&table.file));
+        let contents = contents.map_err(|error| {
+            EmissionError::Request(format!("cannot read the table {}: {error}", table.file))
+        })?;
+        files.push((name, contents));
+    }
+    Ok(files)
 }

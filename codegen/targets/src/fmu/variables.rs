@@ -4,9 +4,10 @@
 use std::collections::HashSet;
 
 use eomgen_codegen::program::Op;
-use eomgen_codegen::variant::Variant;
+use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::model::{Model, ParameterValue};
 use eomgen_model_spec::unit::Unit as Measurement;
+use eomgen_unit::{find_surfaces, token};
 
 use super::units::{Measure, Units};
 use crate::error::{EmissionError, Result};
@@ -42,6 +43,8 @@ pub struct Variable {
     pub measure: Option<Measure>,
     /// Initial value, in SI.
     pub start: Option<f64>,
+    /// Typical size, in SI.
+    pub nominal: Option<f64>,
     /// Minimum, in SI.
     pub min: Option<f64>,
     /// Maximum, in SI.
@@ -66,20 +69,24 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Creates the description of a variant.
-    pub fn new(model: &Model, variant: &Variant) -> Result<Self> {
-        let program = &variant.program;
-        let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
-        let state = model
-            .initial_state(&orders)
-            .map_err(|error| EmissionError::model(&model.source, error))?;
+    /// Creates the description of a model.
+    pub fn new(compiled: &CompiledModel) -> Result<Self> {
+        let (model, program) = (compiled.model(), compiled.program());
+        let orders = compiled.orders();
+        let instance = compiled.with_declared_parameters().map_err(EmissionError::request)?;
+        let state = instance.initial_state();
         let mut list = List::default();
         let seconds = Measurement::parse("s").ok();
         list.add("time", Kind::Time, "Time", seconds.as_ref());
-        list.state(model, &program.state_names(), &state, &orders);
-        for input in &model.inputs {
+        list.state(
+            model,
+            &program.state_names(),
+            (state, compiled.typical_sizes()),
+            orders,
+        );
+        for (input, value) in model.inputs.iter().zip(compiled.default_inputs()) {
             let variable = list.add(&input.name, Kind::Input, &input.doc, Some(&input.unit));
-            variable.start = Some(0.0);
+            variable.start = Some(value);
         }
         for (parameter, own) in model
             .parameters
@@ -98,17 +105,15 @@ impl Unit {
             let (name, doc) = (&observable.name, &observable.doc);
             list.add(name, Kind::Observable, doc, unit.as_ref());
         }
-        for (place, guard) in program.guards.iter().enumerate() {
+        for (place, surface) in find_surfaces(&instance).map_err(EmissionError::request)?.iter().enumerate() {
             let name = format!("indicator[{}]", place + 1);
-            let doc = format!("Changes sign with {}", guard.formula);
+            let doc = format!("Changes sign at events of {}", surface.formula);
             list.add(&name, Kind::Indicator, &doc, None);
         }
-        let orders: Vec<String> = orders.iter().map(usize::to_string).collect();
-        let version = env!("CARGO_PKG_VERSION");
         Ok(Self {
             name: program.name.clone(),
             title: program.title.clone(),
-            token: format!("{}-{}-{version}", program.spec_hash, orders.join(",")),
+            token: token(program),
             variables: list.variables,
             units: list.units,
             depends_on_time: program.ids().any(|id| program.value(id).op == Op::Time),
@@ -183,6 +188,7 @@ impl List {
             doc: doc.to_owned(),
             measure,
             start: None,
+            nominal: None,
             min: None,
             max: None,
         });
@@ -206,7 +212,13 @@ impl List {
         }
     }
 
-    fn state(&mut self, model: &Model, names: &[String], initial: &[f64], orders: &[usize]) {
+    fn state(
+        &mut self,
+        model: &Model,
+        names: &[String],
+        (initial, sizes): (&[f64], &[f64]),
+        orders: &[usize],
+    ) {
         // Description, unit, and whether it is a rate in that unit per second.
         let mut rows: Vec<(String, &Measurement, bool)> = Vec::new();
         for coordinate in &model.coordinates {
@@ -224,9 +236,12 @@ impl List {
             rows.push((state.doc.clone(), &state.unit, false));
         }
         let first = self.variables.len();
-        for ((name, (doc, unit, is_rate)), initial) in names.iter().zip(&rows).zip(initial) {
+        for ((name, (doc, unit, is_rate)), (initial, size)) in
+            names.iter().zip(&rows).zip(initial.iter().zip(sizes))
+        {
             let measure = self.units.rate(unit, u8::from(*is_rate));
-            self.push(name, Kind::State, doc, measure).start = Some(*initial);
+            let variable = self.push(name, Kind::State, doc, measure);
+            (variable.start, variable.nominal) = (Some(*initial), Some(*size));
         }
         for (place, (_, unit, is_rate)) in rows.iter().enumerate() {
             let state = self.variables[first + place].name.clone();

@@ -130,6 +130,12 @@ impl Contacts {
         &self.closed
     }
 
+    /// Sets the contacts that are closed at the start, given the modes of all guards.
+    pub fn assume_modes(&mut self, modes: &[SurfaceMode]) {
+        let closed = |place: &usize| modes[*place] == SurfaceMode::Closed;
+        self.closed = (0..self.names.len()).filter(closed).collect();
+    }
+
     /// Writes the guards, positive while the contacts keep their state: distances of open contacts,
     /// forces of closed ones, then the guards of friction. The first call starts the motion.
     pub fn write_guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
@@ -242,17 +248,17 @@ impl Contacts {
         }
     }
 
-    /// What touches and does not move at the start is closed if it pushes.
+    /// What touches and does not move at the start, or is assumed to be closed, is closed if it pushes.
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         own.impacts(point, &mut self.at);
         let small = ROUNDING * max_magnitude(point.state);
         let touching: Vec<usize> = (0..self.at.len())
-            .filter(|place| self.at[*place].distance <= small)
+            .filter(|place| self.at[*place].distance <= small || self.closed.contains(place))
             .collect();
         let still = touching
             .iter()
-            .filter(|place| self.at[**place].rate.abs() <= small);
+            .filter(|place| self.at[**place].rate.abs() <= small || self.closed.contains(place));
         let still: Vec<usize> = still.copied().collect();
         self.offset_distances(&touching, f64::MIN_POSITIVE);
         let degrees = own.program().degrees_of_freedom();

@@ -55,6 +55,14 @@ impl ObservedMotion {
             self.own.observables(point, out);
         }
     }
+
+    /// Writes the rates at a point of the motion.
+    pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
+        let rest = self.rest.as_mut();
+        if !rest.is_some_and(|rest| rest.write_rates(point, out)) {
+            self.own.rates(point, out);
+        }
+    }
 }
 
 /// Forces and rates during sticking, along a motion.

@@ -131,6 +131,22 @@ impl SurfaceStates {
         }
     }
 
+    /// Sets the surfaces and discs that hold the motion at the start, given the modes of all guards.
+    pub fn assume_modes(&mut self, modes: &[SurfaceMode]) {
+        if !self.can_hold {
+            return;
+        }
+        for (surface, place) in self.places.iter_mut().enumerate() {
+            if modes[self.sided.guard_index(surface)] == SurfaceMode::Held {
+                *place = SurfaceState::Unloaded { from: 1.0 };
+            }
+        }
+        let discs = self.discs.iter_mut().zip(&modes[self.first_disc_guard..]);
+        for (disc, _) in discs.filter(|(_, mode)| **mode == SurfaceMode::Held) {
+            disc.state = DiscState::Holding { since: 0.0 };
+        }
+    }
+
     /// Adds the roundings of the rates by the forces that hold the motion.
     pub fn add_rate_roundings(&self, out: &mut [f64]) {
         for row in self.holding_rows() {

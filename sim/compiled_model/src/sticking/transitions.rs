@@ -290,18 +290,26 @@ impl SurfaceStates {
         }
     }
 
-    /// Starts a motion: surfaces on which it is may hold it.
+    /// Starts a motion: surfaces on which it is, or that are assumed to hold it, may hold it.
     pub(super) fn start_motion(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
         self.begin = Some(at.0);
+        self.known = KnownSides::Nothing;
         let functions = self.sided.evaluate_functions(at, inputs);
         let roundings = self.sided.function_roundings(at, inputs);
         let touching: Vec<usize> = (0..self.places.len())
-            .filter(|surface| functions[*surface].abs() <= roundings[*surface])
+            .filter(|surface| {
+                let is_near = functions[*surface].abs() <= roundings[*surface];
+                is_near || self.places[*surface].is_on()
+            })
             .collect();
+        self.places.fill(SurfaceState::Free);
         let mut discs = Vec::new();
         for (index, disc) in self.discs.iter_mut().enumerate() {
+            let is_assumed = disc.is_holding();
+            disc.state = DiscState::Sliding;
             disc.follow(&functions);
-            if norm(disc.velocity(&functions)) <= norm(disc.velocity(&roundings)) {
+            let is_near = norm(disc.velocity(&functions)) <= norm(disc.velocity(&roundings));
+            if is_near || is_assumed {
                 let arrival = DiscArrival {
                     rows: disc.rows.clone(),
                     along: disc.along.clone(),

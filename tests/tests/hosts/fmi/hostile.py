@@ -22,6 +22,7 @@ with zipfile.ZipFile(unit) as archive:
     archive.extractall(folder)
 (library,) = [file for file in folder.glob("binaries/*/*") if file.is_file()]
 description = (folder / "modelDescription.xml").read_text()
+resources = (folder / "resources").as_uri() if is_two else str(folder / "resources") + os.sep
 token = re.search(r'(?:guid|instantiationToken)="([^"]*)"', description)[1].encode()
 references = {
     causality: [int(n) for n in re.findall(rf'valueReference="(\d+)"[^>]*causality="{causality}"', description)]
@@ -60,17 +61,17 @@ class Callbacks(ctypes.Structure):
 callbacks = Callbacks(logger2, None, None, None, None)
 
 
-def instantiate(exchange, name=b"one", key=token):
+def instantiate(exchange, name=b"one", key=token, place=resources.encode()):
     if is_two:
         function = c.fmi2Instantiate
-        arguments = (name, 0 if exchange else 1, key, None, byref(callbacks), 0, 0)
+        arguments = (name, 0 if exchange else 1, key, place, byref(callbacks), 0, 0)
     elif exchange:
         function = c.fmi3InstantiateModelExchange
-        arguments = (name, key, None, c_bool(0), c_bool(0), None, logger3)
+        arguments = (name, key, place, c_bool(0), c_bool(0), None, logger3)
     else:
         function = c.fmi3InstantiateCoSimulation
         none = c_bool(0)
-        arguments = (name, key, None, none, none, none, none, None, c_size_t(0), None, logger3, None)
+        arguments = (name, key, place, none, none, none, none, None, c_size_t(0), None, logger3, None)
     function.restype = c_void_p
     made = function(*arguments)
     return made and c_void_p(made)
@@ -112,6 +113,22 @@ def step(one, t, h):
 assert not instantiate(True, key=b"wrong") and not instantiate(False, key=None)
 assert not instantiate(True, name=b"") and not instantiate(True, name=None)
 assert any(b"token" in text for text in messages), messages
+# No resources, an unknown folder, a damaged specification, none, and two.
+(specification,) = (folder / "resources").glob("*.toml")
+text = specification.read_bytes()
+for change, reason in [
+    (lambda: None, b"location of the resources"),
+    (lambda: specification.write_bytes(text[: len(text) // 2] + b"["), b"is damaged"),
+    (lambda: specification.write_bytes(text + b"# changed\n"), b"token"),
+    (lambda: specification.with_name("b.toml").write_bytes(text), b"more than one"),
+    (lambda: [file.unlink() for file in (folder / "resources").glob("*.toml")], b"no specification"),
+]:
+    change()
+    messages.clear()
+    assert not instantiate(False, place=None if reason.startswith(b"location") else resources.encode())
+    assert reason in messages[0], (reason, messages)
+assert not instantiate(False, place=b"/no/such/folder") and b"/no/such/folder" in messages[1], messages
+specification.write_bytes(text)
 c[prefix + "FreeInstance"](None)
 assert get(None, [1])[0] == ERROR and step(None, 0.0, 1.0) == ERROR
 assert call("Reset", None) == ERROR and call("GetFMUstate" if is_two else "GetFMUState", None, None) == ERROR

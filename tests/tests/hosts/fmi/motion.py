@@ -1,8 +1,8 @@
 """Validates a unit by FMPy, simulates both of its kinds, and compares all states and observables with
 a table that `simulate` wrote.
 
-Arguments: the unit, the table, the tolerance of model exchange, and the largest difference, relative
-to the largest value of a column.
+Arguments: the unit, the table, the tolerance of model exchange, and the largest differences of model exchange and of
+co-simulation, relative to the largest value of a column.
 """
 
 import csv
@@ -12,8 +12,8 @@ import fmpy
 import numpy
 from fmpy.validation import validate_fmu
 
-unit, table, tolerance, limit = sys.argv[1:5]
-tolerance, limit = float(tolerance), float(limit)
+unit, table = sys.argv[1:3]
+tolerance, *limits = map(float, sys.argv[3:6])
 problems = validate_fmu(unit)
 assert not problems, problems
 
@@ -29,7 +29,7 @@ assert set(outputs) == set(names[1:]), (outputs, names)
 platforms = fmpy.supported_platforms(unit)
 assert fmpy.platform in platforms or fmpy.platform_tuple in platforms, platforms
 
-for kind in ("ModelExchange", "CoSimulation"):
+for kind, limit in zip(("ModelExchange", "CoSimulation"), limits):
     found = fmpy.simulate_fmu(
         unit,
         fmi_type=kind,
@@ -42,7 +42,8 @@ for kind in ("ModelExchange", "CoSimulation"):
     )
     assert len(found) == len(times), (kind, len(found), len(times))
     for column, name in enumerate(names[1:], 1):
+        # Residuals of constraints are rounding.
         right = expected[:, column]
         size = numpy.abs(right).max()
         worst = numpy.abs(found[name] - right).max()
-        assert worst <= limit * (size if size > 0 else 1.0), (kind, name, worst, size)
+        assert worst <= limit * (size if size > 1e-12 else 1.0), (kind, name, worst, size)

@@ -1,0 +1,70 @@
+//! The shared library of units for this machine.
+
+use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
+use std::path::{Path, PathBuf};
+
+use super::version::Version;
+use crate::error::{EmissionError, Result};
+
+/// The library, if it was built before the program: `EOMGEN_UNIT` named it at compile time.
+#[cfg(eomgen_unit)]
+const EMBEDDED: Option<&[u8]> = Some(include_bytes!(env!("EOMGEN_UNIT")));
+#[cfg(not(eomgen_unit))]
+const EMBEDDED: Option<&[u8]> = None;
+
+/// Returns the standard's folder for binaries of this machine, if defined.
+fn folder(version: Version) -> Option<String> {
+    let system = match OS {
+        "linux" => "linux",
+        "macos" => "darwin",
+        "windows" => "windows",
+        _ => return None,
+    };
+    match (version, ARCH) {
+        (Version::Two, "x86_64") => Some(format!("{}64", system.trim_end_matches("dows"))),
+        (Version::Two, "x86") => Some(format!("{}32", system.trim_end_matches("dows"))),
+        (Version::Two, _) => None,
+        (Version::Three, "x86_64" | "x86" | "aarch64") => Some(format!("{ARCH}-{system}")),
+        (Version::Three, _) => None,
+    }
+}
+
+/// Returns the library's path in a unit of this name, and its contents.
+///
+/// # Errors
+/// A machine without a folder in the standard, or no library.
+pub fn read(name: &str, version: Version) -> Result<(String, Vec<u8>)> {
+    let folder = folder(version).ok_or_else(|| {
+        let version = match version {
+            Version::Two => "2.0; use --target fmu3",
+            Version::Three => "3.0",
+        };
+        EmissionError::request(format!(
+            "the standard defines no folder for binaries of this kind of machine ({OS}, {ARCH}) in version {version}"
+        ))
+    })?;
+    let contents = match EMBEDDED {
+        Some(contents) => contents.to_vec(),
+        None => read_beside_program()?,
+    };
+    Ok((format!("binaries/{folder}/{name}{DLL_SUFFIX}"), contents))
+}
+
+/// Reads the library from the program's folder, or from `deps` in it, where cargo writes it.
+fn read_beside_program() -> Result<Vec<u8>> {
+    let file = format!("{DLL_PREFIX}eomgen_unit{DLL_SUFFIX}");
+    let program = std::env::current_exe().and_then(|path| path.canonicalize());
+    let program = program
+        .map_err(|error| EmissionError::request(format!("cannot find the folder of the program: {error}")))?;
+    let folder = program.parent().unwrap_or(Path::new(""));
+    let places: [PathBuf; 2] = [folder.join(&file), folder.join("deps").join(&file)];
+    let Some(place) = places.iter().find(|place| place.is_file()) else {
+        return Err(EmissionError::request(format!(
+            "the library of functional mock-up units, {file}, is not in {}: copy it there from a release, or from \
+             target/release/deps after `cargo build --release` in the source of eomgen",
+            folder.display()
+        )));
+    };
+    std::fs::read(place)
+        .map_err(|error| EmissionError::request(format!("cannot read {}: {error}", place.display())))
+}

@@ -1,0 +1,435 @@
+//! Boundary to the importer: instances behind pointers, messages to its logger, arrays, and panics.
+//!
+//! The standard defines which pointers the importer passes: instances and saved states from this library, texts that
+//! end with 0, and arrays of the given lengths. Null pointers are checked.
+#![allow(unsafe_code)]
+
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::refusal::{Outcome, Refusal, Status, invalid};
+use crate::resources::derive_specification;
+use crate::saved_state::SavedState;
+use crate::unit::{ANY, Kind, Unit};
+
+/// Category of all messages.
+const CATEGORY: &CStr = c"logStatusError";
+
+/// Logger of FMI 2.0: environment, name of the instance, status, category, format and its arguments.
+pub type Logger2 =
+    unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+
+/// Logger of FMI 3.0: environment, status, category, message.
+pub type Logger3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+
+/// Logger of the importer.
+#[derive(Clone, Copy)]
+pub enum Logger {
+    None,
+    Two(Logger2),
+    Three(Logger3),
+}
+
+/// Receiver of messages.
+pub struct Messages {
+    logger: Logger,
+    environment: *mut c_void,
+    name: CString,
+}
+
+/// Instance with its importer.
+pub struct Component {
+    unit: Unit,
+    messages: Messages,
+    /// True after a panic, which may have left the instance incomplete.
+    has_failed: bool,
+}
+
+impl Messages {
+    /// Returns the messages of an instance.
+    pub fn new(name: Option<&CStr>, (environment, logger): (*mut c_void, Logger)) -> Self {
+        Self {
+            logger,
+            environment,
+            name: name.map_or_else(CString::default, CStr::to_owned),
+        }
+    }
+
+    pub fn log(&self, refusal: &Refusal) {
+        // A text of C ends at its first 0.
+        let text = CString::new(refusal.message.replace('\0', " ")).unwrap_or_default();
+        let status = refusal.status as c_int;
+        match self.logger {
+            Logger::None => {}
+            // SAFETY: the importer's function, with the arguments that the standard defines; the format has one text.
+            Logger::Two(logger) => unsafe {
+                logger(
+                    self.environment,
+                    self.name.as_ptr(),
+                    status,
+                    CATEGORY.as_ptr(),
+                    c"%s".as_ptr(),
+                    text.as_ptr(),
+                );
+            },
+            // SAFETY: the importer's function, with the arguments that the standard defines.
+            Logger::Three(logger) => unsafe {
+                logger(self.environment, status, CATEGORY.as_ptr(), text.as_ptr());
+            },
+        }
+    }
+}
+
+/// Returns the text at a pointer; `None` for a null pointer.
+///
+/// # Safety
+/// The pointer is null or that of a text that ends with 0.
+unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a CStr> {
+    // SAFETY: by the contract of this function.
+    (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
+}
+
+/// Returns the array at a pointer.
+///
+/// # Errors
+/// A null pointer for an array with elements.
+///
+/// # Safety
+/// The pointer is null or that of so many elements.
+pub unsafe fn array<'a, T>(pointer: *const T, count: usize, what: &str) -> Outcome<&'a [T]> {
+    match (count, pointer.is_null()) {
+        (0, _) => Ok(&[]),
+        (_, true) => Err(null_pointer(what)),
+        // SAFETY: by the contract of this function.
+        _ => Ok(unsafe { std::slice::from_raw_parts(pointer, count) }),
+    }
+}
+
+/// Returns the writable array at a pointer; see [`array`].
+///
+/// # Errors
+/// A null pointer for an array with elements.
+///
+/// # Safety
+/// The pointer is null or that of so many elements, which nothing else uses during the call.
+pub unsafe fn array_mut<'a, T>(pointer: *mut T, count: usize, what: &str) -> Outcome<&'a mut [T]> {
+    match (count, pointer.is_null()) {
+        (0, _) => Ok(&mut []),
+        (_, true) => Err(null_pointer(what)),
+        // SAFETY: by the contract of this function.
+        _ => Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) }),
+    }
+}
+
+/// Writes a value to a pointer.
+///
+/// # Errors
+/// A null pointer.
+///
+/// # Safety
+/// The pointer is null or that of a value.
+pub unsafe fn write<T>(pointer: *mut T, value: T, what: &str) -> Outcome {
+    if pointer.is_null() {
+        return Err(null_pointer(what));
+    }
+    // SAFETY: by the contract of this function.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+fn null_pointer(what: &str) -> Refusal {
+    invalid(format!("a null pointer in place of {what}"))
+}
+
+/// Creates an instance; returns null after a message if that fails.
+///
+/// # Safety
+/// The pointers are null or those of texts that end with 0.
+pub unsafe fn instantiate(
+    kind: Kind,
+    (name, token, resources): (*const c_char, *const c_char, *const c_char),
+    (environment, logger): (*mut c_void, Logger),
+) -> *mut c_void {
+    // SAFETY: by the contract of this function.
+    let [name, token, resources] = [name, token, resources].map(|pointer| unsafe { text(pointer) });
+    let messages = Messages::new(name, (environment, logger));
+    let made = catch_unwind(AssertUnwindSafe(|| {
+        if messages.name.is_empty() {
+            return Err(invalid("the instance has no name"));
+        }
+        let token = token.and_then(|token| token.to_str().ok());
+        Unit::new(
+            derive_specification(resources.map(CStr::to_bytes), token)?,
+            kind,
+        )
+    }));
+    match made.unwrap_or_else(|_| Err(internal_error())) {
+        Ok(unit) => Box::into_raw(Box::new(Component {
+            unit,
+            messages,
+            has_failed: false,
+        }))
+        .cast(),
+        Err(refusal) => {
+            messages.log(&refusal);
+            std::ptr::null_mut()
+        }
+    }
+}
+
+/// Frees an instance; does nothing for a null pointer.
+///
+/// # Safety
+/// The pointer is null or from [`instantiate`], and not used again.
+pub unsafe fn free_instance(component: *mut c_void) {
+    if !component.is_null() {
+        // SAFETY: by the contract of this function.
+        drop(unsafe { Box::from_raw(component.cast::<Component>()) });
+    }
+}
+
+/// Calls `act` with an instance in one of these modes, logs a refusal, and returns the status.
+///
+/// # Safety
+/// The pointer is null or from [`instantiate`], and no other call uses the instance.
+pub unsafe fn call(
+    component: *mut c_void,
+    (modes, name): (u8, &str),
+    act: impl FnOnce(&mut Unit) -> Outcome,
+) -> c_int {
+    // SAFETY: by the contract of this function.
+    let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
+        return Status::Error as c_int;
+    };
+    let Component {
+        unit,
+        messages,
+        has_failed,
+    } = component;
+    let outcome = match *has_failed {
+        true => Err(internal_error()),
+        false => catch_unwind(AssertUnwindSafe(|| {
+            unit.check_mode(modes, name)?;
+            act(unit)
+        }))
+        .unwrap_or_else(|_| {
+            *has_failed = true;
+            Err(internal_error())
+        }),
+    };
+    match outcome {
+        Ok(()) => Status::Ok as c_int,
+        Err(refusal) => {
+            messages.log(&refusal);
+            refusal.status as c_int
+        }
+    }
+}
+
+fn internal_error() -> Refusal {
+    invalid("internal error of the unit; the instance cannot be used any more: please report it")
+}
+
+/// Refuses a call for a reason.
+///
+/// # Safety
+/// Same as [`call`].
+pub unsafe fn refuse(component: *mut c_void, refusal: Refusal) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe { call(component, (ANY, ""), |_| Err(refusal)) }
+}
+
+/// Accepts a call for no variables, and refuses one for variables of a type that the unit does not have.
+///
+/// # Safety
+/// Same as [`call`].
+pub unsafe fn accept_none(component: *mut c_void, count: usize, reason: &str) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, ""), |_| match count {
+            0 => Ok(()),
+            _ => Err(invalid(reason)),
+        })
+    }
+}
+
+/// Reason for refusing variables of other types.
+pub const NO_SUCH_TYPE: &str = "there are no variables of this type";
+
+/// Saves the state of an instance into a new saved state, or into the one that the pointer has.
+///
+/// # Safety
+/// Same as [`call`]; `saved` is null or a pointer that is null or from this function.
+pub unsafe fn save(component: *mut c_void, saved: *mut *mut c_void, name: &str) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            let state = unit.save();
+            match saved
+                .as_ref()
+                .and_then(|known| known.cast::<SavedState>().as_mut())
+            {
+                Some(known) => *known = state,
+                None => write(
+                    saved,
+                    Box::into_raw(Box::new(state)).cast(),
+                    "a saved state",
+                )?,
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Continues from a saved state.
+///
+/// # Safety
+/// Same as [`call`]; `saved` is null or from [`save`].
+pub unsafe fn restore(component: *mut c_void, saved: *mut c_void, name: &str) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            let saved = saved.cast::<SavedState>().as_ref();
+            unit.restore(saved.ok_or_else(|| null_pointer("a saved state"))?)
+        })
+    }
+}
+
+/// Frees a saved state.
+///
+/// # Safety
+/// Same as [`call`]; `saved` is null or a pointer that is null or from [`save`].
+pub unsafe fn free_saved(component: *mut c_void, saved: *mut *mut c_void, name: &str) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |_| {
+            if let Some(saved) = saved.as_mut()
+                && !saved.is_null()
+            {
+                drop(Box::from_raw(saved.cast::<SavedState>()));
+                *saved = std::ptr::null_mut();
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Writes the number of bytes of a saved state.
+///
+/// # Safety
+/// Same as [`call`].
+pub unsafe fn write_serialised_length(
+    component: *mut c_void,
+    size: *mut usize,
+    name: &str,
+) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            write(size, unit.serialised_length(), "a size")
+        })
+    }
+}
+
+/// Writes the bytes of a saved state.
+///
+/// # Safety
+/// Same as [`call`]; `saved` is null or from [`save`], and `bytes` has `size` bytes.
+pub unsafe fn serialise(
+    component: *mut c_void,
+    saved: *mut c_void,
+    (bytes, size): (*mut u8, usize),
+    name: &str,
+) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            let saved = saved.cast::<SavedState>().as_ref();
+            let content = unit.serialise(saved.ok_or_else(|| null_pointer("a saved state"))?);
+            let bytes = array_mut(bytes, size, "the bytes of a saved state")?;
+            let room = bytes.get_mut(..content.len());
+            let room = room.ok_or_else(|| invalid("no room for the bytes of a saved state"))?;
+            room.copy_from_slice(&content);
+            Ok(())
+        })
+    }
+}
+
+/// Reads a saved state from its bytes.
+///
+/// # Safety
+/// Same as [`call`]; `bytes` has `size` bytes.
+pub unsafe fn deserialise(
+    component: *mut c_void,
+    (bytes, size): (*const u8, usize),
+    saved: *mut *mut c_void,
+    name: &str,
+) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            if saved.is_null() {
+                return Err(null_pointer("a saved state"));
+            }
+            let state = unit.deserialise(array(bytes, size, "the bytes of a saved state")?)?;
+            write(
+                saved,
+                Box::into_raw(Box::new(state)).cast(),
+                "a saved state",
+            )
+        })
+    }
+}
+
+/// Arrays of a derivative: unknowns, knowns, seed and sensitivity.
+pub struct Derivative {
+    pub unknowns: (*const u32, usize),
+    pub knowns: (*const u32, usize),
+    pub seed: *const f64,
+    pub sensitivity: *mut f64,
+    pub backward: bool,
+}
+
+/// Writes directional or adjoint derivatives.
+///
+/// # Safety
+/// Same as [`call`]; the arrays have as many elements as the variables to which they belong.
+pub unsafe fn differentiate(component: *mut c_void, asked: &Derivative, name: &str) -> c_int {
+    let (given, wanted) = match asked.backward {
+        true => (asked.unknowns.1, asked.knowns.1),
+        false => (asked.knowns.1, asked.unknowns.1),
+    };
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            let unknowns = array(asked.unknowns.0, asked.unknowns.1, "value references")?;
+            let knowns = array(asked.knowns.0, asked.knowns.1, "value references")?;
+            let seed = array(asked.seed, given, "derivatives")?;
+            let out = array_mut(asked.sensitivity, wanted, "derivatives")?;
+            let found = unit.differentiate(asked.backward, (unknowns, knowns), seed)?;
+            out.copy_from_slice(&found);
+            Ok(())
+        })
+    }
+}
+
+/// Writes one number per state or event indicator.
+///
+/// # Safety
+/// Same as [`call`]; `out` has `count` elements.
+pub unsafe fn write_vector(
+    component: *mut c_void,
+    name: &str,
+    (out, count): (*mut f64, usize),
+    values: impl FnOnce(&mut Unit) -> Outcome<Vec<f64>>,
+) -> c_int {
+    // SAFETY: by the contract of this function.
+    unsafe {
+        call(component, (ANY, name), |unit| {
+            let values = values(unit)?;
+            Unit::check_length(count, values.len(), "numbers are asked for")?;
+            array_mut(out, count, "numbers")?.copy_from_slice(&values);
+            Ok(())
+        })
+    }
+}

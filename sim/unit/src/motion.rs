@@ -1,0 +1,247 @@
+//! Motion of an instance: initialisation, communication steps, and the functions of model exchange.
+
+use std::cell::RefCell;
+
+use eomgen_compiled_model::{Solver, SolverOptions};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
+
+use crate::refusal::{Outcome, invalid, unavailable};
+use crate::unit::{BEFORE_START, External, Kind, Mode, Unit};
+
+/// Relative distance of times that count as equal.
+const TIME_ROUNDING: f64 = 1e-9;
+
+impl Unit {
+    /// Moves the state onto the constraints and starts the motion.
+    pub fn end_initialization(&mut self) -> Outcome {
+        self.forget_motion();
+        match self.kind {
+            Kind::ModelExchange => {
+                let inputs = HeldInputs::constant(self.now.inputs.clone());
+                let instance = self.instance()?;
+                let found = instance.find_consistent_state(&self.now.state, self.now.t, &inputs)?;
+                self.now.state = found.0;
+            }
+            Kind::CoSimulation => self.start_simulation()?,
+        }
+        if self.rates()?.iter().any(|rate| !rate.is_finite()) {
+            return Err(invalid(
+                "at the initial state a rate is no finite number: is the mass matrix positive definite?",
+            ));
+        }
+        self.now.earlier_inputs.clone_from(&self.now.inputs);
+        self.now.mode = match self.kind {
+            Kind::ModelExchange => Mode::Event,
+            Kind::CoSimulation => Mode::Step,
+        };
+        Ok(())
+    }
+
+    /// Starts the simulation at the present time and state.
+    fn start_simulation(&mut self) -> Outcome {
+        let options = SolverOptions {
+            solver: Solver::Auto,
+            tolerance: self.now.tolerance,
+            ..SolverOptions::default()
+        };
+        let inputs = HeldInputs::constant(self.now.inputs.clone());
+        let instance = self.instance()?;
+        let start = (self.now.t, &self.now.state[..]);
+        let simulation = instance.start_simulation(start, inputs, options)?;
+        self.now.state.copy_from_slice(simulation.state());
+        self.simulation = Some(Box::new(simulation));
+        Ok(())
+    }
+
+    /// Has the simulation follow the present inputs.
+    fn update_simulation(&mut self) -> Outcome {
+        let Some(simulation) = &mut self.simulation else {
+            return self.start_simulation();
+        };
+        let followed = simulation.set_inputs(&self.now.inputs);
+        self.now.state.copy_from_slice(simulation.state());
+        Ok(followed?)
+    }
+
+    /// Makes a communication step from a time, of a length (s).
+    pub fn make_step(&mut self, from: f64, length: f64) -> Outcome {
+        let (end, t) = (from + length, self.now.t);
+        let slack = TIME_ROUNDING * (t.abs() + length.abs());
+        if !(length > 0.0 && end.is_finite()) {
+            return Err(invalid(format!(
+                "communicationStepSize = {length:?}: not a step forward"
+            )));
+        }
+        if !((from - t).abs() <= slack) {
+            return Err(invalid(format!(
+                "currentCommunicationPoint = {from:?}: the last step ended at {t:?}"
+            )));
+        }
+        if let Some(stop) = self.now.stop.filter(|stop| end > stop + slack) {
+            return Err(invalid(format!(
+                "communicationStepSize = {length:?}: the step leads beyond the stop time {stop:?}"
+            )));
+        }
+        self.update_simulation()?;
+        self.external = None;
+        self.now.surface_modes.clear();
+        let Some(simulation) = &mut self.simulation else {
+            return Ok(());
+        };
+        simulation.clear_events();
+        let ended = simulation.advance(end.max(t));
+        self.now.t = simulation.time();
+        self.now.state.copy_from_slice(simulation.state());
+        Ok(ended?)
+    }
+
+    /// Returns true if the simulation has the present values.
+    fn is_simulating(&self) -> bool {
+        self.kind == Kind::CoSimulation && !self.is_in(BEFORE_START)
+    }
+
+    /// Returns the rates.
+    pub fn rates(&mut self) -> Outcome<Vec<f64>> {
+        let mut rates = vec![0.0; self.layout.states];
+        if self.is_simulating() {
+            self.update_simulation()?;
+        }
+        if let Some(simulation) = &mut self.simulation {
+            simulation.write_rates(&mut rates);
+            return Ok(rates);
+        }
+        let (t, state) = (self.now.t, self.now.state.clone());
+        self.external()?.rates(t, &state, &mut rates);
+        Ok(rates)
+    }
+
+    /// Returns the observables.
+    pub fn observables(&mut self) -> Outcome<Vec<f64>> {
+        let mut observables = vec![0.0; self.layout.observables];
+        if self.is_simulating() {
+            self.update_simulation()?;
+        }
+        if let Some(simulation) = &mut self.simulation {
+            simulation.write_observables(&mut observables);
+            return Ok(observables);
+        }
+        let (t, state) = (self.now.t, self.now.state.clone());
+        let motion = self.external()?;
+        motion.with_fixed_sides(|system| system.write_observables((t, &state), &mut observables));
+        Ok(observables)
+    }
+
+    /// Returns the event indicators.
+    pub fn indicators(&mut self) -> Outcome<Vec<f64>> {
+        let mut indicators = vec![0.0; self.layout.indicators];
+        let (t, state) = (self.now.t, self.now.state.clone());
+        self.external()?.event_functions(t, &state, &mut indicators);
+        Ok(indicators)
+    }
+
+    /// Returns the motion for model exchange; it starts at the present point if there is none.
+    pub fn external(&mut self) -> Outcome<&mut External> {
+        if self.external.is_none() {
+            let modes = self.surface_modes();
+            let parameters = self.now.parameters.clone();
+            self.external = Some(Box::new(self.start_external(&parameters, &modes)?));
+        }
+        let motion = self.external.as_deref_mut();
+        motion.ok_or_else(|| invalid("the unit has no motion"))
+    }
+
+    /// Starts a motion at the present point, at these parameters and modes of the surfaces.
+    pub fn start_external(
+        &mut self,
+        parameters: &[f64],
+        modes: &[SurfaceMode],
+    ) -> Outcome<External> {
+        let instance = match *parameters == *self.now.parameters {
+            true => self.instance()?,
+            false => self.instance_at(parameters)?,
+        };
+        let evaluator = RefCell::new(instance.evaluator()?);
+        let inputs = HeldInputs::constant(self.now.inputs.clone());
+        let system = instance.driven_model(evaluator, inputs)?;
+        let at = (self.now.t, &self.now.state[..]);
+        Ok(ExternalMotion::start(system, at, modes, self.now.tolerance))
+    }
+
+    /// Returns the modes of the surfaces; empty if the state decides.
+    pub fn surface_modes(&mut self) -> Vec<SurfaceMode> {
+        if let Some(motion) = &mut self.external {
+            return motion.modes();
+        }
+        match &self.simulation {
+            Some(simulation) => simulation.modes().to_vec(),
+            None => self.now.surface_modes.clone(),
+        }
+    }
+
+    /// Keeps the surfaces that hold and the contacts that are closed for the next start of the motion.
+    pub fn keep_resting_modes(&mut self) {
+        let mut modes = self.surface_modes();
+        for mode in &mut modes {
+            if !matches!(mode, SurfaceMode::Held | SurfaceMode::Closed) {
+                *mode = SurfaceMode::Unknown;
+            }
+        }
+        self.now.surface_modes = match self.is_in(BEFORE_START) {
+            true => Vec::new(),
+            false => modes,
+        };
+    }
+
+    /// Has the motion for model exchange follow the present inputs.
+    pub fn follow_inputs(&mut self) {
+        let inputs = HeldInputs::constant(self.now.inputs.clone());
+        match &mut self.external {
+            Some(motion) if self.now.mode == Mode::Continuous => {
+                motion.system_mut().set_inputs(inputs);
+            }
+            // In event mode the event applies the jump.
+            Some(_) if self.now.mode == Mode::Event => {}
+            _ => self.external = None,
+        }
+    }
+
+    /// Enters event mode; inputs that change there jump.
+    pub fn enter_event_mode(&mut self) {
+        if self.now.mode != Mode::Event {
+            self.now.earlier_inputs.clone_from(&self.now.inputs);
+        }
+        self.now.mode = Mode::Event;
+    }
+
+    /// Applies the events at the present point. Returns true if the state changed.
+    pub fn apply_event(&mut self) -> Outcome<bool> {
+        let (t, mut state) = (self.now.t, self.now.state.clone());
+        let inputs = self.now.inputs.clone();
+        let count = inputs.len();
+        let rows = [&self.now.earlier_inputs[..], &inputs].concat();
+        let jump = HeldInputs::new(vec![t.next_down(), t], rows, count);
+        let motion = self.external()?;
+        if let Some(jump) = jump {
+            motion.system_mut().set_inputs(jump);
+        }
+        let is_changed = motion.apply_event(t, &mut state);
+        motion.system_mut().set_inputs(HeldInputs::constant(inputs));
+        if state.iter().any(|entry| !entry.is_finite()) {
+            let reason = motion.system().stop_message();
+            let reason = reason.unwrap_or_else(|| {
+                format!("at t = {t:?} s the event has no finite state: the motion cannot continue")
+            });
+            return Err(unavailable(reason));
+        }
+        self.now.state = state;
+        self.now.earlier_inputs.clone_from(&self.now.inputs);
+        Ok(is_changed)
+    }
+
+    /// Accepts a step of the importer's solver. Returns true if an event must follow.
+    pub fn complete_step(&mut self) -> Outcome<bool> {
+        let (t, state) = (self.now.t, self.now.state.clone());
+        Ok(self.external()?.complete_step(t, &state))
+    }
+}

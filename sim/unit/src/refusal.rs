@@ -1,0 +1,49 @@
+//! Reasons why a call of the importer fails.
+
+use eomgen_compiled_model::Error;
+
+/// Status of a call, with the values of the standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Status {
+    /// The call succeeded.
+    Ok = 0,
+    /// The call did not succeed here; the importer may try a shorter step or another state.
+    Discard = 2,
+    /// The call is invalid, and the instance is as before.
+    Error = 3,
+}
+
+/// Refusal of a call, with a message for the importer's logger.
+#[derive(Clone, Debug)]
+pub struct Refusal {
+    pub status: Status,
+    pub message: String,
+}
+
+pub type Outcome<T = ()> = Result<T, Refusal>;
+
+/// Returns the refusal of an invalid call.
+pub fn invalid(message: impl Into<String>) -> Refusal {
+    Refusal {
+        status: Status::Error,
+        message: message.into(),
+    }
+}
+
+/// Returns the refusal of a value that the unit cannot compute here.
+pub fn unavailable(message: impl Into<String>) -> Refusal {
+    Refusal {
+        status: Status::Discard,
+        message: message.into(),
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        match &error {
+            Error::Stopped { .. } => unavailable(error.to_string()),
+            _ => invalid(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Saved states of an instance, also serialised: a mark, the token of the unit, the condition, and a checksum, which
+//! detects truncated or modified data.
+
+use eomgen_sim::ode::SurfaceMode;
+
+use crate::refusal::{Outcome, invalid};
+use crate::resources::token;
+use crate::unit::{Condition, Kind, Mode, Unit};
+
+const MARK: &[u8] = b"eomgen 2";
+
+const CHECKSUM_LENGTH: usize = 8;
+
+const MODES: [Mode; 6] = [
+    Mode::Instantiated,
+    Mode::Initialization,
+    Mode::Event,
+    Mode::Continuous,
+    Mode::Step,
+    Mode::Terminated,
+];
+
+const SURFACE_MODES: [SurfaceMode; 6] = [
+    SurfaceMode::Unknown,
+    SurfaceMode::Negative,
+    SurfaceMode::Positive,
+    SurfaceMode::Held,
+    SurfaceMode::Closed,
+    SurfaceMode::Open,
+];
+
+/// Saved state of an instance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SavedState {
+    kind: Kind,
+    condition: Condition,
+}
+
+impl Unit {
+    /// Saves the present state.
+    pub fn save(&mut self) -> SavedState {
+        let mut surface_modes = self.surface_modes();
+        surface_modes.resize(self.layout.indicators, SurfaceMode::Unknown);
+        SavedState {
+            kind: self.kind,
+            condition: Condition {
+                surface_modes,
+                ..self.now.clone()
+            },
+        }
+    }
+
+    /// Continues from a saved state.
+    pub fn restore(&mut self, saved: &SavedState) -> Outcome {
+        if saved.kind != self.kind {
+            return Err(invalid(
+                "the saved state is of an instance of the other kind",
+            ));
+        }
+        self.set_condition(saved.condition.clone());
+        Ok(())
+    }
+
+    /// Returns the bytes of a saved state.
+    pub fn serialise(&self, saved: &SavedState) -> Vec<u8> {
+        let mut bytes = [MARK, token(self.compiled.program()).as_bytes()].concat();
+        let now = &saved.condition;
+        bytes.push(u8::from(saved.kind == Kind::CoSimulation));
+        bytes.push(now.mode as u8);
+        bytes.push(u8::from(now.stop.is_some()));
+        let surface_modes = now.surface_modes.iter();
+        let place = |mode: &SurfaceMode| SURFACE_MODES.iter().position(|known| known == mode);
+        bytes.extend(surface_modes.map(|mode| place(mode).unwrap_or(0) as u8));
+        let scalars = [now.t, now.tolerance, now.stop.unwrap_or(0.0)];
+        let vectors = [
+            &now.state,
+            &now.inputs,
+            &now.earlier_inputs,
+            &now.parameters,
+        ];
+        for number in scalars.iter().chain(vectors.into_iter().flatten()) {
+            bytes.extend(number.to_le_bytes());
+        }
+        let sum = compute_checksum(&bytes);
+        bytes.extend(sum);
+        bytes
+    }
+
+    /// Returns the number of bytes of a saved state.
+    pub fn serialised_length(&mut self) -> usize {
+        let saved = self.save();
+        self.serialise(&saved).len()
+    }
+
+    /// Reads a saved state from its bytes; further bytes are ignored.
+    pub fn deserialise(&mut self, bytes: &[u8]) -> Outcome<SavedState> {
+        let length = self.serialised_length();
+        let bytes = bytes.get(..length);
+        let bytes =
+            bytes.ok_or_else(|| invalid("the bytes of a saved state are missing or cut"))?;
+        let foreign = || invalid("these bytes are no saved state of this unit");
+        let (content, sum) = bytes.split_at(length - CHECKSUM_LENGTH);
+        let head = [MARK, token(self.compiled.program()).as_bytes()].concat();
+        let content = match compute_checksum(content) == *sum {
+            true => content.strip_prefix(&head[..]).ok_or_else(foreign)?,
+            false => return Err(foreign()),
+        };
+        let (flags, rest) = content.split_at(3);
+        let (surface_modes, numbers) = rest.split_at(self.layout.indicators);
+        let mode = MODES.into_iter().find(|mode| *mode as u8 == flags[1]);
+        let surface_modes: Option<Vec<SurfaceMode>> = surface_modes
+            .iter()
+            .map(|place| SURFACE_MODES.get(usize::from(*place)).copied())
+            .collect();
+        let mut numbers = numbers.chunks_exact(8).map(|chunk| {
+            let mut bytes = [0; 8];
+            bytes.copy_from_slice(chunk);
+            f64::from_le_bytes(bytes)
+        });
+        let mut next = |count: usize| numbers.by_ref().take(count).collect::<Vec<f64>>();
+        let scalars = next(3);
+        let condition = Condition {
+            mode: mode.ok_or_else(foreign)?,
+            t: scalars[0],
+            tolerance: scalars[1],
+            stop: (flags[2] == 1).then_some(scalars[2]),
+            state: next(self.layout.states),
+            inputs: next(self.layout.inputs),
+            earlier_inputs: next(self.layout.inputs),
+            parameters: next(self.layout.parameters),
+            surface_modes: surface_modes.ok_or_else(foreign)?,
+        };
+        let kind = match flags[0] {
+            0 => Kind::ModelExchange,
+            _ => Kind::CoSimulation,
+        };
+        Ok(SavedState { kind, condition })
+    }
+}
+
+/// Returns the FNV-1a hash of some bytes (G. Fowler, L. Noll, P. Vo).
+fn compute_checksum(bytes: &[u8]) -> [u8; CHECKSUM_LENGTH] {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    hash.to_le_bytes()
+}
