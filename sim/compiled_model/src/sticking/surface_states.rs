@@ -138,6 +138,7 @@ impl SurfaceStates {
         }
         for (surface, place) in self.places.iter_mut().enumerate() {
             if modes[self.sided.guard_index(surface)] == SurfaceMode::Held {
+                // The start of the motion decides about the force.
                 *place = SurfaceState::Unloaded { from: 1.0 };
             }
         }

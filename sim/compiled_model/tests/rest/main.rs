@@ -5,6 +5,7 @@
 mod constrained;
 mod discs;
 mod domain;
+mod external_motion;
 mod rows;
 mod seldom;
 mod time_stepping;

@@ -203,6 +203,38 @@ fn invalid_calls_return_error_status() {
     }
 }
 
+#[test]
+fn units_contain_settings_and_extended_specifications() {
+    let what = "a unit with settings was not simulated";
+    if !is_available("fmpy, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = project().join("tests/tests/hosts/fmi/units/held_block.toml");
+    std::fs::copy(own, folder.path().join("base.toml")).expect("a copy");
+    let spec = folder.path().join("stiff_block.toml");
+    let text = "[model]\nextends = \"base.toml\"\nname = \"stiff_block\"\n[parameters]\n\
+                k = { value = 90, unit = \"N/m\" }\n";
+    std::fs::write(&spec, text).expect("a file");
+    let (text, table) = (spec.to_string_lossy(), folder.path().join("set.csv"));
+    let table = table.to_string_lossy();
+    let set = ["--set", "F=2", "--set", "m=1.3"];
+    let simulate = [
+        &["simulate", &text, "--until", "2", "--interval", "0.02"],
+        &set[..],
+    ]
+    .concat();
+    run_accepted(&[&simulate[..], &["--out", &table]].concat());
+    for target in VERSIONS {
+        let out = folder.path().join(target);
+        let out = out.to_string_lossy();
+        let generate = ["generate", &text, "--target", target, "--out", &out];
+        run_accepted(&[&generate[..], &set[..]].concat());
+        let unit = format!("{out}/stiff_block.fmu");
+        run_python("motion.py", &[&unit, &table, "1e-9", "1e-5", "1e-6"]);
+    }
+}
+
 /// Copies the program alone, as an installation without the library of units.
 #[test]
 fn missing_library_is_reported_with_its_cure() {
