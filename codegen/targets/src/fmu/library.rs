@@ -54,8 +54,9 @@ pub fn read(name: &str, version: Version) -> Result<(String, Vec<u8>)> {
 fn read_beside_program() -> Result<Vec<u8>> {
     let file = format!("{DLL_PREFIX}eomgen_unit{DLL_SUFFIX}");
     let program = std::env::current_exe().and_then(|path| path.canonicalize());
-    let program = program
-        .map_err(|error| EmissionError::request(format!("cannot find the folder of the program: {error}")))?;
+    let program = program.map_err(|error| {
+        EmissionError::request(format!("cannot find the folder of the program: {error}"))
+    })?;
     let folder = program.parent().unwrap_or(Path::new(""));
     let places: [PathBuf; 2] = [folder.join(&file), folder.join("deps").join(&file)];
     let Some(place) = places.iter().find(|place| place.is_file()) else {
@@ -65,6 +66,7 @@ fn read_beside_program() -> Result<Vec<u8>> {
             folder.display()
         )));
     };
-    std::fs::read(place)
-        .map_err(|error| EmissionError::request(format!("cannot read {}: {error}", place.display())))
+    std::fs::read(place).map_err(|error| {
+        EmissionError::request(format!("cannot read {}: {error}", place.display()))
+    })
 }

@@ -54,7 +54,9 @@ fn write_parameters(model: &Model) -> Result<Model> {
     let declared = checked.map_err(EmissionError::Specification)?.model;
     let edits: Vec<Edit> = (model.parameters.iter().zip(&declared.parameters))
         .filter_map(|(own, known)| match (&own.value, &known.value) {
-            (ParameterValue::Number(value), ParameterValue::Number(known)) if value == known => None,
+            (ParameterValue::Number(value), ParameterValue::Number(known)) if value == known => {
+                None
+            }
             (ParameterValue::Number(value), _) => Some(Edit::SetParameter(SetParameter {
                 name: own.name.clone(),
                 value: own.unit.from_si(*value),

@@ -73,7 +73,9 @@ impl Unit {
     pub fn new(compiled: &CompiledModel) -> Result<Self> {
         let (model, program) = (compiled.model(), compiled.program());
         let orders = compiled.orders();
-        let instance = compiled.with_declared_parameters().map_err(EmissionError::request)?;
+        let instance = compiled
+            .with_declared_parameters()
+            .map_err(EmissionError::request)?;
         let state = instance.initial_state();
         let mut list = List::default();
         let seconds = Measurement::parse("s").ok();
@@ -105,7 +107,11 @@ impl Unit {
             let (name, doc) = (&observable.name, &observable.doc);
             list.add(name, Kind::Observable, doc, unit.as_ref());
         }
-        for (place, surface) in find_surfaces(&instance).map_err(EmissionError::request)?.iter().enumerate() {
+        for (place, surface) in find_surfaces(&instance)
+            .map_err(EmissionError::request)?
+            .iter()
+            .enumerate()
+        {
             let name = format!("indicator[{}]", place + 1);
             let doc = format!("Changes sign at events of {}", surface.formula);
             list.add(&name, Kind::Indicator, &doc, None);
