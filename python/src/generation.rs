@@ -52,16 +52,24 @@ pub fn parse_outputs(names: &[String]) -> PyResult<Vec<Output>> {
     outputs.map_err(PyValueError::new_err)
 }
 
-/// Returns the target of a name.
+/// Returns the target of a name. Units need a library that the Python package does not contain.
 fn parse_target(name: &str) -> PyResult<Target> {
-    let known = Target::ALL.into_iter().find(|known| known.name() == name);
-    known.ok_or_else(|| {
-        let names = Target::ALL.map(|known| format!("\"{}\"", known.name()));
-        PyValueError::new_err(format!(
-            "target = \"{name}\": expected one of {}",
-            names.join(", ")
-        ))
-    })
+    let is_unit = |target: &Target| matches!(target, Target::Fmu2 | Target::Fmu3);
+    match Target::ALL.into_iter().find(|known| known.name() == name) {
+        Some(target) if is_unit(&target) => Err(PyValueError::new_err(format!(
+            "target = \"{name}\": the Python package does not contain the library of functional mock-up units; run \
+             `eomgen generate SPEC --target {name} --out DIR`"
+        ))),
+        Some(target) => Ok(target),
+        None => {
+            let known = Target::ALL.into_iter().filter(|target| !is_unit(target));
+            let names: Vec<String> = known.map(|known| format!("\"{}\"", known.name())).collect();
+            Err(PyValueError::new_err(format!(
+                "target = \"{name}\": expected one of {}",
+                names.join(", ")
+            )))
+        }
+    }
 }
 
 fn emission_error(error: EmissionError) -> PyErr {
