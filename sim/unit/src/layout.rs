@@ -38,6 +38,9 @@ pub struct Layout {
     pub indicators: usize,
 }
 
+/// Returns the variable of one kind with an index.
+type VariableOfKind = fn(usize) -> Variable;
+
 impl Layout {
     /// Returns the layout of a model with this number of switching surfaces.
     pub fn new(model: &CompiledModel, surfaces: usize) -> Self {
@@ -75,7 +78,7 @@ impl Layout {
     /// Returns the variable with a value reference; `None` if there is none.
     pub fn find(&self, reference: usize) -> Option<Variable> {
         let rates = 1 + self.states;
-        let kinds: [(Range<usize>, fn(usize) -> Variable); 6] = [
+        let kinds: [(Range<usize>, VariableOfKind); 6] = [
             (1..rates, Variable::State),
             (rates..self.first_input(), Variable::Rate),
             (self.first_input()..self.first_parameter(), Variable::Input),

@@ -73,7 +73,7 @@ impl Unit {
                 "communicationStepSize = {length:?}: not a step forward"
             )));
         }
-        if !((from - t).abs() <= slack) {
+        if from.is_nan() || (from - t).abs() > slack {
             return Err(invalid(format!(
                 "currentCommunicationPoint = {from:?}: the last step ended at {t:?}"
             )));

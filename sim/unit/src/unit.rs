@@ -139,7 +139,7 @@ impl Unit {
 
     /// Sets tolerance, start and end of the experiment, s.
     pub fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
-        if !start.is_finite() || stop.is_some_and(|stop| !(stop > start)) {
+        if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop <= start) {
             return Err(invalid(
                 "the start time is no finite number, or the stop time not after it",
             ));

@@ -199,10 +199,10 @@ impl Unit {
 }
 
 /// Returns the numbers in `slot`, computed at the first use.
-fn compute<'c>(
-    slot: &'c mut Option<Vec<f64>>,
+fn compute(
+    slot: &mut Option<Vec<f64>>,
     values: impl FnOnce() -> Outcome<Vec<f64>>,
-) -> Outcome<&'c [f64]> {
+) -> Outcome<&[f64]> {
     if slot.is_none() {
         *slot = Some(values()?);
     }

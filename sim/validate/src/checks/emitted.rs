@@ -88,7 +88,7 @@ fn call_statements(functions: &[EmittedFunction]) -> String {
     calls
 }
 
-/// Returns at most [`STATES`] states in the model's domain.
+/// Returns at most `STATES` states in the model's domain.
 pub fn draw_samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let mut samples = Vec::with_capacity(STATES);
