@@ -105,7 +105,7 @@ fn friction_holds_until_an_input_releases_the_block() {
     let model = of_text(
         "[model]\nname = \"block\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
          k = { value = 40, unit = \"N/m\" }\nF = { value = 3, unit = \"N\" }\n\
-         [coordinates]\nx = { unit = \"m\", initial = 0.5 }\n[inputs]\nu = \"N\"\n\
+         [coordinates]\nx = { unit = \"m\", initial = 0.5 }\n[inputs]\nu = { unit = \"N\" }\n\
          [kinetic]\nt = \"1/2*m*dot(x)^2\"\n[potential]\nv = \"1/2*k*x^2\"\n\
          [forces]\nf = { on = \"x\", value = \"-F*sign(dot(x))\" }\ndrive = { on = \"x\", value = \"u\" }\n",
     );
