@@ -40,7 +40,12 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 17] = [
+const TESTED_ELSEWHERE: [(&str, &str); 18] = [
+    // The test compiles an image with two variants and lists them.
+    (
+        "cargo run --release -- identify firmware.elf ",
+        "tests/tests/emission/families.rs",
+    ),
     // `generate --all --check` compares the variants of the same file.
     (
         "cargo run --release -- family generated/family.toml ",
