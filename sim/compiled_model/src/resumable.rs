@@ -71,11 +71,11 @@ impl SolverOptions {
 ///     [parameters]
 ///     m = { value = 2.0, unit = "kg" }
 ///     [coordinates]
-///     x = "m"
+///     x = { unit = "m" }
 ///     [inputs]
-///     F = "N"
-///     [energy]
-///     kinetic = "1/2*m*dot(x)^2"
+///     F = { unit = "N" }
+///     [kinetic]
+///     mass = "1/2*m*dot(x)^2"
 ///     [forces]
 ///     drive = { on = "x", value = "F" }
 /// "#;
