@@ -13,9 +13,9 @@ use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
 use crate::general_run::GeneralRun;
 use crate::instance::Instance;
-use crate::motion::{EarlyStop, Solver, StopCause};
+use crate::motion::{EarlyStop, Solver, SolverChoice, StopCause};
 use crate::projection::InitialChange;
-use crate::simulation::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS};
+use crate::simulation::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS, TIME_VARYING_INPUTS_MESSAGE};
 use crate::sticking::ObservedMotion;
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
@@ -98,6 +98,7 @@ pub struct Simulation<'m> {
     /// Inputs from the time reached on.
     present_inputs: Vec<f64>,
     engine: Engine,
+    solver_choice: Option<SolverChoice>,
     surfaces: Vec<Surface>,
     initial_changes: Vec<InitialChange>,
     /// Events and jumps since [`Simulation::clear_events`].
@@ -130,30 +131,21 @@ impl<'m> Instance<'m> {
         let check = options.settings(Method::default()).check();
         check.map_err(|error| Error::Request(error.to_string()))?;
         self.check_held_inputs(&inputs, (t, t))?;
-        let is_held = !inputs.is_time_varying();
-        let exact = match options.solver {
-            Solver::Exact if !is_held => {
-                return Err(Error::Request(
-                    "the exact solver holds inputs constant between samples, but these inputs are functions of \
-                     time: use --solver rk"
-                        .to_owned(),
-                ));
-            }
-            Solver::Exact => Some(self.start_exact((t, state), &inputs)?),
-            Solver::Auto if is_held && self.model().piecewise_linear().is_ok() => {
-                Some(self.start_exact((t, state), &inputs)?)
-            }
-            _ => None,
+        if options.solver == Solver::Exact && inputs.is_time_varying() {
+            return Err(Error::Request(format!(
+                "{TIME_VARYING_INPUTS_MESSAGE}: use --solver rk"
+            )));
+        }
+        let choice = (options.solver == Solver::Auto).then(|| self.choose_solver(&inputs));
+        let is_exact = match &choice {
+            Some(choice) => *choice == SolverChoice::PiecewiseLinear,
+            None => options.solver == Solver::Exact,
         };
-        let (engine, initial_changes) = match exact {
-            Some(engine) => (engine, Vec::new()),
-            None => {
-                let method = match options.solver {
-                    Solver::Radau => Method::Radau,
-                    Solver::Adams => Method::Adams,
-                    _ => Method::DormandPrince853,
-                };
-                self.start_general((t, state), &inputs, &options.settings(method))?
+        let (engine, initial_changes) = match is_exact {
+            true => (self.start_exact((t, state), &inputs)?, Vec::new()),
+            false => {
+                let settings = options.settings(general_method(options.solver));
+                self.start_general((t, state), &inputs, &settings)?
             }
         };
         let surfaces = match &engine {
@@ -166,10 +158,22 @@ impl<'m> Instance<'m> {
             present_inputs: inputs.evaluate(t).into_owned(),
             inputs,
             engine,
+            solver_choice: choice,
             surfaces,
             initial_changes,
             log: Trajectory::default(),
         })
+    }
+
+    /// Returns the reason for the exact solver, or for another one.
+    fn choose_solver(&self, inputs: &HeldInputs) -> SolverChoice {
+        if inputs.is_time_varying() {
+            return SolverChoice::NotPiecewiseLinear(TIME_VARYING_INPUTS_MESSAGE.to_owned());
+        }
+        match self.model().piecewise_linear() {
+            Ok(_) => SolverChoice::PiecewiseLinear,
+            Err(error) => SolverChoice::NotPiecewiseLinear(error.to_string()),
+        }
     }
 
     fn surfaces(&self, inputs: &HeldInputs) -> Result<Vec<Surface>, Error> {
@@ -243,6 +247,11 @@ impl Simulation<'_> {
             Engine::Exact { .. } => Solver::Exact,
             Engine::General { run, .. } => run.solver,
         }
+    }
+
+    /// Returns the reason for this solver; `None` if it was requested.
+    pub fn solver_choice(&self) -> Option<&SolverChoice> {
+        self.solver_choice.as_ref()
     }
 
     /// Returns the switching surfaces of the events.
@@ -359,21 +368,24 @@ impl Simulation<'_> {
                 return Ok(None);
             };
             match stop {
-                (_, Some(method)) if self.options.solver == Solver::Auto => {
-                    self.continue_with(method)?;
+                (_, Some((solver, choice))) if self.options.solver == Solver::Auto => {
+                    let state = self.state().to_vec();
+                    self.restart_general(solver, &state)?;
+                    self.solver_choice = Some(choice);
                 }
                 (stop, _) => return Ok(Some(stop)),
             }
         }
     }
 
-    /// Continues with the present solver. Returns the reason of an early stop, and a method that may continue from there.
+    /// Continues with the present solver. Returns the reason of an early stop, and another solver that may
+    /// continue from there.
     fn try_advance(
         &mut self,
         (until, samples): (f64, &[f64]),
         trajectory: &mut Trajectory,
         progress: &mut dyn FnMut(f64),
-    ) -> Option<(EarlyStop, Option<Method>)> {
+    ) -> Option<(EarlyStop, Option<(Solver, SolverChoice)>)> {
         let begin = self.time();
         if begin == until && samples.is_empty() {
             return None;
@@ -399,28 +411,32 @@ impl Simulation<'_> {
                     reason: describe_exact_stop(model, &self.surfaces, &error),
                     cause: find_exact_stop_cause(model, &error, &self.surfaces),
                 };
-                let may_continue = may_be_supported_by_general(&error);
-                Some((stop, may_continue.then_some(Method::DormandPrince853)))
+                let reason = || SolverChoice::NotSupportedByExact(stop.reason.clone());
+                let next = may_be_supported_by_general(&error).then(|| (Solver::Rk, reason()));
+                Some((stop, next))
             }
             Engine::General { run, simulation } => {
                 let asked = (until, samples);
                 let ended = simulation.advance(&run.system, asked, trajectory, progress);
                 let error = ended.err()?;
                 let stop = run.early_stop(model, &error, (begin, simulation.state()));
-                let is_stiff = matches!(stop.cause, StopCause::Stiff(_));
-                let may_continue = is_stiff && run.solver != Solver::Radau;
-                Some((stop, may_continue.then_some(Method::Radau)))
+                let next = match &stop.cause {
+                    StopCause::Stiff(what) if run.solver != Solver::Radau => {
+                        Some((Solver::Radau, SolverChoice::Stiff(what.clone())))
+                    }
+                    _ => None,
+                };
+                Some((stop, next))
             }
         }
     }
 
-    fn continue_with(&mut self, method: Method) -> Result<(), Error> {
-        let start = (self.time(), self.state());
-        let settings = self.options.settings(method);
-        let started = self
-            .instance
-            .start_general(start, &self.inputs, &settings)?;
-        self.engine = started.0;
+    /// Continues with a general solver from a state at the time reached.
+    fn restart_general(&mut self, solver: Solver, state: &[f64]) -> Result<(), Error> {
+        let settings = self.options.settings(general_method(solver));
+        let start = (self.time(), state);
+        let (engine, _) = (self.instance).start_general(start, &self.inputs, &settings)?;
+        self.engine = engine;
         Ok(())
     }
 
@@ -502,34 +518,30 @@ impl Simulation<'_> {
     /// # Errors
     /// An invalid state, and one from which the motion cannot continue.
     pub fn set_state(&mut self, state: &[f64]) -> Result<(), Error> {
-        let span = (self.time(), self.time() + FIRST_LENGTH_S);
         let states = self.instance.model().program().states();
         if state.len() != states || state.iter().any(|entry| !entry.is_finite()) {
             return Err(Error::Request(format!(
                 "a state has {states} finite entries"
             )));
         }
-        let found = (self.instance).find_consistent_start(state, span, &self.inputs)?;
-        match &self.engine {
-            Engine::Exact { .. } => {
-                self.engine = self.instance.start_exact((span.0, state), &self.inputs)?;
+        // Surfaces hold or close anew.
+        match self.solver() {
+            Solver::Exact => {
+                let start = (self.time(), state);
+                self.engine = self.instance.start_exact(start, &self.inputs)?;
                 Ok(())
             }
-            // Surfaces hold or close anew.
-            Engine::General { run, .. } => {
-                let method = match run.solver {
-                    Solver::Radau => Method::Radau,
-                    Solver::Adams => Method::Adams,
-                    _ => Method::DormandPrince853,
-                };
-                let settings = self.options.settings(method);
-                let start = (span.0, &found.0[..]);
-                self.engine = (self.instance)
-                    .start_general(start, &self.inputs, &settings)?
-                    .0;
-                Ok(())
-            }
+            solver => self.restart_general(solver, state),
         }
+    }
+}
+
+/// Returns the method of a solver that supports any model.
+fn general_method(solver: Solver) -> Method {
+    match solver {
+        Solver::Radau => Method::Radau,
+        Solver::Adams => Method::Adams,
+        Solver::Auto | Solver::Exact | Solver::Rk => Method::DormandPrince853,
     }
 }
 

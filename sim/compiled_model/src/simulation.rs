@@ -25,6 +25,10 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 /// changes to the implicit solver. That solver needs a few times less time for the trajectory.
 pub(crate) const MAX_STIFF_STEPS: u64 = 100_000;
 
+/// Reason why the exact solver does not support inputs.
+pub(crate) const TIME_VARYING_INPUTS_MESSAGE: &str = "the exact solver holds inputs constant between samples, but these \
+     inputs are functions of time";
+
 /// Request for a simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'r> {
@@ -128,8 +132,7 @@ impl Instance<'_> {
         };
         let is_free = request.solver == Solver::Auto;
         if request.inputs.is_time_varying() {
-            let reason = "the exact solver holds inputs constant between samples, but these inputs are \
-                          functions of time";
+            let reason = TIME_VARYING_INPUTS_MESSAGE;
             return match is_free {
                 true => self.simulate_automatically(
                     request,

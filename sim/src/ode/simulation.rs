@@ -61,7 +61,7 @@ pub fn simulate_into(
 /// changed in between; see [`Simulation::follow_input_jump`].
 pub struct Simulation {
     run: Box<dyn Continue>,
-    record: Option<Record>,
+    record: Record,
     settings: Settings,
     point: Point,
     is_started: bool,
@@ -102,7 +102,7 @@ impl Simulation {
         };
         Self {
             run,
-            record: Some(record),
+            record,
             settings: *settings,
             point,
             is_started: false,
@@ -156,10 +156,7 @@ impl Simulation {
         trajectory: &mut Trajectory,
         progress: &mut dyn FnMut(f64),
     ) -> Result<(), SolveError> {
-        let Some(record) = self.record.take() else {
-            return Ok(());
-        };
-        let watched = WatchedSystem::resume(system, record);
+        let watched = WatchedSystem::resume(system, std::mem::take(&mut self.record));
         let call = Call {
             asked,
             settings: &self.settings,
@@ -170,7 +167,7 @@ impl Simulation {
             .run
             .go_on(&watched, system, call, (trajectory, progress));
         trajectory.statistics.evaluations += watched.evaluations();
-        self.record = Some(watched.pause());
+        self.record = watched.pause();
         self.point = match &ended {
             Ok(point) => point.clone(),
             Err(_) => self.run.current_point(),
@@ -189,11 +186,8 @@ impl Simulation {
         system: &dyn System,
         trajectory: &mut Trajectory,
     ) -> Result<(), SolveError> {
-        let Some(record) = self.record.take() else {
-            return Ok(());
-        };
         self.run.restart(self.point.clone());
-        let watched = WatchedSystem::resume(system, record);
+        let watched = WatchedSystem::resume(system, std::mem::take(&mut self.record));
         let span = Span {
             end: self.point.t,
             may_pass: true,
@@ -205,7 +199,7 @@ impl Simulation {
         };
         self.is_started = true;
         let ended = self.run.follow_input_jump(&watched, call, trajectory);
-        self.record = Some(watched.pause());
+        self.record = watched.pause();
         self.point = self.run.current_point();
         ended
     }

@@ -248,7 +248,7 @@ impl Contacts {
         }
     }
 
-    /// What touches and does not move at the start, or is assumed to be closed, is closed if it pushes.
+    /// Closes the contacts that touch at rest at the start, and those assumed to be closed, if they push.
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         own.impacts(point, &mut self.at);

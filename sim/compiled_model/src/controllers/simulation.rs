@@ -8,7 +8,7 @@ use super::clock::Clock;
 use super::controller::{Sample, SampledController};
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
+use crate::motion::{ControllerStates, EarlyStop, Motion, StopCause};
 use crate::resumable::{Simulation, SolverOptions};
 use crate::simulation::{Request, with_early_stop};
 
@@ -54,29 +54,10 @@ impl Instance<'_> {
         };
         let stop = run.follow(progress)?;
         let motion = run.into_motion();
-        let motion = Motion {
-            solver_choice: self.choice(request, motion.solver),
-            ..motion
-        };
         match stop {
             None => Ok(motion),
             Some(stop) => with_early_stop(motion, stop),
         }
-    }
-
-    /// Returns the reason for the solver in use, if it was not requested.
-    fn choice(&self, request: &Request<'_>, solver: Solver) -> Option<SolverChoice> {
-        if request.solver != Solver::Auto {
-            return None;
-        }
-        Some(match (solver, self.model().piecewise_linear()) {
-            (Solver::Exact, _) => SolverChoice::PiecewiseLinear,
-            (_, Err(error)) => SolverChoice::NotPiecewiseLinear(error.to_string()),
-            (_, Ok(_)) if request.inputs.is_time_varying() => {
-                SolverChoice::NotPiecewiseLinear("inputs are functions of time".to_owned())
-            }
-            (_, Ok(_)) => SolverChoice::NotSupportedByExact("see its events".to_owned()),
-        })
     }
 }
 
@@ -261,7 +242,7 @@ impl ControlledRun<'_, '_, '_> {
             surfaces: self.simulation.surfaces().to_vec(),
             inputs: self.request.inputs.with_held_steps(&self.changes),
             solver: self.simulation.solver(),
-            solver_choice: None,
+            solver_choice: self.simulation.solver_choice().cloned(),
             early_stop: None,
             initial_changes: self.simulation.initial_changes().to_vec(),
             audit: None,

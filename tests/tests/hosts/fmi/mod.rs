@@ -82,7 +82,7 @@ fn both_kinds_of_units_match_simulate() {
         ("pendulum", None, "2", "1e-9", "1e-6"),
         ("furuta_pendulum", None, "1", "1e-9", "1e-5"),
         ("hub_beam_tip_mass", Some("2"), "0.05", "1e-10", "1e-4"),
-        // Deflections are some micrometres, so the tolerance must be small beside the nominal values.
+        // Deflections are some micrometres, so the tolerance must be small compared with the nominal values.
         ("planetary_arm", Some("2"), "0.05", "1e-11", "1e-4"),
     ] {
         compare_with_simulate(&path(name), order, until, (tolerance, limit), folder.path());
@@ -235,7 +235,7 @@ fn units_contain_settings_and_extended_specifications() {
     }
 }
 
-/// Copies the program alone, as an installation without the library of units.
+/// Copies the program without the library of units, as an installation may be.
 #[test]
 fn missing_library_is_reported_with_its_cure() {
     let folder = tempfile::tempdir().expect("a folder");
