@@ -65,7 +65,8 @@ impl Constants<'_> {
             | ExprKind::Residual(_)
             | ExprKind::Field(_)
             | ExprKind::ModeCoordinate(_)
-            | ExprKind::ModeShape(_) => None,
+            | ExprKind::ModeShape(_)
+            | ExprKind::SingleMode { .. } => None,
             ExprKind::Dot(part)
             | ExprKind::Diff(part, _)
             | ExprKind::Integral {

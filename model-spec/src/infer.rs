@@ -66,9 +66,9 @@ impl Inference<'_> {
             ExprKind::Coefficient(index) => {
                 Ok(self.coefficients.get(index.index()).copied().flatten())
             }
-            ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
-                Ok(Some(model.fields[*field].unit.dimension))
-            }
+            ExprKind::Field(field)
+            | ExprKind::ModeCoordinate(field)
+            | ExprKind::SingleMode { field, .. } => Ok(Some(model.fields[*field].unit.dimension)),
             ExprKind::Dot(operand) => {
                 let per = Some(Dimension::TIME);
                 scale_unit(self.infer(operand)?, per, Dimension::divide).ok_or_else(out_of_range)

@@ -698,7 +698,8 @@ impl Expr {
             | ExprKind::Residual(_)
             | ExprKind::Field(_)
             | ExprKind::ModeCoordinate(_)
-            | ExprKind::ModeShape(_) => {}
+            | ExprKind::ModeShape(_)
+            | ExprKind::SingleMode { .. } => {}
             ExprKind::Dot(part) | ExprKind::Diff(part, _) | ExprKind::Negate(part) => {
                 part.visit(see);
             }
@@ -755,6 +756,13 @@ pub enum ExprKind {
     /// Mode coordinate `q[i]` of a field; i is the index of the innermost enclosing sum over that
     /// field.
     ModeCoordinate(FieldId),
+    /// Coordinate `q_3` of one mode of a field; variants of a lower order do not have it.
+    SingleMode {
+        /// Field of the mode.
+        field: FieldId,
+        /// Number of the mode, from 1 on.
+        mode: usize,
+    },
     /// Mode shape `phi[i]` of a field, a function of the position; i as for mode coordinates.
     ModeShape(FieldId),
     /// Time derivative of a coordinate, definition, field, mode coordinate or state.

@@ -385,7 +385,9 @@ impl Checker<'_, '_> {
             ExprKind::Coordinate(index) => {
                 motion.values.insert(coordinate_number(*index));
             }
-            ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
+            ExprKind::Field(field)
+            | ExprKind::ModeCoordinate(field)
+            | ExprKind::SingleMode { field, .. } => {
                 motion.values.insert(field_number(*field));
             }
             ExprKind::Definition(index) => {
@@ -486,6 +488,7 @@ fn may_move(expr: &Expr) -> bool {
                 | ExprKind::Definition(_)
                 | ExprKind::Field(_)
                 | ExprKind::ModeCoordinate(_)
+                | ExprKind::SingleMode { .. }
         );
     });
     moves

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::constants;
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
-use crate::model::{Expr, MAX_ORDER, Model, Parameter, ParameterValue, Range};
+use crate::model::{Expr, ExprKind, MAX_ORDER, Model, Parameter, ParameterValue, Range};
 use crate::source::sha256;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -95,6 +95,31 @@ impl Model {
     pub fn highest_order(&self) -> usize {
         let tables = self.fields.iter().filter_map(|field| field.basis.table());
         tables.fold(MAX_ORDER, |order, table| order.min(table.shapes.len()))
+    }
+
+    /// Returns the lowest order with all single modes that the expressions of the motion name.
+    pub fn lowest_order(&self) -> usize {
+        let terms = [&self.kinetic, &self.potential, &self.dissipation];
+        let expressions = (self.definitions.iter().map(|definition| &definition.value))
+            .chain(terms.into_iter().flatten().map(|term| &term.value))
+            .chain(
+                self.forces
+                    .iter()
+                    .flat_map(|force| [&force.on, &force.value]),
+            )
+            .chain(self.states.iter().map(|state| &state.rate))
+            .chain(self.constraints.iter().map(|constraint| &constraint.zero))
+            .chain(self.impacts.iter().map(|impact| &impact.when))
+            .chain(self.observables.iter().map(|observable| &observable.value));
+        let mut lowest = 0;
+        for expression in expressions {
+            expression.visit(&mut |part| {
+                if let ExprKind::SingleMode { mode, .. } = part.kind {
+                    lowest = lowest.max(mode);
+                }
+            });
+        }
+        lowest
     }
 
     /// Returns the values of all parameters in SI, in the order of [`Model::parameters`].

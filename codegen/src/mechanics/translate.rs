@@ -17,6 +17,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::{Direction, KnownDerivatives};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
+use crate::symbolic::tables::TableKind;
 
 /// Cause and place of a failed derivation.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -150,6 +151,7 @@ impl<'m> Translator<'m> {
             ExprKind::ModeCoordinate(field) => {
                 Ok(self.graph.intern(Operation::ModeCoordinates(*field)))
             }
+            ExprKind::SingleMode { field, mode } => self.single_mode(expr, *field, *mode),
             ExprKind::Residual(index) => self.residual(*index),
             ExprKind::Multiplier(index) => match self.multipliers.get(index.index()) {
                 Some(&node) => Ok(node),
@@ -187,6 +189,30 @@ impl<'m> Translator<'m> {
                 "a function of the position must be inside integral(...) or at(...)",
             )),
         }
+    }
+
+    /// Returns the coordinate of one mode: the sum over all modes, each times 1 or 0.
+    fn single_mode(&mut self, expr: &Expr, field: FieldId, mode: usize) -> Derived<NodeId> {
+        let order = self.graph.orders()[field];
+        if mode > order {
+            let names = &self.model.fields[field];
+            return Err(DeriveError {
+                span: expr.span,
+                message: format!(
+                    "there is no mode {mode} of `{}` at order {order}",
+                    names.name
+                ),
+                help: Some(format!(
+                    "derive orders from {mode} on, or write a sum over the modes"
+                )),
+            });
+        }
+        let indicator = self
+            .domain(field)?
+            .table(&mut self.graph, TableKind::Indicator(mode));
+        let modes = self.graph.intern(Operation::ModeCoordinates(field));
+        let selected = self.graph.multiply(indicator, modes);
+        Ok(self.graph.total_over(Space::Modes(field), selected))
     }
 
     fn nodes(&mut self, expressions: &[Expr]) -> Derived<Vec<NodeId>> {

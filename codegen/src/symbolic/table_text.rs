@@ -51,6 +51,7 @@ pub fn plain(kind: TableKind) -> String {
                 primes(right)
             )
         }
+        TableKind::Indicator(mode) => format!("[i = {mode}]"),
         TableKind::NodePosition => "s_g".to_owned(),
         TableKind::NodeWeight => "weight_g".to_owned(),
         TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", primes(d)),
@@ -86,6 +87,7 @@ pub fn latex(kind: TableKind) -> String {
         TableKind::PairMoment { power, left, right } => {
             integral(format!("{}{}{}", s(power), phi("i", left), phi("j", right)))
         }
+        TableKind::Indicator(mode) => format!("\\delta_{{i,{mode}}}"),
         TableKind::NodePosition => "s_g".to_owned(),
         TableKind::NodeWeight => "w_g".to_owned(),
         TableKind::ShapeAtNodes(d) => format!("{}(s_g)", phi("i", d)),
@@ -100,6 +102,7 @@ pub fn doc(table: &Table) -> String {
         TableKind::GrowingAmplitude => "Factors (1 + xi_r) exp(beta_r l) of the modes".to_owned(),
         TableKind::FallingAmplitude => "Factors of exp(-beta_r l s) in the modes".to_owned(),
         TableKind::RisingAmplitude => "Factors of exp(-beta_r l (1 - s)) in the modes".to_owned(),
+        TableKind::Indicator(mode) => format!("1 for mode {mode}, 0 for all others"),
         TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
         TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
         kind => format!(
@@ -177,6 +180,7 @@ pub fn constant_name(table: &Table) -> String {
                 derivative(right)
             )
         }
+        TableKind::Indicator(mode) => format!("MODE_{mode}"),
         TableKind::NodePosition => "NODES".to_owned(),
         TableKind::NodeWeight => "WEIGHTS".to_owned(),
         TableKind::ShapeAtNodes(d) => format!("PHI{}_AT_NODES", derivative(d)),

@@ -28,6 +28,8 @@ pub enum TableKind {
         /// a
         derivative: u8,
     },
+    /// 1 for the mode of this number, from 1 on, and 0 for all others, a vector over the modes.
+    Indicator(usize),
     /// Integral of s^k phi_r^(a), a vector over the modes.
     Moment {
         /// k

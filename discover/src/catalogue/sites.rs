@@ -52,6 +52,7 @@ fn collect_parts(model: &Model, expr: &Expr, into: &mut Parts) {
         ExprKind::Dot(_)
         | ExprKind::Field(_)
         | ExprKind::ModeCoordinate(_)
+        | ExprKind::SingleMode { .. }
         | ExprKind::Time
         | ExprKind::Input(_)
         | ExprKind::State(_)

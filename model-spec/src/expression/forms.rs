@@ -67,7 +67,8 @@ impl Resolver<'_> {
             | ExprKind::State(_)
             | ExprKind::Definition(_)
             | ExprKind::Field(_)
-            | ExprKind::ModeCoordinate(_) => Ok(ExprKind::Dot(Box::new(resolved))),
+            | ExprKind::ModeCoordinate(_)
+            | ExprKind::SingleMode { .. } => Ok(ExprKind::Dot(Box::new(resolved))),
             ExprKind::Diff(inner, times) if matches!(inner.kind, ExprKind::Field(_)) => {
                 let kind = ExprKind::Dot(inner);
                 Ok(ExprKind::Diff(Box::new(Expr { kind, span }), times))

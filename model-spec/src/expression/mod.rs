@@ -9,7 +9,7 @@ use crate::diagnostic::{Diagnostic, quote};
 use crate::foreign::find_equivalent;
 use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable_names};
 use crate::ids::{CoefficientId, FieldId};
-use crate::model::{Expr, ExprKind, Function};
+use crate::model::{Expr, ExprKind, Function, MAX_ORDER};
 use crate::names::{Names, Symbol};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -100,7 +100,7 @@ impl<'n> Resolver<'n> {
             _ => {}
         }
         let Some(symbol) = self.names.get(name) else {
-            return Err(self.unknown_name_error(name, span));
+            return self.single_mode(name, span);
         };
         let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
         match symbol {
@@ -218,22 +218,35 @@ impl<'n> Resolver<'n> {
         }
     }
 
+    /// Resolves `q_3`, the coordinate of one mode.
+    fn single_mode(&self, name: &str, span: Span) -> ResolvedKind {
+        let parts = name.rsplit_once('_').and_then(|(stem, number)| {
+            let digits = number.bytes().all(|byte| byte.is_ascii_digit());
+            let mode = number.parse::<usize>().ok().filter(|_| digits)?;
+            Some((self.names.get(stem)?, mode, number))
+        });
+        let Some((Symbol::Modes(field), mode, number)) = parts else {
+            return Err(self.unknown_name_error(name, span));
+        };
+        if self.scope != Scope::Motion {
+            return Err(self.out_of_scope_error(&quote(name), "a mode coordinate", span));
+        }
+        if mode == 0 || mode > MAX_ORDER || number.starts_with('0') {
+            let modes = &self.names.fields[field].modes;
+            return Err(
+                Diagnostic::error(format!("no mode has the number {number}"))
+                    .with_span(span, format!("modes are {modes}_1 to {modes}_{MAX_ORDER}")),
+            );
+        }
+        Ok(ExprKind::SingleMode { field, mode })
+    }
+
     fn unknown_name_error(&self, name: &str, span: Span) -> Diagnostic {
         let diagnostic = Diagnostic::error(format!("unknown name {}", quote(name)));
         if callable_names().any(|known| known == name) {
             return Diagnostic::error(format!("the function `{name}` has no arguments"))
                 .with_span(span, "here")
                 .with_help(format!("write {name}(...)"));
-        }
-        let modes = name.rsplit_once('_').map(|(stem, _)| stem);
-        if let Some(Symbol::Modes(field)) = modes.and_then(|stem| self.names.get(stem)) {
-            let names = &self.names.fields[field];
-            let (field, modes) = (&names.field, &names.modes);
-            return diagnostic
-                .with_span(span, "a single mode cannot be used")
-                .with_help(format!(
-                    "the number of modes can change: write sum(i, {field}, ... {modes}[i] ...)"
-                ));
         }
         if self.names.is_observable(name) {
             return diagnostic

@@ -5,5 +5,6 @@ mod certified;
 mod coefficients;
 mod inverse_dynamics;
 mod linearity;
+mod single_modes;
 mod smooth_models;
 mod two_link_arm;

@@ -57,6 +57,9 @@ pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
         TableKind::ShapeAtPlace { bits, derivative } => {
             shapes.values_at(derivative, f64::from_bits(bits))
         }
+        TableKind::Indicator(mode) => (1..=order)
+            .map(|number| f64::from(u8::from(number == mode)))
+            .collect(),
         TableKind::Moment { power, derivative } => shapes.moments(basis, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
             shapes.own_moments(basis, power, left, right)

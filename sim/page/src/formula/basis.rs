@@ -31,6 +31,7 @@ pub(super) fn table(kind: TableKind) -> Markup {
         TableKind::PairMoment { power, left, right } => {
             integral(power, &html! { (shape("i", left)) (shape("j", right)) })
         }
+        TableKind::Indicator(mode) => element(&identifier("δ"), &format!("i{mode}")),
         TableKind::NodePosition => element(&identifier("s"), "g"),
         TableKind::NodeWeight => element(&identifier("w"), "g"),
         TableKind::ShapeAtNodes(derivative) => {

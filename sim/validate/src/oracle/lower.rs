@@ -8,6 +8,7 @@ use super::places::{FieldDomain, PlaceSet};
 use super::scene::{Direction, Scene};
 use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
+use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
 pub(super) struct Lowering<'m> {
@@ -182,8 +183,27 @@ impl<'m> Lowering<'m> {
                 field: field.index(),
             },
             ExprKind::ModeShape(field) => self.lower_shape(field.index(), 0, set)?,
+            ExprKind::SingleMode { field, mode } => self.lower_single_mode(field.index(), *mode),
             _ => return Err(self.misplaced_error()),
         })
+    }
+
+    /// Returns the sum over the modes of a field with the factor 1 for one of them, and 0 for the others.
+    fn lower_single_mode(&self, field: usize, mode: usize) -> Tree {
+        let modes = self.system.modes(field).len();
+        let values = (1..=modes).map(|number| if number == mode { 1.0 } else { 0.0 });
+        let factors = Tree::PerMode {
+            field,
+            values: values.collect(),
+        };
+        Tree::Sum {
+            field,
+            body: Box::new(Tree::Binary(
+                BinaryOperator::Multiply,
+                factors.into(),
+                Tree::Mode { field }.into(),
+            )),
+        }
     }
 
     fn lower_input(&self, input: usize) -> Tree {
