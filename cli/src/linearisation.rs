@@ -1,6 +1,7 @@
 //! Linearisations as JSON and as NumPy arrays.
 
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
+use eomgen_analysis::discretisation::DiscreteSystem;
 use eomgen_compiled_model::{CompiledModel, Linearisation, OperatingPoint};
 use serde_json::{Value, json};
 
@@ -8,12 +9,39 @@ use crate::error::{Error, Result};
 use crate::npz::{Array, archive};
 use crate::operating_point::{head, inputs, values_by_name};
 
+/// Linearisation, and its discrete form if requested.
+pub struct LinearModel {
+    pub continuous: Linearisation,
+    /// Sample period, s, and the discrete form.
+    pub discrete: Option<(f64, DiscreteSystem)>,
+}
+
+impl LinearModel {
+    /// Computes the discrete form for a sample period (s).
+    pub fn new(
+        compiled: &CompiledModel,
+        continuous: Linearisation,
+        period: Option<f64>,
+    ) -> Result<Self> {
+        let discretise = |period: f64| {
+            let system = compiled.discretise(&continuous.a, &continuous.b, period)?;
+            Ok::<_, Error>((period, system))
+        };
+        let discrete = period.map(discretise).transpose()?;
+        Ok(Self {
+            continuous,
+            discrete,
+        })
+    }
+}
+
 /// Returns the operating point, names, units and matrices.
 pub fn document(
     compiled: &CompiledModel,
     (at, is_equilibrium): (&OperatingPoint, bool),
-    found: &Linearisation,
+    linear: &LinearModel,
 ) -> Result<Value> {
+    let found = &linear.continuous;
     let (inputs, input_units) = inputs(compiled);
     let states = compiled.state_names();
     let outputs = compiled.observable_names();
@@ -44,8 +72,21 @@ pub fn document(
         ("C".to_owned(), of(&found.c, l, n)),
         ("D".to_owned(), of(&found.d, l, m)),
     ]);
-    if let Some(minimal) = minimal(compiled, found)? {
+    if let Some((period, system)) = &linear.discrete {
+        document.extend([
+            ("period".to_owned(), json!(period)),
+            ("A_d".to_owned(), of(&system.a, n, n)),
+            ("B_d".to_owned(), of(&system.b, n, m)),
+        ]);
+    }
+    if let Some(minimal) = minimal(compiled, linear)? {
         let k = minimal.count;
+        if let Some(system) = &minimal.discrete {
+            document.extend([
+                ("A_allowed_d".to_owned(), of(&system.a, k, k)),
+                ("B_allowed_d".to_owned(), of(&system.b, k, m)),
+            ]);
+        }
         document.extend([
             ("N".to_owned(), of(&minimal.n, n, k)),
             ("A_allowed".to_owned(), of(&minimal.a, k, k)),
@@ -63,10 +104,12 @@ struct AllowedMatrices {
     a: Vec<f64>,
     b: Vec<f64>,
     c: Vec<f64>,
+    discrete: Option<DiscreteSystem>,
 }
 
 /// Returns the matrices, or none for a model without constraints.
-fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<AllowedMatrices>> {
+fn minimal(compiled: &CompiledModel, linear: &LinearModel) -> Result<Option<AllowedMatrices>> {
+    let found = &linear.continuous;
     let held = found.constraint_matrix(compiled);
     if held.is_empty() {
         return Ok(None);
@@ -74,11 +117,16 @@ fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<All
     let allowed = AllowedMotions::new(&held, found.rates.len())
         .map_err(|error| Error::input(error.to_string()))?;
     let (inputs, _) = inputs(compiled);
+    let a = allowed.reduce_state_matrix(&found.a);
+    let b = allowed.reduce_input_matrix(&found.b, inputs.len());
+    let discretise = |(period, _): &(f64, DiscreteSystem)| compiled.discretise(&a, &b, *period);
+    let discrete = linear.discrete.as_ref().filter(|_| allowed.count() > 0);
     Ok(Some(AllowedMatrices {
         count: allowed.count(),
+        discrete: discrete.map(discretise).transpose()?,
         n: row_by_row(allowed.basis()),
-        a: allowed.reduce_state_matrix(&found.a),
-        b: allowed.reduce_input_matrix(&found.b, inputs.len()),
+        a,
+        b,
         c: allowed.reduce_output_matrix(&found.c, found.observables.len()),
     }))
 }
@@ -87,8 +135,9 @@ fn minimal(compiled: &CompiledModel, found: &Linearisation) -> Result<Option<All
 pub fn arrays(
     compiled: &CompiledModel,
     at: &OperatingPoint,
-    found: &Linearisation,
+    linear: &LinearModel,
 ) -> Result<Vec<u8>> {
+    let found = &linear.continuous;
     let (inputs, input_units) = inputs(compiled);
     let inputs: Vec<String> = inputs.into_iter().map(str::to_owned).collect();
     let (states, outputs) = (compiled.state_names(), compiled.observable_names());
@@ -111,9 +160,23 @@ pub fn arrays(
         ("input_units", Array::Names(&input_units)),
         ("output_units", Array::Names(&output_units)),
     ];
-    let minimal = minimal(compiled, found)?;
+    let period = linear.discrete.as_ref().map(|(period, _)| [*period]);
+    if let (Some(period), Some((_, system))) = (&period, &linear.discrete) {
+        all.extend([
+            ("period", Array::Vector(period)),
+            ("A_d", Array::Matrix(&system.a, [n, n])),
+            ("B_d", Array::Matrix(&system.b, [n, m])),
+        ]);
+    }
+    let minimal = minimal(compiled, linear)?;
     if let Some(minimal) = &minimal {
         let k = minimal.count;
+        if let Some(system) = &minimal.discrete {
+            all.extend([
+                ("A_allowed_d", Array::Matrix(&system.a, [k, k])),
+                ("B_allowed_d", Array::Matrix(&system.b, [k, m])),
+            ]);
+        }
         all.extend([
             ("N", Array::Matrix(&minimal.n, [n, k])),
             ("A_allowed", Array::Matrix(&minimal.a, [k, k])),

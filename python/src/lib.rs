@@ -42,7 +42,7 @@ mod _native {
     #[pymodule_export]
     use crate::generation::generate;
     #[pymodule_export]
-    use crate::linearisation::linearise;
+    use crate::linearisation::{discretise, linearise};
     #[pymodule_export]
     use crate::model::{Model, nearest};
     #[pymodule_export]

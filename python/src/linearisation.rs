@@ -12,6 +12,19 @@ use crate::model::Model;
 /// A, B, C, D, each row by row, then rates and observables at the operating point.
 type LinearisationTuple = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
 
+/// Returns A_d and B_d of matrices A and B, all row by row, for inputs held over a period.
+#[pyfunction]
+pub fn discretise(
+    model: &Model,
+    a: PyReadonlyArray1<'_, f64>,
+    b: PyReadonlyArray1<'_, f64>,
+    period: f64,
+) -> PyResult<(Vec<f64>, Vec<f64>)> {
+    let found = (model.compiled()).discretise(a.as_slice()?, b.as_slice()?, period);
+    let found = found.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok((found.a, found.b))
+}
+
 /// Linearises a model at a time, state and inputs.
 #[pyfunction]
 pub fn linearise(

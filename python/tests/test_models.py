@@ -181,6 +181,23 @@ def test_arrays_of_the_command_line_match_the_package(tmp_path, program, cart):
     assert written["state_units"].tolist()[0] == "m" and len(written["output_units"]) == len(found.y)
 
 
+def test_discrete_linearisation_is_the_exponential_over_a_period(cart):
+    linear = cart.linearise(0.0, {cart.states[1]: 0.3})
+    discrete = linear.discretise(0.01)
+    n, m = linear.B.shape
+    block = np.zeros((n + m, n + m))
+    block[:n, :n], block[:n, n:] = linear.A, linear.B
+    # Euler steps of a millionth, by squaring.
+    power = np.eye(n + m) + block * 0.01 / 2**30
+    for _ in range(30):
+        power = power @ power
+    assert np.allclose(discrete.A, power[:n, :n], rtol=1e-6, atol=1e-8)
+    assert np.allclose(discrete.B, power[:n, n:], rtol=1e-6, atol=1e-8)
+    assert np.array_equal(discrete.C, linear.C) and discrete.period == 0.01
+    with pytest.raises(ValueError, match="above 0"):
+        linear.discretise(0)
+
+
 def test_linearisation_accepts_names(cart):
     name = cart.states[1]
     at = cart.linearise(x={name: 0.3})

@@ -105,7 +105,7 @@ pub enum Command {
     Simulate(Simulate),
     /// Linearise a model at a state and print the matrices A, B, C, D.
     #[command(
-        after_help = "Examples:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --out upright.json\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state trim"
+        after_help = "Examples:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --out upright.json\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state trim\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --discrete 0.001"
     )]
     Linearise(Linearise),
     /// Print natural frequencies, damping ratios and mode shapes at a state.

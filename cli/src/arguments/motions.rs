@@ -56,6 +56,10 @@ pub struct Linearise {
     pub parameters: ParameterValues,
     #[command(flatten)]
     pub point: StateValues,
+    /// Sample period, in s. Adds the matrices A_d and B_d of x_(k+1) = A_d x_k + B_d u_k, for inputs held over each
+    /// period.
+    #[arg(long, value_name = "PERIOD", allow_negative_numbers = true)]
+    pub discrete: Option<f64>,
     /// Output file: JSON, or NumPy arrays if the name ends in `.npz`. Default: JSON on stdout.
     #[arg(long)]
     pub out: Option<PathBuf>,

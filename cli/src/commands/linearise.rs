@@ -5,7 +5,7 @@ use eomgen_compiled_model::CompiledModel;
 use crate::arguments::Linearise;
 use crate::count::count;
 use crate::error::{Result, print_bytes};
-use crate::linearisation::{arrays, document};
+use crate::linearisation::{LinearModel, arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
 use crate::output::Destination;
 
@@ -20,6 +20,7 @@ pub fn run(options: &Linearise) -> Result {
     let at = point(&run, &options.point.state)?;
     let is_equilibrium = is_equilibrium(&run, &at)?;
     let found = run.linearise(at.point())?;
+    let found = LinearModel::new(&compiled, found, options.discrete)?;
     let text = || {
         document(&compiled, (&at, is_equilibrium), &found).map(|document| format!("{document:#}\n"))
     };

@@ -15,7 +15,7 @@ from .certificate import Certificate
 from .comparison import Comparison
 from .discovery import Discovery, discover
 from .equilibrium import Equilibrium
-from .linearisation import Linearisation
+from .linearisation import DiscreteLinearisation, Linearisation
 from .model import Model, SpecificationWarning, load
 from .modes import Mode
 from .records import record_to_csv
@@ -28,6 +28,7 @@ __all__ = [
     "Comparison",
     "Discovery",
     "DiscoveryError",
+    "DiscreteLinearisation",
     "Equilibrium",
     "Event",
     "Linearisation",

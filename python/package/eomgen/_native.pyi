@@ -117,6 +117,7 @@ def sweep(
 def linearise(
     model: Model, t: float, x: _Array, u: _Array
 ) -> Tuple[List[float], List[float], List[float], List[float], List[float], List[float]]: ...
+def discretise(model: Model, a: _Array, b: _Array, period: float) -> Tuple[List[float], List[float]]: ...
 def trim(
     model: Model, start: List[Tuple[str, float]], fixed: List[Tuple[str, float]]
 ) -> Tuple[

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Iterator, Sequence, Tuple
+from typing import Iterator, NamedTuple, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arguments, _native
+
 Array = NDArray[np.float64]
+
+
+class DiscreteLinearisation(NamedTuple):
+    """Linear model of samples, dx[k+1] = A dx[k] + B du[k] and dy[k] = C dx[k] + D du[k], for inputs held over each
+    period (s). dx, du and dy are differences from an equilibrium. It unpacks: `A, B, C, D, period = ...`.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    period: float
 
 
 class Linearisation:
@@ -21,6 +35,7 @@ class Linearisation:
 
     def __init__(
         self,
+        native: "_native.Model",
         states: Tuple[str, ...],
         inputs: Tuple[str, ...],
         outputs: Tuple[str, ...],
@@ -34,12 +49,20 @@ class Linearisation:
         observables: Sequence[float],
     ):
         self.states, self.inputs, self.outputs = states, inputs, outputs
+        self._native = native
         self.x, self.u = x.copy(), u.copy()
         self.A = np.array(a).reshape(len(states), len(states))
         self.B = np.array(b).reshape(len(states), len(inputs))
         self.C = np.array(c).reshape(len(outputs), len(states))
         self.D = np.array(d).reshape(len(outputs), len(inputs))
         self.rates, self.y = np.array(rates), np.array(observables)
+
+    def discretise(self, period: float) -> DiscreteLinearisation:
+        """Returns the linear model of samples for inputs held over each period (s)."""
+        seconds = _arguments.real("period", period)
+        a, b = _native.discretise(self._native, self.A.ravel(), self.B.ravel(), seconds)
+        a, b = np.array(a).reshape(self.A.shape), np.array(b).reshape(self.B.shape)
+        return DiscreteLinearisation(a, b, self.C.copy(), self.D.copy(), seconds)
 
     def __iter__(self) -> Iterator[Array]:
         return iter((self.A, self.B, self.C, self.D))

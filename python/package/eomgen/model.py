@@ -212,7 +212,7 @@ class Model:
         call = self._call(time, self.state(x), u)
         state, inputs = call.x[0], call.u[0]
         found = _native.linearise(self._native, time, state, inputs)
-        return Linearisation(self._states, self._inputs, self._observables, state, inputs, *found)
+        return Linearisation(self._native, self._states, self._inputs, self._observables, state, inputs, *found)
 
     def modes(self, t: float = 0.0, x: Any = None, u: Any = None) -> List[Mode]:
         """Computes the natural modes of the model linearised at a state, lowest frequency first. The arguments are

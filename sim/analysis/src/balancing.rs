@@ -58,6 +58,11 @@ impl BalancedMatrix {
         times_power_of_two(rate, -self.time)
     }
 
+    /// Converts a time in s to scaled time.
+    pub fn scaled_time(&self, seconds: f64) -> f64 {
+        times_power_of_two(seconds, -self.time)
+    }
+
     /// Converts an eigenvalue of the scaled matrix to 1/s.
     pub fn eigenvalue(&self, scaled: Complex<f64>) -> Complex<f64> {
         Complex::new(self.per_second(scaled.re), self.per_second(scaled.im))

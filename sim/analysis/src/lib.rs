@@ -21,12 +21,14 @@
 //!   eigenvalues after `balancing`, for each group in `block_eigenvalues` and each of the
 //!   `independent_parts`. `inverse_iteration` finds their shapes in a `pencil`, and `null_space`
 //!   the rigid motions.
+//! - [`discretisation`] computes the discrete form of a linearised machine with held inputs.
 
 pub mod allowed_motions;
 mod balancing;
 mod block_eigenvalues;
 pub mod classify;
 pub mod constrained_modes;
+pub mod discretisation;
 mod error;
 pub mod exponent;
 mod independent_parts;

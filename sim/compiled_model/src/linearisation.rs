@@ -1,5 +1,6 @@
 //! Linearisation of a model at a point, and the cause if there is none.
 
+use eomgen_analysis::discretisation::{DiscreteSystem, hold_inputs};
 use eomgen_codegen::program::Variable;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::singular_terms::{SingularTerm, singular_terms};
@@ -65,6 +66,27 @@ impl Linearisation {
             }
         }
         held
+    }
+}
+
+impl CompiledModel {
+    /// Computes the discrete form of matrices A and B (row by row) for inputs held over `period` (s).
+    ///
+    /// # Errors
+    /// Prescribed motion, whose input and rates cannot all be held; an inadmissible period; motions that are too fast
+    /// for the period.
+    pub fn discretise(&self, a: &[f64], b: &[f64], period: f64) -> Result<DiscreteSystem, Error> {
+        let inputs = &self.model().inputs;
+        if let Some(input) = inputs.iter().find(|input| input.rate.is_some()) {
+            return Err(Error::Request(format!(
+                "the input `{}` is prescribed motion: it has no discrete form, because it moves while its rate is \
+                 held",
+                input.name
+            )));
+        }
+        let states = a.len().isqrt();
+        hold_inputs(a, b, states, period)
+            .map_err(|error| Error::Request(format!("period {period:?} s: {error}")))
     }
 }
 

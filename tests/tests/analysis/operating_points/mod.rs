@@ -1,6 +1,7 @@
 //! `linearise`, `modes`, `trim`, and inputs and initial states of `simulate`, against closed forms.
 
 mod bases;
+mod discrete;
 mod drawn_modes;
 mod given;
 mod growth;
