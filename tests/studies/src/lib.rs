@@ -4,5 +4,6 @@
 pub mod contacts;
 pub mod coverage;
 pub mod grazing;
+pub mod hosts;
 pub mod sample;
 pub mod solvers;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{contacts, coverage, grazing, solvers};
+use eomgen_studies::{contacts, coverage, grazing, hosts, solvers};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -23,6 +23,8 @@ enum Study {
     Contacts(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
     Coverage(Sample),
+    /// Agreement of all hosts on every shipped machine and on random ones
+    Hosts(Sample),
     /// Agreement of the solvers on random machines
     Solvers(Sample),
 }
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         Study::Grazing(sample) => grazing::run(&sample),
         Study::Contacts(sample) => contacts::run(&sample),
         Study::Coverage(sample) => coverage::run(&sample),
+        Study::Hosts(sample) => hosts::run(&sample),
         Study::Solvers(sample) => solvers::run(&sample),
     };
     match report {

@@ -9,7 +9,8 @@ const DISTURBANCE: f64 = 1e-6;
 
 const DIRECTIONS: usize = 2;
 
-const STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+/// Starts of the disturbed motions, as fractions of the samples.
+pub const STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 /// Returns the largest magnitude of every state over a motion. States of one unit share their
 /// magnitude, so that a nearly constant state is compared with the others.
@@ -50,7 +51,7 @@ fn relative(a: &[f64], b: &[f64], magnitudes: &[f64]) -> f64 {
 }
 
 /// Returns the largest growth, at least 1, of a disturbance along the motion `states` at
-/// `request.times`.
+/// `request.times`, from the samples at the fractions `starts` on.
 ///
 /// # Errors
 ///
@@ -60,10 +61,10 @@ pub fn growth(
     request: &Request<'_>,
     states: &[Vec<f64>],
     magnitudes: &[f64],
-    random: &mut Random,
+    (starts, random): (&[f64], &mut Random),
 ) -> Result<f64, Error> {
     let mut growth = 1.0_f64;
-    for part in STARTS {
+    for part in starts {
         let first = (part * (states.len() - 1) as f64) as usize;
         let times = &request.times[first..];
         let follow = |initial: &[f64]| {

@@ -2,8 +2,8 @@
 //! two solvers may differ by ten tolerances times the growth of a small difference along the
 //! motion. The energy of a passive machine must not rise.
 
-mod growth;
-mod machine;
+pub(crate) mod growth;
+pub(crate) mod machine;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -11,7 +11,7 @@ use eomgen_compiled_model::{CompiledModel, Error, Instance, Motion, Orders, Requ
 use eomgen_validate::random::Random;
 
 use crate::sample::Sample;
-use growth::{difference, growth, magnitudes};
+use growth::{STARTS, difference, growth, magnitudes};
 use machine::{Machine, draw};
 
 const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
@@ -102,8 +102,14 @@ fn judge(machine: &Machine, random: &mut Random) -> Result<Outcome, String> {
     let states = &reference.trajectory.states;
     let sizes = magnitudes(states, &model.state_units());
     let initial_request = request(Solver::Rk, GROWTH_TOLERANCE);
-    let growth = growth(&instance, &initial_request, states, &sizes, random)
-        .map_err(|error| format!("a neighbour of the motion: {error}"))?;
+    let growth = growth(
+        &instance,
+        &initial_request,
+        states,
+        &sizes,
+        (&STARTS, random),
+    )
+    .map_err(|error| format!("a neighbour of the motion: {error}"))?;
     check_energy(
         machine,
         &instance,

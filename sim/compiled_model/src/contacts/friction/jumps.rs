@@ -23,7 +23,10 @@ impl Contacts {
             .map(|place| self.required_rate_change(*place, ago, 1.0))
             .collect();
         let small = RATE_ROUNDING * max_magnitude(&required);
-        let mut hit = (0..touching.len()).filter(|index| required[*index] < -small);
+        // The rate of a closed contact is rounding, which must not decide that it is hit.
+        let is_hit =
+            |index: &usize| !self.closed.contains(&touching[*index]) && required[*index] < -small;
+        let mut hit = (0..touching.len()).filter(is_hit);
         if let (Some(index), None) = (hit.next(), hit.next())
             && let Some(impulses) = self.solve_single(touching, index, ago)
             && self.leaves_apart(touching, &impulses, ago)
@@ -69,8 +72,13 @@ impl Contacts {
         let before = self.hit_rates(touching, ago);
         let changes = self.rate_changes(touching, impulses);
         let small = RATE_ROUNDING * max_magnitude(&before);
-        let mut after = before.iter().zip(&changes).take(touching.len());
-        after.all(|(before, change)| before + change >= -small)
+        let mut after = touching.iter().zip(before.iter().zip(&changes));
+        after.all(
+            |(place, (before, change))| match self.closed.contains(place) {
+                true => *change >= -small,
+                false => before + change >= -small,
+            },
+        )
     }
 
     /// Returns the changes of the rates of distances, then of slips, by impulses.

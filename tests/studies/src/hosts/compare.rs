@@ -1,0 +1,116 @@
+//! Reference motion of a case and the comparison of a host's motion with it.
+
+use eomgen_compiled_model::{
+    CompiledModel, Orders, Request, Solver, split_assignments, with_prescribed_inputs,
+};
+use eomgen_validate::random::Random;
+
+use super::cases::{Case, Kind};
+use super::{Answer, Host, HostRun};
+use crate::solvers::growth::{STARTS, difference, growth, magnitudes};
+
+/// Tolerance of the hosts.
+pub const TOLERANCE: f64 = 1e-9;
+
+/// Tolerance of the motions that measure the growth of small differences.
+const GROWTH_TOLERANCE: f64 = 1e-11;
+
+/// Allowed difference in tolerances times the growth.
+const ALLOWED_TOLERANCES: f64 = 100.0;
+
+/// Allowed difference of model exchange, times the growth: the importer integrates and locates the
+/// events by its own methods.
+const ALLOWED_EXCHANGE: f64 = 1e-5;
+
+/// Motion of a case by `rk` at a narrow tolerance.
+pub struct Reference {
+    states: Vec<Vec<f64>>,
+    sizes: Vec<f64>,
+    growth: f64,
+}
+
+/// Result of one host for one machine.
+pub enum Verdict {
+    /// Difference from the reference relative to the allowed one.
+    Compared(f64),
+    Rejected(String),
+    Missing(String),
+}
+
+impl Reference {
+    /// Simulates the case and its disturbed neighbours.
+    ///
+    /// # Errors
+    /// A motion that stops early.
+    pub fn new(case: &Case) -> Result<Self, String> {
+        let times = case.times();
+        let functions = case.inputs.iter().filter_map(|input| {
+            let function = input.function.as_ref()?;
+            Some(format!("{}={function}", input.name))
+        });
+        let texts: Vec<String> = functions.collect();
+        let given = split_assignments("--input", &texts).map_err(|e| e.to_string())?;
+        let model = with_prescribed_inputs(case.model.model().clone(), &given)
+            .map_err(|e| e.to_string())?;
+        let model = CompiledModel::derive(model, Orders::PerField(case.model.orders()))
+            .map_err(|error| error.to_string())?;
+        let instance = model
+            .with_declared_parameters()
+            .map_err(|e| e.to_string())?;
+        let inputs = match texts.is_empty() {
+            true => case.held_inputs(),
+            false => instance.default_inputs(),
+        };
+        let request = Request {
+            initial: &case.initial,
+            times: &times,
+            inputs: &inputs,
+            solver: Solver::Rk,
+            tolerance: GROWTH_TOLERANCE,
+            max_step: f64::INFINITY,
+            audit: false,
+        };
+        let motion = instance
+            .simulate_until_stop(&request, &mut |_| {})
+            .and_then(|motion| motion.into_complete())
+            .map_err(|error| format!("the reference: {error}"))?;
+        let states = motion.trajectory.states;
+        let sizes = magnitudes(&states, &model.state_units());
+        // A disturbed body that touches another one overlaps it, and a controller restarts its hold.
+        let starts = match case.kind {
+            Kind::Impacts | Kind::ContactFriction | Kind::Controller => &STARTS[..1],
+            _ => &STARTS[..],
+        };
+        let drawn = (starts, &mut Random::new(1));
+        let growth = growth(&instance, &request, &states, &sizes, drawn)
+            .map_err(|error| format!("a neighbour of the motion: {error}"))?;
+        Ok(Self {
+            states,
+            sizes,
+            growth,
+        })
+    }
+}
+
+/// Compares the motion of a host with the reference.
+pub fn judge(reference: &Reference, run: HostRun) -> Verdict {
+    match run.answer {
+        Answer::Rejected(reason) => Verdict::Rejected(reason),
+        Answer::Missing(reason) => Verdict::Missing(reason),
+        Answer::Motion(states) => {
+            let allowed = match run.host {
+                Host::Exchange2 | Host::Exchange3 => ALLOWED_EXCHANGE,
+                _ => ALLOWED_TOLERANCES * TOLERANCE,
+            };
+            let expected = match states.len() {
+                1 => &reference.states[reference.states.len() - 1..],
+                _ => &reference.states[..],
+            };
+            if states.len() != expected.len() {
+                return Verdict::Compared(f64::INFINITY);
+            }
+            let found = difference(&states, expected, &reference.sizes);
+            Verdict::Compared(found / (allowed * reference.growth))
+        }
+    }
+}

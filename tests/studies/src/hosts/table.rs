@@ -1,0 +1,94 @@
+//! Table of the study: a row for each kind of machine, a column for each host.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use super::Host;
+use super::cases::{Case, Kind};
+use super::compare::Verdict;
+
+#[derive(Default)]
+struct Cell {
+    agreeing: usize,
+    rejected: usize,
+    differing: usize,
+    missing: usize,
+}
+
+/// Counts and reasons of all hosts.
+#[derive(Default)]
+pub struct Table {
+    cells: BTreeMap<(Kind, usize), Cell>,
+    /// Names of the machines by the reason of their rejection: host, kind, text.
+    reasons: BTreeMap<(usize, Kind, String), Vec<String>>,
+    missing: BTreeSet<String>,
+}
+
+impl Table {
+    /// Adds one verdict; returns the text of a difference.
+    pub fn add(&mut self, case: &Case, host: Host, verdict: Verdict) -> Option<String> {
+        let kind = case.kind;
+        let place = Host::ALL.iter().position(|known| *known == host)?;
+        let cell = self.cells.entry((kind, place)).or_default();
+        match verdict {
+            Verdict::Compared(ratio) if ratio <= 1.0 => cell.agreeing += 1,
+            Verdict::Compared(ratio) => {
+                cell.differing += 1;
+                return Some(format!(
+                    "differs by {ratio:.1} times the allowed difference"
+                ));
+            }
+            Verdict::Rejected(reason) => {
+                cell.rejected += 1;
+                let names = self.reasons.entry((place, kind, reason)).or_default();
+                names.push(case.name.clone());
+            }
+            Verdict::Missing(reason) => {
+                cell.missing += 1;
+                self.missing.insert(reason);
+            }
+        }
+        None
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            (self.agreeing, ""),
+            (self.rejected, " rejected"),
+            (self.differing, " DIFFER"),
+            (self.missing, " not run"),
+        ];
+        let parts = parts.into_iter().filter(|(count, _)| *count > 0);
+        let parts: Vec<String> = parts
+            .map(|(count, text)| format!("{count}{text}"))
+            .collect();
+        f.write_str(&parts.join(", "))
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds: BTreeSet<Kind> = self.cells.keys().map(|(kind, _)| *kind).collect();
+        let hosts = Host::ALL.map(Host::name);
+        writeln!(f, "| machines | {} |", hosts.join(" | "))?;
+        writeln!(f, "|{}", " --- |".repeat(hosts.len() + 1))?;
+        for kind in kinds {
+            let cells = (0..hosts.len()).map(|place| {
+                let cell = self.cells.get(&(kind, place));
+                cell.map_or_else(String::new, Cell::to_string)
+            });
+            let cells: Vec<String> = cells.collect();
+            writeln!(f, "| {} | {} |", kind.name(), cells.join(" | "))?;
+        }
+        for ((place, kind, reason), names) in &self.reasons {
+            let (host, kind, names) = (hosts[*place], kind.name(), names.join(", "));
+            writeln!(f, "- {host}, {kind} ({names}): {reason}")?;
+        }
+        for reason in &self.missing {
+            writeln!(f, "- not run: {reason}")?;
+        }
+        Ok(())
+    }
+}
