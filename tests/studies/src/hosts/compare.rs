@@ -37,6 +37,22 @@ pub enum Verdict {
     Missing(String),
 }
 
+impl Verdict {
+    /// Returns the worse of two verdicts: a missing host, a larger difference, a rejection.
+    pub fn worse(self, other: Option<Self>) -> Self {
+        let rank = |verdict: &Self| match verdict {
+            Self::Compared(ratio) if *ratio <= 1.0 => 0,
+            Self::Rejected(_) => 1,
+            Self::Compared(_) => 2,
+            Self::Missing(_) => 3,
+        };
+        match other {
+            Some(other) if rank(&other) > rank(&self) => other,
+            _ => self,
+        }
+    }
+}
+
 impl Reference {
     /// Simulates the case and its disturbed neighbours.
     ///
@@ -99,7 +115,7 @@ pub fn judge(reference: &Reference, run: HostRun) -> Verdict {
         Answer::Missing(reason) => Verdict::Missing(reason),
         Answer::Motion(states) => {
             let allowed = match run.host {
-                Host::Exchange2 | Host::Exchange3 => ALLOWED_EXCHANGE,
+                Host::ModelExchange => ALLOWED_EXCHANGE,
                 _ => ALLOWED_TOLERANCES * TOLERANCE,
             };
             let expected = match states.len() {

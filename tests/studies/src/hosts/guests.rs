@@ -10,11 +10,11 @@ use super::command_line::{execute, program};
 use super::compare::TOLERANCE;
 use super::{Answer, Host, HostRun};
 
-/// Kinds of units with their targets.
-const TARGETS: [(&str, [Host; 2]); 2] = [
-    ("fmu2", [Host::CoSimulation2, Host::Exchange2]),
-    ("fmu3", [Host::CoSimulation3, Host::Exchange3]),
-];
+/// Targets of units.
+const TARGETS: [&str; 2] = ["fmu2", "fmu3"];
+
+/// Kinds of each unit with their keys in the answers.
+const KINDS: [(Host, &str); 2] = [(Host::CoSimulation, "cs"), (Host::ModelExchange, "me")];
 
 /// Folder of the Python package, in the folder of the study.
 const PACKAGES: &str = "python";
@@ -56,12 +56,12 @@ pub fn runs(case: &Case, folder: &Path) -> Result<Vec<HostRun>, String> {
     std::fs::create_dir_all(&own).map_err(|error| error.to_string())?;
     let mut runs = Vec::new();
     let mut units = serde_json::Map::new();
-    for (target, hosts) in TARGETS {
+    for target in TARGETS {
         match write_unit(case, target, &own.join(target)) {
             Ok(unit) => {
                 units.insert(target.to_owned(), json!(unit));
             }
-            Err(reason) => runs.extend(hosts.map(|host| HostRun {
+            Err(reason) => runs.extend(KINDS.map(|(host, _)| HostRun {
                 host,
                 answer: Answer::Rejected(reason.clone()),
             })),
@@ -73,12 +73,10 @@ pub fn runs(case: &Case, folder: &Path) -> Result<Vec<HostRun>, String> {
         host: Host::Python,
         answer: answer(&found["python"])?,
     });
-    for (target, [co_simulation, exchange]) in TARGETS {
-        if units.contains_key(target) {
-            for (host, kind) in [(co_simulation, "cs"), (exchange, "me")] {
-                let answer = answer(&found[format!("{target}_{kind}")])?;
-                runs.push(HostRun { host, answer });
-            }
+    for target in units.keys() {
+        for (host, kind) in KINDS {
+            let answer = answer(&found[format!("{target}_{kind}")])?;
+            runs.push(HostRun { host, answer });
         }
     }
     runs.push(HostRun {

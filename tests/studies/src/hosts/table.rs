@@ -54,17 +54,32 @@ impl Table {
 
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts = [
-            (self.agreeing, ""),
-            (self.rejected, " rejected"),
-            (self.differing, " DIFFER"),
-            (self.missing, " not run"),
-        ];
-        let parts = parts.into_iter().filter(|(count, _)| *count > 0);
-        let parts: Vec<String> = parts
-            .map(|(count, text)| format!("{count}{text}"))
-            .collect();
-        f.write_str(&parts.join(", "))
+        let all = self.agreeing + self.rejected + self.differing + self.missing;
+        match (self.agreeing, self.missing) {
+            (_, missing) if missing > 0 => write!(f, "not run"),
+            (agreeing, _) if agreeing == all => write!(f, "{all}"),
+            (agreeing, _) => write!(f, "{agreeing} of {all}"),
+        }
+    }
+}
+
+impl Table {
+    /// Returns true if every host ran every machine.
+    pub fn is_complete(&self) -> bool {
+        self.missing.is_empty()
+    }
+
+    /// Returns the reasons of all rejections and missing hosts, a line for each.
+    pub fn notes(&self) -> String {
+        let rejected = self.reasons.iter().map(|((place, kind, reason), names)| {
+            let (host, kind, names) = (Host::ALL[*place].name(), kind.name(), names.join(", "));
+            format!("- {host}, {kind} ({names}): {reason}\n")
+        });
+        let missing = self
+            .missing
+            .iter()
+            .map(|reason| format!("- not run: {reason}\n"));
+        rejected.chain(missing).collect()
     }
 }
 
@@ -72,7 +87,7 @@ impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kinds: BTreeSet<Kind> = self.cells.keys().map(|(kind, _)| *kind).collect();
         let hosts = Host::ALL.map(Host::name);
-        writeln!(f, "| machines | {} |", hosts.join(" | "))?;
+        writeln!(f, "| machines with | {} |", hosts.join(" | "))?;
         writeln!(f, "|{}", " --- |".repeat(hosts.len() + 1))?;
         for kind in kinds {
             let cells = (0..hosts.len()).map(|place| {
@@ -81,13 +96,6 @@ impl fmt::Display for Table {
             });
             let cells: Vec<String> = cells.collect();
             writeln!(f, "| {} | {} |", kind.name(), cells.join(" | "))?;
-        }
-        for ((place, kind, reason), names) in &self.reasons {
-            let (host, kind, names) = (hosts[*place], kind.name(), names.join(", "));
-            writeln!(f, "- {host}, {kind} ({names}): {reason}")?;
-        }
-        for reason in &self.missing {
-            writeln!(f, "- not run: {reason}")?;
         }
         Ok(())
     }
