@@ -97,22 +97,22 @@ impl Model {
         tables.fold(MAX_ORDER, |order, table| order.min(table.shapes.len()))
     }
 
-    /// Returns the lowest order with all single modes that the expressions of the motion name.
-    pub fn lowest_order(&self) -> usize {
+    /// Returns the expressions that determine the motion, and the observables.
+    pub fn motion_expressions(&self) -> impl Iterator<Item = &Expr> {
         let terms = [&self.kinetic, &self.potential, &self.dissipation];
-        let expressions = (self.definitions.iter().map(|definition| &definition.value))
+        (self.definitions.iter().map(|definition| &definition.value))
             .chain(terms.into_iter().flatten().map(|term| &term.value))
-            .chain(
-                self.forces
-                    .iter()
-                    .flat_map(|force| [&force.on, &force.value]),
-            )
+            .chain((self.forces.iter()).flat_map(|force| [&force.on, &force.value]))
             .chain(self.states.iter().map(|state| &state.rate))
             .chain(self.constraints.iter().map(|constraint| &constraint.zero))
             .chain(self.impacts.iter().map(|impact| &impact.when))
-            .chain(self.observables.iter().map(|observable| &observable.value));
+            .chain(self.observables.iter().map(|observable| &observable.value))
+    }
+
+    /// Returns the lowest order with all single modes that the expressions of the motion name.
+    pub fn lowest_order(&self) -> usize {
         let mut lowest = 0;
-        for expression in expressions {
+        for expression in self.motion_expressions() {
             expression.visit(&mut |part| {
                 if let ExprKind::SingleMode { mode, .. } = part.kind {
                     lowest = lowest.max(mode);

@@ -1,6 +1,8 @@
 //! Inputs and other functions of time without a finite value at a time of the motion.
 
 use eomgen_model_spec::evaluate::evaluate_at_time;
+use eomgen_model_spec::ids::DefinitionId;
+use eomgen_model_spec::model::{ExprKind, Model};
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::error::Error;
@@ -17,6 +19,13 @@ const DISTANCES_BEFORE: [f64; 3] = [1e-9, 1e-7, 1e-5];
 /// Smallest growth of a function towards a pole from each of these distances to the next. A pole of order 1/2
 /// gives 10.
 const MIN_POLE_GROWTH: f64 = 5.0;
+
+/// Distances after the end of a motion between which second differences show an infinite second
+/// rate, relative to the simulated time or at the start, to the time after it.
+const DIFFERENCE_STEPS: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// Time in place of the simulated one for a motion that ends at its start, s.
+const UNIT_TIME: f64 = 1.0;
 
 impl Instance<'_> {
     /// Rejects inputs that are held at infinity or NaN during the simulated time span, in s.
@@ -50,11 +59,11 @@ pub(crate) fn find_infinite_function(
     let model = model.model();
     let definitions = model.definition_order.iter();
     let functions = definitions
-        .map(|index| &model.definitions[*index])
-        .filter(|definition| model.is_function_of_time(&definition.value));
+        .map(|index| (index, &model.definitions[*index]))
+        .filter(|(_, definition)| model.is_function_of_time(&definition.value));
     let cure = "write an expression that is finite at all times, such as 1/max(t, 0.001) for 1/t, or simulate \
                 another time span";
-    for definition in functions {
+    for (index, definition) in functions {
         let name = &definition.name;
         let value = |t| evaluate_at_time(model, &definition.value, parameters, t);
         let (span, size) = (end - begin, end.abs().max(end - begin));
@@ -74,8 +83,41 @@ pub(crate) fn find_infinite_function(
                 "the function of time `{name}` becomes infinite near t = {end:.9} s: {cure}"
             ));
         }
+        let unit = if span > 0.0 { span } else { UNIT_TIME };
+        if has_rate_in_motion(model, *index) && has_infinite_rate(&value, end, unit) {
+            return Some(format!(
+                "the rate or the second rate of `{name}` is infinite at t = {end:.9} s, but they move the machine: \
+                 write a motion with finite rates, or simulate another time span"
+            ));
+        }
     }
     None
+}
+
+/// Returns true if the motion depends on the rate of a definition.
+fn has_rate_in_motion(model: &Model, definition: DefinitionId) -> bool {
+    let mut has_rate = false;
+    for expression in model.motion_expressions() {
+        expression.visit(&mut |part| {
+            if let ExprKind::Dot(operand) = &part.kind {
+                has_rate |= matches!(operand.kind, ExprKind::Definition(id) if id == definition);
+            }
+        });
+    }
+    has_rate
+}
+
+/// Returns true if the second differences of a function grow without bound towards a time from
+/// either side.
+fn has_infinite_rate(value: &impl Fn(f64) -> f64, t: f64, unit: f64) -> bool {
+    [1.0, -1.0].into_iter().any(|side| {
+        let differences = DIFFERENCE_STEPS.map(|step| {
+            let step = side * step * unit;
+            ((value(t + 2.0 * step) - 2.0 * value(t + step) + value(t)) / (step * step)).abs()
+        });
+        let mut pairs = differences.windows(2);
+        pairs.all(|pair| pair[0] > MIN_POLE_GROWTH * pair[1])
+    })
 }
 
 fn describe(value: f64) -> &'static str {

@@ -42,7 +42,7 @@ pub fn check_records(
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
         notes.extend(timing_note(record));
-        notes.extend(held_inputs_note(record));
+        notes.extend(held_inputs_note(record, input_names(inputs)));
         input_sizes(record, inputs)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(check_values(record, &channel.name, channel.noise, column)?);
@@ -105,18 +105,38 @@ fn timing_note(record: &Record) -> Option<String> {
     })
 }
 
-pub(crate) fn held_inputs_note(record: &Record) -> Option<String> {
-    let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
-    let count = record.input_columns.iter().filter(missing).count();
-    (count > 0).then(|| {
-        let inputs = match count {
-            1 => "an input".to_owned(),
-            count => format!("{count} inputs"),
-        };
+pub(crate) fn held_inputs_note<'n>(
+    record: &Record,
+    inputs: impl Iterator<Item = &'n str>,
+) -> Option<String> {
+    let gaps = inputs
+        .zip(&record.input_columns)
+        .filter_map(|(name, column)| {
+            let missing = describe_missing(&record.times, column)?;
+            Some(format!("{missing} of `{name}`"))
+        });
+    let gaps: Vec<String> = gaps.collect();
+    (!gaps.is_empty()).then(|| {
         format!(
-            "{}: samples of {inputs} are missing; the last known value is held",
-            record.name
+            "{}: missing: {}; the last known value is held",
+            record.name,
+            gaps.join(", ")
         )
+    })
+}
+
+pub(crate) fn input_names(inputs: &[Input]) -> impl Iterator<Item = &str> {
+    inputs.iter().map(|input| input.name.as_str())
+}
+
+/// Returns the number of missing samples and the time of the first one; `None` without any.
+fn describe_missing(times: &[f64], column: &[f64]) -> Option<String> {
+    let count = column.iter().filter(|value| !value.is_finite()).count();
+    let first = column.iter().position(|value| !value.is_finite())?;
+    let t = times.get(first)?;
+    Some(match count {
+        1 => format!("the sample at t = {t} s"),
+        count => format!("{count} samples from t = {t} s on"),
     })
 }
 
@@ -152,9 +172,9 @@ fn check_values(
             column.len()
         ));
     }
-    if missing > 0 {
+    if let Some(gap) = describe_missing(&record.times, column) {
         notes.push(format!(
-            "{}: {missing} samples of `{name}` are missing and are ignored",
+            "{}: missing, and ignored: {gap} of `{name}`",
             record.name
         ));
     }
@@ -310,9 +330,9 @@ mod tests {
     use crate::record::Record;
 
     #[test]
-    fn inputs_with_missing_samples_are_counted() {
+    fn missing_samples_of_inputs_are_named_with_their_time() {
         let note = |input_columns: &[Vec<f64>]| {
-            held_inputs_note(&Record {
+            let record = Record {
                 name: "train[0]".to_owned(),
                 path: PathBuf::new(),
                 times: vec![0.0, 1.0],
@@ -320,14 +340,20 @@ mod tests {
                 input_columns: input_columns.to_vec(),
                 channels: Vec::new(),
                 is_continued: false,
-            })
+            };
+            held_inputs_note(&record, ["u", "v"].into_iter())
         };
         let (known, missing) = (vec![0.0, 1.0], vec![0.0, f64::NAN]);
         assert_eq!(note(std::slice::from_ref(&known)), None);
         let one = note(&[known, missing.clone()]).expect("a note");
-        assert!(one.contains("samples of an input are missing"), "{one}");
-        let two = note(&[missing.clone(), missing]).expect("a note");
-        assert!(two.contains("samples of 2 inputs are missing"), "{two}");
+        assert!(
+            one.contains("missing: the sample at t = 1 s of `v`"),
+            "{one}"
+        );
+        let all = vec![f64::NAN, f64::NAN];
+        let two = note(&[all, missing]).expect("a note");
+        let expected = "missing: 2 samples from t = 0 s on of `u`, the sample at t = 1 s of `v`";
+        assert!(two.contains(expected), "{two}");
     }
 
     #[test]

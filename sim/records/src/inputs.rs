@@ -8,7 +8,7 @@ use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::binding;
-use crate::checks::held_inputs_note;
+use crate::checks::{held_inputs_note, input_names};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::files::find_record;
@@ -51,7 +51,7 @@ pub fn read_inputs(
     };
     let mut warnings = input_notes(&description, model);
     let record = columns.read_record(record, file, &mut warnings)?;
-    warnings.extend(held_inputs_note(&record));
+    warnings.extend(held_inputs_note(&record, input_names(&model.inputs)));
     Ok((record.inputs, warnings))
 }
 

@@ -92,6 +92,41 @@ fn input_without_a_finite_value_is_named_with_its_time() {
 }
 
 #[test]
+fn prescribed_motion_with_an_infinite_rate_is_named_with_its_time() {
+    let spec = MASS
+        .replace("u = { unit = \"N\" }", "s = { unit = \"m\", rates = 2 }")
+        .replace("1/2*m*dot(x)^2", "1/2*m*(dot(x) + dot(s))^2");
+    let spec: String = spec
+        .split_inclusive('\n')
+        .filter(|line| !line.contains("\"u\"") && !line.starts_with("[forces]"))
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("base.toml");
+    std::fs::write(&file, spec).expect("a file");
+    for (motion, place) in [
+        ("s=sqrt(t)", "at t = 0.0"),
+        ("s=abs(t - 0.3)^1.2", "at t = 0.3"),
+    ] {
+        for solver in ["rk", "radau"] {
+            let out = folder.path().join("out.csv").display().to_string();
+            let spec = file.display().to_string();
+            let output = run(&[
+                "simulate", &spec, "--until", "1", "--solver", solver, "--input", motion, "--out",
+                &out,
+            ]);
+            let message = text(&output.stderr);
+            assert!(!output.status.success(), "{motion}: {message}");
+            let named = format!("the rate or the second rate of `s` is infinite {place}");
+            let near = named.replace("0.3", "0.2");
+            assert!(
+                message.contains(&named) || message.contains(&near),
+                "{motion}, {solver}: {message}"
+            );
+        }
+    }
+}
+
+#[test]
 fn finite_inputs_are_not_blamed_for_a_diverging_state() {
     let spec = MASS
         .replace("1/2*k*x^2", "-1/2*k*x^2/(1 - x/l)")

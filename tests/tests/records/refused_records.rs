@@ -331,7 +331,7 @@ fn weaknesses_of_a_record_are_noted() {
     measured.write("train.csv", change_column(2, 1, holes).as_bytes());
     let (result, warned) = measured.run_command("compare", "holes");
     assert!(
-        warned.contains("40 samples of `q` are missing and are ignored"),
+        warned.contains("missing, and ignored: 40 samples from t = "),
         "{warned}"
     );
     assert!(
