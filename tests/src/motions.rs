@@ -173,7 +173,9 @@ impl TestMotion {
     pub fn driven(&self) -> DrivenModel<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
         assert!(evaluator.pivots_are_positive());
-        DrivenModel::new(RefCell::new(evaluator), &self.inputs).with_sides(self.sided_model())
+        let tolerance = Settings::default().tolerance;
+        DrivenModel::new(RefCell::new(evaluator), &self.inputs)
+            .with_sides(self.sided_model(), tolerance)
     }
 
     /// Returns the model with the sides of its surfaces at the declared parameters.

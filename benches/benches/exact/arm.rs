@@ -36,7 +36,7 @@ impl Located {
         );
         let system = DrivenModel::new(&evaluator, &inputs)
             .with_typical_sizes(self.model.typical_sizes())
-            .with_sides(instance.sided_model().ok()?);
+            .with_sides(instance.sided_model().ok()?, settings.tolerance);
         let start = [0.0; STATES];
         simulate(&system, &start, (0.0, 1.0), times, settings, &mut |_| {}).ok()
     }

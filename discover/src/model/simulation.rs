@@ -300,7 +300,7 @@ impl<'m> Simulation<'m> {
         };
         let driven = DrivenModel::new(&self.evaluator, inputs)
             .with_typical_sizes(self.typical_sizes)
-            .with_sides(self.sided.take());
+            .with_sides(self.sided.take(), settings.tolerance);
         let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
         self.sided = driven.into_sided_model();
         found

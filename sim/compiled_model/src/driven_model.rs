@@ -117,13 +117,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Sets the model with the sides of switching surfaces, at the same parameters: rates continue smoothly over
-    /// surfaces, and these hold the motion, as under dry friction. The system keeps their state, so use it for one
-    /// motion only.
-    pub fn with_sides(mut self, sided: Option<SidedModel>) -> Self {
+    /// surfaces, and these hold the motion, as under dry friction. `tolerance` is the relative one of the states. The
+    /// system keeps the state of the surfaces, so use it for one motion only.
+    pub fn with_sides(mut self, sided: Option<SidedModel>, tolerance: f64) -> Self {
         let contact_guards = self.contacts.as_ref();
         let contact_guards = contact_guards.map_or(0, |contacts| contacts.borrow().guard_count());
         self.sliding = sided.map(|sided| {
-            let mut states = SurfaceStates::new(sided);
+            let mut states = SurfaceStates::new(sided, tolerance);
             states.skip_contact_guards(contact_guards);
             RefCell::new(states)
         });

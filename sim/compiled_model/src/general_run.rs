@@ -52,7 +52,7 @@ impl Instance<'_> {
             infinite.map_or(error, |reason| Error::Stopped { t, reason })
         })?;
         let evaluator = RefCell::new(self.evaluator()?);
-        let mut system = self.driven_model(evaluator, inputs.clone())?;
+        let mut system = self.driven_model(evaluator, inputs.clone(), settings.tolerance)?;
         let solver = match settings.method {
             Method::DormandPrince853 => Solver::Rk,
             Method::Adams => Solver::Adams,

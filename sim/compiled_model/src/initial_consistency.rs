@@ -35,8 +35,8 @@ const MIN_NAMED_COEFFICIENT: f64 = 1e-6;
 const MIN_CONTRADICTION_FRACTION: f64 = 0.1;
 
 impl Instance<'_> {
-    /// Returns the solvers' system of this instance: projected onto the constraints, with impacts
-    /// and with sticking. It keeps the state of contacts and sticking, so use it for one motion
+    /// Returns the solvers' system of this instance at the relative `tolerance` of the states: projected onto the
+    /// constraints, with impacts and with sticking. It keeps the state of contacts and sticking, so use it for one motion
     /// only.
     ///
     /// # Errors
@@ -45,6 +45,7 @@ impl Instance<'_> {
         &self,
         evaluator: E,
         inputs: I,
+        tolerance: f64,
     ) -> Result<DrivenModel<E, I>, Error> {
         let impacts = self.model().model().impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
@@ -54,7 +55,7 @@ impl Instance<'_> {
         Ok(driven
             .with_impacts(impacts)
             .with_corners(self.corners()?)
-            .with_sides(self.sided_model()?))
+            .with_sides(self.sided_model()?, tolerance))
     }
 
     /// Returns the projection onto the constraints; `None` without constraints.

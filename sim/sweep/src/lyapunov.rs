@@ -182,7 +182,7 @@ fn variational_growth(
     let evaluator = RefCell::new(instance.evaluator()?);
     let system = DrivenModel::new(&evaluator, &start.inputs)
         .with_typical_sizes(instance.model().typical_sizes())
-        .with_sides(instance.sided_model()?)
+        .with_sides(instance.sided_model()?, TOLERANCE)
         .without_holding()
         .with_jacobian(instance.jacobian_evaluator()?);
     let (felt, settings) = (

@@ -163,7 +163,7 @@ impl Unit {
         };
         let evaluator = RefCell::new(instance.evaluator()?);
         let inputs = HeldInputs::constant(self.now.inputs.clone());
-        let system = instance.driven_model(evaluator, inputs)?;
+        let system = instance.driven_model(evaluator, inputs, self.now.tolerance)?;
         let at = (self.now.t, &self.now.state[..]);
         Ok(ExternalMotion::start(system, at, modes, self.now.tolerance))
     }

@@ -86,7 +86,7 @@ pub struct Unit {
 /// Same as [`Instance::evaluator`].
 pub fn find_surfaces(instance: &Instance<'_>) -> Result<Vec<Surface>, Error> {
     let evaluator = RefCell::new(instance.evaluator()?);
-    let system = instance.driven_model(evaluator, instance.default_inputs())?;
+    let system = instance.driven_model(evaluator, instance.default_inputs(), DEFAULT_TOLERANCE)?;
     Ok(system.surfaces())
 }
 

@@ -129,7 +129,10 @@ fn simulate_outputs(
     let sided = model.create_sided_model(&model.values);
     let driven = DrivenModel::new(&evaluator, inputs)
         .with_typical_sizes(model.typical_sizes())
-        .with_sides(sided.map_err(|error| error.to_string())?)
+        .with_sides(
+            sided.map_err(|error| error.to_string())?,
+            settings.tolerance,
+        )
         .without_holding();
     let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {});
     let trajectory = trajectory.map_err(|error| {

@@ -9,9 +9,15 @@ use std::ops::Range;
 
 use eomgen_sim::friction_discs::DiscVerdict;
 
-/// Smallest velocity along the reference in the unit vector of a step, in floors: rounding of a smaller one would
-/// turn the unit vector.
-const SLOW_FLOORS: f64 = 1e4;
+use super::surface_states::MAX_DRIFT_FRACTION;
+
+/// Rounding of the velocity relative to its largest value. At a thousand times as much it turns the unit vector by
+/// little.
+const SLOWEST_FRACTION: f64 = 1000.0 * MAX_DRIFT_FRACTION;
+
+/// Smallest velocity with a direction, in tolerances times the largest velocity. The error that the solver allows
+/// turns a smaller one, and explicit steps of that length oscillate about the direction of the force.
+const SLOWEST_TOLERANCES: f64 = 10.0;
 
 /// State of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +39,11 @@ pub(super) struct Disc {
     pub state: DiscState,
     /// Unit vector of the direction of the motion at the last step.
     pub along: Vec<f64>,
-    /// Velocity that counts as zero. Near zero the rounding of v turns it away from the reference.
-    pub floor: f64,
+    /// Velocity that counts as zero.
+    floor: f64,
+    /// Smallest velocity with a direction. A smaller one keeps the reference, because rounding or the error within the
+    /// tolerance turns it.
+    slowest: f64,
     /// Speed at the last step.
     speed: f64,
 }
@@ -48,6 +57,7 @@ impl Disc {
             state: DiscState::Sliding,
             along,
             floor: 0.0,
+            slowest: 0.0,
             speed: 0.0,
         }
     }
@@ -62,17 +72,24 @@ impl Disc {
 
     /// Returns true if the unit vector turns faster and faster on the way to zero.
     pub fn is_singular(&self) -> bool {
-        !self.is_holding() && self.speed > self.slow_speed()
+        !self.is_holding() && self.speed > self.slowest
     }
 
-    fn slow_speed(&self) -> f64 {
-        SLOW_FLOORS * self.floor
+    /// Returns the smallest velocity with a direction.
+    pub fn slowest(&self) -> f64 {
+        self.slowest
+    }
+
+    /// Sets the velocity that counts as zero and the smallest one with a direction, from the largest velocity and the relative tolerance of the states.
+    pub fn set_size(&mut self, largest: f64, tolerance: f64) {
+        self.floor = MAX_DRIFT_FRACTION * largest;
+        self.slowest = SLOWEST_FRACTION.max(SLOWEST_TOLERANCES * tolerance) * largest;
     }
 
     /// Returns true if the motion begins to slide and rounding still determines its direction.
     fn is_within_rounding(&self, functions: &[f64]) -> bool {
         let speed = norm(self.velocity(functions));
-        matches!(self.state, DiscState::Leaving { moved } if speed <= 2.0 * moved.max(self.floor))
+        matches!(self.state, DiscState::Leaving { moved } if speed <= 2.0 * moved)
     }
 
     /// Returns v, given the functions of all rows.
@@ -103,7 +120,7 @@ impl Disc {
         }
         let mut velocity = self.velocity(functions).to_vec();
         let ahead = dot(&velocity, &self.along);
-        let even = ahead.abs().max(self.slow_speed());
+        let even = ahead.abs().max(self.slowest);
         if is_fixed && ahead < even {
             for (v, along) in velocity.iter_mut().zip(&self.along) {
                 *v += (even - ahead) * along;
@@ -118,7 +135,7 @@ impl Disc {
         if self.is_leaving() && !self.is_within_rounding(functions) {
             self.state = DiscState::Sliding;
         }
-        if self.state == DiscState::Sliding {
+        if self.state == DiscState::Sliding && self.speed > self.slowest {
             self.along = unit_vector(self.velocity(functions), Some(&self.along));
         }
     }

@@ -40,6 +40,8 @@ pub(crate) struct SurfaceStates {
     /// function determines the side.
     pub(super) is_jumpless: Vec<bool>,
     pub(super) sizes: Vec<f64>,
+    /// Relative tolerance of the states.
+    pub(super) tolerance: f64,
     pub(super) begin: Option<f64>,
     /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     pub(super) kept: Option<Vec<f64>>,
@@ -47,7 +49,7 @@ pub(crate) struct SurfaceStates {
 }
 
 impl SurfaceStates {
-    pub fn new(sided: SidedModel) -> Self {
+    pub fn new(sided: SidedModel, tolerance: f64) -> Self {
         let count = sided.surface_count();
         Self {
             can_hold: sided.can_hold_motion(),
@@ -57,6 +59,7 @@ impl SurfaceStates {
             is_jumpless: vec![false; count],
             discs: sided.discs().iter().cloned().map(Disc::new).collect(),
             sizes: vec![0.0; sided.side_count()],
+            tolerance,
             begin: None,
             kept: None,
             known: KnownSides::Nothing,

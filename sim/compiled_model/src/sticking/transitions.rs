@@ -16,9 +16,9 @@ const NEAR_MOVE_FACTOR: f64 = 4.0;
 /// Limit of that distance, relative to the largest value of the function.
 const MAX_NEAR_FRACTION: f64 = 1e-9;
 
-/// Largest velocity that turns by more than 90 degrees within a step and counts as zero, relative to the
-/// largest velocity. Friction that can hold such a motion stops it at once.
-const MAX_SLOW_FRACTION: f64 = 1e-8;
+/// Speed of a motion that stops where the component along its reference reaches the slowest one, in slowest
+/// speeds: the rest is across.
+const MAX_SLOW_MULTIPLE: f64 = 2.0;
 
 /// Arrival on a surface on which the motion already is.
 const ARRIVAL_AT_REST: Arrival = Arrival {
@@ -160,7 +160,7 @@ impl SurfaceStates {
             let most = MAX_NEAR_FRACTION * size;
             let has_passed = disc.guard(beyond) < 0.0;
             let reach = match has_passed {
-                true => MAX_SLOW_FRACTION * size,
+                true => MAX_SLOW_MULTIPLE * disc.slowest(),
                 false => most.min(NEAR_MOVE_FACTOR * norm(&moved)),
             };
             if norm(velocity) <= reach + norm(disc.velocity(&roundings)) {
@@ -286,7 +286,7 @@ impl SurfaceStates {
             *size = size.max(value.abs());
         }
         for disc in &mut self.discs {
-            disc.floor = MAX_DRIFT_FRACTION * norm(disc.velocity(&self.sizes));
+            disc.set_size(norm(disc.velocity(&self.sizes)), self.tolerance);
         }
     }
 

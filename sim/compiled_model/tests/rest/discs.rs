@@ -1,7 +1,7 @@
 //! Friction against the direction of sliding, -mu m g v/norm(v): stops, rest, release and turns,
 //! compared with closed forms, with scalar friction and with set-valued time stepping.
 
-use eomgen_compiled_model::{CompiledModel, Motion, Solver};
+use eomgen_compiled_model::{CompiledModel, Motion, Request, Solver};
 
 use crate::{GENERAL, grid, of_text, simulated};
 
@@ -334,5 +334,69 @@ fn random_pairs_agree_between_solvers_and_come_to_rest() {
             .zip(&radau.trajectory.final_state);
         let off = ends.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
         assert!(off < 1e-6, "{case}: {off:e}");
+    }
+}
+
+/// A puck on a spring that friction barely holds: near its stop the spring turns the small velocity, which
+/// no explicit step resolves within the tolerance.
+#[test]
+fn puck_that_friction_barely_holds_stops_in_few_steps() {
+    let model = of_text(
+        r#"
+[model]
+name = "puck"
+[parameters]
+m = { value = 1.8586168902345077, unit = "kg" }
+mu = { value = 0.40620128638717146, unit = "1" }
+g = { value = 9.81, unit = "m/s^2" }
+k = { value = 23.607744266578422, unit = "N/m" }
+[coordinates]
+x = { unit = "m", initial = 0.33884747408411997, initial_rate = 1.4472385962109475 }
+y = { unit = "m", initial = 0.6943440353269055, initial_rate = 1.7542604877065084 }
+[definitions]
+v = "[dot(x), dot(y)]"
+p = "[x, y]"
+[kinetic]
+body = "1/2*m*dot(v, v)"
+[potential]
+spring = "1/2*k*(x^2 + y^2)"
+[forces]
+friction = { on = "p", value = "-mu*m*g*v/norm(v)" }
+"#,
+    );
+    let run = model.with_declared_parameters().unwrap();
+    let times = grid(3.0, 10);
+    let simulate = |solver, tolerance| {
+        let request = Request {
+            initial: run.initial_state(),
+            times: &times,
+            inputs: &run.default_inputs(),
+            solver,
+            tolerance,
+            max_step: f64::INFINITY,
+            audit: false,
+        };
+        let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
+        motion.into_complete().unwrap().trajectory
+    };
+    let reference = simulate(Solver::Radau, 1e-11);
+    for solver in GENERAL {
+        for tolerance in [1e-6, 1e-7, 1e-8, 1e-9] {
+            let found = simulate(solver, tolerance);
+            assert_eq!(found.events.len(), 1, "{solver} at {tolerance}");
+            assert!(
+                found.statistics.evaluations < 20_000,
+                "{solver} at {tolerance}: {} evaluations",
+                found.statistics.evaluations
+            );
+            let states = found.states.iter().flatten();
+            for (value, expected) in states.zip(reference.states.iter().flatten()) {
+                let error = (value - expected).abs();
+                assert!(
+                    error <= 100.0 * tolerance,
+                    "{solver} at {tolerance}: {error}"
+                );
+            }
+        }
     }
 }

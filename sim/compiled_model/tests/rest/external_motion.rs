@@ -13,11 +13,13 @@ type Motion = ExternalMotion<DrivenModel<RefCell<Evaluator>, HeldInputs>>;
 
 const STEP: f64 = 1e-3;
 
+const TOLERANCE: f64 = 1e-9;
+
 fn start(model: &CompiledModel, state: &[f64], modes: &[SurfaceMode]) -> Motion {
     let instance = model.with_declared_parameters().unwrap();
     let evaluator = RefCell::new(instance.evaluator().unwrap());
-    let system = instance.driven_model(evaluator, instance.default_inputs());
-    ExternalMotion::start(system.unwrap(), (0.0, state), modes, 1e-9)
+    let system = instance.driven_model(evaluator, instance.default_inputs(), TOLERANCE);
+    ExternalMotion::start(system.unwrap(), (0.0, state), modes, TOLERANCE)
 }
 
 fn signs(motion: &mut Motion, t: f64, y: &[f64], surfaces: usize) -> Vec<bool> {

@@ -140,7 +140,7 @@ fn follow_crossings(
     let evaluator = RefCell::new(instance.evaluator()?);
     let Start { state, inputs } = start;
     let watched = SectionSystem {
-        system: instance.driven_model(&evaluator, inputs)?,
+        system: instance.driven_model(&evaluator, inputs, settings.tolerance)?,
         surface: Surface {
             crossing,
             turn_start: in_every_turn.then(Cell::default),

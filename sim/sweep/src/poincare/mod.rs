@@ -403,7 +403,7 @@ impl Poincare<'_> {
             return Ok(propagator.simulate(state, span, times, inputs, quiet)?);
         }
         let evaluator = RefCell::new(instance.evaluator()?);
-        let system = instance.driven_model(&evaluator, inputs)?;
+        let system = instance.driven_model(&evaluator, inputs, self.settings.tolerance)?;
         let (initial, _) = instance.find_consistent_state(state, span.0, inputs)?;
         Ok(simulate(
             &system,
