@@ -16,7 +16,7 @@ use crate::mechanics::sliding::{SideInputs, add_side_inputs, can_hold_motion};
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
 use crate::program::evaluator::{Evaluator, Point};
-use crate::program::lowering::lower_with_outputs;
+use crate::program::lowering::{lower_controllers, lower_with_outputs};
 use crate::program::{Program, Quantity};
 
 /// A model derived at one order for each of its fields.
@@ -83,7 +83,8 @@ impl Variant {
             let mut rows = ConstraintRows::new(model, program);
             check_independence(model, orders, &mut rows).map_err(found)?;
         }
-        let program = lower_with_outputs(model, &equations, &values, &outputs);
+        let mut program = lower_with_outputs(model, &equations, &values, &outputs);
+        program.controllers = lower_controllers(model, &program).map_err(found)?;
         Ok(Self { equations, program })
     }
 }

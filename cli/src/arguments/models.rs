@@ -113,7 +113,7 @@ pub struct Generate {
     pub parameters: ParameterValues,
     /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (Jacobian times vector), linearisation,
-    /// regimes (rates for given contact states), lanes (an inlined copy of every function, for SIMD), hessians
+    /// regimes (rates for given contact states), step (a step of the solver fixed), lanes (an inlined copy of every function, for SIMD), hessians
     /// (of the weighted rates, for CasADi), bench (a benchmark).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,

@@ -97,6 +97,9 @@ pub enum Solver {
     Adams,
     /// Implicit Radau IIA method of order 5 with exact Jacobians, for stiff models.
     Radau,
+    /// Classical Runge-Kutta method of order 4 with steps of --step, for smooth models; the method of the emitted `step`.
+    /// Inputs are held during a step.
+    Fixed,
 }
 
 impl From<Solver> for eomgen_compiled_model::Solver {
@@ -107,6 +110,7 @@ impl From<Solver> for eomgen_compiled_model::Solver {
             Solver::Rk => Self::Rk,
             Solver::Adams => Self::Adams,
             Solver::Radau => Self::Radau,
+            Solver::Fixed => Self::Fixed,
         }
     }
 }
@@ -121,8 +125,13 @@ pub struct Integration {
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Longest step, in s. Default: no limit. Set it if an input has short pulses that longer steps may miss.
-    /// No effect on the exact solver.
-    #[arg(long, value_name = "DT", allow_negative_numbers = true)]
+    /// No effect on the exact solver. With the solver `fixed`, the length of all steps.
+    #[arg(
+        long,
+        value_name = "DT",
+        allow_negative_numbers = true,
+        visible_alias = "step"
+    )]
     pub max_step: Option<f64>,
 }
 

@@ -45,11 +45,13 @@ pub enum Function {
     Atan2,
     /// [`crate::pow`], arguments `x, y`.
     Pow,
+    /// [`crate::quantise`], arguments `x, step`.
+    Quantise,
 }
 
 impl Function {
     /// Every function.
-    pub const ALL: [Function; 19] = [
+    pub const ALL: [Function; 20] = [
         Function::Abs,
         Function::Sign,
         Function::Min,
@@ -69,6 +71,7 @@ impl Function {
         Function::Atan,
         Function::Atan2,
         Function::Pow,
+        Function::Quantise,
     ];
 
     /// Returns the name of the generic function in this crate.
@@ -93,13 +96,18 @@ impl Function {
             Function::Atan => "atan",
             Function::Atan2 => "atan2",
             Function::Pow => "pow",
+            Function::Quantise => "quantise",
         }
     }
 
     /// Returns the number of arguments.
     pub fn arity(self) -> usize {
         match self {
-            Function::Min | Function::Max | Function::Atan2 | Function::Pow => 2,
+            Function::Min
+            | Function::Max
+            | Function::Atan2
+            | Function::Pow
+            | Function::Quantise => 2,
             _ => 1,
         }
     }
@@ -141,6 +149,7 @@ impl Function {
             Function::Atan => crate::atan(first),
             Function::Atan2 => crate::atan2(first, second),
             Function::Pow => crate::pow(first, second),
+            Function::Quantise => crate::quantise(first, second),
         }
     }
 }

@@ -53,6 +53,7 @@
 //! | [`atan2`] | all | 1.45 | 77 |
 //! | [`pow`] | all; `x < 0` with integral `y` | 0.76 | 228 |
 //! | [`abs`], [`sign`], [`min`], [`max`] | all | exact | 1, 2, 2, 2 |
+//! | [`quantise`] | up to `2^51` steps | a rounded quotient and product | 10 |
 #![cfg_attr(not(feature = "trace"), no_std)]
 
 mod approximation;
@@ -81,7 +82,7 @@ pub use power::pow;
 pub use real::Real;
 pub use root::sqrt;
 pub use sine::{LARGEST_ANGLE, cos, sin, sin_cos, tan};
-pub use trivial::{abs, max, min, sign};
+pub use trivial::{abs, max, min, quantise, sign};
 
 #[cfg(feature = "trace")]
 pub use function::{Function, sin_cos_kernel};

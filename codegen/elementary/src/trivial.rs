@@ -1,6 +1,10 @@
-//! Magnitude, sign, minimum and maximum: one or two selections each, with defined results for NaN.
+//! Magnitude, sign, minimum, maximum and quantisation: a few selections each, with defined results for NaN.
 
+use crate::approximation::nearest_integer;
 use crate::real::Real;
+
+/// Quotients from here on are not rounded: `2^51`.
+const LARGEST_COUNT: f64 = (1_u64 << 51) as f64;
 
 /// Returns the magnitude; NaN for NaN.
 #[inline]
@@ -26,4 +30,17 @@ pub fn min<R: Real>(a: R, b: R) -> R {
 #[inline]
 pub fn max<R: Real>(a: R, b: R) -> R {
     R::select_equal(b, b, R::select_less(a, b, b, a), b)
+}
+
+/// Returns the multiple of `step` that is nearest to x, halves away from zero, for up to `2^51` steps; NaN if `step` is
+/// 0.
+#[inline]
+pub fn quantise<R: Real>(x: R, step: R) -> R {
+    let ratio = x / step;
+    let size = ratio.abs();
+    let even = nearest_integer(size);
+    let next = even + R::constant(1.0);
+    let nearest = R::select_equal(size - even, R::constant(0.5), next, even);
+    let count = R::select_less(size, R::constant(LARGEST_COUNT), nearest, size);
+    step * count.copysign(ratio)
 }

@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::comments::comment;
+use super::controllers;
 use super::expression::{initialiser, number};
 use super::functions::functions;
 use super::header::{documentation, header, lists};
@@ -9,13 +10,15 @@ use super::names::{WORDS, fill_template};
 use super::real::Real;
 use super::regimes::regime;
 use super::stages::definition;
+use super::step;
 use super::types::fill_functions;
 use crate::identity::{seal, unsealed};
 use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
-    EmitError, EmitResult, File, RequiredFunctions, Stage, guards, jacobian_stage, mass_matrix,
-    observables, rates, rates_in_regime, requested_stages, stage_roots,
+    EmitError, EmitResult, File, RequiredFunctions, Stage, controller_stages, guards,
+    jacobian_stage, mass_matrix, observables, rates, rates_in_regime, requested_stages,
+    stage_roots,
 };
 
 /// C files of a program.
@@ -50,7 +53,12 @@ pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
         defined += &definition(program, stage);
     }
     defined += &regime(&file);
+    defined += &step::definition(program);
     defined += &jacobians::definitions(program);
+    for controller in &program.controllers {
+        let stages = controller_stages(&file, controller, &mut needed)?;
+        defined += &controllers::definitions(program, controller, &stages);
+    }
     let mut text = comment(&documentation(program));
     text += &opening(program);
     text += &tables(&file)?;

@@ -391,6 +391,8 @@ fn field(structure: Structure, name: &str) -> String {
         Structure::Parameters => "parameters",
         Structure::Inputs => "inputs",
         Structure::InputDirection => "input_direction",
+        Structure::Measured => "measured",
+        Structure::Memory => "memory",
     };
     format!("{of}->{name}")
 }

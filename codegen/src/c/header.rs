@@ -1,11 +1,13 @@
 //! Header of the emitted C: sizes, names, structures, declarations.
 
 use super::comments::{comment, resolve_links};
+use super::controllers;
 use super::jacobians;
 use super::names::fill_template;
 use super::real::Real;
 use super::regimes::{REGIME, regime_head};
 use super::stages::{declaration, nest_lines};
+use super::step;
 use super::types;
 use super::types::structures;
 use crate::program::Program;
@@ -80,7 +82,9 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResul
         text += &comment(&resolve_links(program, REGIME));
         text += &format!("{};\n", regime_head(program, false));
     }
+    text += &step::declaration(program);
     text += &jacobians::declarations(program);
+    text += &controllers::declarations(program);
     Ok(text + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
 }
 

@@ -1,13 +1,14 @@
 //! C backend: a header and one source file for each variant, in C99 that is also valid C++, without
 //! allocation or library calls. Its results have the same bits as the emitted Rust.
 //!
-//! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes` and
-//! `jacobians` write functions, `functions` their helpers. `casadi` is an additional interface. `expression`
+//! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
+//! `jacobians` and `controllers` write functions, `functions` their helpers. `casadi` is an additional interface. `expression`
 //! writes statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
 //! the order of computation.
 
 mod casadi;
 mod comments;
+mod controllers;
 mod emit;
 mod expression;
 mod functions;
@@ -18,6 +19,7 @@ mod real;
 mod regimes;
 mod sine_and_cosine;
 mod stages;
+mod step;
 mod types;
 
 pub use crate::statements::EmitError;

@@ -6,11 +6,12 @@
 //! operation has one defined result in IEEE double arithmetic, every sum has a fixed order, and nothing is
 //! contracted, so that all backends compute the same bits.
 //!
-//! `value` and `types` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
+//! `value`, `types` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
 //! them, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
 //! values, and `operation_count` estimates the cost of a call.
 
 pub mod affine;
+mod controllers;
 pub mod describe;
 pub mod evaluator;
 pub mod lowering;
@@ -26,6 +27,7 @@ pub use crate::mechanics::outputs::{
 pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};
+pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
 pub use types::{
     MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, Quantity,
     RowValues,

@@ -1,5 +1,6 @@
 //! Program, quantities, rows and blocks.
 
+use super::controllers::ProgramController;
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::impacts::Impact;
 use crate::mechanics::outputs::{Outputs, Products};
@@ -125,6 +126,8 @@ pub struct Program {
     pub pivots: Vec<ValueId>,
     /// Values of the named coefficients of the specification.
     pub coefficient_values: Vec<ValueId>,
+    /// Sampled controllers.
+    pub controllers: Vec<ProgramController>,
     /// Requested outputs.
     pub outputs: Outputs<ValueId, RowValues>,
 }

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::constants;
+use super::controllers;
 use super::expression::{Writer, array};
 use super::functions::items;
 use super::generics::for_lanes;
@@ -12,6 +13,7 @@ use super::literals::{doc, file_doc, number};
 use super::regimes;
 use super::scalar::{COEFFICIENT, SCALAR};
 use super::stages;
+use super::step;
 use super::types;
 use super::words::WORDS;
 use crate::identity;
@@ -80,6 +82,8 @@ fn write_marked_source(file: &File<'_>, packaging: Packaging) -> EmitResult<Stri
         text += &function(stage, &mut writer);
     }
     text += &jacobians::jacobians(file, &mut needed, &mut writer)?;
+    text += &step::step(file);
+    text += &controllers::controllers(file, &mut needed, &mut writer)?;
     text += &tables(file)?;
     text += SCALAR;
     if for_lanes(file) {

@@ -249,6 +249,8 @@ fn structure_name(structure: Structure) -> &'static str {
         Structure::Parameters => "parameters",
         Structure::Inputs => "inputs",
         Structure::InputDirection => "input_direction",
+        Structure::Measured => "measured",
+        Structure::Memory => "memory",
     }
 }
 

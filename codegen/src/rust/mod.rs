@@ -1,12 +1,13 @@
 //! Rust backend: one source file for each variant, `no_std`, without dependencies, allocations or panics, for
 //! every edition.
 //!
-//! `emit` arranges the items, `types` writes parameters and coefficients, `stages`, `regimes` and `jacobians`
-//! write functions, `signature` their heads, `expression` their statements. `scalar` is the trait of numbers,
+//! `emit` arranges the items, `types` writes parameters and coefficients, `stages`, `regimes`, `jacobians` and
+//! `controllers` write functions, `signature` their heads, `expression` their statements. `scalar` is the trait of numbers,
 //! `functions`, `kernels`, `slopes` and `piecewise` are helpers, `literals` writes numbers and documentation.
 //! [`statements`](crate::statements) decides the order of computation.
 
 mod constants;
+mod controllers;
 mod emit;
 mod expression;
 mod functions;
@@ -20,6 +21,7 @@ mod scalar;
 mod signature;
 mod slopes;
 mod stages;
+mod step;
 mod types;
 mod words;
 

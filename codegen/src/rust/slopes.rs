@@ -28,6 +28,7 @@ pub fn type_name(function: Elementary) -> &'static str {
         Elementary::Atan => "Atan",
         Elementary::Atan2 => "Atan2",
         Elementary::Pow => "Pow",
+        Elementary::Quantise => "Quantise",
     }
 }
 
@@ -52,6 +53,7 @@ pub fn slope(function: Elementary) -> String {
         Elementary::Atan2 => "fn slopes<T: Scalar>(y: T, x: T, _: T) -> [T; 2] {",
         Elementary::Min | Elementary::Max => "fn slopes<T: Scalar>(x: T, y: T, _: T) -> [T; 2] {",
         Elementary::Pow => "fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2] {",
+        Elementary::Quantise => "fn slopes<T: Scalar>(_: T, _: T, _: T) -> [T; 2] {",
         Elementary::Exp
         | Elementary::ExpMinusOne
         | Elementary::Sqrt
@@ -103,5 +105,6 @@ fn lines(function: Elementary) -> &'static str {
             "let by_base = y * pow(x, y - T::number(1.0));\n\
              [by_base, value * ln(x)]\n"
         }
+        Elementary::Quantise => "[T::number(0.0), T::number(0.0)]\n",
     }
 }

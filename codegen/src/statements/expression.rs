@@ -28,6 +28,10 @@ pub enum Structure {
     Inputs,
     /// Direction of the inputs.
     InputDirection,
+    /// Quantities that a controller measures.
+    Measured,
+    /// Times and states of a controller.
+    Memory,
 }
 
 /// Array that an expression reads.

@@ -26,6 +26,7 @@ pub fn describe_elementary(function: Elementary) -> &'static str {
         Elementary::Atan => "Inverse tangent.",
         Elementary::Atan2 => "Angle of the point (x, y).",
         Elementary::Pow => "x to the power y.",
+        Elementary::Quantise => "Multiple of a step that is nearest to x, halves away from zero.",
     }
 }
 

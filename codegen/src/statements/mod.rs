@@ -1,13 +1,14 @@
 //! Statements of the emitted functions: named values, nested expressions and loops over modes. Operations and
 //! operands are those of the program, so that every backend computes the same bits.
 //!
-//! `stages` and `requested` build the functions, `preparation` the coefficients, from the shared data in
+//! `stages`, `requested` and `controllers` build the functions, `preparation` the coefficients, from the shared data in
 //! `file`. `body` (with `operands`, `blocks`, `rows` and `sides`) builds the `statement`s of a function from
 //! `expression`s; `kernel` builds those of an elementary function. The backends contain the syntax of each
 //! language.
 
 mod blocks;
 mod body;
+mod controllers;
 mod emit_error;
 mod expression;
 mod file;
@@ -26,8 +27,10 @@ mod sides;
 mod stage;
 mod stages;
 mod statement;
+mod step;
 mod used;
 
+pub(crate) use controllers::{ControllerStage, ControllerStages, TIMES, controller_stages};
 pub use emit_error::EmitError;
 pub(crate) use emit_error::EmitResult;
 pub(crate) use expression::{Array, Expression, Operator, Structure};
@@ -45,4 +48,5 @@ pub(crate) use stages::{
     RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
 };
 pub(crate) use statement::{Place, Statement};
+pub(crate) use step::STEP_DOC;
 pub(crate) use used::UsedNames;

@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use eomgen_elementary::Function as Elementary;
 
+use crate::program::evaluator::PiecewiseFunction;
+
 /// Functions that a file must define.
 #[derive(Clone, Debug, Default)]
 pub struct RequiredFunctions {
@@ -33,4 +35,28 @@ pub struct RequiredFunctions {
     pub sum: bool,
     /// Sums of at most as many elements as there are partial sums.
     pub sum_of_few: bool,
+}
+
+impl RequiredFunctions {
+    /// Adds a function and returns its name.
+    pub fn name(&mut self, function: PiecewiseFunction) -> &'static str {
+        match function {
+            PiecewiseFunction::Elementary(elementary) => {
+                self.elementary.insert(elementary);
+                elementary.name()
+            }
+            PiecewiseFunction::Deadzone => {
+                self.deadzone = true;
+                "deadzone"
+            }
+            PiecewiseFunction::Contact => {
+                self.contact = true;
+                "contact"
+            }
+            PiecewiseFunction::Above => {
+                self.above = true;
+                "above"
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@ use super::emit_error::{EmitError, EmitResult};
 use super::expression::{Array, Expression, Structure};
 use super::index::Index;
 use super::sides::decide_by_regime;
-use crate::program::evaluator::{PiecewiseFunction, piecewise_function};
+use crate::program::evaluator::piecewise_function;
 use crate::program::{Argument, Extent, Op, Output, Program, ValueId, Variable};
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::model::Function;
@@ -100,24 +100,7 @@ impl<'a> Body<'a> {
     }
 
     fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
-        let name = match piecewise_function(function) {
-            PiecewiseFunction::Elementary(elementary) => {
-                self.needed.elementary.insert(elementary);
-                elementary.name()
-            }
-            PiecewiseFunction::Deadzone => {
-                self.needed.deadzone = true;
-                "deadzone"
-            }
-            PiecewiseFunction::Contact => {
-                self.needed.contact = true;
-                "contact"
-            }
-            PiecewiseFunction::Above => {
-                self.needed.above = true;
-                "above"
-            }
-        };
+        let name = self.needed.name(piecewise_function(function));
         Expression::Call(name, arguments.to_vec())
     }
 

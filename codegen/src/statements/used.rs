@@ -109,6 +109,8 @@ impl UsedNames {
                 Structure::Parameters => "parameters",
                 Structure::Inputs => "inputs",
                 Structure::InputDirection => "input_direction",
+                Structure::Measured => "measured",
+                Structure::Memory => "memory",
             }),
             Expression::Shared(part) | Expression::Negate(part) => self.expression(part),
             Expression::Binary(_, a, b) => {

@@ -83,7 +83,9 @@ impl Code<'_> {
             Structure::Coefficients => self.memory.coefficient(name)?.first,
             Structure::Parameters => self.memory.parameter(name)?,
             Structure::Inputs => self.memory.input(name)?,
-            Structure::InputDirection => return Err(missing_place_error(name)),
+            Structure::InputDirection | Structure::Measured | Structure::Memory => {
+                return Err(missing_place_error(name));
+            }
         };
         self.load(place);
         Ok(())

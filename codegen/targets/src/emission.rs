@@ -25,9 +25,9 @@ pub fn emit(
 ) -> Result<Vec<EmittedFile>> {
     let program = &variant.program;
     let name = &program.name;
-    if let (false, Some(controller)) = (target.is_unit(), model.controllers.first()) {
+    if let (Target::Casadi, Some(controller)) = (target, model.controllers.first()) {
         warn(&format!(
-            "note: the controllers of the model (`{}`) are not emitted: the files contain the machine without them",
+            "note: the controllers of the model (`{}`) are not emitted: the functions are those of the machine without them",
             controller.name
         ));
     }

@@ -49,6 +49,7 @@ mod driven_model;
 mod equilibrium;
 mod error;
 mod event_log;
+mod fixed_steps;
 mod general_run;
 mod infinite_inputs;
 mod initial_consistency;

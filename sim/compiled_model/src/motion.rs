@@ -26,11 +26,21 @@ pub enum Solver {
     /// Implicit Radau IIA method of order 5 with the model's Jacobian and event location, for
     /// stiff models.
     Radau,
+    /// Classical Runge-Kutta method of order 4 with steps of the given length, for smooth models. Inputs are held
+    /// during a step.
+    Fixed,
 }
 
 impl Solver {
     /// Every solver.
-    pub const ALL: [Self; 5] = [Self::Auto, Self::Exact, Self::Rk, Self::Adams, Self::Radau];
+    pub const ALL: [Self; 6] = [
+        Self::Auto,
+        Self::Exact,
+        Self::Rk,
+        Self::Adams,
+        Self::Radau,
+        Self::Fixed,
+    ];
 
     /// Returns the name used on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -40,6 +50,7 @@ impl Solver {
             Self::Rk => "rk",
             Self::Adams => "adams",
             Self::Radau => "radau",
+            Self::Fixed => "fixed",
         }
     }
 }

@@ -11,6 +11,7 @@ use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
+use crate::fixed_steps::FixedSteps;
 use crate::general_run::GeneralRun;
 use crate::instance::Instance;
 use crate::motion::{EarlyStop, Solver, SolverChoice, StopCause};
@@ -31,7 +32,7 @@ pub struct SolverOptions {
     pub solver: Solver,
     /// Relative tolerance; [`Solver::Exact`] ignores it.
     pub tolerance: f64,
-    /// Longest step, s; [`Solver::Exact`] ignores it.
+    /// Longest step, s; [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length.
     pub max_step: f64,
 }
 
@@ -115,6 +116,7 @@ enum Engine {
         run: Box<GeneralRun>,
         simulation: Box<GeneralSimulation>,
     },
+    Fixed(Box<FixedSteps>),
 }
 
 impl<'m> Instance<'m> {
@@ -141,9 +143,14 @@ impl<'m> Instance<'m> {
             Some(choice) => *choice == SolverChoice::PiecewiseLinear,
             None => options.solver == Solver::Exact,
         };
-        let (engine, initial_changes) = match is_exact {
-            true => (self.start_exact((t, state), &inputs)?, Vec::new()),
-            false => {
+        let is_fixed = options.solver == Solver::Fixed;
+        let (engine, initial_changes) = match (is_exact, is_fixed) {
+            (true, _) => (self.start_exact((t, state), &inputs)?, Vec::new()),
+            (_, true) => {
+                let steps = self.start_fixed((t, state), options.max_step)?;
+                (Engine::Fixed(Box::new(steps)), Vec::new())
+            }
+            _ => {
                 let settings = options.settings(general_method(options.solver));
                 self.start_general((t, state), &inputs, &settings)?
             }
@@ -151,6 +158,7 @@ impl<'m> Instance<'m> {
         let surfaces = match &engine {
             Engine::Exact { .. } => self.surfaces(&inputs)?,
             Engine::General { run, .. } => run.surfaces.clone(),
+            Engine::Fixed(_) => Vec::new(),
         };
         Ok(Simulation {
             instance: self.clone(),
@@ -225,6 +233,16 @@ impl Simulation<'_> {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.time(),
             Engine::General { simulation, .. } => simulation.time(),
+            Engine::Fixed(steps) => steps.reached(),
+        }
+    }
+
+    /// Returns the time (s) at which the rates are evaluated: that of the step for [`Solver::Fixed`], else the time
+    /// reached.
+    pub(crate) fn evaluation_time(&self) -> f64 {
+        match &self.engine {
+            Engine::Fixed(steps) => steps.time(),
+            _ => self.time(),
         }
     }
 
@@ -233,6 +251,7 @@ impl Simulation<'_> {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.state(),
             Engine::General { simulation, .. } => simulation.state(),
+            Engine::Fixed(steps) => steps.state(),
         }
     }
 
@@ -246,6 +265,7 @@ impl Simulation<'_> {
         match &self.engine {
             Engine::Exact { .. } => Solver::Exact,
             Engine::General { run, .. } => run.solver,
+            Engine::Fixed(_) => Solver::Fixed,
         }
     }
 
@@ -294,6 +314,7 @@ impl Simulation<'_> {
             Engine::General { run, simulation } => {
                 run.system.write_observables((t, simulation.state()), out);
             }
+            Engine::Fixed(steps) => steps.write_observables(&self.present_inputs, out),
         }
     }
 
@@ -313,6 +334,7 @@ impl Simulation<'_> {
                 observed.rates(point, out);
             }
             Engine::General { run, simulation } => run.system.rates(t, simulation.state(), out),
+            Engine::Fixed(steps) => steps.write_rates(&self.present_inputs, out),
         }
     }
 
@@ -320,7 +342,7 @@ impl Simulation<'_> {
     /// by the state.
     pub fn modes(&self) -> &[SurfaceMode] {
         match &self.engine {
-            Engine::Exact { .. } => &[],
+            Engine::Exact { .. } | Engine::Fixed(_) => &[],
             Engine::General { simulation, .. } => simulation.modes(),
         }
     }
@@ -360,6 +382,12 @@ impl Simulation<'_> {
                 "a simulation that reached {now:?} s cannot continue to {until:?} s with these samples: times must be \
                  finite and ascend from the time reached"
             )));
+        }
+        if let Engine::Fixed(steps) = &mut self.engine {
+            let names = || self.instance.model().state_names();
+            let stop = steps.advance((until, samples), &self.inputs, trajectory, &names)?;
+            progress(until);
+            return Ok(stop);
         }
         let first = trajectory.times.len();
         loop {
@@ -428,6 +456,7 @@ impl Simulation<'_> {
                 };
                 Some((stop, next))
             }
+            Engine::Fixed(_) => None,
         }
     }
 
@@ -493,6 +522,7 @@ impl Simulation<'_> {
         let begin = self.time();
         let model = self.instance.model();
         match &mut self.engine {
+            Engine::Fixed(_) => Ok(()),
             Engine::Exact {
                 propagator, motion, ..
             } => {
@@ -525,6 +555,10 @@ impl Simulation<'_> {
             )));
         }
         // Surfaces hold or close anew.
+        if let Engine::Fixed(steps) = &mut self.engine {
+            steps.set_state(state);
+            return Ok(());
+        }
         match self.solver() {
             Solver::Exact => {
                 let start = (self.time(), state);
@@ -541,7 +575,7 @@ fn general_method(solver: Solver) -> Method {
     match solver {
         Solver::Radau => Method::Radau,
         Solver::Adams => Method::Adams,
-        Solver::Auto | Solver::Exact | Solver::Rk => Method::DormandPrince853,
+        Solver::Auto | Solver::Exact | Solver::Rk | Solver::Fixed => Method::DormandPrince853,
     }
 }
 

@@ -42,7 +42,8 @@ pub struct Request<'r> {
     pub solver: Solver,
     /// Relative tolerance; [`Solver::Exact`] ignores it.
     pub tolerance: f64,
-    /// Longest step, s; [`Solver::Exact`] ignores it. See [`Settings::max_step`].
+    /// Longest step, s; [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length. See
+    /// [`Settings::max_step`].
     pub max_step: f64,
     /// True to compare the change of the energy with the work; see [`Audit`].
     pub audit: bool,
@@ -101,7 +102,7 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        if !self.model().model().controllers.is_empty() {
+        if request.solver == Solver::Fixed || !self.model().model().controllers.is_empty() {
             let mut declared = self.controllers()?;
             let all = declared.iter_mut();
             let mut all: Vec<_> = all.map(|own| own as &mut dyn SampledController).collect();
@@ -128,7 +129,7 @@ impl Instance<'_> {
             Solver::Radau => {
                 return self.simulate_general(request, &asked(Method::Radau), None, progress);
             }
-            Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
+            Solver::Exact | Solver::Auto | Solver::Fixed => self.model.piecewise_linear(),
         };
         let is_free = request.solver == Solver::Auto;
         if request.inputs.is_time_varying() {

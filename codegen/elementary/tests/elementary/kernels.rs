@@ -170,6 +170,7 @@ fn operation_counts_are_as_documented() {
         ("atan", 62),
         ("atan2", 77),
         ("pow", 228),
+        ("quantise", 10),
     ];
     assert_eq!(counted, documented);
     assert_eq!(sin_cos_kernel().operation_count(), 71);

@@ -246,3 +246,26 @@ fn missing_argument_is_nan() {
     assert_value(Atan2, &[1.0], NAN);
     assert!(Sin.kernel().evaluate(&[])[0].is_nan());
 }
+
+#[test]
+fn quantised_numbers_are_nearest_multiples() {
+    let quantise = |x: f64, step: f64| Function::Quantise.apply(&[x, step]);
+    let found = [-0.75, -0.25, -0.2, 0.2, 0.25, 0.75, 1.3].map(|x| quantise(x, 0.5));
+    assert_eq!(found, [-1.0, -0.5, -0.0, 0.0, 0.5, 1.0, 1.5]);
+    assert_eq!(quantise(0.7, -0.5), 0.5);
+    assert!(quantise(1.0, 0.0).is_nan() && quantise(0.0, 0.0).is_nan());
+    // The standard library rounds halves away from zero too.
+    let below_half = 0.5_f64.next_down();
+    let mut numbers = vec![
+        below_half,
+        1.5,
+        2.5,
+        1e15 + 0.5,
+        2.0_f64.powi(51) - 0.5,
+        1e300,
+    ];
+    numbers.extend((0..2000_i32).map(|k| f64::from(k - 1000) * 0.37));
+    for x in numbers {
+        assert_eq!(quantise(x, 1.0), x.round(), "{x:?}");
+    }
+}

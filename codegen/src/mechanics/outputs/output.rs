@@ -26,6 +26,8 @@ pub enum Output {
     /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
     /// Includes the products.
     Hessians,
+    /// One step of the classical Runge-Kutta method of order 4.
+    Step,
     /// A second version of every function, `inlined_...`, for SIMD lanes. It is compiled together with the
     /// calling code for registers that are known at run time.
     Lanes,
@@ -33,7 +35,7 @@ pub enum Output {
 
 impl Output {
     /// Every output that all languages support and a request can name.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::BiasForces,
         Self::InverseDynamics,
         Self::GuardRates,
@@ -41,6 +43,7 @@ impl Output {
         Self::Products,
         Self::Linearisation,
         Self::Regimes,
+        Self::Step,
         Self::Lanes,
     ];
 
@@ -57,6 +60,7 @@ impl Output {
             Self::TimeDerivatives => "time_derivatives",
             Self::Tangents => "tangents",
             Self::Hessians => "hessians",
+            Self::Step => "step",
             Self::Lanes => "lanes",
         }
     }

@@ -88,6 +88,7 @@ pub fn lower_affine(
             impacts: Vec::new(),
             pivots,
             coefficient_values: Vec::new(),
+            controllers: Vec::new(),
             outputs: Outputs::default(),
         },
     }

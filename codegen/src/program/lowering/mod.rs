@@ -6,6 +6,7 @@
 
 mod affine;
 mod arithmetic;
+mod controllers;
 mod outputs;
 mod quantities;
 mod values;
@@ -19,6 +20,7 @@ use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, ValueId};
 use crate::symbolic::formula::abridged_formula;
 use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
+pub use controllers::lower_controllers;
 use quantities::{program_observables, program_parameters, quantity};
 use values::Lowering;
 
@@ -135,6 +137,7 @@ pub fn lower_with_outputs(
         impacts,
         pivots,
         coefficient_values,
+        controllers: Vec::new(),
         outputs,
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
 }
 
 /// Returns the unit as written in the specification if it is coherent, else its SI equivalent.
-fn si_unit(unit: &Unit) -> String {
+pub(super) fn si_unit(unit: &Unit) -> String {
     if unit.is_coherent() {
         unit.text.clone()
     } else {

@@ -599,3 +599,38 @@ const fn pattern<const B: usize, const N: usize>(
     pattern
 }
 
+/// Step of length h (s) of the classical Runge-Kutta method of order 4, with held inputs. It has
+/// the bits of `eomgen simulate --solver fixed`. Switches and impacts are not located.
+pub fn step<T: Scalar>(
+    t: T,
+    h: T,
+    state: &mut [T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) {
+    let mut k1 = [T::number(0.0); STATES];
+    let mut k2 = [T::number(0.0); STATES];
+    let mut k3 = [T::number(0.0); STATES];
+    let mut k4 = [T::number(0.0); STATES];
+    let mut stage = [T::number(0.0); STATES];
+    let half = T::number(0.5) * h;
+    let sixth = h / T::number(6.0);
+    rates_into(t, state, inputs, coefficients, &mut k1);
+    for i in 0..STATES {
+        stage[i] = state[i] + half * k1[i];
+    }
+    rates_into(t + half, &stage, inputs, coefficients, &mut k2);
+    for i in 0..STATES {
+        stage[i] = state[i] + half * k2[i];
+    }
+    rates_into(t + half, &stage, inputs, coefficients, &mut k3);
+    for i in 0..STATES {
+        stage[i] = state[i] + h * k3[i];
+    }
+    rates_into(t + h, &stage, inputs, coefficients, &mut k4);
+    for i in 0..STATES {
+        let inner = k2[i] + k3[i];
+        state[i] = state[i] + sixth * (k1[i] + k4[i] + T::number(2.0) * inner);
+    }
+}
+

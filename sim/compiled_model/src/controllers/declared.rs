@@ -1,116 +1,57 @@
 //! Controllers of a specification at parameter values.
 
+use eomgen_codegen::program::{ControlValues, MeasuredSource, ProgramController};
 use eomgen_model_spec::control::Schedule;
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::model::{Controller, MeasuredQuantity};
 
 use super::controller::{Sample, SampledController};
 use crate::error::Error;
 use crate::instance::Instance;
 
-/// Source of a measured quantity.
-#[derive(Clone, Copy, Debug)]
-enum Measured {
-    Constant(f64),
-    Time,
-    State(usize),
-    Input(usize),
-    Observable(usize),
-    Own(usize),
-}
-
 /// Controller of a specification, at the parameter values of an instance.
 #[derive(Clone, Debug)]
 pub struct DeclaredController {
-    controller: Controller,
+    controller: ProgramController,
     schedule: Schedule,
-    measured: Vec<Measured>,
-    driven: Vec<usize>,
-    /// Names of the driven inputs.
-    inputs: Vec<String>,
+    /// Independent parameters, SI.
+    parameters: Vec<f64>,
     states: Vec<f64>,
-    /// Values of the measured quantities at the last sample.
-    values: Vec<f64>,
+    /// Measured quantities at the last sample.
+    measured: Vec<f64>,
+    /// Results of all operations at the last sample.
+    results: Vec<f64>,
 }
 
 impl Instance<'_> {
     /// Returns the controllers of the specification in their initial states.
     ///
     /// # Errors
-    /// Inadmissible times at these parameter values, and a mode that does not exist at the order of the model.
+    /// Inadmissible times or initial states at these parameter values.
     pub fn controllers(&self) -> Result<Vec<DeclaredController>, Error> {
-        let declared = &self.model().model().controllers;
-        declared
-            .iter()
-            .map(|controller| self.controller(controller))
-            .collect()
-    }
-
-    fn controller(&self, controller: &Controller) -> Result<DeclaredController, Error> {
         let model = self.model().model();
-        let refused = |error| Error::from_model_error(model, error);
-        let schedule = controller.schedule(self.values()).map_err(refused)?;
-        let states = controller.initial_states(self.values()).map_err(refused)?;
-        let measured = controller.measured.iter();
-        let measured = measured.map(|quantity| self.find_measured(quantity, schedule.period));
-        let driven = controller.outputs.iter().map(|output| output.input.index());
-        let inputs = controller.outputs.iter();
-        let inputs = inputs.map(|output| model.inputs[output.input].name.clone());
-        Ok(DeclaredController {
-            schedule,
-            measured: measured.collect::<Result<_, _>>()?,
-            driven: driven.collect(),
-            inputs: inputs.collect(),
-            states,
-            values: vec![0.0; controller.measured.len()],
-            controller: controller.clone(),
-        })
-    }
-
-    fn find_measured(&self, quantity: &MeasuredQuantity, period: f64) -> Result<Measured, Error> {
-        let model = self.model().model();
-        Ok(match quantity {
-            MeasuredQuantity::Time => Measured::Time,
-            MeasuredQuantity::Period => Measured::Constant(period),
-            MeasuredQuantity::Parameter(id) => {
-                let value = self.values().get(id.index()).copied();
-                Measured::Constant(value.unwrap_or(f64::NAN))
-            }
-            MeasuredQuantity::Input(id) => Measured::Input(id.index()),
-            MeasuredQuantity::Own(place) => Measured::Own(*place),
-            MeasuredQuantity::Observable(name) => {
-                let names = self.model().observable_names();
-                let place = names.iter().position(|known| known == name);
-                place.map_or(Measured::Constant(f64::NAN), Measured::Observable)
-            }
-            part => {
-                let name = part.state_name(model).unwrap_or_default();
-                let names = self.model().state_names();
-                match names.iter().position(|known| *known == name) {
-                    Some(place) => Measured::State(place),
-                    None => return Err(self.missing_mode_error(part, &name)),
-                }
-            }
-        })
-    }
-
-    fn missing_mode_error(&self, part: &MeasuredQuantity, name: &str) -> Error {
-        let model = self.model().model();
-        let mut diagnostic = Diagnostic::error(format!("the model has no mode `{name}`"));
-        if let MeasuredQuantity::Mode {
-            field,
-            number,
-            span,
-            ..
-        } = part
-        {
-            let order = self.model().orders().get(*field).copied().unwrap_or(0);
-            let name = model.fields.get(*field).map_or("", |field| &*field.name);
-            diagnostic = diagnostic
-                .with_span(*span, format!("the field `{name}` has {order} modes here"))
-                .with_help(format!("give an order of {number} or more"));
+        let declared = model.controllers.iter();
+        for controller in declared {
+            let checked = controller.schedule(self.values()).map(drop);
+            let checked = checked.and_then(|()| controller.initial_states(self.values()));
+            checked.map_err(|error| Error::from_model_error(model, error))?;
         }
-        Diagnostics::from_one(model.source.clone(), diagnostic).into()
+        let controllers = self.model().program().controllers.iter();
+        Ok(controllers.map(|own| self.start_controller(own)).collect())
+    }
+
+    fn start_controller(&self, controller: &ProgramController) -> DeclaredController {
+        let ([period, offset, delay], states) = controller.start(self.parameters());
+        DeclaredController {
+            controller: controller.clone(),
+            schedule: Schedule {
+                period,
+                offset,
+                delay,
+            },
+            parameters: self.parameters().to_vec(),
+            states,
+            measured: Vec::new(),
+            results: Vec::new(),
+        }
     }
 }
 
@@ -120,36 +61,41 @@ impl SampledController for DeclaredController {
     }
 
     fn driven_inputs(&self) -> &[usize] {
-        &self.driven
+        &self.controller.driven
     }
 
     fn sample(&mut self, at: &Sample<'_>, outputs: &mut [f64]) -> Result<(), String> {
-        for (value, measured) in self.values.iter_mut().zip(&self.measured) {
-            *value = match *measured {
-                Measured::Constant(value) => value,
-                Measured::Time => at.t,
-                Measured::State(place) => at.state[place],
-                Measured::Input(place) => at.inputs[place],
-                Measured::Observable(place) => at.observables[place],
-                Measured::Own(place) => self.states[place],
-            };
-        }
+        let measured = self.controller.sources.iter().map(|source| match *source {
+            MeasuredSource::Time => at.t,
+            MeasuredSource::State(place) => at.state[place],
+            MeasuredSource::Input(place) => at.inputs[place],
+            MeasuredSource::Observable(place) => at.observables[place],
+        });
+        self.measured.clear();
+        self.measured.extend(measured);
+        let given = ControlValues {
+            parameters: &self.parameters,
+            period: self.schedule.period,
+            measured: &self.measured,
+            states: &self.states,
+        };
+        self.controller.evaluate(given, &mut self.results);
         let owner = &self.controller.name;
-        let finite = |value: f64, what: &str, name: &str| match value.is_finite() {
-            true => Ok(value),
-            false => Err(format!(
+        let finite = |place: usize, what: &str, name: &str| match self.results[place] {
+            value if value.is_finite() => Ok(value),
+            value => Err(format!(
                 "{what} `{name}` of the controller `{owner}` is {value}"
             )),
         };
-        for ((slot, output), name) in outputs
-            .iter_mut()
-            .zip(&self.controller.outputs)
-            .zip(&self.inputs)
-        {
-            *slot = finite(output.value.evaluate(&self.values), "the output", name)?;
+        let values = self.controller.output_values.iter();
+        let named = values.zip(&self.controller.outputs);
+        for (slot, (place, output)) in outputs.iter_mut().zip(named) {
+            *slot = finite(*place, "the output", &output.name)?;
         }
-        for (slot, state) in self.states.iter_mut().zip(&self.controller.states) {
-            *slot = finite(state.next.evaluate(&self.values), "the state", &state.name)?;
+        let values = self.controller.next.iter();
+        let named = values.zip(&self.controller.states);
+        for (slot, (place, state)) in self.states.iter_mut().zip(named) {
+            *slot = finite(*place, "the state", &state.name)?;
         }
         Ok(())
     }

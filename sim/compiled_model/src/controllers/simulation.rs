@@ -8,7 +8,7 @@ use super::clock::Clock;
 use super::controller::{Sample, SampledController};
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{ControllerStates, EarlyStop, Motion, StopCause};
+use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, StopCause};
 use crate::resumable::{Simulation, SolverOptions};
 use crate::simulation::{Request, with_early_stop};
 
@@ -20,22 +20,27 @@ impl Instance<'_> {
     /// the values after it. Calls `progress` with the time reached, s. The motion has no energy audit.
     ///
     /// # Errors
-    /// Same as [`Instance::simulate_until_stop`].
+    /// Two controllers that drive one input; same as [`Instance::simulate_until_stop`].
     pub fn simulate_controlled(
         &self,
         request: &Request<'_>,
         controllers: &mut Controllers<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        self.check_driven_once(controllers)?;
         let (start, _) = request.time_span();
         let schedules = controllers.iter().map(|controller| controller.schedule());
         let schedules: Vec<Schedule> = schedules.collect();
         // Longer steps would end between samples, and lose digits there.
         let periods = schedules.iter().map(|schedule| schedule.period);
+        let max_step = match request.solver {
+            Solver::Fixed => request.max_step,
+            _ => periods.fold(request.max_step, f64::min),
+        };
         let options = SolverOptions {
             solver: request.solver,
             tolerance: request.tolerance,
-            max_step: periods.fold(request.max_step, f64::min),
+            max_step,
         };
         let begin = (start, request.initial);
         let simulation = self.start_simulation(begin, request.inputs.clone(), options)?;
@@ -58,6 +63,23 @@ impl Instance<'_> {
             None => Ok(motion),
             Some(stop) => with_early_stop(motion, stop),
         }
+    }
+}
+
+impl Instance<'_> {
+    fn check_driven_once(&self, controllers: &Controllers<'_>) -> Result<(), Error> {
+        let mut driven = Vec::new();
+        for place in controllers.iter().flat_map(|own| own.driven_inputs()) {
+            if driven.contains(place) {
+                let inputs = &self.model().program().inputs;
+                let name = inputs.get(*place).map_or("", |input| &input.name);
+                return Err(Error::Request(format!(
+                    "two controllers drive the input `{name}`: let one controller compute the sum of both"
+                )));
+            }
+            driven.push(*place);
+        }
+        Ok(())
     }
 }
 
@@ -182,7 +204,7 @@ impl ControlledRun<'_, '_, '_> {
         let inputs = self.current.evaluate(instant).into_owned();
         for place in due {
             let at = Sample {
-                t: instant,
+                t: self.simulation.evaluation_time(),
                 state: self.simulation.state(),
                 inputs: &inputs,
                 observables: &self.observables,

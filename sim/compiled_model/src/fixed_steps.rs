@@ -1,0 +1,222 @@
+//! Classical Runge-Kutta method of order 4 with fixed steps. Emitted code has the same method with the same order of
+//! operations, as `step`, so that a simulation and a loop on a processor have the same bits.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::motion::{EarlyStop, StopCause};
+
+/// Largest distance of a time from the nearest step, as a fraction of the step: far above rounding errors of times.
+const GRID_TOLERANCE: f64 = 1e-6;
+
+/// Motion with fixed steps from a start: step k begins at start + k step.
+pub struct FixedSteps {
+    evaluator: Evaluator,
+    start: f64,
+    step: f64,
+    /// Number of steps taken.
+    count: u64,
+    /// Time reached as requested, which may differ from that of the step by rounding, s.
+    reached: f64,
+    state: Vec<f64>,
+    stage: Vec<f64>,
+    rates: [Vec<f64>; 4],
+}
+
+impl Instance<'_> {
+    /// Starts a motion with steps of this length (s).
+    ///
+    /// # Errors
+    /// A model whose motion needs events, a step that is not given, and an invalid state.
+    pub(crate) fn start_fixed(
+        &self,
+        (t, state): (f64, &[f64]),
+        step: f64,
+    ) -> Result<FixedSteps, Error> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(Error::Request(
+                "the solver fixed needs the length of its steps: --step 1e-4 (s); in Python max_step".to_owned(),
+            ));
+        }
+        if let Some(reason) = self.find_event() {
+            return Err(Error::Request(format!(
+                "the solver fixed locates no events, but {reason}: use --solver rk"
+            )));
+        }
+        let count = self.model().program().states();
+        if state.len() != count || state.iter().any(|entry| !entry.is_finite()) {
+            return Err(Error::Request(format!(
+                "a state has {count} finite entries"
+            )));
+        }
+        let zeros = || vec![0.0; count];
+        Ok(FixedSteps {
+            evaluator: self.evaluator()?,
+            start: t,
+            step,
+            count: 0,
+            reached: t,
+            state: state.to_vec(),
+            stage: zeros(),
+            rates: [zeros(), zeros(), zeros(), zeros()],
+        })
+    }
+
+    /// Returns why the motion needs events or a projection.
+    fn find_event(&self) -> Option<String> {
+        let (model, program) = (self.model().model(), self.model().program());
+        if let Some(impact) = model.impacts.first() {
+            return Some(format!("the impact `{}` is one", impact.name));
+        }
+        if let Some(constraint) = model.constraints.first() {
+            let name = &constraint.name;
+            return Some(format!("the constraint `{name}` needs projections onto it"));
+        }
+        if let Some(guard) = program.guards.first() {
+            return Some(format!(
+                "the equations switch where `{}` is zero",
+                guard.formula
+            ));
+        }
+        let prescribed = model.inputs.iter().find(|input| input.rate.is_some());
+        prescribed.map(|input| {
+            let name = &input.name;
+            format!("the input `{name}` is prescribed motion, which cannot be held during a step")
+        })
+    }
+}
+
+impl FixedSteps {
+    /// Returns the time reached as requested, s.
+    pub fn reached(&self) -> f64 {
+        self.reached
+    }
+
+    /// Returns the time of the step, s.
+    pub fn time(&self) -> f64 {
+        self.time_after(self.count)
+    }
+
+    fn time_after(&self, steps: u64) -> f64 {
+        self.start + steps as f64 * self.step
+    }
+
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// Continues to `until` (s) with the rows at `samples`. Inputs are evaluated at the start of each step and held.
+    ///
+    /// # Errors
+    /// A time that is not a multiple of the step after the start.
+    pub fn advance(
+        &mut self,
+        (until, samples): (f64, &[f64]),
+        inputs: &HeldInputs,
+        trajectory: &mut Trajectory,
+        names: &dyn Fn() -> Vec<String>,
+    ) -> Result<Option<EarlyStop>, Error> {
+        for row in samples
+            .iter()
+            .map(|row| (*row, true))
+            .chain([(until, false)])
+        {
+            let (time, is_row) = row;
+            let steps = self.steps_until(time)?;
+            while self.count < steps {
+                // An input that changes at the time reached has changed, whatever the rounding of the step's time.
+                let held = inputs.evaluate(self.time().max(self.reached));
+                if let Some(place) = self.take_step(&held) {
+                    let (t, names) = (self.time(), names());
+                    let reason = format!(
+                        "at t = {t:?} s the state `{}` is not finite: the steps are too long, the state diverged, or a \
+                         function left its domain",
+                        names.get(place).map_or("", |name| name)
+                    );
+                    let cause = StopCause::NotFinite;
+                    let t = Some(t);
+                    return Ok(Some(EarlyStop { t, reason, cause }));
+                }
+                trajectory.statistics.steps += 1;
+                trajectory.statistics.evaluations += 4;
+            }
+            self.reached = time;
+            if is_row {
+                trajectory.times.push(time);
+                trajectory.states.push(self.state.clone());
+            }
+        }
+        trajectory.final_state = self.state.clone();
+        Ok(None)
+    }
+
+    /// Returns the number of steps from the start to a time.
+    fn steps_until(&self, time: f64) -> Result<u64, Error> {
+        let steps = ((time - self.start) / self.step).round();
+        let distance = (time - self.time_after(steps as u64)).abs();
+        let rounding = 8.0 * f64::EPSILON * time.abs();
+        match distance <= rounding.max(GRID_TOLERANCE * self.step) {
+            true => Ok(steps as u64),
+            false => Err(Error::Request(format!(
+                "t = {time:?} s lies between two steps of {:?} s: with the solver fixed, the times of rows, of samples and \
+                 of changes of inputs are multiples of the step",
+                self.step
+            ))),
+        }
+    }
+
+    /// Takes a step. Returns the index of a state that is not finite.
+    fn take_step(&mut self, inputs: &[f64]) -> Option<usize> {
+        let (t, h) = (self.time(), self.step);
+        let half = 0.5 * h;
+        let Self {
+            evaluator,
+            state,
+            stage,
+            rates: [k1, k2, k3, k4],
+            ..
+        } = self;
+        let mut rates = |t: f64, state: &[f64], out: &mut [f64]| {
+            evaluator.rates(Point { t, state, inputs }, out);
+        };
+        let advance = |from: &[f64], h: f64, rates: &[f64], to: &mut [f64]| {
+            for ((to, from), rate) in to.iter_mut().zip(from).zip(rates) {
+                *to = from + h * rate;
+            }
+        };
+        rates(t, state, k1);
+        advance(state, half, k1, stage);
+        rates(t + half, stage, k2);
+        advance(state, half, k2, stage);
+        rates(t + half, stage, k3);
+        advance(state, h, k3, stage);
+        rates(t + h, stage, k4);
+        let sixth = h / 6.0;
+        for (place, state) in state.iter_mut().enumerate() {
+            let inner = k2[place] + k3[place];
+            *state += sixth * (k1[place] + k4[place] + 2.0 * inner);
+        }
+        self.count += 1;
+        self.state.iter().position(|entry| !entry.is_finite())
+    }
+
+    /// Writes the observables at the time reached.
+    pub fn write_observables(&mut self, inputs: &[f64], out: &mut [f64]) {
+        let (t, state) = (self.time(), &self.state);
+        self.evaluator.observables(Point { t, state, inputs }, out);
+    }
+
+    /// Writes the rates at the time reached.
+    pub fn write_rates(&mut self, inputs: &[f64], out: &mut [f64]) {
+        let (t, state) = (self.time(), &self.state);
+        self.evaluator.rates(Point { t, state, inputs }, out);
+    }
+
+    /// Continues from another state at the time reached.
+    pub fn set_state(&mut self, state: &[f64]) {
+        self.state.copy_from_slice(state);
+    }
+}
