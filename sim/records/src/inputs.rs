@@ -71,12 +71,17 @@ pub fn input_notes(description: &Description, model: &Model) -> Vec<String> {
             ));
         }
     }
-    for (input, value) in model.inputs.iter().zip(undriven) {
+    for (place, (input, value)) in model.inputs.iter().zip(undriven).enumerate() {
         let name = &input.name;
         let is_fed = (description.inputs.iter()).any(|column| column.name.text == *name);
         let is_measured =
             (description.channels.iter()).any(|channel| channel.quantity_name() == name);
-        if input.rate_of.is_some() || is_fed || is_measured {
+        if is_fed && model.is_controlled(place) {
+            notes.push(format!(
+                "a controller drives the input `{name}`: its column acts only until the first output acts"
+            ));
+        }
+        if input.rate_of.is_some() || is_fed || is_measured || model.is_controlled(place) {
             continue;
         }
         notes.push(match input.rate {
