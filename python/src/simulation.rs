@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
     Audit, Error, LoggedEvent, Motion, Overlap, Request, SampledController, Solver, SolverChoice,
+    split_assignments, with_input_functions,
 };
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
@@ -46,11 +47,11 @@ pub type EventTuple = (
 );
 
 /// Simulates from an initial state over ascending times (s). Inputs hold from each of their times to the next, or
-/// are `functions`, which jump at `breaks` (s). `progress` is called with the simulated time, s.
+/// are `functions`, which jump at `breaks` (s), or `expressions` of time by the names of inputs. `progress` is called with the simulated time, s.
 #[pyfunction]
 #[pyo3(signature = (
-    model, initial, times, input_times, input_values, functions, breaks, solver, tolerance,
-    max_step, controller, progress
+    model, initial, times, input_times, input_values, functions, expressions, breaks, solver,
+    tolerance, max_step, controller, progress
 ))]
 #[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
 pub fn simulate<'py>(
@@ -61,6 +62,7 @@ pub fn simulate<'py>(
     input_times: PyReadonlyArray1<'py, f64>,
     input_values: PyReadonlyArray2<'py, f64>,
     functions: Vec<InputEntry>,
+    expressions: Vec<(String, String)>,
     breaks: Vec<f64>,
     solver: &str,
     tolerance: f64,
@@ -88,6 +90,7 @@ pub fn simulate<'py>(
     };
     let known = &model.compiled().model().inputs;
     let (inputs, failures) = with_functions(py, (inputs, known), (functions, breaks), span)?;
+    let inputs = with_expressions(model, inputs, &expressions)?;
     let request = Request {
         initial: initial.as_slice()?,
         times: sample_times,
@@ -134,6 +137,20 @@ pub fn simulate<'py>(
         motion.controller_states.names,
         controller_states,
     ))
+}
+
+/// Adds inputs that are expressions of time.
+fn with_expressions(
+    model: &Model,
+    inputs: HeldInputs,
+    expressions: &[(String, String)],
+) -> PyResult<HeldInputs> {
+    let texts = expressions.iter().map(|(name, value)| format!("{name}={value}"));
+    let texts: Vec<String> = texts.collect();
+    let given = split_assignments("inputs", &texts).map_err(error::model)?;
+    let settings = model.settings().iter().map(|(name, value)| (&**name, *value));
+    let settings: Vec<(&str, f64)> = settings.collect();
+    with_input_functions(inputs, model.compiled().model(), &given, &settings).map_err(error::model)
 }
 
 /// Returns the solver of a name.

@@ -52,6 +52,33 @@ def test_function_gives_the_motion_of_the_declared_controller(solver):
     assert found.solver == solver and right.to_pandas().shape == (201, 6)
 
 
+def test_expression_inputs_are_measured_by_controllers():
+    declared = eomgen.load(MASS + LOOP)
+    options = {"until": 1, "interval": 0.01, "solver": "rk"}
+    found = declared.simulate(inputs={"r": "k_p/60*sin(3*t)"}, **options)
+    right = declared.simulate(inputs={"r": lambda t: 0.5 * np.sin(3 * t)}, **options)
+    assert np.allclose(found.states, right.states, atol=1e-12) and np.ptp(found["x"]) > 0.1
+    m = eomgen.load(MASS)
+    own = m.simulate(inputs={"r": "0.5*sin(3*t)"}, controller=pd, period=0.05, delay=0.02, **options)
+    assert np.allclose(own.states, right.states, atol=1e-9)
+    with pytest.raises(eomgen.SpecificationError, match="inputs"):
+        declared.simulate(inputs={"r": "sin("}, **options)
+
+
+def test_fixed_steps_converge_with_order_four():
+    parameters = 'F = { value = 30, unit = "N" }\nk = { value = 9, unit = "rad/m" }\n[coordinates]'
+    text = (MASS + LOOP).replace("[coordinates]", parameters).replace('value = "u"', 'value = "u - F*sin(k*x)"')
+    m = eomgen.load(text)
+    options = {"until": 1, "interval": 0.01, "inputs": {"r": 1.0}, "tolerance": 1e-12}
+    settings = (("rk", None), ("fixed", 1e-2), ("fixed", 5e-3))
+    runs = [m.simulate(solver=solver, max_step=step, **options) for solver, step in settings]
+    errors = [np.abs(run.states - runs[0].states).max() for run in runs[1:]]
+    assert 11 < errors[0] / errors[1] < 22, errors
+    for step in (None, 3e-2):
+        with pytest.raises(ValueError, match="fixed"):
+            m.simulate(until=1, interval=0.01, solver="fixed", inputs={"r": 1.0}, max_step=step)
+
+
 def test_controller_is_called_at_each_sample_with_values_before_it():
     seen = []
 

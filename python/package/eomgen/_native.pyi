@@ -130,6 +130,7 @@ def simulate(
     input_times: _Array,
     input_values: _Array,
     functions: List[Tuple[str, int, Callable[[float], object]]],
+    expressions: List[Tuple[str, str]],
     breaks: List[float],
     solver: str,
     tolerance: float,

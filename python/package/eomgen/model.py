@@ -383,16 +383,19 @@ class Model:
         """Simulates the motion from t = `start` to t = `until`.
 
         until: end time, s. interval: output interval, s. Default: a thousandth of the simulated time.
-        solver: "auto", "exact" (for models that are linear between switches), "rk", "adams" or "radau" (for
-        stiff models). tolerance: relative tolerance of all solvers except "exact". max_step: longest step of
-        these solvers, s. Set it if inputs have short pulses that longer steps may miss.
+        solver: "auto", "exact" (for models that are linear between switches), "rk", "adams", "radau" (for
+        stiff models) or "fixed" (classical Runge-Kutta method of order 4, as the emitted `step`; inputs are held during a
+        step). tolerance: relative tolerance of all solvers except "exact" and "fixed". max_step: longest step of
+        these solvers, s. Set it if inputs have short pulses that longer steps may miss. For "fixed" it is the length of
+        all steps.
 
         state: initial state, (states,), or a mapping of names to numbers; missing states have the
         specification's initial values.
 
         inputs: mapping of names to a number, to an array with a number per sample, to an expression such as
         "0.3*sin(50*t)" with t in s, or to a function of t (s). An array value is constant from its sample to
-        the next one. Arrays for prescribed motion follow a cubic spline, which gives its rates. Functions are
+        the next one. In a loop with controllers an expression is evaluated as a function is. Arrays for prescribed motion
+        follow a cubic spline, which gives its rates. Functions are
         called at the times that the solver needs; `breaks` lists the times at which one jumps. For prescribed
         motion a function returns (s, s', s''). Missing inputs are 0.
 

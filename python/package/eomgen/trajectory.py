@@ -156,10 +156,13 @@ def simulate(
         raise ValueError(f"max_step = {longest}: expected a time in s above 0")
     times = sample_times(*span, len(model.states) + len(model.observable_names))
     given, breaks = driven
-    native, names, given = prescribe(model, given)
-    entry = controller_entry(names, given, model._native.controlled_inputs, control)
+    # Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
+    keep = control[0] is not None or bool(model._native.controlled_inputs) or solver == "fixed"
+    native, names, given, expressions = prescribe(model, given, keep)
+    entry = controller_entry(names, {**given, **dict(expressions)}, model._native.controlled_inputs, control)
     driven_names = [names[place] for place in entry[1]] if entry is not None else []
-    known = {**{name: 0.0 for name in (*driven_names, *model._native.controlled_inputs)}, **given}
+    others = (*driven_names, *model._native.controlled_inputs)
+    known = {**{name: 0.0 for name in others}, **given, **{name: 0.0 for name, _ in expressions}}
     input_times, input_values, functions = driving(names, known, times)
     with Fraction("simulating", times[-1], progress) as line:
         found = _native.simulate(
@@ -169,6 +172,7 @@ def simulate(
             input_times,
             input_values,
             functions,
+            expressions,
             break_times(breaks),
             solver,
             tolerance,
@@ -285,9 +289,11 @@ def break_times(given: Any) -> List[float]:
     return [float(time) for time in breaks]
 
 
-def prescribe(model: "Model", given: Any) -> Tuple[Any, Tuple[str, ...], Mapping[str, Any]]:
-    """Replaces inputs that are given as expressions. Returns the compiled model, the names of its remaining
-    inputs, and their values."""
+def prescribe(
+    model: "Model", given: Any, keep: bool
+) -> Tuple[Any, Tuple[str, ...], Mapping[str, Any], List[Tuple[str, str]]]:
+    """Replaces inputs that are given as expressions by definitions, unless `keep` is true. Returns the compiled model,
+    the names of its inputs, the values of those without an expression, and the expressions that were kept."""
     names = model.inputs
     if given is None:
         given = {}
@@ -300,10 +306,12 @@ def prescribe(model: "Model", given: Any) -> Tuple[Any, Tuple[str, ...], Mapping
     _arguments.check_names("input", given, names)
     expressions = [(name, value) for name, value in given.items() if isinstance(value, str)]
     if not expressions:
-        return model._native, names, given
-    native = model._native.with_inputs(expressions)
+        return model._native, names, given, []
     others = {name: value for name, value in given.items() if not isinstance(value, str)}
-    return native, tuple(name for name, _ in native.inputs), others
+    if keep:
+        return model._native, names, others, expressions
+    native = model._native.with_inputs(expressions)
+    return native, tuple(name for name, _ in native.inputs), others, []
 
 
 def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tuple[Array, Array, Any]:
