@@ -40,7 +40,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 18] = [
+const TESTED_ELSEWHERE: [(&str, &str); 19] = [
     // The test compiles an image with two variants and lists them.
     (
         "cargo run --release -- identify firmware.elf ",
@@ -89,6 +89,11 @@ const TESTED_ELSEWHERE: [(&str, &str); 18] = [
     (
         "examples/bare_metal/observe rig4_jacobians/lib.rs",
         "tests/tests/emission/bare_metal.rs",
+    ),
+    // The test runs the script with the currently emitted loop.
+    (
+        "examples/closed_loop/run emitted motion.csv",
+        "tests/tests/emission/closed_loop.rs",
     ),
     // The test runs six cases of the suite.
     (
@@ -283,6 +288,13 @@ fn has_scipy() -> bool {
     there
 }
 
+/// Returns whether a command runs a Python script that imports NumPy.
+fn needs_packages(command: &str) -> bool {
+    let script = command.split(' ').nth(1).unwrap_or_default();
+    let script = std::fs::read_to_string(project().join(script));
+    script.is_ok_and(|script| script.contains("import numpy"))
+}
+
 /// Runs a Python example; returns its stdout and stderr. With `refused` it must exit with status 1.
 fn run_python(line: &str, folder: &Path, refused: bool) -> String {
     let output = Command::new("sh")
@@ -330,7 +342,7 @@ enum Form<'a> {
     Program(&'a str),
     /// Line of a shell with compilers, compiled programs or `cat`.
     Compilers,
-    /// Python example that needs SciPy.
+    /// Python example, which may need SciPy.
     Scipy,
     /// Command of [`AFTER_RELEASE`].
     AfterRelease,
@@ -455,7 +467,7 @@ impl PageRun<'_> {
                 once(&|| run_program(arguments, &place, refused));
             }
             Form::Compilers => once(&|| run_compilers(&meant, &place)),
-            Form::Scipy if !self.has_scipy => {}
+            Form::Scipy if !self.has_scipy && needs_packages(&meant) => {}
             Form::Scipy => {
                 let refused = output.iter().any(|line| line.starts_with("error"));
                 once(&|| run_python(&meant, &place, refused));
