@@ -1,6 +1,8 @@
 //! Simulation with a progress bar, and its table.
 
-use eomgen_compiled_model::{InitialChange, Instance, Motion, Request, Solver, SolverChoice};
+use eomgen_compiled_model::{
+    InitialChange, Instance, Motion, Request, SampledController, Solver, SolverChoice,
+};
 
 use crate::count::count;
 use crate::error::{Result, warn};
@@ -20,6 +22,32 @@ pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> 
     let (begin, end) = request.time_span();
     let bar = Bar::new("simulating", end - begin, "s");
     let motion = instance.simulate_until_stop(request, &mut |t| bar.set(t - begin))?;
+    note_choices(&motion);
+    Ok(motion)
+}
+
+/// Simulates like [`follow`] with an additional controller.
+pub fn follow_with(
+    instance: &Instance<'_>,
+    request: &Request<'_>,
+    controller: &mut dyn SampledController,
+) -> Result<Motion> {
+    let (begin, end) = request.time_span();
+    let bar = Bar::new("simulating", end - begin, "s");
+    let mut declared = instance.controllers()?;
+    let own = declared
+        .iter_mut()
+        .map(|own| own as &mut dyn SampledController);
+    let mut all: Vec<&mut dyn SampledController> = own.collect();
+    all.push(controller);
+    let mut progress = |t: f64| bar.set(t - begin);
+    let motion = instance.simulate_controlled(request, &mut all, &mut progress)?;
+    note_choices(&motion);
+    Ok(motion)
+}
+
+/// Prints notes about the choice of the solver and of the initial state.
+fn note_choices(motion: &Motion) {
     if let Some(SolverChoice::NotSupportedByExact(reason)) = &motion.solver_choice {
         warn(&format!(
             "warning: not solved exactly, but with {}: {reason}",
@@ -30,7 +58,6 @@ pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> 
         warn(&format!("note: solved with radau, because {reason}"));
     }
     note_moved("initial state", &motion.initial_changes);
-    Ok(motion)
 }
 
 /// Prints a note about states that were moved onto the constraints.

@@ -145,10 +145,15 @@ fn with_expressions(
     inputs: HeldInputs,
     expressions: &[(String, String)],
 ) -> PyResult<HeldInputs> {
-    let texts = expressions.iter().map(|(name, value)| format!("{name}={value}"));
+    let texts = expressions
+        .iter()
+        .map(|(name, value)| format!("{name}={value}"));
     let texts: Vec<String> = texts.collect();
     let given = split_assignments("inputs", &texts).map_err(error::model)?;
-    let settings = model.settings().iter().map(|(name, value)| (&**name, *value));
+    let settings = model
+        .settings()
+        .iter()
+        .map(|(name, value)| (&**name, *value));
     let settings: Vec<(&str, f64)> = settings.collect();
     with_input_functions(inputs, model.compiled().model(), &given, &settings).map_err(error::model)
 }

@@ -30,6 +30,10 @@ pub struct Simulate {
     pub initial: StateValues,
     #[command(flatten)]
     pub inputs: InputValues,
+    /// Shared library with a sampled controller, with the C interface of examples/controllers/eomgen_controller.h. Its
+    /// outputs drive inputs of the model, in addition to the controllers of the specification.
+    #[arg(long, value_name = "LIBRARY")]
+    pub controller: Option<PathBuf>,
     #[command(flatten)]
     pub rows: OutputInterval,
     #[command(flatten)]

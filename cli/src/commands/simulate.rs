@@ -4,6 +4,8 @@ use eomgen_compiled_model::{
     CompiledModel, DEFAULT_TOLERANCE, Motion, Request, StepInputs, split_assignments,
     with_input_functions, with_prescribed_inputs,
 };
+use eomgen_controller_library::{ControllerLibrary, LibraryError};
+use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::json;
@@ -16,7 +18,7 @@ use crate::error::{Error, Result, warn};
 use crate::event_log;
 use crate::history;
 use crate::model::{derive, load, orders};
-use crate::motion::{columns, describe_work, follow, table};
+use crate::motion::{columns, describe_work, follow, follow_with, table};
 use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
@@ -32,7 +34,7 @@ pub fn run(options: &Simulate) -> Result {
         .map(|plot| Destination::for_figure(plot, Some(&options.out), options.output.json));
     let figure = figure.transpose()?;
     let log = event_log_destination(options)?;
-    let (compiled, inputs) = driven_model(options)?;
+    let (compiled, inputs, mut library) = driven_model(options)?;
     let times = times(options, &inputs)?;
     if options.integration.solver == Solver::Exact && options.integration.tolerance.is_some() {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
@@ -41,6 +43,9 @@ pub fn run(options: &Simulate) -> Result {
         warn(
             "warning: --max-step has no effect on the exact solver, which locates every change of an input",
         );
+    }
+    if options.integration.solver == Solver::Fixed && options.integration.tolerance.is_some() {
+        warn("warning: --tolerance has no effect on the solver fixed: --step limits its error");
     }
     let tolerance = options.integration.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let run = compiled.with_declared_parameters()?;
@@ -55,7 +60,10 @@ pub fn run(options: &Simulate) -> Result {
         max_step: options.integration.max_step.unwrap_or(f64::INFINITY),
         audit: true,
     };
-    let motion = follow(&run, &request)?;
+    let motion = match &mut library {
+        Some(library) => follow_with(&run, &request, library)?,
+        None => follow(&run, &request)?,
+    };
     warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
     let audited = AuditResult::new(&run, &motion, tolerance)?;
     audited.warn();
@@ -90,17 +98,22 @@ fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
 }
 
 /// Returns the model and its inputs. Inputs with steps are held between these if the exact solver applies then;
-/// other inputs of `--input` become definitions, or functions of time if the model has controllers.
-fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
+/// other inputs of `--input` become definitions, or functions of time if inputs must remain inputs.
+fn driven_model(
+    options: &Simulate,
+) -> Result<(CompiledModel, HeldInputs, Option<ControllerLibrary>)> {
     let declared = load(&options.model.spec)?.model;
     let derive_with_orders = |model: Model| {
         let model = with_settings(model, &options.parameters.set)?;
         let orders = orders(&model, options.model.order.text())?;
         derive(model, &orders)
     };
-    let has_controllers = !declared.controllers.is_empty();
+    // Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
+    let keeps_inputs = !declared.controllers.is_empty()
+        || options.controller.is_some()
+        || options.integration.solver == Solver::Fixed;
     let may_hold = options.inputs.record.is_none()
-        && (has_controllers || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
+        && (keeps_inputs || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
     let prescribed = split_assignments("--input", &options.inputs.input)?;
     let settings = settings(&declared, &options.parameters.set)?;
     let settings = as_borrowed(&settings);
@@ -110,21 +123,45 @@ fn driven_model(options: &Simulate) -> Result<(CompiledModel, HeldInputs)> {
     };
     if let Some(steps) = steps {
         let compiled = derive_with_orders(declared.clone())?;
-        if has_controllers || compiled.piecewise_linear().is_ok() {
-            return Ok((compiled, steps.held(&settings)?));
+        if keeps_inputs || compiled.piecewise_linear().is_ok() {
+            let library = library(options, &compiled, &prescribed)?;
+            return Ok((compiled, steps.held(&settings)?, library));
         }
     }
-    if has_controllers {
-        // Controllers measure the inputs, so that these remain inputs.
+    if keeps_inputs {
         let compiled = derive_with_orders(declared.clone())?;
-        let names: Vec<&str> = prescribed.iter().map(|given| given.name()).collect();
+        let library = library(options, &compiled, &prescribed)?;
+        let controlled = library.iter().flat_map(ControllerLibrary::inputs);
+        let mut names: Vec<&str> = controlled.map(String::as_str).collect();
+        names.extend(prescribed.iter().map(|given| given.name()));
         let inputs = inputs(options, compiled.model(), &names)?;
         let inputs = with_input_functions(inputs, &declared, &prescribed, &settings)?;
-        return Ok((compiled, inputs));
+        return Ok((compiled, inputs, library));
     }
     let compiled = derive_with_orders(with_prescribed_inputs(declared, &prescribed)?)?;
     let inputs = inputs(options, compiled.model(), &[])?;
-    Ok((compiled, inputs))
+    Ok((compiled, inputs, None))
+}
+
+/// Opens the library of `--controller`.
+fn library(
+    options: &Simulate,
+    compiled: &CompiledModel,
+    prescribed: &[Assignment],
+) -> Result<Option<ControllerLibrary>> {
+    let Some(path) = &options.controller else {
+        return Ok(None);
+    };
+    let refused = |error: LibraryError| Error::input(format!("--controller {error}"));
+    let library = ControllerLibrary::open(path, compiled).map_err(refused)?;
+    let mut twice = library.inputs().iter();
+    match twice.find(|name| prescribed.iter().any(|given| given.name() == **name)) {
+        None => Ok(Some(library)),
+        Some(name) => Err(Error::input(format!(
+            "--controller {}: the controller drives the input `{name}`, and so does --input",
+            path.display()
+        ))),
+    }
 }
 
 /// Reports columns with numbers that are not finite. Returns whether the states and the energy are finite; observables

@@ -4,6 +4,7 @@ mod chambers;
 mod constraints;
 mod contact_friction;
 mod continued;
+mod controller_library;
 mod controllers;
 mod corners;
 mod drawn_motion;
