@@ -55,7 +55,7 @@ def test_function_gives_the_motion_of_the_declared_controller(solver):
 def test_expression_inputs_are_measured_by_controllers():
     declared = eomgen.load(MASS + LOOP)
     options = {"until": 1, "interval": 0.01, "solver": "rk"}
-    found = declared.simulate(inputs={"r": "k_p/60*sin(3*t)"}, **options)
+    found = declared.simulate(inputs={"r": "0.5*sin(3*t)"}, **options)
     right = declared.simulate(inputs={"r": lambda t: 0.5 * np.sin(3 * t)}, **options)
     assert np.allclose(found.states, right.states, atol=1e-12) and np.ptp(found["x"]) > 0.1
     m = eomgen.load(MASS)
