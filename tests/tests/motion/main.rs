@@ -13,6 +13,7 @@ mod event_log;
 mod exact_properties;
 mod exact_reference;
 mod exact_survival;
+mod fixed_steps;
 mod impacts;
 mod invalid_requests;
 mod passed_surfaces;
