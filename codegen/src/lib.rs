@@ -59,16 +59,25 @@
 //! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
 //! finds terms without a derivative at a point.
 
+#[cfg(feature = "derive")]
 pub mod c;
+#[cfg(feature = "derive")]
 pub mod examination;
+#[cfg(feature = "derive")]
 pub mod identity;
 pub mod independence;
 pub mod mechanics;
 pub mod program;
+#[cfg(feature = "derive")]
 pub mod report;
+#[cfg(feature = "derive")]
 pub mod rust;
+#[cfg(feature = "derive")]
 pub mod singular_terms;
+#[cfg(feature = "derive")]
 pub mod statements;
 pub mod symbolic;
+#[cfg(feature = "derive")]
 pub mod variant;
+#[cfg(feature = "derive")]
 pub mod wasm;

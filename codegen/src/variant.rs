@@ -6,7 +6,8 @@ use eomgen_model_spec::model::Model;
 use crate::examination;
 use crate::independence::bounds::check_signs;
 use crate::independence::check_independence;
-use crate::independence::rows::{ConstraintRows, constraint_program};
+use crate::independence::constraint_program::{constraint_program, residual_places};
+use crate::independence::rows::ConstraintRows;
 use crate::mechanics::corners::{add_corner_sides, has_jumping_momenta};
 use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
@@ -80,7 +81,8 @@ impl Variant {
         })?;
         check_signs(model, &equations.graph, &equations.residuals, &values).map_err(found)?;
         if let Some(program) = constraint_program(model, &equations, &values) {
-            let mut rows = ConstraintRows::new(model, program);
+            let residuals = residual_places(model, &program);
+            let mut rows = ConstraintRows::new(program, residuals);
             check_independence(model, orders, &mut rows).map_err(found)?;
         }
         let mut program = lower_with_outputs(model, &equations, &values, &outputs);

@@ -3,7 +3,8 @@
 
 use crate::ast::BinaryOperator;
 use crate::checks::for_each_expression;
-use crate::evaluate::{binary, call};
+use crate::evaluate::binary;
+use crate::function::call;
 use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model};
 use crate::span::Span;
 

@@ -2,7 +2,8 @@
 //! library. Compiled models evaluate everything that depends on the motion.
 
 use crate::ast::BinaryOperator;
-use crate::model::{Expr, ExprKind, Function, Model};
+use crate::function::call;
+use crate::model::{Expr, ExprKind, Model};
 
 /// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains
 /// anything else; expressions of parameters in a checked model do not.
@@ -60,39 +61,6 @@ pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
         BinaryOperator::Divide => left / right,
         BinaryOperator::Power if right == 2.0 => left * left,
         BinaryOperator::Power => left.powf(right),
-    }
-}
-
-/// Evaluates a function of `x`, or of `x` and `second`.
-pub fn call(function: Function, x: f64, second: f64) -> f64 {
-    match function {
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Asin => x.asin(),
-        Function::Acos => x.acos(),
-        Function::Atan => x.atan(),
-        Function::Atan2 => x.atan2(second),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Exp => x.exp(),
-        Function::Ln => x.ln(),
-        Function::Sqrt => x.sqrt(),
-        Function::Abs => x.abs(),
-        Function::Sign if x > 0.0 => 1.0,
-        Function::Sign if x < 0.0 => -1.0,
-        Function::Sign => x * 0.0,
-        Function::Min => x.min(second),
-        Function::Max => x.max(second),
-        // Eq. (7): 0 in the dead band, else the distance from its edge.
-        Function::Deadzone if x > second => x - second,
-        Function::Deadzone if x < -second => x + second,
-        Function::Deadzone => (x + second) * 0.0,
-        Function::Contact if x.abs() > second => 1.0,
-        Function::Contact => (x + second) * 0.0,
-        Function::Above if x > 0.0 => 1.0,
-        Function::Above => x * 0.0,
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::evaluate::call;
-use crate::model::Function;
+use crate::function::{Function, call};
 
 /// Closed interval; the ends may be infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]

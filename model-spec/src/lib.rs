@@ -38,61 +38,116 @@
 //! [`quantity`] (TOML files with positions), [`models`] (shipped specifications). The derivation of equations is in the
 //! crate `codegen`.
 
+#[cfg(feature = "read")]
 mod adjacent_file;
+#[cfg(feature = "read")]
 pub mod assignment;
+#[cfg(feature = "read")]
 pub mod ast;
+#[cfg(feature = "read")]
 mod bases;
+#[cfg(feature = "read")]
 mod checks;
+#[cfg(feature = "read")]
 mod constants;
+#[cfg(feature = "read")]
 pub mod control;
+#[cfg(feature = "read")]
 pub mod diagnostic;
+#[cfg(feature = "read")]
 pub mod dimension;
+#[cfg(feature = "read")]
 mod document;
+#[cfg(feature = "read")]
 pub mod edit;
+#[cfg(feature = "read")]
 mod entries;
+#[cfg(feature = "read")]
 pub mod evaluate;
+#[cfg(feature = "read")]
 mod expression;
+#[cfg(feature = "read")]
 mod extension;
+#[cfg(feature = "read")]
 mod foreign;
+pub mod function;
+#[cfg(feature = "read")]
 mod functions;
+#[cfg(feature = "read")]
 pub mod hidden_characters;
+#[cfg(feature = "read")]
 mod id_set;
 pub mod ids;
+#[cfg(feature = "read")]
 mod infer;
 pub mod interval;
+#[cfg(feature = "read")]
 pub mod keys;
+#[cfg(feature = "read")]
 pub mod lexer;
+#[cfg(feature = "read")]
 mod load;
+#[cfg(feature = "read")]
 pub mod model;
+#[cfg(feature = "read")]
 pub mod models;
+#[cfg(feature = "read")]
 mod motion;
+#[cfg(feature = "read")]
 mod names;
+#[cfg(feature = "read")]
 mod observed_rate;
+#[cfg(feature = "read")]
 mod order;
+#[cfg(feature = "read")]
 pub mod parser;
+#[cfg(feature = "read")]
 pub mod quantity;
+#[cfg(feature = "read")]
 mod rate_order;
+#[cfg(feature = "read")]
 mod raw;
+#[cfg(feature = "read")]
 pub mod record;
+#[cfg(feature = "read")]
 mod resolve;
+#[cfg(feature = "read")]
 pub mod rigid_tree;
+#[cfg(feature = "read")]
 mod scale;
+#[cfg(feature = "read")]
 pub mod schema;
 #[rustfmt::skip]
+#[cfg(feature = "read")]
 pub mod sections;
+#[cfg(feature = "read")]
 pub mod shape_table;
+#[cfg(feature = "read")]
 pub mod source;
+#[cfg(feature = "read")]
 mod space;
+#[cfg(feature = "read")]
 pub mod span;
+#[cfg(feature = "read")]
 mod specification_file;
+#[cfg(feature = "read")]
 pub mod suggest;
+#[cfg(feature = "read")]
 pub mod table;
+#[cfg(feature = "read")]
 pub mod toml_file;
+#[cfg(feature = "read")]
 pub mod uncertainty;
+#[cfg(feature = "read")]
 pub mod unit;
+#[cfg(feature = "read")]
 mod units_check;
+#[cfg(feature = "read")]
 pub mod variant;
 
+#[cfg(feature = "read")]
 pub use functions::reservation_reason;
+#[cfg(feature = "read")]
 pub use load::{Checked, check, load, load_from};
+#[cfg(feature = "read")]
 pub use specification_file::MAX_SIZE;

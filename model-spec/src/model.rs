@@ -18,6 +18,8 @@ use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
 
+pub use crate::function::Function;
+
 /// Highest modal truncation order accepted.
 pub const MAX_ORDER: usize = 128;
 
@@ -799,49 +801,4 @@ pub enum ExprKind {
     Binary(BinaryOperator, Box<Expr>, Box<Expr>),
     /// Function of one or two scalar arguments.
     Call(Function, Vec<Expr>),
-}
-
-/// Functions of the expression language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Function {
-    /// Sine of an angle.
-    Sin,
-    /// Cosine of an angle.
-    Cos,
-    /// Tangent of an angle.
-    Tan,
-    /// Inverse sine.
-    Asin,
-    /// Inverse cosine.
-    Acos,
-    /// Inverse tangent.
-    Atan,
-    /// `atan2(y, x)`, the angle of the point (x, y); both arguments in one unit.
-    Atan2,
-    /// Hyperbolic sine.
-    Sinh,
-    /// Hyperbolic cosine.
-    Cosh,
-    /// Hyperbolic tangent.
-    Tanh,
-    /// Exponential function.
-    Exp,
-    /// Natural logarithm.
-    Ln,
-    /// Square root.
-    Sqrt,
-    /// Absolute value; switches at 0.
-    Abs,
-    /// Sign, with sign(0) = 0; switches at 0.
-    Sign,
-    /// Smaller of two values; switches at equality.
-    Min,
-    /// Larger of two values; switches at equality.
-    Max,
-    /// `deadzone(p, b)`, f_k of Eq. (7).
-    Deadzone,
-    /// `contact(p, b)`, 1 if |p| > b, else 0: Eq. (8) without the rate.
-    Contact,
-    /// `above(p)`, 1 if p > 0, else 0.
-    Above,
 }

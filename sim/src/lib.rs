@@ -95,16 +95,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "derive")]
 mod balancing;
 pub mod contact_friction;
 pub mod cubic_spline;
+#[cfg(feature = "derive")]
 pub mod exponential;
 pub mod friction_discs;
 pub mod inputs;
 pub mod ode;
+#[cfg(feature = "derive")]
 pub mod piecewise_linear;
 #[cfg(test)]
 mod random_numbers;
+#[cfg(feature = "derive")]
 mod registers;
 pub mod sliding_modes;
+#[cfg(feature = "derive")]
 pub mod variational;

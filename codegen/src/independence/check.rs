@@ -7,8 +7,9 @@ use eomgen_model_spec::model::{Constraint, Model};
 use eomgen_model_spec::variant::ModelError;
 
 use super::dependence::dependent_combination;
+use super::geometry::ConstraintGeometry;
 use super::projection::{Place, project};
-use super::rows::{ConstraintGeometry, positive_or_one};
+use super::rows::positive_or_one;
 use super::vectors::norm;
 
 /// Largest remainder of a dependent row, relative to the row's largest length. The projection reaches a state

@@ -1,15 +1,24 @@
 //! Rejection of constraints that depend on each other or that no state satisfies.
 //!
-//! `rows` evaluates the constraint derivatives with a program, `nodes` with graph nodes, both scaled to one
-//! unit. `dependence` finds dependent rows, `projection` finds states that satisfy the constraints, `check`
+//! `rows` evaluates the constraint derivatives with the program of `constraint_program`, `nodes` with graph nodes, both scaled to one
+//! unit and with the interface of `geometry`. `dependence` finds dependent rows, `projection` finds states that satisfy the constraints, `check`
 //! rejects dependent constraints, and `bounds` rejects constraints that are never zero.
 
+#[cfg(feature = "derive")]
 pub(crate) mod bounds;
+#[cfg(feature = "derive")]
 mod check;
+#[cfg(feature = "derive")]
+pub mod constraint_program;
 pub mod dependence;
+#[cfg(feature = "derive")]
+mod geometry;
+#[cfg(feature = "derive")]
 pub(crate) mod nodes;
+#[cfg(feature = "derive")]
 mod projection;
 pub mod rows;
 pub mod vectors;
 
+#[cfg(feature = "derive")]
 pub(crate) use check::check_independence;

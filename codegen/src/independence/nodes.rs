@@ -1,7 +1,8 @@
 //! Derivatives and residuals of the constraints of a model without fields, computed from graph nodes. No
 //! equations of motion are needed.
 
-use crate::independence::rows::{ConstraintGeometry, positive_or_one};
+use crate::independence::geometry::ConstraintGeometry;
+use crate::independence::rows::positive_or_one;
 use crate::mechanics::inertia::point::Point as NodePoint;
 use crate::mechanics::inertia::sweep::Velocities;
 use crate::mechanics::unsolved::Unsolved;

@@ -1,7 +1,7 @@
 //! Projection of a state onto the holonomic constraints by Newton's method, in the metric of the coordinates'
 //! inertias. Damping suppresses the directions in which constraints depend on each other.
 
-use super::rows::ConstraintGeometry;
+use super::geometry::ConstraintGeometry;
 use super::vectors::dot;
 use crate::program::evaluator::Point;
 

@@ -13,47 +13,13 @@ use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{self, Model};
 
 use crate::mechanics::constraints::Constraints;
+use crate::mechanics::impact::{Friction, Impact};
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::solve;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Space};
-
-/// Impact, with nodes or values `N` and rows `R` of them.
-#[derive(Clone, Debug)]
-pub struct Impact<N, R> {
-    /// Distance g.
-    pub distance: N,
-    /// Rate g'.
-    pub rate: N,
-    /// Second rate g'' if no contact is closed.
-    pub acceleration: N,
-    /// Coefficient of restitution.
-    pub restitution: N,
-    /// Column D: change of the rates by a unit impulse.
-    pub column: R,
-    /// A D of all impacts: changes of g' by a unit impulse at each of them, then by a unit tangential impulse
-    /// at each with friction.
-    pub delassus: Vec<N>,
-    /// Friction, if the contact has any.
-    pub friction: Option<Friction<N, R>>,
-}
-
-/// Friction of a contact, with nodes or values `N` and rows `R` of them.
-#[derive(Clone, Debug)]
-pub struct Friction<N, R> {
-    /// Coefficient.
-    pub coefficient: N,
-    /// Tangential velocity of the contact.
-    pub slip: N,
-    /// Rate of the slip if no contact is closed.
-    pub acceleration: N,
-    /// Change of the rates by a unit tangential impulse.
-    pub column: R,
-    /// Changes of the slip by a unit impulse at each impact, normal, then tangential.
-    pub delassus: Vec<N>,
-}
 
 pub(crate) fn impacts(
     translator: &mut Translator,

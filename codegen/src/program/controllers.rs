@@ -2,7 +2,7 @@
 //! compute the same operations in the same order, so that they have the same bits.
 
 use eomgen_elementary::Function as Elementary;
-use eomgen_model_spec::model::Function;
+use eomgen_model_spec::function::Function;
 
 use super::evaluator::call;
 use super::types::Quantity;

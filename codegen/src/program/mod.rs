@@ -7,26 +7,31 @@
 //! contracted, so that all backends compute the same bits.
 //!
 //! `value`, `types` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
-//! them, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
+//! them, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
 //! values, and `operation_count` estimates the cost of a call.
 
+#[cfg(feature = "derive")]
 pub mod affine;
 mod controllers;
+#[cfg(feature = "derive")]
 pub mod describe;
+pub mod encoding;
 pub mod evaluator;
+#[cfg(feature = "derive")]
 pub mod lowering;
+#[cfg(feature = "derive")]
 mod operation_count;
 mod types;
 mod value;
 
-pub use crate::mechanics::impacts::{Friction, Impact};
+pub use crate::mechanics::impact::{Friction, Impact};
 pub use crate::mechanics::outputs::{
     BlockPlace, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output,
     Outputs, Products, SURFACES_OF_A_REGIME, Switch,
 };
 pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
-pub use crate::symbolic::graph::{Argument, Variable};
+pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
 pub use types::{
     MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, Quantity,

@@ -2,9 +2,9 @@
 
 use super::controllers::ProgramController;
 use super::value::{Extent, Op, Value, ValueId};
-use crate::mechanics::impacts::Impact;
+use crate::mechanics::impact::Impact;
 use crate::mechanics::outputs::{Outputs, Products};
-use crate::symbolic::graph::Variable;
+use crate::symbolic::variable::Variable;
 use eomgen_model_spec::ids::FieldId;
 
 /// Named quantity with its unit.

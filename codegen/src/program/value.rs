@@ -1,10 +1,10 @@
 //! Values of a program and their operations.
 
+use eomgen_model_spec::function::Function;
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
-use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::graph::{Argument, Variable};
+use crate::symbolic::variable::{Argument, Variable};
 
 /// Index of a value of a [`Program`](super::Program).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

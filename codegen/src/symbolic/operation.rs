@@ -4,6 +4,7 @@ use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateI
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
+pub use crate::symbolic::variable::{Argument, Variable};
 
 /// Node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -43,40 +44,6 @@ impl Bits {
     pub fn value(self) -> f64 {
         f64::from_bits(self.0)
     }
-}
-
-/// Variable of the equations, or the variables of all modes of a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Variable {
-    /// Generalised coordinate.
-    Coordinate(CoordinateId),
-    /// Mode coordinates of a field.
-    ModeCoordinates(FieldId),
-    /// Rate of a generalised coordinate.
-    Rate(CoordinateId),
-    /// Rates of a field's mode coordinates.
-    ModeRates(FieldId),
-    /// First-order state.
-    State(StateId),
-    /// Input.
-    Input(InputId),
-    /// Parameter; in a program, the index among the independent ones.
-    Parameter(ParameterId),
-    /// Time.
-    Time,
-}
-
-/// Additional argument of an output: a number for each of its variables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Argument {
-    /// Accelerations, in the order of the coordinates.
-    Accelerations,
-    /// Direction in the space of states and inputs.
-    Direction,
-    /// Direction in the space of time, state, inputs and independent parameters.
-    PointDirection,
-    /// Weight of each rate of the state, in the order of the state.
-    Weights,
 }
 
 /// Operation of a node.

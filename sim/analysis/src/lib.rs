@@ -23,28 +23,49 @@
 //!   the rigid motions.
 //! - [`discretisation`] computes the discrete form of a linearised machine with held inputs.
 
+#[cfg(feature = "full")]
 pub mod allowed_motions;
+#[cfg(feature = "full")]
 mod balancing;
+#[cfg(feature = "full")]
 mod block_eigenvalues;
+#[cfg(feature = "full")]
 pub mod classify;
+#[cfg(feature = "full")]
 pub mod constrained_modes;
+#[cfg(feature = "full")]
 pub mod discretisation;
+#[cfg(feature = "full")]
 mod error;
+#[cfg(feature = "full")]
 pub mod exponent;
+#[cfg(feature = "full")]
 mod independent_parts;
+#[cfg(feature = "full")]
 mod inverse_iteration;
+#[cfg(feature = "full")]
 pub mod modes;
+#[cfg(feature = "full")]
 pub mod natural_modes;
+#[cfg(feature = "full")]
 mod null_space;
+#[cfg(feature = "full")]
 mod pencil;
+#[cfg(feature = "full")]
 pub mod poincare;
 pub mod qr_iteration;
+#[cfg(feature = "full")]
 pub mod spectrum;
+#[cfg(feature = "full")]
 pub mod statistics;
+#[cfg(feature = "full")]
 pub mod time_history;
+#[cfg(feature = "full")]
 pub mod zero_one;
 
 #[cfg(test)]
+#[cfg(feature = "full")]
 mod maps;
 
+#[cfg(feature = "full")]
 pub use error::AnalysisError;

@@ -1,13 +1,18 @@
 //! Errors of compiling and running a model.
 
+#[cfg(feature = "derive")]
 use eomgen_model_spec::diagnostic::Diagnostics;
+#[cfg(feature = "derive")]
 use eomgen_model_spec::model::Model;
+#[cfg(feature = "derive")]
 use eomgen_model_spec::variant::ModelError;
+#[cfg(feature = "derive")]
 use eomgen_sim::piecewise_linear::ExactError;
 
 /// Reason why a model cannot be compiled or run.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum Error {
+    #[cfg(feature = "derive")]
     #[error(transparent)]
     /// Errors of the specification or of a parameter value, each with its place and cure.
     Specification(#[from] Diagnostics),
@@ -24,6 +29,7 @@ pub enum Error {
     },
 }
 
+#[cfg(feature = "derive")]
 impl Error {
     /// Converts an error of the model into an error at its place in the specification.
     pub(crate) fn from_model_error(model: &Model, error: ModelError) -> Self {
@@ -34,6 +40,7 @@ impl Error {
     }
 }
 
+#[cfg(feature = "derive")]
 impl From<&ExactError> for Error {
     fn from(error: &ExactError) -> Self {
         Self::Request(error.to_string())

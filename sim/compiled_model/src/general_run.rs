@@ -10,10 +10,8 @@ use eomgen_sim::ode::{Method, Settings, SolveError, Surface};
 use crate::audit::Auditor;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
-use crate::infinite_inputs::find_infinite_function;
-use crate::instance::Instance;
-use crate::model::CompiledModel;
 use crate::motion::{EarlyStop, Solver, StopCause};
+use crate::motion_model::MotionModel;
 use crate::projection::InitialChange;
 use crate::stop_reasons::{find_stop_cause, format_named};
 
@@ -25,11 +23,9 @@ pub(crate) struct GeneralRun {
     /// Consistent state at the start.
     pub initial: Vec<f64>,
     pub initial_changes: Vec<InitialChange>,
-    /// All parameters of the specification, SI.
-    values: Vec<f64>,
 }
 
-impl Instance<'_> {
+impl dyn MotionModel + '_ {
     /// Prepares a motion from a state over a time span, s.
     ///
     /// # Errors
@@ -40,14 +36,10 @@ impl Instance<'_> {
         inputs: &HeldInputs,
         settings: &Settings,
     ) -> Result<GeneralRun, Error> {
-        if settings.method == Method::Adams {
-            self.check_adams()?;
-        }
         // Before the evaluator, whose pivots give a less specific error for dependent constraints.
-        let values = self.values().to_vec();
         let start = self.find_consistent_start(state, span, inputs);
         let (initial, initial_changes) = start.map_err(|error| {
-            let infinite = find_infinite_function(self.model(), &values, (span.0, span.0));
+            let infinite = self.find_infinite_function((span.0, span.0));
             let t = Some(span.0);
             infinite.map_or(error, |reason| Error::Stopped { t, reason })
         })?;
@@ -63,8 +55,10 @@ impl Instance<'_> {
             // reports the time of sticking instead.
             system = system.without_holding();
         }
-        if solver == Solver::Radau {
-            system = system.with_jacobian(self.jacobian_evaluator()?);
+        if solver == Solver::Radau
+            && let Some(jacobians) = self.jacobian_evaluator()?
+        {
+            system = system.with_jacobian(jacobians);
         }
         Ok(GeneralRun {
             surfaces: system.surfaces(),
@@ -72,28 +66,7 @@ impl Instance<'_> {
             solver,
             initial,
             initial_changes,
-            values,
         })
-    }
-
-    /// Rejects models in which states or rates jump.
-    fn check_adams(&self) -> Result<(), Error> {
-        let jumps = if !self.model().model().impacts.is_empty() {
-            "impacts of this model invalidate".to_owned()
-        } else if let Some(surface) = self.model().first_corner() {
-            format!(
-                "jumps of the rates invalidate, and the energies of this model jump where `{surface}` is zero"
-            )
-        } else if !self.model().model().constraints.is_empty() {
-            "the projection onto the constraints invalidates".to_owned()
-        } else if self.sided_model()?.is_some_and(|sided| sided.has_discs()) {
-            "a stop under friction along v/norm(v) invalidates".to_owned()
-        } else {
-            return Ok(());
-        };
-        Err(Error::Request(format!(
-            "the solver adams uses the preceding steps, which {jumps}: use --solver rk or radau"
-        )))
     }
 }
 
@@ -106,12 +79,12 @@ impl GeneralRun {
     /// Returns time, cause and cure of an error. The motion began at a time (s) and reached a state.
     pub fn early_stop(
         &self,
-        model: &CompiledModel,
+        model: &dyn MotionModel,
         error: &SolveError,
         (begin, state): (f64, &[f64]),
     ) -> EarlyStop {
         let t = SolveError::time(error);
-        let cause = find_stop_cause(model, error, &self.surfaces);
+        let cause = find_stop_cause(model.labels(), error, &self.surfaces);
         let ended_at = t.unwrap_or(begin);
         let may_be = matches!(cause, StopCause::NotFinite | StopCause::Limit);
         let singular = may_be
@@ -122,7 +95,7 @@ impl GeneralRun {
             None => (t, None),
         };
         let infinite = may_be
-            .then(|| find_infinite_function(model, &self.values, (begin, ended_at)))
+            .then(|| model.find_infinite_function((begin, ended_at)))
             .flatten();
         let reason = if let Some(infinite) = infinite {
             infinite
@@ -133,7 +106,7 @@ impl GeneralRun {
         } else if let Some(singular) = singular {
             singular
         } else {
-            format_named(model, (&self.surfaces, self.solver), |names| {
+            format_named(model.labels(), (&self.surfaces, self.solver), |names| {
                 error.format_named(names)
             })
         };

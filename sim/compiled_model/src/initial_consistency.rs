@@ -7,15 +7,14 @@ use std::cell::RefCell;
 use eomgen_codegen::independence::dependence::dependent_combination;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_model_spec::dimension::Dimension;
-use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::contacts::Start;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
-use crate::instance::Instance;
+use crate::labels::{ConstraintLabel, Labels};
+use crate::motion_model::MotionModel;
 use crate::projection::{InitialChange, LARGE_RATE_PER_S, Projection};
 use crate::singular_positions::SingularityWatch;
 
@@ -34,23 +33,23 @@ const MIN_NAMED_COEFFICIENT: f64 = 1e-6;
 /// constraints.
 const MIN_CONTRADICTION_FRACTION: f64 = 0.1;
 
-impl Instance<'_> {
-    /// Returns the solvers' system of this instance at the relative `tolerance` of the states: projected onto the
-    /// constraints, with impacts and with sticking. It keeps the state of contacts and sticking, so use it for one motion
-    /// only.
+impl dyn MotionModel + '_ {
+    /// Returns the solvers' system of the model at the relative `tolerance` of the states: projected onto the constraints, with impacts and with sticking. It keeps
+    /// the state of contacts and sticking, so use it for one motion only.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
-    pub fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
+    /// Same as [`MotionModel::evaluator`].
+    pub(crate) fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
         &self,
         evaluator: E,
         inputs: I,
         tolerance: f64,
     ) -> Result<DrivenModel<E, I>, Error> {
-        let impacts = self.model().model().impacts.iter();
+        let labels = self.labels();
+        let impacts = labels.impacts.iter();
         let impacts = impacts.map(|impact| impact.name.clone()).collect();
         let driven = DrivenModel::new(evaluator, inputs)
-            .with_typical_sizes(self.model().typical_sizes())
+            .with_typical_sizes(&labels.typical_sizes)
             .with_projection(self.projection()?);
         Ok(driven
             .with_impacts(impacts)
@@ -61,62 +60,45 @@ impl Instance<'_> {
     /// Returns the projection onto the constraints; `None` without constraints.
     ///
     /// # Errors
-    /// Same as [`Instance::evaluator`].
+    /// Same as [`MotionModel::evaluator`].
     fn projection(&self) -> Result<Option<Projection>, Error> {
-        if self.model().model().constraints.is_empty() {
+        if self.labels().constraints.is_empty() {
             return Ok(None);
         }
-        let at = |rate: f64| {
-            self.with_stabilisation_rate(rate)
-                .evaluator()
-                .map(RefCell::new)
-        };
-        let constraints = self.model().model().constraints.iter();
+        let at = |rate: f64| self.evaluator_at_stabilisation_rate(rate).map(RefCell::new);
+        let constraints = self.labels().constraints.iter();
         let names = constraints
             .map(|constraint| constraint.name.clone())
             .collect();
         let Some(rows) = self.constraint_rows() else {
             return Ok(None);
         };
+        let degrees = rows.degrees_of_freedom();
         Ok(Some(Projection {
             singularity_watch: RefCell::new(SingularityWatch::new(rows, names)),
+            unmoved_sizes: self.unmoved_sizes(degrees),
             positive_rate_model: at(LARGE_RATE_PER_S)?,
             negative_rate_model: at(-LARGE_RATE_PER_S)?,
-            unmoved_sizes: self.unmoved_sizes(),
-            stabilisation_rate: self.value(STABILISATION_RATE).unwrap_or(0.0),
+            stabilisation_rate: self.stabilisation_rate(),
         }))
     }
 
     /// Returns the largest size of an unmoved coordinate and of an unmoved rate.
-    fn unmoved_sizes(&self) -> [f64; 2] {
-        let degrees = self.model().program().degrees_of_freedom();
-        let sizes = self.model().typical_sizes();
+    fn unmoved_sizes(&self, degrees: usize) -> [f64; 2] {
+        let sizes = &self.labels().typical_sizes;
         [0, 1].map(|kind| {
             let sizes = sizes[kind * degrees..(kind + 1) * degrees].iter();
             UNMOVED_SIZE_FRACTION * sizes.fold(f64::MIN_POSITIVE, |most, size| most.max(*size))
         })
     }
 
-    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the
-    /// constraints hold, and the changed values.
+    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the constraints hold, for a motion
+    /// over a time span (s), and the changed values. A negative distance of an impact within the rounding of that time
+    /// span is set to zero.
     ///
     /// # Errors
     /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
     /// satisfies the constraints; the message names them.
-    pub fn find_consistent_state(
-        &self,
-        state: &[f64],
-        t: f64,
-        inputs: &HeldInputs,
-    ) -> Result<(Vec<f64>, Vec<InitialChange>), Error> {
-        self.find_consistent_start(state, (t, t), inputs)
-    }
-
-    /// Returns a consistent state for a motion over a time span, s. A negative distance of an
-    /// impact within the rounding of that time span is set to zero.
-    ///
-    /// # Errors
-    /// Same as [`Instance::consistent`].
     pub(crate) fn find_consistent_start(
         &self,
         state: &[f64],
@@ -155,18 +137,22 @@ impl Instance<'_> {
             return Err(Error::Request(reason));
         }
         self.remove_rounding_overlap((t, until), &mut found, inputs)?;
-        let names = self.model().state_names();
-        let units = self.model().state_units();
+        let Labels {
+            state_names,
+            state_units,
+            ..
+        } = self.labels();
         let largest = state
             .iter()
             .chain(&found)
             .fold(0.0_f64, |most, entry| most.max(entry.abs()));
-        let entries = names.into_iter().zip(units).zip(state.iter().zip(&found));
+        let labels = state_names.iter().zip(state_units);
+        let entries = labels.zip(state.iter().zip(&found));
         let moved = entries
             .filter(|(_, (from, to))| (*from - *to).abs() > 1e-12 * largest)
             .map(|((name, unit), (from, to))| InitialChange {
-                name,
-                unit,
+                name: name.clone(),
+                unit: unit.clone(),
                 requested: *from,
                 used: *to,
             });
@@ -183,14 +169,15 @@ impl Instance<'_> {
         state: &mut [f64],
         inputs: &[f64],
     ) -> Result<(), Error> {
-        let impacts = &self.model().model().impacts;
+        let impacts = &self.labels().impacts;
         if impacts.is_empty() {
             return Ok(());
         }
-        let lengths: Vec<f64> = impacts
-            .iter()
-            .map(|impact| self.largest_in(impact.unit.dimension, state))
-            .collect();
+        let lengths = impacts.iter().enumerate().map(|(place, impact)| {
+            let coordinates = impact.coordinates.iter().map(|own| state[*own].abs());
+            coordinates.fold(self.largest_length(place), f64::max)
+        });
+        let lengths: Vec<f64> = lengths.collect();
         let start = Start {
             t,
             end: until,
@@ -208,18 +195,6 @@ impl Instance<'_> {
         })
     }
 
-    /// Returns the largest magnitude of the coordinates and parameters of a dimension, SI.
-    fn largest_in(&self, dimension: Dimension, state: &[f64]) -> f64 {
-        let model = self.model().model();
-        let coordinates = model.coordinates.iter().zip(state);
-        let coordinates = coordinates.filter(|(known, _)| known.unit.dimension == dimension);
-        let parameters = model.parameters.iter();
-        let parameters = parameters.filter(|known| known.unit.dimension == dimension);
-        let parameters = parameters.filter_map(|known| self.value(&known.name));
-        let all = coordinates.map(|(_, value)| *value).chain(parameters);
-        all.fold(0.0, |most, value| value.abs().max(most))
-    }
-
     /// Returns an error text if a constraint has a zero, infinite or dependent derivative at a
     /// state, and whether it contradicts the others.
     fn describe_dependent_constraint(
@@ -233,7 +208,7 @@ impl Instance<'_> {
             return Ok(None);
         };
         let (mut all, residuals) = (rows.rows(point), rows.residuals(point));
-        let constraints = &self.model().model().constraints;
+        let constraints = &self.labels().constraints;
         let lengths: Vec<f64> = all.iter().map(|row| norm(row)).collect();
         if let Some(place) = lengths.iter().position(|length| *length == 0.0) {
             return Ok(Some(format!(
@@ -276,7 +251,7 @@ impl Instance<'_> {
     }
 
     fn unsatisfied_constraints_error(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {
-        let constraints = &self.model().model().constraints;
+        let constraints = &self.labels().constraints;
         let rows = self.constraint_rows();
         let residuals = rows.map(|mut rows| rows.residuals(Point { t, state, inputs }));
         let residuals = residuals.unwrap_or_default();
@@ -301,8 +276,8 @@ impl Instance<'_> {
 
 /// A constraint whose derivative is a linear combination of the derivatives of others.
 struct DependentConstraint<'a> {
-    constraint: &'a Constraint,
-    on: Vec<&'a Constraint>,
+    constraint: &'a ConstraintLabel,
+    on: Vec<&'a ConstraintLabel>,
     /// Residual minus the same combination of the other residuals.
     combined_residual: f64,
     /// Largest term of that combination.

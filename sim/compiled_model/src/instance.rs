@@ -1,20 +1,29 @@
 //! A compiled model at one set of parameter values.
 
+use std::borrow::Borrow;
+use std::cell::RefCell;
 use std::ops::Deref;
 use std::sync::Arc;
 
+use eomgen_codegen::independence::constraint_program::residual_places;
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::NOT_POSITIVE_DEFINITE_MESSAGE;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
 use crate::corners::Corners;
+use crate::driven_model::DrivenModel;
 use crate::error::Error;
+use crate::evaluation::require_positive_pivots;
+use crate::infinite_inputs::find_infinite_function;
+use crate::jacobians::JacobianEvaluator;
+use crate::labels::Labels;
 use crate::model::CompiledModel;
 use crate::motion::Motion;
+use crate::motion_model::MotionModel;
+use crate::projection::InitialChange;
 use crate::sticking::{ObservedMotion, SidedModel};
 
 /// A compiled model that an instance borrows or shares.
@@ -208,7 +217,8 @@ impl<'m> Instance<'m> {
     /// Returns the derivatives of the constraints at these parameters; `None` without constraints.
     pub(crate) fn constraint_rows(&self) -> Option<ConstraintRows> {
         let program = self.model.constraint_program(&self.values)?;
-        let mut rows = ConstraintRows::new(self.model.model(), program.clone());
+        let residuals = residual_places(self.model.model(), program);
+        let mut rows = ConstraintRows::new(program.clone(), residuals);
         rows.prepare(&self.parameters);
         Some(rows)
     }
@@ -229,12 +239,34 @@ impl<'m> Instance<'m> {
         self.model.holding_model(&self.parameters)
     }
 
-    /// Returns the corners of the motion at these parameters; `None` if no momenta can jump.
+    /// Returns the solvers' system of this instance at the relative `tolerance` of the states:
+    /// projected onto the constraints, with impacts and with sticking. It keeps the state of contacts and sticking, so use it for one motion
+    /// only.
     ///
     /// # Errors
-    /// Terms that cannot be derived.
-    pub(crate) fn corners(&self) -> Result<Option<Corners>, Error> {
-        self.model.corners(&self.parameters)
+    /// Same as [`Instance::evaluator`].
+    pub fn driven_model<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
+        &self,
+        evaluator: E,
+        inputs: I,
+        tolerance: f64,
+    ) -> Result<DrivenModel<E, I>, Error> {
+        (self as &dyn MotionModel).driven_model(evaluator, inputs, tolerance)
+    }
+
+    /// Returns the state nearest to `state` in the norm of the kinetic energy at which the
+    /// constraints hold, and the changed values.
+    ///
+    /// # Errors
+    /// [`Error::Request`] if a constraint depends on others at that state, or if no state near it
+    /// satisfies the constraints; the message names them.
+    pub fn find_consistent_state(
+        &self,
+        state: &[f64],
+        t: f64,
+        inputs: &HeldInputs,
+    ) -> Result<(Vec<f64>, Vec<InitialChange>), Error> {
+        (self as &dyn MotionModel).find_consistent_start(state, (t, t), inputs)
     }
 
     /// Returns an exact propagator at these parameters.
@@ -283,9 +315,48 @@ impl<'m> Instance<'m> {
     }
 }
 
-fn require_positive_pivots(evaluator: Evaluator) -> Result<Evaluator, Error> {
-    match evaluator.pivots_are_positive() {
-        true => Ok(evaluator),
-        false => Err(Error::Request(NOT_POSITIVE_DEFINITE_MESSAGE.to_owned())),
+impl MotionModel for Instance<'_> {
+    fn labels(&self) -> &Labels {
+        self.model.labels()
+    }
+
+    fn evaluator(&self) -> Result<Evaluator, Error> {
+        self.evaluator()
+    }
+
+    fn evaluator_at_stabilisation_rate(&self, rate: f64) -> Result<Evaluator, Error> {
+        self.with_stabilisation_rate(rate).evaluator()
+    }
+
+    fn stabilisation_rate(&self) -> f64 {
+        self.value(STABILISATION_RATE).unwrap_or(0.0)
+    }
+
+    fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
+        self.sided_model()
+    }
+
+    fn corners(&self) -> Result<Option<Corners>, Error> {
+        self.model.corners(&self.parameters)
+    }
+
+    fn constraint_rows(&self) -> Option<ConstraintRows> {
+        self.constraint_rows()
+    }
+
+    fn jacobian_evaluator(&self) -> Result<Option<JacobianEvaluator>, Error> {
+        self.jacobian_evaluator().map(Some)
+    }
+
+    fn largest_length(&self, impact: usize) -> f64 {
+        let model = self.model.model();
+        let dimension = model.impacts[impact].unit.dimension;
+        let parameters = model.parameters.iter().zip(&self.values);
+        let lengths = parameters.filter(|(known, _)| known.unit.dimension == dimension);
+        lengths.fold(0.0, |most, (_, value)| value.abs().max(most))
+    }
+
+    fn find_infinite_function(&self, span: (f64, f64)) -> Option<String> {
+        find_infinite_function(&self.model, &self.values, span)
     }
 }

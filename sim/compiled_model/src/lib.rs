@@ -39,59 +39,111 @@
 //! assert!((observables[2][0] - 0.09).abs() < 1e-12); // the energy, J
 //! # Ok::<(), eomgen_compiled_model::Error>(())
 //! ```
+//!
+//! An [`ExportedModel`] has the programs of a model without their derivation. An [`ExportedMotion`] moves it in a host
+//! that contains neither the derivation nor machine code (feature `derive` off), such as a page.
+
+// Without the derivation, only the motion of exported models uses the rest.
+#![cfg_attr(not(feature = "derive"), allow(dead_code, unused_imports))]
 
 mod audit;
 mod contacts;
+#[cfg(feature = "derive")]
 mod controllers;
 mod corners;
+#[cfg(feature = "derive")]
 mod cyclic_directions;
 mod driven_model;
+#[cfg(feature = "derive")]
 mod equilibrium;
 mod error;
+mod evaluation;
+#[cfg(feature = "derive")]
 mod event_log;
+mod exported_model;
+mod exported_motion;
+#[cfg(feature = "derive")]
 mod fixed_steps;
+mod general_motion;
 mod general_run;
+#[cfg(feature = "derive")]
 mod infinite_inputs;
 mod initial_consistency;
+#[cfg(feature = "derive")]
 mod initial_state;
+#[cfg(feature = "derive")]
 mod instance;
+#[cfg(feature = "derive")]
+mod instance_jacobians;
+#[cfg(feature = "derive")]
 mod jacobian_program;
 mod jacobians;
+mod labels;
+#[cfg(feature = "derive")]
 mod linearisation;
+#[cfg(feature = "derive")]
 mod model;
 mod motion;
+mod motion_model;
+#[cfg(feature = "derive")]
 mod natural_modes;
+#[cfg(feature = "derive")]
 mod operating_point;
+#[cfg(feature = "derive")]
 mod overlaps;
+#[cfg(feature = "derive")]
 mod prescribed_inputs;
 mod projection;
+#[cfg(feature = "derive")]
 mod resumable;
+#[cfg(feature = "derive")]
 mod simulation;
 mod singular_positions;
+mod solver_options;
+#[cfg(feature = "derive")]
 mod state_space;
+#[cfg(feature = "derive")]
 mod step_inputs;
 mod sticking;
 mod stop_reasons;
+#[cfg(feature = "derive")]
 mod typical_sizes;
 
 pub use audit::{Audit, Imbalance};
+#[cfg(feature = "derive")]
 pub use controllers::{DeclaredController, Sample, SampledController};
 pub use driven_model::DrivenModel;
+#[cfg(feature = "derive")]
 pub use equilibrium::{Departure, Equilibrium, EquilibriumRequest, Stability};
 pub use error::Error;
+#[cfg(feature = "derive")]
 pub use event_log::{EventKind, LoggedEvent};
+pub use exported_model::{ExportedCode, ExportedModel};
+pub use exported_motion::ExportedMotion;
+#[cfg(feature = "derive")]
 pub use initial_state::StateRequest;
+#[cfg(feature = "derive")]
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator};
+#[cfg(feature = "derive")]
 pub use linearisation::Linearisation;
+#[cfg(feature = "derive")]
 pub use model::{CompiledModel, Orders};
 pub use motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
+#[cfg(feature = "derive")]
 pub use operating_point::{OperatingPoint, Setting};
+#[cfg(feature = "derive")]
 pub use overlaps::Overlap;
+#[cfg(feature = "derive")]
 pub use prescribed_inputs::{split_assignments, with_prescribed_inputs};
 pub use projection::InitialChange;
-pub use resumable::{Simulation, SolverOptions};
-pub use simulation::{DEFAULT_TOLERANCE, Request};
+#[cfg(feature = "derive")]
+pub use resumable::Simulation;
+#[cfg(feature = "derive")]
+pub use simulation::Request;
+pub use solver_options::{DEFAULT_TOLERANCE, SolverOptions};
+#[cfg(feature = "derive")]
 pub use step_inputs::{StepInputs, with_input_functions};
 pub use sticking::{SidedModel, StickingMotion};
+#[cfg(feature = "derive")]
 pub use typical_sizes::TypicalSizes;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use eomgen_codegen::independence::rows::constraint_program;
+use eomgen_codegen::independence::constraint_program::constraint_program;
 use eomgen_codegen::mechanics::corners::has_jumping_momenta;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::program::Program;
@@ -17,7 +17,9 @@ use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::corners::Corners;
 use crate::error::Error;
+use crate::evaluation::prepare_evaluator;
 use crate::jacobian_program::{ALONG_DIRECTION, ENTRY_BY_ENTRY, JacobianProgram};
+use crate::labels::{ConstraintLabel, ImpactLabel, Labels};
 use crate::sticking::SidedModel;
 use crate::typical_sizes::compute_typical_sizes;
 
@@ -80,6 +82,7 @@ pub struct CompiledModel {
     corners: OnceLock<Result<Option<Program>, Diagnostics>>,
     constraints: OnceLock<Option<Program>>,
     typical_sizes: OnceLock<Vec<f64>>,
+    labels: OnceLock<Labels>,
 }
 
 impl CompiledModel {
@@ -139,6 +142,7 @@ impl CompiledModel {
             sided_code: OnceLock::new(),
             constraints: OnceLock::new(),
             typical_sizes: OnceLock::new(),
+            labels: OnceLock::new(),
         }
     }
 
@@ -195,6 +199,34 @@ impl CompiledModel {
     pub fn typical_sizes(&self) -> &[f64] {
         let sizes = || compute_typical_sizes(&self.model, &self.orders);
         self.typical_sizes.get_or_init(sizes)
+    }
+
+    /// Returns the names, units and sizes that motions need.
+    pub(crate) fn labels(&self) -> &Labels {
+        self.labels.get_or_init(|| {
+            let coordinates = self.model.coordinates.iter();
+            let dimensions: Vec<_> = coordinates.map(|own| own.unit.dimension).collect();
+            let impacts = self.model.impacts.iter().map(|impact| ImpactLabel {
+                name: impact.name.clone(),
+                unit: impact.unit.to_string(),
+                coordinates: (0..dimensions.len())
+                    .filter(|own| dimensions[*own] == impact.unit.dimension)
+                    .collect(),
+            });
+            let constraints = self.model.constraints.iter();
+            let constraints = constraints.map(|constraint| ConstraintLabel {
+                name: constraint.name.clone(),
+                unit: constraint.unit.to_string(),
+                is_nonholonomic: constraint.is_nonholonomic,
+            });
+            Labels {
+                state_names: self.state_names(),
+                state_units: self.state_units(),
+                typical_sizes: self.typical_sizes().to_vec(),
+                impacts: impacts.collect(),
+                constraints: constraints.collect(),
+            }
+        })
     }
 
     /// Returns the names of the observables; `energy` and `power` are the last two.
@@ -281,7 +313,7 @@ impl CompiledModel {
         }
     }
 
-    fn sided_program(&self) -> Result<Option<&Program>, Error> {
+    pub(crate) fn sided_program(&self) -> Result<Option<&Program>, Error> {
         let made = self
             .sided
             .get_or_init(|| lower_with_sides(&self.model, &self.equations));
@@ -295,6 +327,12 @@ impl CompiledModel {
     /// # Errors
     /// Terms that cannot be derived.
     pub(crate) fn corners(&self, parameters: &[f64]) -> Result<Option<Corners>, Error> {
+        let program = self.corner_program()?;
+        let evaluator = |program| prepare_evaluator(program, None, parameters);
+        Ok(program.map(|program| Corners::new(evaluator(program))))
+    }
+
+    pub(crate) fn corner_program(&self) -> Result<Option<&Program>, Error> {
         let made = self.corners.get_or_init(|| {
             if !has_jumping_momenta(&self.equations) {
                 return Ok(None);
@@ -302,10 +340,7 @@ impl CompiledModel {
             derive_corners(&self.model, &self.orders)
         });
         let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
-        let evaluator = |program| prepare_evaluator(program, None, parameters);
-        Ok(made
-            .as_ref()
-            .map(|program| Corners::new(evaluator(program))))
+        Ok(made.as_ref())
     }
 
     /// Returns the function of the first surface at which the energies jump, so that rates jump;
@@ -326,20 +361,4 @@ impl CompiledModel {
             .get_or_init(|| PiecewiseLinear::derive(&self.model, &self.orders));
         made.as_ref()
     }
-}
-
-/// Returns an evaluator of a program at these values of the independent parameters, SI. It runs
-/// `code` if given, and otherwise interprets.
-pub(crate) fn prepare_evaluator(
-    program: &Program,
-    code: Option<&Arc<dyn MachineCode>>,
-    parameters: &[f64],
-) -> Evaluator {
-    let program = program.clone();
-    let mut evaluator = match code {
-        Some(code) => Evaluator::with_code(program, code.clone()),
-        None => Evaluator::new(program),
-    };
-    evaluator.prepare(parameters);
-    evaluator
 }

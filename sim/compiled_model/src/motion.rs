@@ -143,3 +143,9 @@ pub enum StopCause {
     /// A step below the smallest length, or too many steps.
     Limit,
 }
+
+impl From<EarlyStop> for Error {
+    fn from(EarlyStop { t, reason, .. }: EarlyStop) -> Self {
+        Self::Stopped { t, reason }
+    }
+}

@@ -3,63 +3,23 @@
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{
-    Method, Settings, Simulation as GeneralSimulation, Surface, SurfaceMode, System, Trajectory,
-};
+use eomgen_sim::ode::{Method, Surface, SurfaceMode, Trajectory};
 use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
 
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
 use crate::fixed_steps::FixedSteps;
-use crate::general_run::GeneralRun;
+use crate::general_motion::GeneralMotion;
 use crate::instance::Instance;
-use crate::motion::{EarlyStop, Solver, SolverChoice, StopCause};
+use crate::motion::{EarlyStop, Solver, SolverChoice};
 use crate::projection::InitialChange;
-use crate::simulation::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS, TIME_VARYING_INPUTS_MESSAGE};
+use crate::simulation::TIME_VARYING_INPUTS_MESSAGE;
+use crate::solver_options::{SolverOptions, general_method};
 use crate::sticking::ObservedMotion;
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
 };
-
-/// Length (s) of a motion whose first step the solver starts with; the error estimate corrects it at once.
-const FIRST_LENGTH_S: f64 = 1.0;
-
-/// Solver and accuracy of a simulation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolverOptions {
-    /// Solver of the equations of motion.
-    pub solver: Solver,
-    /// Relative tolerance; [`Solver::Exact`] ignores it.
-    pub tolerance: f64,
-    /// Longest step, s; [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length.
-    pub max_step: f64,
-}
-
-impl Default for SolverOptions {
-    fn default() -> Self {
-        Self {
-            solver: Solver::Auto,
-            tolerance: DEFAULT_TOLERANCE,
-            max_step: f64::INFINITY,
-        }
-    }
-}
-
-impl SolverOptions {
-    fn settings(&self, method: Method) -> Settings {
-        let max_steps_if_stiff = match self.solver {
-            Solver::Auto => MAX_STIFF_STEPS,
-            _ => Settings::default().max_steps_if_stiff,
-        };
-        Settings {
-            method,
-            max_step: self.max_step,
-            max_steps_if_stiff,
-            ..Settings::with_tolerance(self.tolerance)
-        }
-    }
-}
 
 /// A simulation that continues from call to call. Inputs may change in between; they are held until the
 /// next change. Without a change the solver keeps its steps, so that many short calls give the same motion as a long one.
@@ -112,10 +72,7 @@ enum Engine {
         motion: Box<ExactMotion>,
         observed: Box<ObservedMotion>,
     },
-    General {
-        run: Box<GeneralRun>,
-        simulation: Box<GeneralSimulation>,
-    },
+    General(GeneralMotion),
     Fixed(Box<FixedSteps>),
 }
 
@@ -151,13 +108,17 @@ impl<'m> Instance<'m> {
                 (Engine::Fixed(Box::new(steps)), Vec::new())
             }
             _ => {
+                if options.solver == Solver::Adams {
+                    self.check_adams()?;
+                }
                 let settings = options.settings(general_method(options.solver));
-                self.start_general((t, state), &inputs, &settings)?
+                let started = GeneralMotion::start(self, (t, state), &inputs, &settings)?;
+                (Engine::General(started.0), started.1)
             }
         };
         let surfaces = match &engine {
             Engine::Exact { .. } => self.surfaces(&inputs)?,
-            Engine::General { run, .. } => run.surfaces.clone(),
+            Engine::General(motion) => motion.run().surfaces.clone(),
             Engine::Fixed(_) => Vec::new(),
         };
         Ok(Simulation {
@@ -206,25 +167,6 @@ impl<'m> Instance<'m> {
             observed: Box::new(observed),
         })
     }
-
-    fn start_general(
-        &self,
-        (t, state): (f64, &[f64]),
-        inputs: &HeldInputs,
-        settings: &Settings,
-    ) -> Result<(Engine, Vec<InitialChange>), Error> {
-        let span = (t, t + FIRST_LENGTH_S);
-        let mut run = self.prepare_general_run((state, span), inputs, settings)?;
-        let start = (t, &run.initial[..]);
-        let simulation = GeneralSimulation::new(&run.system, start, FIRST_LENGTH_S, settings);
-        let simulation = simulation.map_err(|error| {
-            let stop = run.early_stop(self.model(), &error, (t, &run.initial));
-            into_error(stop)
-        })?;
-        let changes = std::mem::take(&mut run.initial_changes);
-        let (run, simulation) = (Box::new(run), Box::new(simulation));
-        Ok((Engine::General { run, simulation }, changes))
-    }
 }
 
 impl Simulation<'_> {
@@ -232,7 +174,7 @@ impl Simulation<'_> {
     pub fn time(&self) -> f64 {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.time(),
-            Engine::General { simulation, .. } => simulation.time(),
+            Engine::General(motion) => motion.time(),
             Engine::Fixed(steps) => steps.reached(),
         }
     }
@@ -250,7 +192,7 @@ impl Simulation<'_> {
     pub fn state(&self) -> &[f64] {
         match &self.engine {
             Engine::Exact { motion, .. } => motion.state(),
-            Engine::General { simulation, .. } => simulation.state(),
+            Engine::General(motion) => motion.state(),
             Engine::Fixed(steps) => steps.state(),
         }
     }
@@ -264,7 +206,7 @@ impl Simulation<'_> {
     pub fn solver(&self) -> Solver {
         match &self.engine {
             Engine::Exact { .. } => Solver::Exact,
-            Engine::General { run, .. } => run.solver,
+            Engine::General(motion) => motion.run().solver,
             Engine::Fixed(_) => Solver::Fixed,
         }
     }
@@ -311,9 +253,7 @@ impl Simulation<'_> {
                 };
                 observed.observables(point, out);
             }
-            Engine::General { run, simulation } => {
-                run.system.write_observables((t, simulation.state()), out);
-            }
+            Engine::General(motion) => motion.write_observables(out),
             Engine::Fixed(steps) => steps.write_observables(&self.present_inputs, out),
         }
     }
@@ -333,7 +273,7 @@ impl Simulation<'_> {
                 };
                 observed.rates(point, out);
             }
-            Engine::General { run, simulation } => run.system.rates(t, simulation.state(), out),
+            Engine::General(motion) => motion.write_rates(out),
             Engine::Fixed(steps) => steps.write_rates(&self.present_inputs, out),
         }
     }
@@ -343,7 +283,7 @@ impl Simulation<'_> {
     pub fn modes(&self) -> &[SurfaceMode] {
         match &self.engine {
             Engine::Exact { .. } | Engine::Fixed(_) => &[],
-            Engine::General { simulation, .. } => simulation.modes(),
+            Engine::General(motion) => motion.modes(),
         }
     }
 
@@ -357,7 +297,7 @@ impl Simulation<'_> {
         self.log.events.append(&mut trajectory.events);
         self.log.jumps.append(&mut trajectory.jumps);
         match ended? {
-            Some(stop) => Err(into_error(stop)),
+            Some(stop) => Err(stop.into()),
             None => Ok(()),
         }
     }
@@ -436,25 +376,15 @@ impl Simulation<'_> {
                 let error = ended.err()?;
                 let stop = EarlyStop {
                     t: error.time(),
-                    reason: describe_exact_stop(model, &self.surfaces, &error),
-                    cause: find_exact_stop_cause(model, &error, &self.surfaces),
+                    reason: describe_exact_stop(model.labels(), &self.surfaces, &error),
+                    cause: find_exact_stop_cause(model.labels(), &error, &self.surfaces),
                 };
                 let reason = || SolverChoice::NotSupportedByExact(stop.reason.clone());
                 let next = may_be_supported_by_general(&error).then(|| (Solver::Rk, reason()));
                 Some((stop, next))
             }
-            Engine::General { run, simulation } => {
-                let asked = (until, samples);
-                let ended = simulation.advance(&run.system, asked, trajectory, progress);
-                let error = ended.err()?;
-                let stop = run.early_stop(model, &error, (begin, simulation.state()));
-                let next = match &stop.cause {
-                    StopCause::Stiff(what) if run.solver != Solver::Radau => {
-                        Some((Solver::Radau, SolverChoice::Stiff(what.clone())))
-                    }
-                    _ => None,
-                };
-                Some((stop, next))
+            Engine::General(motion) => {
+                motion.advance(&self.instance, (until, samples), trajectory, progress)
             }
             Engine::Fixed(_) => None,
         }
@@ -464,8 +394,8 @@ impl Simulation<'_> {
     fn restart_general(&mut self, solver: Solver, state: &[f64]) -> Result<(), Error> {
         let settings = self.options.settings(general_method(solver));
         let start = (self.time(), state);
-        let (engine, _) = (self.instance).start_general(start, &self.inputs, &settings)?;
-        self.engine = engine;
+        let started = GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
+        self.engine = Engine::General(started.0);
         Ok(())
     }
 
@@ -529,16 +459,11 @@ impl Simulation<'_> {
                 let followed = propagator.follow_input_jump(motion, &self.inputs);
                 followed.map_err(|error| Error::Stopped {
                     t: Some(begin),
-                    reason: describe_exact_stop(model, &self.surfaces, &error),
+                    reason: describe_exact_stop(model.labels(), &self.surfaces, &error),
                 })
             }
-            Engine::General { run, simulation } => {
-                run.system.set_inputs(self.inputs.clone());
-                let followed = simulation.follow_input_jump(&run.system, &mut self.log);
-                followed.map_err(|error| {
-                    let stop = run.early_stop(model, &error, (begin, simulation.state()));
-                    into_error(stop)
-                })
+            Engine::General(motion) => {
+                motion.follow_inputs(&self.instance, self.inputs.clone(), &mut self.log)
             }
         }
     }
@@ -568,17 +493,4 @@ impl Simulation<'_> {
             solver => self.restart_general(solver, state),
         }
     }
-}
-
-/// Returns the method of a solver that supports any model.
-fn general_method(solver: Solver) -> Method {
-    match solver {
-        Solver::Radau => Method::Radau,
-        Solver::Adams => Method::Adams,
-        Solver::Auto | Solver::Exact | Solver::Rk | Solver::Fixed => Method::DormandPrince853,
-    }
-}
-
-fn into_error(EarlyStop { t, reason, .. }: EarlyStop) -> Error {
-    Error::Stopped { t, reason }
 }

@@ -14,16 +14,11 @@ use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
+use crate::motion_model::MotionModel;
+use crate::solver_options::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS};
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
 };
-
-/// Default relative tolerance.
-pub const DEFAULT_TOLERANCE: f64 = 1e-9;
-
-/// Maximum number of explicit steps, if stability limits their length, before [`Solver::Auto`]
-/// changes to the implicit solver. That solver needs a few times less time for the trajectory.
-pub(crate) const MAX_STIFF_STEPS: u64 = 100_000;
 
 /// Reason why the exact solver does not support inputs.
 pub(crate) const TIME_VARYING_INPUTS_MESSAGE: &str = "the exact solver holds inputs constant between samples, but these \
@@ -171,14 +166,14 @@ impl Instance<'_> {
             let found = (trajectory, surfaces);
             return Ok(new_motion(found, request, Solver::Exact, (choice, audit)));
         };
-        let reason = describe_exact_stop(self.model(), &surfaces, &error);
+        let reason = describe_exact_stop(self.model().labels(), &surfaces, &error);
         if is_free && may_be_supported_by_general(&error) {
             let choice = Some(SolverChoice::NotSupportedByExact(reason));
             return self.simulate_automatically(request, choice, progress);
         }
         let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
         let t = error.time();
-        let cause = find_exact_stop_cause(self.model(), &error, &surfaces);
+        let cause = find_exact_stop_cause(self.model().labels(), &error, &surfaces);
         let found = (trajectory, surfaces);
         let so_far = new_motion(found, request, Solver::Exact, (choice, audit));
         with_early_stop(so_far, EarlyStop { t, reason, cause })
@@ -217,7 +212,10 @@ impl Instance<'_> {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         let auditor = request.audit.then(|| self.auditor(Some(request.tolerance)));
-        let run = self.prepare_general_run(
+        if settings.method == Method::Adams {
+            self.check_adams()?;
+        }
+        let run = (self as &dyn MotionModel).prepare_general_run(
             (request.initial, request.time_span()),
             request.inputs,
             settings,
@@ -239,10 +237,30 @@ impl Instance<'_> {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let reached = (request.time_span().0, &so_far.trajectory.final_state[..]);
-                let stop = run.early_stop(self.model(), &error, reached);
+                let stop = run.early_stop(self, &error, reached);
                 with_early_stop(so_far, stop)
             }
         }
+    }
+
+    /// Rejects models in which states or rates jump.
+    pub(crate) fn check_adams(&self) -> Result<(), Error> {
+        let jumps = if !self.model().model().impacts.is_empty() {
+            "impacts of this model invalidate".to_owned()
+        } else if let Some(surface) = self.model().first_corner() {
+            format!(
+                "jumps of the rates invalidate, and the energies of this model jump where `{surface}` is zero"
+            )
+        } else if !self.model().model().constraints.is_empty() {
+            "the projection onto the constraints invalidates".to_owned()
+        } else if self.sided_model()?.is_some_and(|sided| sided.has_discs()) {
+            "a stop under friction along v/norm(v) invalidates".to_owned()
+        } else {
+            return Ok(());
+        };
+        Err(Error::Request(format!(
+            "the solver adams uses the preceding steps, which {jumps}: use --solver rk or radau"
+        )))
     }
 
     pub(crate) fn auditor(&self, tolerance: Option<f64>) -> Auditor {

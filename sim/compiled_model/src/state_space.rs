@@ -8,9 +8,9 @@ use eomgen_codegen::mechanics::outputs::TANGENTS;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use crate::error::Error;
+use crate::evaluation::prepare_evaluator;
 use crate::instance::Instance;
 use crate::jacobians::{Jacobian, JacobianEvaluator, JacobianLayout};
-use crate::model::prepare_evaluator;
 
 /// Derivatives of rates and observables at a point, row-major.
 pub(crate) struct StateSpace {

@@ -1,14 +1,15 @@
 //! Causes of early stops, with the names of states and surfaces.
 
 use eomgen_sim::ode::{Names, SolveError, Surface, UnsupportedSticking};
+#[cfg(feature = "derive")]
 use eomgen_sim::piecewise_linear::ExactError;
 
-use crate::model::CompiledModel;
+use crate::labels::Labels;
 use crate::motion::{Solver, StopCause};
 
 /// Returns the category of an error of a general solver.
 pub(crate) fn find_stop_cause(
-    model: &CompiledModel,
+    labels: &Labels,
     error: &SolveError,
     surfaces: &[Surface],
 ) -> StopCause {
@@ -18,7 +19,7 @@ pub(crate) fn find_stop_cause(
         }
         SolveError::Sticking { .. } | SolveError::TooManySwitches { .. } => StopCause::Switching,
         SolveError::Stiff { state, within, .. } => {
-            let state = &model.state_names()[*state];
+            let state = &labels.state_names[*state];
             StopCause::Stiff(format!(
                 "the model is stiff: `{state}` settles within {within:.1e} s"
             ))
@@ -36,13 +37,14 @@ pub(crate) fn find_stop_cause(
 }
 
 /// Returns the category of an error of the exact solver.
+#[cfg(feature = "derive")]
 pub(crate) fn find_exact_stop_cause(
-    model: &CompiledModel,
+    labels: &Labels,
     error: &ExactError,
     surfaces: &[Surface],
 ) -> StopCause {
     match error {
-        ExactError::Stopped(error) => find_stop_cause(model, error, surfaces),
+        ExactError::Stopped(error) => find_stop_cause(labels, error, surfaces),
         ExactError::Sticking { .. } => StopCause::Switching,
         ExactError::NotFinite | ExactError::NotPositiveDefinite => StopCause::NotFinite,
         _ => StopCause::Limit,
@@ -50,17 +52,19 @@ pub(crate) fn find_exact_stop_cause(
 }
 
 /// Returns cause and cure of an error of the exact solver.
+#[cfg(feature = "derive")]
 pub(crate) fn describe_exact_stop(
-    model: &CompiledModel,
+    labels: &Labels,
     surfaces: &[Surface],
     error: &ExactError,
 ) -> String {
-    format_named(model, (surfaces, Solver::Exact), |names| {
+    format_named(labels, (surfaces, Solver::Exact), |names| {
         error.format_named(names)
     })
 }
 
 /// Returns true if another solver may follow the motion.
+#[cfg(feature = "derive")]
 pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
     matches!(
         error,
@@ -70,18 +74,17 @@ pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
 
 /// Formats an error of a solver with the names of the states and of these switching functions.
 pub(crate) fn format_named(
-    model: &CompiledModel,
+    labels: &Labels,
     (surfaces, solver): (&[Surface], Solver),
     message: impl FnOnce(&Names<'_>) -> String,
 ) -> String {
-    let states = model.state_names();
     let unsupported_sticking = match solver {
         Solver::Adams => UnsupportedSticking::Adams,
-        _ if !model.model().impacts.is_empty() => UnsupportedSticking::Impacts,
+        _ if !labels.impacts.is_empty() => UnsupportedSticking::Impacts,
         _ => UnsupportedSticking::Formula,
     };
     message(&Names {
-        states: &states,
+        states: &labels.state_names,
         surfaces,
         unsupported_sticking,
     })

@@ -1,6 +1,6 @@
 //! Values of scalar nodes at one point.
 
-use eomgen_model_spec::evaluate::call;
+use eomgen_model_spec::function::call;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 

@@ -5,21 +5,29 @@
 //! accumulation, `hessian` second derivatives of the weighted rates, `matrix_derivatives` derivatives of
 //! modal matrices, and `regimes` the surfaces that decide each branch.
 
+#[cfg(feature = "derive")]
 mod adjoint;
+#[cfg(feature = "derive")]
 mod adjoint_matrices;
+#[cfg(feature = "derive")]
 mod derive;
+#[cfg(feature = "derive")]
 mod hessian;
+#[cfg(feature = "derive")]
 mod jacobian;
+#[cfg(feature = "derive")]
 mod matrix_derivatives;
 mod output;
+#[cfg(feature = "derive")]
 mod regimes;
 mod types;
 
+#[cfg(feature = "derive")]
 pub(crate) use derive::guard_rate;
+#[cfg(feature = "derive")]
 pub use derive::{TANGENTS, derive_outputs};
 pub use output::{Output, UnknownOutput};
-pub use regimes::{Decision, SURFACES_OF_A_REGIME, Switch};
 pub use types::{
-    BlockPlace, Corners, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs,
-    Products, RateRow, Side, SlidingSurface,
+    BlockPlace, Corners, Decision, GradientDerivative, GradientRow, Jacobian, JacobianBlock,
+    Outputs, Products, RateRow, SURFACES_OF_A_REGIME, Side, SlidingSurface, Switch,
 };

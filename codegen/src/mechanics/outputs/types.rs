@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use super::output::Output;
-use super::regimes::Switch;
-use crate::symbolic::graph::Variable;
+use crate::symbolic::variable::Variable;
 
 /// Requested outputs, with nodes or values `N` and rows `R` of them.
 #[derive(Clone, Debug)]
@@ -215,4 +214,39 @@ impl<N> Jacobian<N> {
         }
         places
     }
+}
+
+/// Largest number of surfaces in the number of a regime, which has one bit for each.
+pub const SURFACES_OF_A_REGIME: usize = u32::BITS as usize;
+
+/// Piecewise function of the accelerations, as a node or value `N`, whose branch a regime decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Switch<N> {
+    /// Value of the function.
+    pub value: N,
+    /// Deciding surfaces.
+    pub decided: Decision,
+}
+
+/// Surfaces that decide a branch, by their indices among all guard values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decision {
+    /// Dead zone or contact, by p - b and p + b.
+    Between {
+        /// Index of p - b.
+        above: usize,
+        /// Index of p + b.
+        beyond: usize,
+    },
+    /// Sign or contact that can be zero in a whole regime, by p - b and -p - b, with b = 0 for a sign.
+    Outside {
+        /// Index of p - b.
+        above: usize,
+        /// Index of -p - b.
+        below: usize,
+    },
+    /// Other function, by its only surface.
+    Surface(usize),
+    /// Selection for a > b by b - a, or `above(p)` by -p.
+    NegatedSurface(usize),
 }

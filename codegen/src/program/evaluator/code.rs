@@ -177,6 +177,12 @@ impl Stage {
 /// Machine code of every stage of a program. Its memory holds the program's values at their
 /// [places](super::Places), then its own data.
 pub trait MachineCode: Send + Sync {
+    /// Returns the stages that it computes, with [`Stage::Rates`] among them. The evaluator computes the others and, if
+    /// there are any, also the prepared values.
+    fn stages(&self) -> &[Stage] {
+        &Stage::ALL
+    }
+
     /// Returns the initial content of its own data.
     fn initial_memory(&self) -> &[f64];
 

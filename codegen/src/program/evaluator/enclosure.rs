@@ -1,7 +1,7 @@
 //! Bounds of a quantity and of its rate over a stretch of time.
 
+use eomgen_model_spec::function::Function;
 use eomgen_model_spec::interval::Interval;
-use eomgen_model_spec::model::Function;
 
 /// Degree of the polynomial part of an [`Enclosure`].
 pub const DEGREE: usize = 7;

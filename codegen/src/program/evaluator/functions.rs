@@ -1,7 +1,7 @@
 //! Functions of one or two numbers, with the results that every backend must give.
 
 use eomgen_elementary::Function as Elementary;
-use eomgen_model_spec::model::Function;
+use eomgen_model_spec::function::Function;
 
 /// Returns 1/a for a positive pivot, else NaN.
 pub(super) fn pivot_reciprocal(a: f64) -> f64 {

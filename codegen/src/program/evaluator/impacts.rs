@@ -2,7 +2,7 @@
 
 use super::{Evaluator, Point, Stage};
 
-/// Impact at a point in SI units; see [`Impact`](crate::mechanics::impacts::Impact).
+/// Impact at a point in SI units; see [`Impact`](crate::mechanics::impact::Impact).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactValues {
     /// Distance.
@@ -22,7 +22,7 @@ pub struct ImpactValues {
     pub friction: Option<FrictionValues>,
 }
 
-/// Friction of a contact at a point in SI units; see [`Friction`](crate::mechanics::impacts::Friction).
+/// Friction of a contact at a point in SI units; see [`Friction`](crate::mechanics::impact::Friction).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionValues {
     /// Coefficient.

@@ -45,6 +45,8 @@ pub struct Evaluator {
     /// Steps of each stage, in the order of [`Stage::ALL`].
     stages: [Vec<ValueId>; Stage::ALL.len()],
     code: Option<Arc<dyn MachineCode>>,
+    /// True for each stage that machine code computes.
+    by_code: [bool; Stage::ALL.len()],
     /// Allocated when bounds are first computed.
     bounds: Option<BoundsMemory>,
 }
@@ -74,6 +76,7 @@ impl Evaluator {
             prepare,
             stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
             code: None,
+            by_code: [false; Stage::ALL.len()],
             bounds: None,
             program,
         };
@@ -86,6 +89,9 @@ impl Evaluator {
     pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
         let mut evaluator = Self::new(program);
         evaluator.memory.extend_from_slice(code.initial_memory());
+        for stage in code.stages() {
+            evaluator.by_code[*stage as usize] = true;
+        }
         evaluator.code = Some(code);
         evaluator
     }
@@ -101,9 +107,7 @@ impl Evaluator {
         for (id, place) in &self.parameters {
             self.memory[self.places.offset(*id)] = parameters[*place];
         }
-        if let Some(code) = &self.code {
-            code.prepare(&mut self.memory);
-        } else {
+        if self.by_code.contains(&false) {
             let steps = &self.prepare;
             run(
                 &mut self.memory,
@@ -112,6 +116,9 @@ impl Evaluator {
                 steps,
                 &NO_POINT,
             );
+        }
+        if let Some(code) = &self.code {
+            code.prepare(&mut self.memory);
         }
     }
 
@@ -254,7 +261,9 @@ impl Evaluator {
     }
 
     fn compute(&mut self, stage: Stage, point: &Point<'_>) {
-        if let Some(code) = &self.code {
+        if let Some(code) = &self.code
+            && self.by_code[stage as usize]
+        {
             code.compute(stage, &mut self.memory, point);
         } else {
             let steps = &self.stages[stage as usize];

@@ -9,8 +9,9 @@ use super::controller::{Sample, SampledController};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, StopCause};
-use crate::resumable::{Simulation, SolverOptions};
+use crate::resumable::Simulation;
 use crate::simulation::{Request, with_early_stop};
+use crate::solver_options::SolverOptions;
 
 /// Controllers in the order of their states and inputs.
 pub type Controllers<'c> = [&'c mut dyn SampledController];

@@ -1,0 +1,40 @@
+//! Names, units and sizes of a model that its motions and their messages need.
+
+use eomgen_codegen::encode_structures;
+
+encode_structures! {
+    Labels { state_names, state_units, typical_sizes, impacts, constraints }
+    ImpactLabel { name, unit, coordinates }
+    ConstraintLabel { name, unit, is_nonholonomic }
+}
+
+/// Names, units and sizes of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Labels {
+    pub state_names: Vec<String>,
+    /// SI units of the states.
+    pub state_units: Vec<String>,
+    /// Typical sizes of the states, SI.
+    pub typical_sizes: Vec<f64>,
+    pub impacts: Vec<ImpactLabel>,
+    pub constraints: Vec<ConstraintLabel>,
+}
+
+/// Label of an impact.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ImpactLabel {
+    pub name: String,
+    /// Unit of the distance.
+    pub unit: String,
+    /// Coordinates with the dimension of the distance.
+    pub coordinates: Vec<usize>,
+}
+
+/// Label of a constraint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ConstraintLabel {
+    pub name: String,
+    /// Unit of the residual.
+    pub unit: String,
+    pub is_nonholonomic: bool,
+}
