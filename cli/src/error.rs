@@ -10,6 +10,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Severity};
 use eomgen_model_spec::hidden_characters::{escape_hidden, escape_hidden_in_strings};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
+use eomgen_page::play::Unplayable;
 use eomgen_records::Refusal;
 use eomgen_targets::EmissionError;
 use serde_json::{Value, json};
@@ -45,6 +46,12 @@ impl From<EmissionError> for Error {
             EmissionError::Request(reason) => Self::Input(reason),
             EmissionError::Specification(found) => Self::Specification(found),
         }
+    }
+}
+
+impl From<Unplayable> for Error {
+    fn from(error: Unplayable) -> Self {
+        Self::input(error.to_string())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Values given as `NAME=EXPR`, and inputs.
 
 use eomgen_compiled_model::split_assignments;
-use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
+use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, warn};
 
@@ -25,24 +25,6 @@ pub fn as_borrowed(values: &[(String, f64)]) -> Vec<(&str, f64)> {
         .iter()
         .map(|(name, value)| (name.as_str(), *value))
         .collect()
-}
-
-/// Default decay rate of constraint residuals in models whose rates are integrated directly, 1/s.
-const DEFAULT_STABILISATION_RATE: f64 = 10.0;
-
-/// Returns the model with decaying constraint residuals, for solvers that integrate its rates directly.
-pub fn with_stabilisation(model: Model) -> Result<Model> {
-    let declared = model
-        .parameters
-        .iter()
-        .find(|p| p.name == STABILISATION_RATE);
-    let is_off = declared.is_some_and(|p| matches!(p.value, ParameterValue::Number(0.0)));
-    if model.constraints.is_empty() || !is_off {
-        return Ok(model);
-    }
-    model
-        .with_parameters(&[(STABILISATION_RATE, DEFAULT_STABILISATION_RATE)])
-        .map_err(|error| Error::model(&model.source, error))
 }
 
 /// Warns about inputs that are not driven, except those of `driven`, with their values.

@@ -1,6 +1,5 @@
 //! `eomgen page`: an interactive simulation of a model as an HTML page.
 
-use eomgen_targets::{reject_corners, reject_impacts};
 use serde_json::json;
 
 use crate::arguments::Page;
@@ -11,18 +10,15 @@ use crate::motion::note_moved;
 use crate::operating_point::initial_state;
 use crate::output::Destination;
 use crate::page::interactive_page;
-use crate::settings::{with_settings, with_stabilisation};
+use crate::settings::with_settings;
 
 pub fn run(options: &Page) -> Result {
     let destination = Destination::for_output(&options.out, options.output.json)?;
     let model = with_settings(load(&options.model.spec)?.model, &options.parameters.set)?;
     let controlled = model.reject_controllers("a page");
     controlled.map_err(|error| Error::model(&model.source, error))?;
-    reject_impacts(&model, "a page")?;
-    let model = with_stabilisation(model)?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
-    reject_corners(compiled.program(), "a page")?;
     let run = compiled.with_declared_parameters()?;
     let requested = initial_state(&run, &options.initial.state)?;
     // The page moves the state again after a change of a slider.

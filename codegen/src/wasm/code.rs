@@ -9,6 +9,9 @@ use super::memory::{Memory, NUMBER, Region, missing_place_error};
 use crate::program::{Extent, Program};
 use crate::statements::{EmitError, EmitResult, Index};
 
+/// Index of the imported global variable with the address of the module's numbers.
+pub(super) const BASE: u32 = 0;
+
 /// Binary logarithm of the bytes of a number, for alignment.
 const ALIGNMENT: u32 = NUMBER.trailing_zeros();
 
@@ -102,7 +105,9 @@ impl<'m> Code<'m> {
         if length > 0 {
             let (first, bytes) = (to_signed(region.first)?, to_signed(length as u32 * NUMBER)?);
             let mut put = self.instructions();
-            put.i32_const(first)
+            put.global_get(BASE)
+                .i32_const(first)
+                .i32_add()
                 .i32_const(0)
                 .i32_const(bytes)
                 .memory_fill(0);
@@ -207,19 +212,23 @@ impl<'m> Code<'m> {
         };
         // A constant address is part of the instruction.
         let from = if let Index::Number(number) = place {
-            self.instructions().i32_const(0);
+            self.instructions().global_get(BASE);
             region.address(number)
         } else {
             self.index(&place)?;
-            self.instructions().i32_const(ALIGNMENT as i32).i32_shl();
+            let mut put = self.instructions();
+            put.i32_const(ALIGNMENT as i32).i32_shl();
+            put.global_get(BASE).i32_add();
             region.first
         };
         Ok(aligned(from))
     }
 
-    /// Pushes the number at a fixed address.
+    /// Pushes the number at a fixed place.
     pub(super) fn load(&mut self, place: u32) {
-        self.instructions().i32_const(0).f64_load(aligned(place));
+        self.instructions()
+            .global_get(BASE)
+            .f64_load(aligned(place));
     }
 }
 

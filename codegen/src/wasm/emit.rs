@@ -1,14 +1,15 @@
 //! WebAssembly module: functions, memory and exports.
 
 use wasm_encoder::{
-    CodeSection, ConstExpr, DataSection, ExportKind, ExportSection, Function, FunctionSection,
-    GlobalSection, GlobalType, MemorySection, MemoryType, Module, TypeSection, ValType,
+    CodeSection, ConstExpr, DataCountSection, DataSection, ExportKind, ExportSection, Function,
+    FunctionSection, GlobalSection, GlobalType, ImportSection, MemoryType, Module, StartSection,
+    TypeSection, ValType,
 };
 
-use super::code::Code;
+use super::code::{BASE, Code};
 use super::functions::{Helper, helpers};
 use super::indices::Indices;
-use super::memory::{Memory, Region};
+use super::memory::{Memory, NUMBER, Region};
 use super::names::WORDS;
 use crate::program::Program;
 use crate::statements::{
@@ -16,9 +17,19 @@ use crate::statements::{
     RequiredFunctions, Stage, Statement, UsedNames, guards, observables, preparation, rates,
 };
 
-/// Writes a program as a WebAssembly module without imports.
+/// WebAssembly module of a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EmittedModule {
+    /// Content of the file.
+    pub bytes: Vec<u8>,
+    /// Bytes of memory that it needs.
+    pub size: usize,
+}
+
+/// Writes a program as a WebAssembly module.
 ///
-/// It exports its `memory` of `f64` numbers and the functions
+/// It imports from `host` a `memory` and the constant global `base`, the address of its own part of that memory: `size`
+/// bytes, a multiple of 8 like the address. Modules can share a memory with a host. It exports the functions
 ///
 /// * `prepare() -> i32`: computes the coefficients from the parameters; returns 1 if all prepared pivots of
 ///   the mass matrix are positive and finite. The parameters are initially those of the specification;
@@ -27,12 +38,12 @@ use crate::statements::{
 /// * `guards(t)`, if there are any: computes the switching surfaces.
 ///
 /// The constant globals `parameters_at`, `inputs_at`, `state_at`, `rates_at`, `observables_at` and
-/// `guards_at` are the addresses, in bytes, of the numbers that these read and write, in the order of the
-/// program.
+/// `guards_at` are the addresses, in bytes from `base`, of the numbers that these read and write, in the order of
+/// the program; `size` is constant, too.
 ///
 /// # Errors
 /// A program that exceeds the memory of a module.
-pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
+pub fn emit(program: &Program) -> Result<EmittedModule, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = RequiredFunctions::default();
     let prepared = preparation(&file, &mut needed)?;
@@ -54,7 +65,10 @@ pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
         exported.push(exported_name(&stage));
         written.push(write_stage(program, stage, &mut memory, &functions)?);
     }
-    Ok(module(&helpers, &exported, &written, &memory))
+    Ok(EmittedModule {
+        bytes: module(&helpers, &exported, &written, &memory),
+        size: memory.size() as usize,
+    })
 }
 
 fn exported_name(stage: &Stage) -> &'static str {
@@ -140,58 +154,80 @@ fn write_stage(
 
 /// Assembles the sections of a module; helpers precede the exported functions.
 fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &Memory) -> Vec<u8> {
-    const NUMBER: ValType = ValType::F64;
+    const REAL: ValType = ValType::F64;
     let mut types = TypeSection::new();
-    types.ty().function([NUMBER], [NUMBER]);
-    types.ty().function([NUMBER, NUMBER], [NUMBER]);
+    types.ty().function([REAL], [REAL]);
+    types.ty().function([REAL, REAL], [REAL]);
     types.ty().function([], [ValType::I32]);
-    types.ty().function([NUMBER], []);
+    types.ty().function([REAL], []);
+    types.ty().function([], []);
+    let constant = GlobalType {
+        val_type: ValType::I32,
+        mutable: false,
+        shared: false,
+    };
+    let mut imports = ImportSection::new();
+    let host_memory = MemoryType {
+        minimum: 0,
+        maximum: None,
+        memory64: false,
+        shared: false,
+        page_size_log2: None,
+    };
+    imports.import("host", "memory", host_memory);
+    imports.import("host", "base", constant);
     let mut functions = FunctionSection::new();
     for helper in helpers {
         functions.function(u32::from(helper.arguments.len() > 1));
     }
     let mut exports = ExportSection::new();
-    exports.export("memory", ExportKind::Memory, 0);
     for (name, index) in exported.iter().zip(helpers.len() as u32..) {
         functions.function(if *name == "prepare" { 2 } else { 3 });
         exports.export(name, ExportKind::Func, index);
     }
+    functions.function(4);
+    let start = StartSection {
+        function_index: written.len() as u32,
+    };
     let mut globals = GlobalSection::new();
-    for (index, (name, region)) in (0..).zip(places(memory)) {
-        let of = GlobalType {
-            val_type: ValType::I32,
-            mutable: false,
-            shared: false,
-        };
-        globals.global(of, &ConstExpr::i32_const(region.first as i32));
+    let places = places(memory).map(|(name, region)| (name, region.first));
+    let numbers = places.into_iter().chain([("size", memory.size())]);
+    for (index, (name, number)) in (BASE + 1..).zip(numbers) {
+        globals.global(constant, &ConstExpr::i32_const(number as i32));
         exports.export(name, ExportKind::Global, index);
     }
-    let mut memories = MemorySection::new();
-    memories.memory(MemoryType {
-        minimum: memory.pages(),
-        maximum: Some(memory.pages()),
-        memory64: false,
-        shared: false,
-        page_size_log2: None,
-    });
     let mut code = CodeSection::new();
     for function in written {
         code.function(function);
     }
+    code.function(&write_constants(memory));
     let mut data = DataSection::new();
-    for (region, numbers) in &memory.constants {
+    for (_, numbers) in &memory.constants {
         let bytes = numbers.iter().flat_map(|number| number.to_le_bytes());
-        let bytes: Vec<u8> = bytes.collect();
-        data.active(0, &ConstExpr::i32_const(region.first as i32), bytes);
+        data.passive(bytes.collect::<Vec<u8>>());
     }
+    let counted = DataCountSection { count: data.len() };
     let mut module = Module::new();
-    module
-        .section(&types)
-        .section(&functions)
-        .section(&memories);
-    module.section(&globals).section(&exports).section(&code);
-    module.section(&data);
+    module.section(&types).section(&imports).section(&functions);
+    module.section(&globals).section(&exports).section(&start);
+    module.section(&counted).section(&code).section(&data);
     module.finish()
+}
+
+/// Writes the function that copies the constants to their places, at the start of the module.
+fn write_constants(memory: &Memory) -> Function {
+    let mut function = Function::new([]);
+    let mut put = function.instructions();
+    for (place, (region, numbers)) in (0..).zip(&memory.constants) {
+        put.global_get(BASE)
+            .i32_const(region.first as i32)
+            .i32_add();
+        put.i32_const(0)
+            .i32_const((NUMBER as usize * numbers.len()) as i32);
+        put.memory_init(0, place);
+    }
+    put.end();
+    function
 }
 
 /// Returns the regions of the exported globals.

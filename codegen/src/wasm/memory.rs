@@ -1,4 +1,5 @@
-//! Layout of the linear memory: one array after the other. No memory is allocated at run time.
+//! Layout of the module's part of the linear memory: one array after the other. Addresses are relative to its start. No
+//! memory is allocated at run time.
 
 use std::collections::HashMap;
 
@@ -10,9 +11,6 @@ pub(super) const NUMBER: u32 = 8;
 
 /// Largest address: addresses are signed 32-bit constants.
 const MAX_ADDRESS: u32 = i32::MAX as u32;
-
-/// Bytes of a page, the unit of memory sizes.
-const PAGE: u32 = 65536;
 
 /// Array in the memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,9 +86,9 @@ impl Memory {
         allocate(&mut self.size, extent)
     }
 
-    /// Returns the number of pages.
-    pub(super) fn pages(&self) -> u64 {
-        u64::from(self.size.div_ceil(PAGE))
+    /// Returns the number of bytes.
+    pub(super) fn size(&self) -> u32 {
+        self.size
     }
 
     /// Returns the region of a table, which is allocated at its first use.

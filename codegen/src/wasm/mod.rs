@@ -1,4 +1,4 @@
-//! WebAssembly backend: a module without imports, for browsers and other hosts, in double precision. Its
+//! WebAssembly backend: a module for browsers and other hosts, in double precision. Its
 //! results have the same bits as the emitted Rust, except for the sign and payload of NaN.
 //!
 //! `emit` assembles the module from its functions, memory and exports. `memory` is the layout of the arrays,
@@ -17,4 +17,4 @@ mod names;
 mod statements;
 
 pub use crate::statements::EmitError;
-pub use emit::emit;
+pub use emit::{EmittedModule, emit};

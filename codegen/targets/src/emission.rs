@@ -2,7 +2,7 @@
 
 use eomgen_codegen::c;
 use eomgen_codegen::mechanics::outputs::UnknownOutput;
-use eomgen_codegen::program::{Output, Program};
+use eomgen_codegen::program::Output;
 use eomgen_codegen::rust::{self, Packaging};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
@@ -57,35 +57,6 @@ fn unit(model: &Model, variant: &Variant, version: Version) -> Result<Vec<Emitte
     controlled.map_err(|error| EmissionError::model(&model.source, error))?;
     let orders = variant.equations.graph.orders();
     Ok(vec![fmu::file(model, orders, version)?])
-}
-
-/// Rejects a model with impacts for `what`, which supports no jumps of rates.
-///
-/// # Errors
-/// The first impact.
-pub fn reject_impacts(model: &Model, what: &str) -> Result<()> {
-    model.impacts.first().map_or(Ok(()), |impact| {
-        Err(EmissionError::Request(format!(
-            "the model has impacts (`{}`), which {what} does not support: bodies would pass through each \
-             other; use `eomgen simulate`",
-            impact.name
-        )))
-    })
-}
-
-/// Rejects a program whose energies jump at a surface for `what`, which supports no jumps of rates.
-///
-/// # Errors
-/// The first such surface.
-pub fn reject_corners(program: &Program, what: &str) -> Result<()> {
-    let mut guards = program.guards.iter();
-    guards.find(|guard| guard.is_corner).map_or(Ok(()), |guard| {
-        Err(EmissionError::Request(format!(
-            "the energies of the model jump where `{}` is zero, and the rates with them, which {what} does not \
-             support: use `eomgen simulate`",
-            guard.formula
-        )))
-    })
 }
 
 /// Returns the additional output with this name.

@@ -24,7 +24,7 @@ mod file;
 mod fmu;
 mod target;
 
-pub use emission::{emit, outputs, parse_output, reject_corners, reject_impacts};
+pub use emission::{emit, outputs, parse_output};
 pub use error::EmissionError;
 pub use file::EmittedFile;
 pub use target::Target;

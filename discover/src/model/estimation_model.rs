@@ -4,7 +4,7 @@
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
-use eomgen_compiled_model::{CompiledModel, Error, Orders, SidedModel};
+use eomgen_compiled_model::{CompiledModel, Error, ExportedModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
@@ -369,9 +369,13 @@ impl EstimationModel {
         self.compiled.evaluator(values)
     }
 
-    /// Returns the model with the sides of its switching surfaces, if it has any.
-    pub(crate) fn create_sided_model(&self, values: &[f64]) -> Result<Option<SidedModel>, Error> {
-        self.compiled.sided_model(values)
+    /// Returns the model at the parameters of the specification for a page.
+    ///
+    /// # Errors
+    ///
+    /// Terms that cannot be derived.
+    pub(crate) fn export(&self) -> Result<ExportedModel, Error> {
+        ExportedModel::new(&self.compiled.with_declared_parameters()?)
     }
 
     /// Returns the measured outputs as linear functions of the state, if they are linear.

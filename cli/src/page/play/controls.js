@@ -2,6 +2,8 @@
 
 /** Longest computation per frame, ms. */
 const BUDGET = 11;
+/** Number of parts of a frame after each of which the motion is shown. */
+const PARTS = 8;
 /** Longest time between frames that the clock follows, s; a hidden page has longer ones. */
 const LONGEST_FRAME = 0.1;
 
@@ -14,25 +16,23 @@ const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
 
 /** State of the page. */
 class Page {
-  constructor(exports) {
-    this.machine = new Machine(model, exports);
+  constructor(motion) {
+    this.motion = motion;
     const driven = () => {
-      this.motion.begin();
+      this.drive();
       this.remember();
     };
     this.signals = Array.from(
       document.querySelectorAll("[data-signal]"),
       (signal) => new Signal(signal, model.inputs[signal.dataset.place].value, driven),
     );
-    this.machine.drive = (t) => {
-      for (const signal of this.signals) signal.write(t, this.machine.inputs);
-    };
     this.initial = Float64Array.from(model.state, (quantity) => quantity.initial);
-    this.motion = new Motion(this.machine, this.start());
+    this.start();
     this.picture = model.drawing ? new Plane(model) : new Instruments(model);
     this.record = new Record();
     this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.pace = 1;
+    this.parts = PARTS;
     this.last = null;
     /** Whether the page must be redrawn although the time is unchanged. */
     this.stale = true;
@@ -81,9 +81,8 @@ class Page {
   /** Sets a number of the model; the default is the specification's value. */
   change(kind, place, value) {
     if (kind === "parameter") {
-      this.machine.parameters[place] = value ?? model.parameters[place];
-      this.machine.prepare();
-      this.motion.begin();
+      this.motion.parameters[place] = value ?? model.parameters[place];
+      this.motion.change();
       this.remember();
     } else {
       this.initial[place] = value ?? model.state[place].initial;
@@ -91,15 +90,18 @@ class Page {
     }
   }
 
-  /** Returns the initial state on the constraints. */
+  /** Starts at the initial state. */
   start() {
-    const state = Float64Array.from(this.initial);
-    this.projected = model.stabilisation === null ? "unchanged" : project(this.machine, model.stabilisation, 0, state);
-    return state;
+    this.drive();
+    this.motion.start(this.initial);
+  }
+
+  drive() {
+    this.motion.drive(this.signals.map(({ numbers }) => numbers));
   }
 
   restart() {
-    this.motion.restart(this.start());
+    this.start();
     this.picture.clear();
     this.record.clear();
     this.remember();
@@ -108,8 +110,7 @@ class Page {
   /** Passes the current state to drawing and curves. */
   remember() {
     this.stale = true;
-    const { t, state } = this.motion;
-    const observables = this.machine.observe(t, state);
+    const { t, state, observables } = this.motion;
     this.picture.follow(state, observables);
     this.record.add(t, Float64Array.of(...state, ...observables), this.span);
   }
@@ -126,10 +127,16 @@ class Page {
   move(passed) {
     const { motion } = this;
     const [start, end] = [motion.t, motion.t + passed * this.speed];
-    const deadline = performance.now() + BUDGET;
-    while (motion.t < end && !motion.failed && performance.now() < deadline) {
-      motion.advance(end);
+    let now = performance.now();
+    const deadline = now + BUDGET;
+    while (motion.t < end && !motion.failed && now < deadline) {
+      motion.advance(Math.min(end, motion.t + (end - start) / this.parts));
       this.remember();
+      // A part takes a small part of the budget.
+      const before = now;
+      now = performance.now();
+      if (now - before > BUDGET / 2) this.parts *= 2;
+      else if (now - before < BUDGET / 16 && this.parts > PARTS) this.parts /= 2;
     }
     const pace = (motion.t - start) / passed;
     this.pace += 0.1 * (pace / this.speed - this.pace);
@@ -152,17 +159,14 @@ class Page {
 
   /** Shows the reason for a stopped motion. */
   obstacle() {
-    if (!this.machine.usable) return "With these parameters the mass matrix is not positive definite: there is no motion.";
-    if (this.projected === "failed") return "No state near this initial state satisfies the constraints.";
-    if (this.motion.failed) return "The motion ends here: its rates are no longer numbers, or change too fast to follow.";
-    return "";
+    return this.motion.failed ? `There is no motion from here on: ${this.motion.reason}.` : "";
   }
 
   /** Updates the status and the clock. */
   note() {
     if (this.playing && this.pace < 0.8) return `Slower than selected: ${shown(this.pace * this.speed, 2)} s per second.`;
-    if (this.projected === "moved" && this.motion.t < NOTED) return "The initial state was moved onto the constraints.";
-    return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
+    if (this.motion.moved && this.motion.t < NOTED) return "The initial state was moved onto the constraints.";
+    return this.motion.events > 0 ? `Events: ${this.motion.events}.` : "";
   }
 
   label() {
@@ -174,8 +178,8 @@ class Page {
   }
 }
 
-WebAssembly.instantiate(bytes(model.module), {}).then(
-  ({ instance }) => new Page(instance.exports),
+Motion.load(model.moving).then(
+  (motion) => new Page(motion),
   (error) => {
     say("status", `This browser does not run the model: ${error.message}`);
   },

@@ -1,9 +1,9 @@
 //! Input of the script, as JSON.
 
 use eomgen_compiled_model::CompiledModel;
-use eomgen_model_spec::model::{Drawing, Ordinate, STABILISATION_RATE};
+use eomgen_model_spec::model::{Drawing, Ordinate};
 use eomgen_page::name_letters;
-use eomgen_page::play::{encode_base64, format_unit};
+use eomgen_page::play::format_unit;
 use serde_json::{Value, json};
 
 use super::quantities::Quantities;
@@ -13,12 +13,12 @@ use crate::field_shapes::{FieldShapes, field_shapes};
 /// Number of intervals along a field.
 const INTERVALS: usize = 40;
 
-/// Returns the data of a model with an initial state and its WebAssembly module.
+/// Returns the data of a model with an initial state; `moving` is for its motion.
 pub(super) fn json(
     compiled: &CompiledModel,
     quantities: &Quantities<'_>,
     initial: &[f64],
-    module: &[u8],
+    moving: Value,
 ) -> Result<String> {
     let program = compiled.program();
     let names = compiled.state_names().into_iter();
@@ -27,24 +27,15 @@ pub(super) fn json(
         .map(|((name, unit), initial)| json!({ "symbol": name_letters(&name), "unit": format_unit(unit), "initial": initial }))
         .collect();
     let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "symbol": name_letters(&quantity.name), "unit": format_unit(&quantity.unit) });
-    let inputs = compiled.default_inputs().into_iter();
-    let inputs = inputs.map(|value| json!({ "value": value }));
-    let stabilisation = program
-        .parameters
-        .iter()
-        .position(|parameter| parameter.quantity.name == STABILISATION_RATE)
-        .filter(|_| !compiled.model().constraints.is_empty());
+    let inputs = program.inputs.iter().zip(compiled.default_inputs());
+    let inputs = inputs.map(|(input, value)| json!({ "name": input.name, "value": value }));
     let fields = field_shapes(compiled, INTERVALS)?;
-    let evaluator = compiled.evaluator(&program.default_parameters());
     let document = json!({
-        "module": encode_base64(module),
+        "moving": moving,
         "parameters": program.default_parameters(),
         "state": state,
         "inputs": inputs.collect::<Vec<_>>(),
         "observables": program.observables.iter().map(of).collect::<Vec<_>>(),
-        "guards": evaluator.guard_count(),
-        "degrees": program.degrees_of_freedom(),
-        "stabilisation": stabilisation,
         "coordinates": compiled.model().coordinates.len(),
         "fields": fields.iter().map(field).collect::<Vec<_>>(),
         "drawing": compiled.model().drawing.as_ref().map(drawing),

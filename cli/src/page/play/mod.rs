@@ -1,10 +1,10 @@
 //! Interactive page of a model: sliders, an animated drawing, curves, and the equations. The page is self-contained and
-//! computes with the emitted WebAssembly module.
+//! computes with the engine and the emitted WebAssembly modules of the model.
 //!
 //! `quantities` selects the sliders and their ranges, `controls` renders them, `first_motion` decides whether an input
 //! starts as a sine, `data` is the input of the script. The
-//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (inputs over
-//! time), `constraints.js` (initial states) and `controls.js`.
+//! script is the common one of `eomgen_page::play`, followed by `drawing.js`, `curves.js`, `signals.js` (controls of
+//! inputs) and `controls.js`.
 
 mod controls;
 mod data;
@@ -13,8 +13,7 @@ mod quantities;
 
 use eomgen_codegen::report::Report;
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
-use eomgen_codegen::wasm;
-use eomgen_compiled_model::CompiledModel;
+use eomgen_compiled_model::{CompiledModel, ExportedModel};
 use eomgen_page::{ScriptedDocument, equations, formula, play, scripted_document};
 use maud::{Markup, html};
 
@@ -25,11 +24,10 @@ use quantities::Quantities;
 const STYLE: &str = include_str!("play.css");
 
 /// Script, in addition to the common one.
-const SCRIPT: [&str; 5] = [
+const SCRIPT: [&str; 4] = [
     include_str!("drawing.js"),
     include_str!("curves.js"),
     include_str!("signals.js"),
-    include_str!("constraints.js"),
     include_str!("controls.js"),
 ];
 
@@ -83,7 +81,9 @@ impl InteractivePart {
         quantities: &Quantities<'_>,
         speed: f64,
     ) -> Result<Self> {
-        let module = wasm::emit(compiled.program())?;
+        let model = ExportedModel::new(&compiled.with_declared_parameters()?)?;
+        let bytes = model.to_bytes();
+        let moving = play::embed_motion(&bytes, model.program(), model.sided_program())?;
         let is_at_rest = first_motion::is_at_rest(compiled, initial)?;
         let body = html! {
             noscript {
@@ -104,7 +104,7 @@ impl InteractivePart {
         };
         Ok(Self {
             body,
-            data: data::json(compiled, quantities, initial, &module)?,
+            data: data::json(compiled, quantities, initial, moving)?,
         })
     }
 

@@ -1,25 +1,7 @@
-// Inputs as signals over time: constant, sine or step. The rates of an input are those of its signal.
+// Controls of inputs: constant, sine or step. The engine computes their values and rates.
 
-/** Start of a step, s. */
-const STEP_START = 1;
-
-/** Value of a signal with its first and second rate, for each form. `change`: amplitude or height. */
-const FORMS = {
-  constant: ({ value }) => [value, 0, 0],
-  sine: ({ value, change, period }, t) => {
-    const [w, phase] = [(2 * Math.PI) / period, (2 * Math.PI * t) / period];
-    return [value + change * Math.sin(phase), change * w * Math.cos(phase), -change * w * w * Math.sin(phase)];
-  },
-  /** Polynomial of degree 5, whose rates begin and end at 0. */
-  step: ({ value, change, rise }, t) => {
-    const s = Math.min(1, Math.max(0, (t - STEP_START) / rise));
-    return [
-      value + change * s ** 3 * (10 - 15 * s + 6 * s * s),
-      (change / rise) * 30 * s * s * (1 - s) ** 2,
-      (change / rise ** 2) * 60 * s * (1 - s) * (1 - 2 * s),
-    ];
-  },
-};
+/** Forms, in the order of the engine. */
+const FORMS = ["constant", "sine", "step"];
 
 /** Input with its controls. */
 class Signal {
@@ -27,15 +9,16 @@ class Signal {
   constructor(element, declared, changed) {
     this.element = element;
     this.form = element.querySelector("select");
-    this.places = [element.dataset.place, ...element.dataset.rates.split(" ").filter(Boolean)].map(Number);
-    this.numbers = { value: declared };
+    const rates = element.dataset.rates.split(" ").filter(Boolean);
+    this.places = [0, 1, 2].map((order) => Number([element.dataset.place, ...rates][order] ?? -1));
+    this.quantities = { value: declared };
     for (const control of element.querySelectorAll("[data-kind]")) {
       const name = control.dataset.kind;
       const number = control.querySelector("input[type=number]");
-      this.numbers[name] ??= Number(number.value);
-      const first = this.numbers[name];
+      this.quantities[name] ??= Number(number.value);
+      const first = this.quantities[name];
       join(control, (value) => {
-        this.numbers[name] = value ?? first;
+        this.quantities[name] = value ?? first;
         changed();
       });
     }
@@ -59,9 +42,9 @@ class Signal {
     this.show();
   }
 
-  /** Writes the value and its rates at a time to the inputs. */
-  write(t, inputs) {
-    const numbers = FORMS[this.form.value](this.numbers, t);
-    for (const [order, place] of this.places.entries()) inputs[place] = numbers[order];
+  /** Returns the numbers of the signal for the engine. */
+  get numbers() {
+    const { value, change, period, rise } = this.quantities;
+    return [...this.places, FORMS.indexOf(this.form.value), value, change, period, rise];
   }
 }

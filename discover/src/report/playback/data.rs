@@ -16,9 +16,8 @@ pub(super) fn write_json(
     best: &Fit,
     model: &EstimationModel,
     stretch: &RecordExcerpt,
-    module: &[u8],
+    moving: Value,
 ) -> String {
-    let program = model.program();
     let inputs = &problem.dataset.test[0].inputs;
     let rows = stretch
         .times
@@ -34,14 +33,9 @@ pub(super) fn write_json(
             "initial": start,
         })
     };
-    let guards = model.create_evaluator(&model.values).guard_count();
     let document = json!({
-        "module": encode_base64(module),
+        "moving": moving,
         "parameters": model.values,
-        "state": vec![0; model.state_count()],
-        "inputs": vec![0; program.inputs.len()],
-        "observables": vec![0; program.observables.len()],
-        "guards": guards,
         "times": doubles(stretch.times.iter().copied()),
         "driven": doubles(rows),
         "measured": doubles(stretch.measured.iter().copied()),

@@ -9,9 +9,9 @@ mod data;
 mod record_excerpt;
 mod reproduction_check;
 
-use eomgen_codegen::wasm;
 use eomgen_page::play;
 use maud::{Markup, html};
+use serde_json::Value;
 
 use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
@@ -61,8 +61,9 @@ impl Playback {
         if problem.dataset.gives_motion() {
             return Self::Unavailable("the motion is given by the records".to_owned());
         }
-        let Ok(module) = wasm::emit(model.program()) else {
-            return Self::Unavailable("its equations cannot be emitted as WebAssembly".to_owned());
+        let moving = match embed_model(&model) {
+            Ok(moving) => moving,
+            Err(why) => return Self::Unavailable(why),
         };
         let Some(stretch) = RecordExcerpt::from_fits(problem, null, best) else {
             return Self::Unavailable(
@@ -74,7 +75,7 @@ impl Playback {
             return Self::Unavailable(why);
         }
         let controls = write_controls(problem, best, &model, accepted);
-        let data = data::write_json(problem, best, &model, &stretch, &module);
+        let data = data::write_json(problem, best, &model, &stretch, moving);
         Self::Computed {
             body: body(problem, &stretch, &controls),
             data,
@@ -90,6 +91,14 @@ impl Playback {
     pub(crate) fn load_script() -> String {
         play::join_scripts(&SCRIPT)
     }
+}
+
+/// Returns the data for the motion of a model, or the reason why a page cannot move it.
+fn embed_model(model: &EstimationModel) -> Result<Value, String> {
+    let exported = model.export().map_err(|error| error.to_string())?;
+    let bytes = exported.to_bytes();
+    let moving = play::embed_motion(&bytes, exported.program(), exported.sided_program());
+    moving.map_err(|why| why.to_string())
 }
 
 fn body(problem: &EstimationProblem<'_>, stretch: &RecordExcerpt, controls: &Markup) -> Markup {

@@ -10,8 +10,8 @@ const element = (id) => document.getElementById(id);
 
 /** Everything that changes while the page is open. */
 class Page {
-  constructor(exports) {
-    this.playback = new Playback(model, exports);
+  constructor(motion) {
+    this.playback = new Playback(model, motion);
     this.breaks = new Set(model.windows.map(({ first }) => first));
     this.canvas = element("strips");
     this.canvas.style.setProperty("--channels", model.channels.length);
@@ -29,10 +29,10 @@ class Page {
 
   /** Sets a parameter, or a sensor's gain, bias or delay; without a value what was found. */
   change({ kind, place }, value) {
-    const { machine, declared, channels } = this.playback;
+    const { motion, declared, channels } = this.playback;
     if (kind === "parameter") {
-      machine.parameters[place] = value ?? declared[place];
-      machine.prepare();
+      motion.parameters[place] = value ?? declared[place];
+      motion.change();
     } else {
       channels[place][kind] = value ?? model.channels[place][kind];
     }
@@ -76,9 +76,8 @@ class Page {
   }
 
   obstacle() {
-    const { machine, motion } = this.playback;
-    if (!machine.usable) return "With this value the mass matrix is not positive definite.";
-    return motion.failed ? "With this value the simulation fails before its end." : "";
+    const { motion } = this.playback;
+    return motion.failed ? `With this value the simulation fails before its end: ${motion.reason}.` : "";
   }
 
   write(which, place, value, unit) {
@@ -93,8 +92,8 @@ class Page {
   }
 }
 
-WebAssembly.instantiate(bytes(model.module), {}).then(
-  ({ instance }) => new Page(instance.exports),
+Motion.load(model.moving).then(
+  (motion) => new Page(motion),
   (error) => {
     say("status", `This browser cannot run the model: ${error.message}`);
   },

@@ -24,7 +24,7 @@ function interpolated(times, values, at, near) {
 
 /** The motion along the record, window by window. */
 class Playback {
-  constructor(data, exports) {
+  constructor(data, motion) {
     this.windows = data.windows;
     this.times = numbers(data.times);
     this.driven = numbers(data.driven);
@@ -38,24 +38,21 @@ class Playback {
       now: new Float64Array(this.times.length),
     }));
     this.declared = data.parameters;
-    this.machine = new Machine(data, exports);
-    this.motion = new Motion(this.machine, Float64Array.from(data.windows[0].initial));
-    this.machine.parameters.set(data.parameters);
-    this.machine.prepare();
+    this.motion = motion;
   }
 
   /** Follows all windows; yields after every sample, so that the page stays alive. */
   *follow() {
     for (const channel of this.channels) channel.quantity.fill(NaN);
-    const inputs = this.machine.inputs.length;
+    const inputs = this.motion.inputs.length;
     for (const { first, samples, initial } of this.windows) {
       for (let sample = first; sample < first + samples; sample += 1) {
         const t = this.times[sample];
         const { motion } = this;
-        if (sample > first) while (motion.t < t && !motion.failed) motion.advance(t);
-        this.machine.inputs.set(this.driven.subarray(sample * inputs, (sample + 1) * inputs));
-        if (sample === first) motion.restart(initial, t);
-        else if (inputs > 0) this.driveOn();
+        if (sample > first) motion.advance(t);
+        motion.inputs.set(this.driven.subarray(sample * inputs, (sample + 1) * inputs));
+        if (sample === first) motion.start(initial, t);
+        else if (inputs > 0) motion.hold();
         if (motion.failed) return;
         this.read(sample);
         yield;
@@ -63,17 +60,8 @@ class Playback {
     }
   }
 
-  /** Goes on with other inputs: a new piece of the motion, though of much the same steps. */
-  driveOn() {
-    const { motion } = this;
-    const { step, inARow } = motion;
-    motion.begin();
-    [motion.step, motion.inARow] = [step, inARow];
-  }
-
   read(sample) {
-    const { t, state } = this.motion;
-    const observables = this.machine.observe(t, state);
+    const { state, observables } = this.motion;
     for (const channel of this.channels) {
       const { state: place, observable } = channel.from;
       channel.quantity[sample] = place === undefined ? observables[observable] : state[place];

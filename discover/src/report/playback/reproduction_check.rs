@@ -1,21 +1,16 @@
-//! Check if a page can simulate a motion: explicit steps at the tolerance of the page must be few
-//! and must reproduce the residuals of the fit.
-
-use std::cell::RefCell;
+//! Check if a page can simulate a motion: the steps of its engine must be few and must reproduce the
+//! residuals of the fit.
 
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_compiled_model::DrivenModel;
-use eomgen_sim::ode::{Names, Settings, SolveError, Surface, UnsupportedSticking, simulate};
+use eomgen_compiled_model::{ExportedMotion, SolverOptions};
+use eomgen_page::play;
+use eomgen_sim::inputs::HeldInputs;
 
 use crate::fit::fit_result::Fit;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::report::playback::record_excerpt::{ExcerptWindow, RecordExcerpt};
 use crate::report::quantity::format_quantity;
-use crate::thresholds;
-
-/// The relative tolerance of `motion.js`.
-const TOLERANCE: f64 = 1e-7;
 
 /// The most steps in a window, and in all: some seconds of a browser's time.
 const MOST_STEPS: u64 = 400_000;
@@ -26,7 +21,7 @@ const MOST_STEPS: u64 = 400_000;
 /// the report.
 const MAX_RELATIVE_DIFFERENCE: f64 = 0.05;
 
-/// Checks that explicit steps reproduce the residuals of the fit, with the numbers of the extended
+/// Checks that the engine of pages reproduces the residuals of the fit, with the numbers of the extended
 /// specification.
 ///
 /// # Errors
@@ -46,10 +41,7 @@ pub(super) fn check_reproduces_fit(
         let (seen, own) = simulate_outputs(problem, best, model, stretch, piece)?;
         steps += own;
         if steps > MOST_STEPS {
-            return Err(format!(
-                "the motion needs more than {MOST_STEPS} of the explicit steps that a page takes, because it is too \
-                 fast or too long; {CURE}"
-            ));
+            return Err(too_many_steps());
         }
         let measured = stretch.measured[piece.first_sample * channels..].iter();
         for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
@@ -84,26 +76,13 @@ pub(super) fn check_reproduces_fit(
 const CURE: &str =
     "`eomgen simulate extended.toml --record DATASET.toml` computes it with the other solvers";
 
-/// Returns the reason why explicit steps fail, with the names of states and switching surfaces.
-fn explain(error: &SolveError, states: &[String], surfaces: &[Surface]) -> String {
-    if let SolveError::Sticking { t, guard } | SolveError::TooManySwitches { t, guard, .. } = error
-        && let Some(surface) = surfaces.get(*guard)
-    {
-        return format!(
-            "from t = {t:.6} s the motion stays where `{}` is zero, as at rest under dry friction, which these \
-             steps do not follow",
-            surface.formula
-        );
-    }
-    error.format_named(&Names {
-        states,
-        surfaces,
-        unsupported_sticking: UnsupportedSticking::Formula,
-    })
+fn too_many_steps() -> String {
+    format!(
+        "the motion needs more than {MOST_STEPS} steps, because it is too fast or too long for a page; {CURE}"
+    )
 }
 
-/// Returns the sensor values of a window and the number of steps, or the reason why explicit steps cannot
-/// simulate it.
+/// Returns the sensor values of a window and the number of steps, or the reason why the engine cannot simulate it.
 fn simulate_outputs(
     problem: &EstimationProblem<'_>,
     best: &Fit,
@@ -114,43 +93,42 @@ fn simulate_outputs(
     let samples = &stretch.times[piece.first_sample..piece.first_sample + piece.samples];
     let output_times = problem.output_rate.times(samples);
     let times = &output_times.times;
-    let evaluator = RefCell::new(model.create_evaluator(&model.values));
+    let mut evaluator = model.create_evaluator(&model.values);
     let inputs = &problem.dataset.test[0].inputs;
-    let settings = Settings {
-        max_steps: MOST_STEPS,
-        max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
-        ..Settings::with_tolerance(TOLERANCE)
-    };
     let start = best.map_state(model, &best.test.estimate.initial_states[piece.window]);
-    let (Some(&begin), Some(&end)) = (times.first(), times.last()) else {
+    let Some(&begin) = times.first() else {
         return Err("the test record has an empty window".to_owned());
     };
-    let span = (begin, end);
-    let sided = model.create_sided_model(&model.values);
-    let driven = DrivenModel::new(&evaluator, inputs)
-        .with_typical_sizes(model.typical_sizes())
-        .with_sides(
-            sided.map_err(|error| error.to_string())?,
-            settings.tolerance,
-        )
-        .without_holding();
-    let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {});
-    let trajectory = trajectory.map_err(|error| {
-        let reason = explain(&error, &model.program().state_names(), &driven.surfaces());
+    let options = SolverOptions {
+        tolerance: play::TOLERANCE,
+        ..SolverOptions::default()
+    };
+    let exported = model.export().map_err(|error| error.to_string())?;
+    let mut motion = ExportedMotion::new(exported, options);
+    let failed = |error: eomgen_compiled_model::Error| {
         format!(
-            "explicit steps, which a page takes, fail in the window of the test record from {:.6} s to {:.6} s: \
-             {reason}; {CURE}",
-            begin, end
+            "the engine of pages fails in the window of the test record from {begin:.6} s: {error}; {CURE}"
         )
-    })?;
+    };
+    let given = HeldInputs::constant(inputs.last_sample(begin).to_vec());
+    motion.start((begin, &start), given).map_err(failed)?;
     let mut quantities = Vec::new();
     let mut buffers = model.measured.create_buffers();
-    let mut evaluator = evaluator.borrow_mut();
-    for (t, state) in times.iter().zip(&trajectory.states) {
+    for t in times.iter() {
+        motion.advance(*t).map_err(failed)?;
+        if motion.step_count() > MOST_STEPS {
+            return Err(too_many_steps());
+        }
+        let held = inputs.last_sample(*t);
+        if *t > begin {
+            let before = motion.inputs().last_sample(*t).to_vec();
+            let changed = motion.inputs().with_held_step(*t, &before, held);
+            motion.set_inputs(changed).map_err(failed)?;
+        }
         let point = Point {
             t: *t,
-            state,
-            inputs: inputs.last_sample(*t),
+            state: motion.state(),
+            inputs: held,
         };
         model
             .measured
@@ -158,32 +136,8 @@ fn simulate_outputs(
     }
     let shooting = best.training_shooting(problem);
     let sensors = shooting.sensor_values(&best.train.estimate.theta);
-    let work = trajectory.statistics.steps + trajectory.statistics.rejected_steps;
     Ok((
         shooting.apply_sensors(&output_times, &sensors, &quantities),
-        work,
+        motion.step_count(),
     ))
-}
-
-#[cfg(test)]
-mod tests {
-    use eomgen_sim::ode::SurfaceKind;
-
-    use super::*;
-
-    #[test]
-    fn motion_at_rest_is_the_reason_of_a_failed_simulation() {
-        let surfaces = [Surface {
-            formula: "dot(x)".to_owned(),
-            kind: SurfaceKind::Speed,
-        }];
-        let error = SolveError::Sticking { t: 0.25, guard: 0 };
-        let reason = explain(&error, &["x".to_owned()], &surfaces);
-        assert!(
-            reason.starts_with("from t = 0.250000 s the motion stays where `dot(x)` is zero"),
-            "{reason}"
-        );
-        let unknown = SolveError::NotFinite { t: 0.5, state: 0 };
-        assert!(explain(&unknown, &["x".to_owned()], &surfaces).contains("x"));
-    }
 }

@@ -1,16 +1,19 @@
-//! Common parts of pages that compute: integration (`motion.js`), drawing (`canvas.js`), sliders.
+//! Common parts of pages that compute: motion by the engine (`engine.js`), drawing (`canvas.js`), sliders. [`embed_motion`]
+//! embeds the engine and a model.
 
+mod embedding;
 mod slider;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+pub use embedding::{TOLERANCE, Unplayable, embed_motion};
 pub use slider::{Slider, format_unit};
 
-/// Start of every script: the classes `Machine` (an emitted module with its arrays) and `Motion`
-/// (its integration), `bytes` (the inverse of [`encode_base64`]), and functions for pictures and sliders.
+/// Start of every script: the class `Motion` (a motion of an embedded model), `bytes` (the inverse of [`encode_base64`]),
+/// and functions for pictures and sliders.
 const COMMON_SCRIPTS: [&str; 3] = [
-    include_str!("motion.js"),
+    include_str!("engine.js"),
     include_str!("canvas.js"),
     include_str!("slider.js"),
 ];

@@ -113,10 +113,10 @@ fn compare(path: &Path, order: Option<usize>) -> usize {
     let order = order.unwrap_or(0);
     let mut evaluator = variant(&model, order).evaluator;
     let program = evaluator.program().clone();
-    let module = wasm::emit(&program).expect("emitted");
+    let module = wasm::emit(&program).expect("emitted").bytes;
     assert_eq!(
         module,
-        wasm::emit(&program).expect("emitted"),
+        wasm::emit(&program).expect("emitted").bytes,
         "two runs give different modules"
     );
     let cases = cases(&model, &program, order);

@@ -49,7 +49,7 @@ fn emit_all(model: &Model) -> (String, c::Files, Vec<u8>) {
     let mut program = Variant::derive(model, &orders).expect("derived").program;
     program.spec_hash.clear();
     let rust = emit(&program, Packaging::Crate).expect("emitted");
-    let module = wasm::emit(&program).expect("emitted");
+    let module = wasm::emit(&program).expect("emitted").bytes;
     (rust, c::emit(&program).expect("emitted"), module)
 }
 

@@ -5,6 +5,7 @@ mod bits;
 mod browser;
 mod command;
 mod drawing;
+mod exported;
 mod hostile;
 mod inputs;
 mod legible;

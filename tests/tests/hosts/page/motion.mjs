@@ -1,22 +1,32 @@
-// Integrates the motion of a page with its script and data, frame by frame, without a browser.
-// Prints the final state and the number of switches.
+// Moves the model of a page with its script and data, frame by frame, without a browser. Prints the time, state and
+// observables at each of the given times, and the outcome.
 import { readFileSync } from "node:fs";
 
-const [page, script, end] = process.argv.slice(2);
+const [page, script, asked] = process.argv.slice(2);
 const [, text] = readFileSync(page, "utf8").match(/<script id="model" type="application\/json">(.*?)<\/script>/s);
 const model = JSON.parse(text);
-const { Machine, Motion } = new Function(`"use strict";${readFileSync(script, "utf8")}return { Machine, Motion };`)();
-const module = new WebAssembly.Module(Buffer.from(model.module, "base64"));
-const machine = new Machine(model, new WebAssembly.Instance(module, {}).exports);
-const motion = new Motion(machine, Float64Array.from(model.state, (quantity) => quantity.initial));
+const { Motion } = new Function(`"use strict";${readFileSync(script, "utf8")}return { Motion };`)();
+/** `times`: of the rows, s. `signals`: of the inputs; `parameters`: changes by index, each with its time. */
+const { times, signals, parameters = [], initial } = JSON.parse(asked);
+const motion = await Motion.load(model.moving);
+motion.drive(signals);
+motion.start(Float64Array.from(initial ?? model.state.map((quantity) => quantity.initial)));
+const moved = motion.moved;
 const frame = 1 / 60;
-let steps = 0;
-for (let turn = 1; motion.t < Number(end); turn += 1) {
-  const target = Math.min(turn * frame, Number(end));
-  while (motion.t < target) {
-    motion.advance(target);
-    steps += 1;
-    if (motion.failed || steps > 1e6) throw new Error(`it stops at ${motion.t}`);
+const rows = [];
+const changes = [...parameters];
+const begin = performance.now();
+for (const time of times) {
+  while (motion.t < time && !motion.failed) {
+    const next = changes[0]?.time ?? Infinity;
+    motion.advance(Math.min(motion.t + frame, time, next));
+    if (motion.t >= next) {
+      motion.parameters[changes[0].place] = changes[0].value;
+      motion.change();
+      changes.shift();
+    }
   }
+  rows.push({ t: motion.t, state: Array.from(motion.state), observables: Array.from(motion.observables) });
 }
-console.log(JSON.stringify({ t: motion.t, state: Array.from(motion.state), switches: motion.switches, steps }));
+const seconds = (performance.now() - begin) / 1000;
+console.log(JSON.stringify({ rows, moved, events: motion.events, reason: motion.reason, seconds }));
