@@ -13,13 +13,9 @@ use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
-use crate::corners::Corners;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::evaluation::require_positive_pivots;
-use crate::infinite_inputs::find_infinite_function;
-use crate::jacobians::JacobianEvaluator;
-use crate::labels::Labels;
 use crate::model::CompiledModel;
 use crate::motion::Motion;
 use crate::motion_model::MotionModel;
@@ -312,51 +308,5 @@ impl<'m> Instance<'m> {
             show(t, state, &observables);
         }
         Ok(())
-    }
-}
-
-impl MotionModel for Instance<'_> {
-    fn labels(&self) -> &Labels {
-        self.model.labels()
-    }
-
-    fn evaluator(&self) -> Result<Evaluator, Error> {
-        self.evaluator()
-    }
-
-    fn evaluator_at_stabilisation_rate(&self, rate: f64) -> Result<Evaluator, Error> {
-        self.with_stabilisation_rate(rate).evaluator()
-    }
-
-    fn stabilisation_rate(&self) -> f64 {
-        self.value(STABILISATION_RATE).unwrap_or(0.0)
-    }
-
-    fn sided_model(&self) -> Result<Option<SidedModel>, Error> {
-        self.sided_model()
-    }
-
-    fn corners(&self) -> Result<Option<Corners>, Error> {
-        self.model.corners(&self.parameters)
-    }
-
-    fn constraint_rows(&self) -> Option<ConstraintRows> {
-        self.constraint_rows()
-    }
-
-    fn jacobian_evaluator(&self) -> Result<Option<JacobianEvaluator>, Error> {
-        self.jacobian_evaluator().map(Some)
-    }
-
-    fn largest_length(&self, impact: usize) -> f64 {
-        let model = self.model.model();
-        let dimension = model.impacts[impact].unit.dimension;
-        let parameters = model.parameters.iter().zip(&self.values);
-        let lengths = parameters.filter(|(known, _)| known.unit.dimension == dimension);
-        lengths.fold(0.0, |most, (_, value)| value.abs().max(most))
-    }
-
-    fn find_infinite_function(&self, span: (f64, f64)) -> Option<String> {
-        find_infinite_function(&self.model, &self.values, span)
     }
 }

@@ -76,6 +76,8 @@ mod instance;
 #[cfg(feature = "derive")]
 mod instance_jacobians;
 #[cfg(feature = "derive")]
+mod instance_motion;
+#[cfg(feature = "derive")]
 mod jacobian_program;
 mod jacobians;
 mod labels;
