@@ -7,6 +7,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
 
 use super::drawn;
+use super::kind::Kind;
 use crate::sample::Sample;
 
 /// Folders of the shipped specifications and examples.
@@ -37,58 +38,6 @@ const DISPLACEMENT: f64 = 0.1;
 
 /// Number of displacements tried, each a tenth of the one before.
 const MAX_REDUCTIONS: i32 = 4;
-
-/// Kind of a machine, a row of the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Kind {
-    Smooth,
-    Friction,
-    PlaneFriction,
-    Impacts,
-    ContactFriction,
-    Constraints,
-    Jumps,
-    InputFunction,
-    Controller,
-}
-
-impl Kind {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smooth => "smooth or piecewise forces",
-            Self::Friction => "dry friction that holds",
-            Self::PlaneFriction => "dry friction in a plane",
-            Self::Impacts => "impacts",
-            Self::ContactFriction => "impacts with contact friction",
-            Self::Constraints => "constraints, start beside them",
-            Self::Jumps => "energies that jump",
-            Self::InputFunction => "input as a function of time",
-            Self::Controller => "sampled controllers",
-        }
-    }
-
-    fn classify(model: &CompiledModel) -> Self {
-        let known = model.model();
-        let text = known.source.text.as_ref();
-        if !known.controllers.is_empty() {
-            Self::Controller
-        } else if model.first_corner().is_some() {
-            Self::Jumps
-        } else if known.impacts.iter().any(|one| one.friction.is_some()) {
-            Self::ContactFriction
-        } else if text.contains("/norm(") {
-            Self::PlaneFriction
-        } else if !known.impacts.is_empty() {
-            Self::Impacts
-        } else if text.contains("sign(") {
-            Self::Friction
-        } else if !known.constraints.is_empty() {
-            Self::Constraints
-        } else {
-            Self::Smooth
-        }
-    }
-}
 
 /// Input of a case.
 pub(crate) struct CaseInput {

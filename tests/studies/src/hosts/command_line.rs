@@ -7,7 +7,7 @@ use eomgen_model_spec::model::{Parameter, ParameterValue};
 
 use super::cases::{Case, INTERVALS};
 use super::compare::TOLERANCE;
-use super::{Answer, Host, HostRun};
+use super::host::{Answer, Host, HostRun};
 
 /// Returns the program that was built beside the study.
 pub fn program() -> PathBuf {

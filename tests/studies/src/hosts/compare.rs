@@ -5,8 +5,9 @@ use eomgen_compiled_model::{
 };
 use eomgen_validate::random::Random;
 
-use super::cases::{Case, Kind};
-use super::{Answer, Host, HostRun};
+use super::cases::Case;
+use super::host::{Answer, Host, HostRun};
+use super::kind::Kind;
 use crate::solvers::growth::{STARTS, difference, growth, magnitudes};
 
 /// Tolerance of the hosts.

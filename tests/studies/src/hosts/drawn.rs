@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use eomgen_validate::random::Random;
 
-use super::cases::Kind;
+use super::kind::Kind;
 use crate::solvers::machine;
 
 /// Random machine as text.

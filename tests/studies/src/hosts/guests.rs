@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::cases::Case;
 use super::command_line::{execute, program};
 use super::compare::TOLERANCE;
-use super::{Answer, Host, HostRun};
+use super::host::{Answer, Host, HostRun};
 
 /// Targets of units.
 const TARGETS: [&str; 2] = ["fmu2", "fmu3"];

@@ -7,6 +7,8 @@ mod command_line;
 mod compare;
 mod drawn;
 mod guests;
+mod host;
+mod kind;
 mod table;
 
 use std::collections::BTreeMap;
@@ -17,68 +19,11 @@ use rayon::prelude::*;
 use crate::sample::Sample;
 use cases::Case;
 use compare::{Reference, Verdict, judge};
+use host::Host;
 use table::Table;
 
 /// Random machines of the table in README.md.
 const PRINTED_COUNT: usize = 24;
-
-/// Motion of one machine in one host.
-pub(crate) struct HostRun {
-    pub host: Host,
-    pub answer: Answer,
-}
-
-/// Answer of a host to one machine.
-pub(crate) enum Answer {
-    /// States at the sample times, SI.
-    Motion(Vec<Vec<f64>>),
-    /// The host rejects the model or stops, with its message.
-    Rejected(String),
-    /// The host is not installed.
-    Missing(String),
-}
-
-/// Host of a motion; units of FMI 2 and 3 count as one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Host {
-    Rk,
-    Radau,
-    Adams,
-    Exact,
-    Sweep,
-    Python,
-    CoSimulation,
-    ModelExchange,
-    Page,
-}
-
-impl Host {
-    pub(crate) const ALL: [Self; 9] = [
-        Self::Rk,
-        Self::Radau,
-        Self::Adams,
-        Self::Exact,
-        Self::Sweep,
-        Self::Python,
-        Self::CoSimulation,
-        Self::ModelExchange,
-        Self::Page,
-    ];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Rk => "`rk`",
-            Self::Radau => "`radau`",
-            Self::Adams => "`adams`",
-            Self::Exact => "`exact`",
-            Self::Sweep => "sweep",
-            Self::Python => "Python",
-            Self::CoSimulation => "FMI co-simulation",
-            Self::ModelExchange => "FMI model exchange",
-            Self::Page => "page",
-        }
-    }
-}
 
 /// Runs the study with `count` random machines and returns its table. With the default seed and
 /// [`PRINTED_COUNT`] machines the table must be that of README.md.

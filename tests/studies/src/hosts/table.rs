@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::Host;
-use super::cases::{Case, Kind};
+use super::cases::Case;
 use super::compare::Verdict;
+use super::host::Host;
+use super::kind::Kind;
 
 #[derive(Default)]
 struct Cell {
