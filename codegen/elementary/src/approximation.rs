@@ -1,20 +1,22 @@
 //! Building blocks of the functions: polynomials, rounding to an integer, clamping, and the split into
 //! significand and exponent.
-//!
-//! The coefficients of each polynomial minimise the largest relative error of the *function* over the stated
-//! interval (computed in 50 digits, then rounded to doubles one after the other, with a new fit of the others
-//! each time).
 
-use crate::real::Real;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
+
+/// Largest number of coefficients.
+const LARGEST_LENGTH: usize = 13;
 
 /// Computes the polynomial `sum of coefficients[i] x^i` in Estrin's order: neighbours are combined with `x`,
 /// the results with `x^2`, then `x^4` and so on. The order of summation is fixed and the dependency chain
 /// short.
 #[inline(always)]
-pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: &[f64; N]) -> R {
-    const { assert!(N > 0, "a polynomial has a constant term") };
-    let mut terms = coefficients.map(R::constant);
-    let mut length = N;
+pub(crate) fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
+    let mut terms = [R::constant(0.0); LARGEST_LENGTH];
+    for (term, coefficient) in terms.iter_mut().zip(coefficients) {
+        *term = R::constant(*coefficient);
+    }
+    let mut length = coefficients.len().min(LARGEST_LENGTH);
     let mut power = x;
     while length > 1 {
         let joined = length / 2;
@@ -30,14 +32,28 @@ pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: &[f64; N])
     terms[0]
 }
 
-/// Constant `3 * 2^51`: within 2^51 of it, the doubles are the integers. Kernels round by adding and
-/// subtracting it.
-pub const ROUNDING_ALIGNER: f64 = (3_u64 << 51) as f64;
+/// Computes the polynomial in Horner's order, which has the fewest operations.
+#[inline(always)]
+pub(crate) fn short_polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
+    match coefficients {
+        [] => R::constant(0.0),
+        [last] => R::constant(*last),
+        [first, rest @ ..] => R::constant(*first) + x * short_polynomial(x, rest),
+    }
+}
 
-/// Returns the integer nearest to `x`, ties to even, for `|x| <= 2^51`; `+0` for zero.
+/// Returns the integer nearest to `x`, ties to even, for `|x| <= 2^51` (2^22 in single precision); `+0` for
+/// zero.
 #[inline(always)]
 pub(crate) fn nearest_integer<R: Real>(x: R) -> R {
-    let aligner = R::constant(ROUNDING_ALIGNER);
+    let aligner = R::constant(Format::<R>::ROUNDING_ALIGNER);
+    (x + aligner) - aligner
+}
+
+/// Returns the multiple of four nearest to `x`, for `|x| <= 2^53` (2^24 in single precision); `+0` for zero.
+#[inline(always)]
+pub(crate) fn nearest_multiple_of_four<R: Real>(x: R) -> R {
+    let aligner = R::constant(4.0 * Format::<R>::ROUNDING_ALIGNER);
     (x + aligner) - aligner
 }
 
@@ -49,7 +65,7 @@ pub(crate) fn clamp<R: Real>(x: R, lowest: f64, highest: f64) -> R {
     R::select_less(x, lowest, lowest, below)
 }
 
-/// Returns `value 2^k` for integral `|k| <= 1100`, rounded once if `value` is near one, also to zero, a
+/// Returns `value 2^k` for integral `|k| <= 1100` (150 in single precision), rounded once if `value` is near one, also to zero, a
 /// subnormal or infinity.
 #[inline(always)]
 pub(crate) fn scale_by_power_of_two<R: Real>(value: R, k: R) -> R {
@@ -57,16 +73,14 @@ pub(crate) fn scale_by_power_of_two<R: Real>(value: R, k: R) -> R {
     (value * first.power_of_two()) * (k - first).power_of_two()
 }
 
-/// Factor that makes any subnormal normal.
-const TWO_TO_54: f64 = (1_u64 << 54) as f64;
-
 /// Returns significand in `[1, 2)` and integral exponent of a positive finite `x = significand 2^exponent`,
 /// subnormals included; meaningless finite values for any other `x`.
 #[inline(always)]
 pub(crate) fn split_exponent<R: Real>(x: R) -> (R, R) {
-    let smallest_normal = R::constant(f64::MIN_POSITIVE);
-    let raised = x * R::constant(TWO_TO_54);
+    let smallest_normal = R::constant(Format::<R>::SMALLEST_NORMAL);
+    let (exponent, factor) = Format::<R>::RAISING;
+    let raised = x * R::constant(factor);
     let normal = R::select_less(x, smallest_normal, raised, x);
-    let shift = R::select_less(x, smallest_normal, R::constant(54.0), R::constant(0.0));
+    let shift = R::select_less(x, smallest_normal, R::constant(exponent), R::constant(0.0));
     (normal.significand(), normal.exponent() - shift)
 }

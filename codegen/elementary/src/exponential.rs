@@ -6,45 +6,22 @@
 
 use crate::approximation::{clamp, nearest_integer, polynomial, scale_by_power_of_two};
 use crate::pair::{Pair, exact_sum, ordered_sum, quotient};
-use crate::real::Real;
-
-/// `ln 2` rounded to a multiple of 2^-42, so that its product with an integer of 11 bits is exact.
-pub(crate) const LN_2_HIGH: f64 = 0.693_147_180_559_890_3;
-/// Rounding error of [`LN_2_HIGH`].
-pub(crate) const LN_2_LOW: f64 = 5.497_923_018_708_371e-14;
-
-/// `(e^r - 1 - r)/r^2`, `|r| <= ln(2)/2`: `e^r - 1` to 2^-61.6.
-const EXPONENTIAL: [f64; 11] = [
-    0.5,
-    0.166_666_666_666_666_77,
-    0.041_666_666_666_666_68,
-    0.008_333_333_333_321_454,
-    0.001_388_888_888_887_710_2,
-    0.000_198_412_698_865_142_7,
-    2.480_158_734_179_433e-5,
-    2.755_724_386_281_276e-6,
-    2.755_725_790_496_236e-7,
-    2.510_914_570_771_847e-8,
-    2.091_996_652_279_279_6e-9,
-];
-
-/// Smallest argument whose exponential is infinite.
-const OVERFLOW: f64 = 710.0;
-/// Largest argument whose exponential is zero.
-const UNDERFLOW: f64 = -746.0;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 
 /// Computes `e^x`.
 ///
 /// Largest error measured: 0.76 ulp.
 #[inline]
 pub fn exp<R: Real>(x: R) -> R {
+    let (lowest, highest) = Format::<R>::EXPONENTIAL_RANGE;
     exponential_of_pair(Pair {
-        high: clamp(x, UNDERFLOW, OVERFLOW),
+        high: clamp(x, lowest, highest),
         low: R::constant(0.0),
     })
 }
 
-/// Computes `e^(high + low)` for `high` in `[-746, 710]` and `low` at most its last place.
+/// Computes `e^(high + low)` for `high` in the range of the exponential and `low` at most its last place.
 #[inline(always)]
 pub(crate) fn exponential_of_pair<R: Real>(x: Pair<R>) -> R {
     let (k, r, rest) = reduce(x);
@@ -57,10 +34,11 @@ pub(crate) fn exponential_of_pair<R: Real>(x: Pair<R>) -> R {
 /// Largest error measured: 1.10 ulp.
 #[inline]
 pub fn exp_minus_one<R: Real>(x: R) -> R {
-    let value = quarter_exp_minus_one(clamp(x, -40.0, OVERFLOW)).round();
+    let (_, highest) = Format::<R>::EXPONENTIAL_RANGE;
+    let value = quarter_exp_minus_one(clamp(x, Format::<R>::FLAT_EXPONENTIAL, highest)).round();
     let value = value * R::constant(4.0);
     // For smaller arguments the function equals its argument, signed zero and subnormals included.
-    let tiny = R::constant(f64::EPSILON / 4.0);
+    let tiny = R::constant(Format::<R>::EPSILON / 4.0);
     R::select_less(x.abs(), tiny, x, value)
 }
 
@@ -71,7 +49,7 @@ pub fn exp_minus_one<R: Real>(x: R) -> R {
 pub fn sinh<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
     // With w = (e^|x| - 1)/4: sinh|x| = 2 (w + w/(1 + 4 w)).
-    let w = quarter_exp_minus_one(clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC)).normalise();
+    let w = quarter_exp_minus_one(clamp(x.abs(), 0.0, Format::<R>::LARGEST_HYPERBOLIC)).normalise();
     let four = R::constant(4.0);
     let growth = w.high * four;
     let denominator = exact_sum(one, growth);
@@ -80,7 +58,7 @@ pub fn sinh<R: Real>(x: R) -> R {
     let relative_rest = (denominator.low + w.low * four) * inverse;
     let rest = w.low + (w.low * inverse - decaying * relative_rest);
     // An infinite denominator makes this remainder NaN; the decaying part is negligible long before.
-    let rest = R::select_less(growth, R::constant(1e300), rest, w.low);
+    let rest = R::select_less(growth, R::constant(Format::<R>::HUGE), rest, w.low);
     let sum = ordered_sum(w.high, decaying).plus_low(rest);
     let magnitude = sum.round() * R::constant(2.0);
     odd_extension(x, magnitude)
@@ -92,7 +70,7 @@ pub fn sinh<R: Real>(x: R) -> R {
 #[inline]
 pub fn cosh<R: Real>(x: R) -> R {
     let (k, r, rest) = reduce(Pair {
-        high: clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC),
+        high: clamp(x.abs(), 0.0, Format::<R>::LARGEST_HYPERBOLIC),
         low: R::constant(0.0),
     });
     // With w = e^|x|/4: cosh x = 2 (w + 1/(16 w)).
@@ -108,25 +86,22 @@ pub fn cosh<R: Real>(x: R) -> R {
 /// Largest error measured: 0.91 ulp.
 #[inline]
 pub fn tanh<R: Real>(x: R) -> R {
-    // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2). Above 22 it is 1 to the last bit.
-    let doubled = clamp(x.abs(), 0.0, 22.0) * R::constant(2.0);
+    // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2).
+    let doubled = clamp(x.abs(), 0.0, Format::<R>::FLAT_TANGENT) * R::constant(2.0);
     let w = quarter_exp_minus_one(doubled).normalise();
     let denominator = exact_sum(w.high, R::constant(0.5)).plus_low(w.low);
     odd_extension(x, quotient(w, denominator).round())
 }
 
-/// Argument above which both hyperbolic functions are infinite, with a `k` that still fits.
-const LARGEST_HYPERBOLIC: f64 = 710.5;
-
 /// Extends an odd function from its values for positive arguments. Returns `x` itself if that is exact to
-/// less than 2^-56, signed zero and subnormals included.
+/// a small part of the last place, signed zero and subnormals included.
 #[inline(always)]
 fn odd_extension<R: Real>(x: R, magnitude: R) -> R {
-    let tiny = R::constant(1.0 / (1_u64 << 28) as f64);
+    let tiny = R::constant(Format::<R>::TINY);
     R::select_less(x.abs(), tiny, x, magnitude.copysign(x))
 }
 
-/// Computes `(e^x - 1)/4` for `x` in `[-40, 711]`, as a pair that is not normalised.
+/// Computes `(e^x - 1)/4` for `x` from the flat part up to the largest argument, as a pair that is not normalised.
 #[inline(always)]
 fn quarter_exp_minus_one<R: Real>(x: R) -> Pair<R> {
     let (k, r, rest) = reduce(Pair {
@@ -143,8 +118,8 @@ fn quarter_exp_minus_one<R: Real>(x: R) -> Pair<R> {
 #[inline(always)]
 fn reduce<R: Real>(x: Pair<R>) -> (R, R, R) {
     let k = nearest_integer(x.high * R::constant(core::f64::consts::LOG2_E));
-    let leading = x.high - k * R::constant(LN_2_HIGH);
-    let r = ordered_sum(leading, x.low - k * R::constant(LN_2_LOW));
-    let curved = (r.high * r.high) * polynomial(r.high, &EXPONENTIAL);
+    let leading = x.high - k * R::constant(Format::<R>::LN_2.high);
+    let r = ordered_sum(leading, x.low - k * R::constant(Format::<R>::LN_2.low));
+    let curved = (r.high * r.high) * polynomial(r.high, Format::<R>::EXPONENTIAL);
     (k, r.high, curved + r.low)
 }

@@ -1,6 +1,7 @@
 //! Functions by name: arity, native value and kernel.
 
 use crate::kernel::Kernel;
+use crate::precision::{Double, Precision};
 use crate::real::Real;
 use crate::record::record;
 
@@ -112,9 +113,14 @@ impl Function {
         }
     }
 
-    /// Returns the primitive operations of the function, with one output.
+    /// Returns the primitive operations of the function in double precision, with one output.
     pub fn kernel(self) -> Kernel {
-        record(self.arity(), |arguments| match *arguments {
+        self.kernel_in::<Double>()
+    }
+
+    /// Returns the primitive operations of the function in a format, with one output.
+    pub fn kernel_in<P: Precision>(self) -> Kernel {
+        record::<P>(self.arity(), |arguments| match *arguments {
             [first] => vec![self.apply_real(first, first)],
             [first, second] => vec![self.apply_real(first, second)],
             _ => Vec::new(),
@@ -122,8 +128,9 @@ impl Function {
     }
 
     /// Computes the value natively, with the same bits as the kernel. A missing argument is NaN.
-    pub fn apply(self, arguments: &[f64]) -> f64 {
-        let argument = |i: usize| arguments.get(i).copied().unwrap_or(f64::NAN);
+    pub fn apply<R: Real>(self, arguments: &[R]) -> R {
+        let nan = R::constant(f64::NAN);
+        let argument = |i: usize| arguments.get(i).copied().unwrap_or(nan);
         self.apply_real(argument(0), argument(1))
     }
 
@@ -154,10 +161,10 @@ impl Function {
     }
 }
 
-/// Returns the joint kernel of sine and cosine, with outputs `sin` and `cos`, which have the bits of the two
-/// kernels.
-pub fn sin_cos_kernel() -> Kernel {
-    record(1, |arguments| match *arguments {
+/// Returns the joint kernel of sine and cosine in a format, with outputs `sin` and `cos`, which have the bits
+/// of the two kernels.
+pub fn sin_cos_kernel<P: Precision>() -> Kernel {
+    record::<P>(1, |arguments| match *arguments {
         [x] => {
             let (sine, cosine) = crate::sin_cos(x);
             vec![sine, cosine]

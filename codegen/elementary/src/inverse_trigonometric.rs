@@ -6,63 +6,14 @@
 
 use crate::approximation::polynomial;
 use crate::pair::{Pair, ordered_sum};
-use crate::real::Real;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 use crate::root::root_pair;
-
-const PI: Pair<f64> = Pair {
-    high: core::f64::consts::PI,
-    low: 1.224_646_799_147_353_2e-16,
-};
-const HALF_PI: Pair<f64> = Pair {
-    high: core::f64::consts::FRAC_PI_2,
-    low: 6.123_233_995_736_766e-17,
-};
-const QUARTER_PI: Pair<f64> = Pair {
-    high: core::f64::consts::FRAC_PI_4,
-    low: 3.061_616_997_868_383e-17,
-};
-/// `atan(1/2)`.
-const ARCTAN_HALF: Pair<f64> = Pair {
-    high: 0.463_647_609_000_806_1,
-    low: 2.269_877_745_296_168_7e-17,
-};
 
 /// Ratio below which the polynomial is used directly.
 const FIRST_BREAK: f64 = 0.406_25;
 /// Ratio above which the centre is pi/4; between the two breaks it is `atan(1/2)`.
 const SECOND_BREAK: f64 = 0.6875;
-
-/// `(1 - atan(t)/t)/z`, `z = t^2`, `|t| <= 13/32`: arc tangent to 2^-60.0.
-const ARC_TANGENT: [f64; 11] = [
-    0.333_333_333_333_332_4,
-    -0.199_999_999_999_677_74,
-    0.142_857_142_817_274_52,
-    -0.111_111_108_647_920_88,
-    0.090_909_002_284_327_43,
-    -0.076_921_064_388_157_52,
-    0.066_636_547_777_900_65,
-    -0.058_520_779_995_031_746,
-    0.050_589_893_714_249_747,
-    -0.038_585_239_163_830_554,
-    0.018_499_946_444_261_672,
-];
-
-/// `(asin(s)/s - 1)/z`, `z = s^2`, `|s| <= 1/2`: arc sine to 2^-59.8.
-const ARC_SINE: [f64; 13] = [
-    0.166_666_666_666_667_63,
-    0.074_999_999_999_701_72,
-    0.044_642_857_175_186_69,
-    0.030_381_942_681_077_145,
-    0.022_372_215_719_623_372,
-    0.017_351_599_189_577_46,
-    0.013_980_970_743_362_084,
-    0.011_397_710_031_166_455,
-    0.010_786_851_869_560_77,
-    0.003_681_972_820_173_528_4,
-    0.021_765_785_126_995_955,
-    -0.021_080_136_755_579_845,
-    0.032_678_452_646_137_02,
-];
 
 /// Computes the arc tangent, in `[-pi/2, pi/2]` radians.
 ///
@@ -71,11 +22,15 @@ const ARC_SINE: [f64; 13] = [
 pub fn atan<R: Real>(x: R) -> R {
     let one = R::constant(1.0);
     // Larger slopes give the same result, and an infinite one would give NaN.
-    let steepest = R::constant(1e300);
+    let steepest = R::constant(Format::<R>::HUGE);
     let magnitude = R::select_less(steepest, x.abs(), steepest, x.abs());
     let steep = |then: R, otherwise: R| R::select_less(one, magnitude, then, otherwise);
     let angle = Octant {
-        base: select_pair(steep, constant_pair(HALF_PI), constant_pair(ZERO)),
+        base: select_pair(
+            steep,
+            constant_pair(Format::<R>::PI[1]),
+            constant_pair(ZERO),
+        ),
         direction: steep(R::constant(-1.0), one),
     };
     let value = angle.plus_arctan(steep(one, magnitude), steep(magnitude, one));
@@ -93,10 +48,14 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
     let (width, height) = (x.abs(), y.abs());
     let left_of = |then: R, otherwise: R| R::select_less(one.copysign(x), zero, then, otherwise);
     let steep = |then: R, otherwise: R| R::select_less(width, height, then, otherwise);
-    let flat_base = select_pair(left_of, constant_pair(PI), constant_pair(ZERO));
+    let flat_base = select_pair(
+        left_of,
+        constant_pair(Format::<R>::PI[0]),
+        constant_pair(ZERO),
+    );
     let turned = left_of(R::constant(-1.0), one);
     let angle = Octant {
-        base: select_pair(steep, constant_pair(HALF_PI), flat_base),
+        base: select_pair(steep, constant_pair(Format::<R>::PI[1]), flat_base),
         direction: steep(-turned, turned),
     };
     let (n, d) = scale_to_range(steep(width, height), steep(height, width));
@@ -111,9 +70,12 @@ pub fn atan2<R: Real>(y: R, x: R) -> R {
 #[inline]
 pub fn asin<R: Real>(x: R) -> R {
     let half = half_angle(x);
-    let outer = ordered_sum(R::constant(HALF_PI.high), -(half.sine + half.sine));
+    let outer = ordered_sum(
+        R::constant(Format::<R>::PI[1].high),
+        -(half.sine + half.sine),
+    );
     let outer_rest = half.rest + half.rest;
-    let outer = outer.high + (outer.low + (R::constant(HALF_PI.low) - outer_rest));
+    let outer = outer.high + (outer.low + (R::constant(Format::<R>::PI[1].low) - outer_rest));
     let inner = half.sine + half.rest;
     R::select_less(R::constant(0.5), x.abs(), outer, inner).copysign(x)
 }
@@ -128,7 +90,11 @@ pub fn acos<R: Real>(x: R) -> R {
     let right_of = |then: R, otherwise: R| R::select_less(bound, x, then, otherwise);
     let left_of = |then: R, otherwise: R| R::select_less(x, lower_bound, then, otherwise);
     let half = half_angle(x);
-    let base = select_pair(left_of, constant_pair(PI), constant_pair(HALF_PI));
+    let base = select_pair(
+        left_of,
+        constant_pair(Format::<R>::PI[0]),
+        constant_pair(Format::<R>::PI[1]),
+    );
     let base = select_pair(right_of, constant_pair(ZERO), base);
     let factor = right_of(two, left_of(R::constant(-2.0), -one.copysign(x)));
     let sum = ordered_sum(base.high, factor * half.sine);
@@ -177,18 +143,18 @@ impl<R: Real> Octant<R> {
         let offset = Pair {
             high: centre(
                 zero,
-                R::constant(ARCTAN_HALF.high),
-                R::constant(QUARTER_PI.high),
+                R::constant(Format::<R>::ARCTAN_HALF.high),
+                R::constant(Format::<R>::PI[2].high),
             ),
             low: centre(
                 zero,
-                R::constant(ARCTAN_HALF.low),
-                R::constant(QUARTER_PI.low),
+                R::constant(Format::<R>::ARCTAN_HALF.low),
+                R::constant(Format::<R>::PI[2].low),
             ),
         };
         let t = (n - slope * d) / (d + slope * n);
         let z = t * t;
-        let curved = (t * z) * polynomial(z, &ARC_TANGENT);
+        let curved = (t * z) * polynomial(z, Format::<R>::ARC_TANGENT);
         let start = ordered_sum(self.base.high, self.direction * offset.high)
             .plus_low(self.base.low + self.direction * offset.low);
         let sum = ordered_sum(start.high, self.direction * t);
@@ -196,19 +162,15 @@ impl<R: Real> Octant<R> {
     }
 }
 
-/// Factor `2^-30`, for which three times the largest double stays finite.
-const SCALE_DOWN: f64 = 1.0 / (1_u64 << 30) as f64;
-/// Factor `2^120`, which makes any subnormal normal.
-const SCALE_UP: f64 = (1_u128 << 120) as f64;
-
 /// Scales `(n, d)`, `0 <= n <= d`, to a range in which products with small constants neither overflow nor
 /// lose bits. The ratio is unchanged; that of infinities becomes 1, that of zeros 0.
 #[inline(always)]
 fn scale_to_range<R: Real>(n: R, d: R) -> (R, R) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     let infinity = R::constant(f64::INFINITY);
-    let (huge, down) = (R::constant(1e300), R::constant(SCALE_DOWN));
-    let (small, up) = (R::constant(1e-270), R::constant(SCALE_UP));
+    let (down, small, up) = Format::<R>::SCALING;
+    let (huge, down) = (R::constant(Format::<R>::HUGE), R::constant(down));
+    let (small, up) = (R::constant(small), R::constant(up));
     let scale = R::select_less(huge, d, down, R::select_less(d, small, up, one));
     let n_at_infinity = R::select_equal(n, infinity, one, zero);
     let d_scaled = R::select_equal(d, zero, one, d * scale);
@@ -233,7 +195,7 @@ fn half_angle<R: Real>(x: R) -> HalfAngle<R> {
     let root = root_pair(complement);
     let z = beyond(complement, magnitude * magnitude);
     let sine = beyond(root.high, magnitude);
-    let curved = (sine * z) * polynomial(z, &ARC_SINE);
+    let curved = (sine * z) * polynomial(z, Format::<R>::ARC_SINE);
     HalfAngle {
         sine,
         rest: beyond(root.low, zero) + curved,

@@ -1,5 +1,5 @@
 //! Kernel of a function: a sequence of primitive operations that code generators print or compile, and its
-//! evaluation in `f64`. `record` builds kernels.
+//! evaluation. `record` builds kernels.
 
 use crate::real::Real;
 
@@ -110,24 +110,24 @@ impl Operation {
     }
 
     /// Computes the value; `operand` returns the values of earlier operations, `input` the arguments.
-    fn value(self, operand: impl Fn(usize) -> f64, input: impl Fn(usize) -> f64) -> f64 {
+    fn value<R: Real>(self, operand: impl Fn(usize) -> R, input: impl Fn(usize) -> R) -> R {
         use Operation::*;
         match self {
             Input(i) => input(i),
-            Constant(value) => value,
+            Constant(value) => R::constant(value),
             Add(a, b) => operand(a) + operand(b),
             Sub(a, b) => operand(a) - operand(b),
             Mul(a, b) => operand(a) * operand(b),
             Div(a, b) => operand(a) / operand(b),
             Neg(a) => -operand(a),
-            Abs(a) => Real::abs(operand(a)),
-            CopySign { magnitude, sign } => Real::copysign(operand(magnitude), operand(sign)),
+            Abs(a) => operand(a).abs(),
+            CopySign { magnitude, sign } => operand(magnitude).copysign(operand(sign)),
             SelectLess {
                 left,
                 right,
                 then,
                 otherwise,
-            } => Real::select_less(
+            } => R::select_less(
                 operand(left),
                 operand(right),
                 operand(then),
@@ -138,7 +138,7 @@ impl Operation {
                 right,
                 then,
                 otherwise,
-            } => Real::select_equal(
+            } => R::select_equal(
                 operand(left),
                 operand(right),
                 operand(then),
@@ -165,10 +165,11 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Executes the operations. A missing argument is NaN.
-    pub fn evaluate(&self, arguments: &[f64]) -> Vec<f64> {
-        let read = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(f64::NAN);
-        let mut values: Vec<f64> = Vec::with_capacity(self.operations.len());
+    /// Executes the operations in the format of `R`, which must be that of the kernel. A missing argument is NaN.
+    pub fn evaluate<R: Real>(&self, arguments: &[R]) -> Vec<R> {
+        let nan = R::constant(f64::NAN);
+        let read = |values: &[R], i: usize| values.get(i).copied().unwrap_or(nan);
+        let mut values: Vec<R> = Vec::with_capacity(self.operations.len());
         for operation in &self.operations {
             let value = operation.value(|i| read(&values, i), |i| read(arguments, i));
             values.push(value);

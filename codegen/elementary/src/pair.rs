@@ -1,13 +1,14 @@
-//! Numbers as an unevaluated sum of two doubles, with error-free operations.
+//! Numbers as an unevaluated sum of two numbers, with error-free operations.
 //!
 //! These operations carry the rounding errors of the elementary functions; they are no complete double-double
 //! arithmetic. Without fused multiply-add, products are split in halves (Dekker 1971).
 
-use crate::real::Real;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 
 /// The value `high + low`, with `low` a correction to `high`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair<R> {
+pub struct Pair<R> {
     /// Leading part.
     pub high: R,
     /// Rounding error of `high`.
@@ -15,7 +16,7 @@ pub(crate) struct Pair<R> {
 }
 
 impl<R: Real> Pair<R> {
-    /// Rounds the pair to one double.
+    /// Rounds the pair to one number.
     #[inline(always)]
     pub fn round(self) -> R {
         self.high + self.low
@@ -61,12 +62,11 @@ pub(crate) fn exact_sum<R: Real>(a: R, b: R) -> Pair<R> {
     }
 }
 
-const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
-
-/// Splits `a` into halves of at most 26 bits each (Veltkamp); `|a| < 2^996`.
+/// Splits `a` into halves of at most 26 bits each (12 in single precision; Veltkamp), without overflow for
+/// `|a| < 2^996` (2^115).
 #[inline(always)]
 fn split_halves<R: Real>(a: R) -> Pair<R> {
-    let scaled = a * R::constant(SPLITTER);
+    let scaled = a * R::constant(Format::<R>::SPLITTER);
     let high = scaled - (scaled - a);
     Pair {
         high,

@@ -5,12 +5,8 @@ use crate::approximation::clamp;
 use crate::exponential::exponential_of_pair;
 use crate::logarithm::logarithm_pair;
 use crate::pair::{Pair, exact_product};
-use crate::real::Real;
-
-/// Magnitude of the exponent above which every power of a double other than one overflows or vanishes.
-const LARGEST_EXPONENT: f64 = (1_u128 << 65) as f64;
-/// Magnitude from which every double is an integer.
-const TWO_TO_52: f64 = (1_u64 << 52) as f64;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 
 /// Computes `x^y`.
 ///
@@ -45,12 +41,17 @@ pub fn pow<R: Real>(x: R, y: R) -> R {
 fn power_of_magnitude<R: Real>(a: R, y: R) -> R {
     let (zero, infinity) = (R::constant(0.0), R::constant(f64::INFINITY));
     let logarithm = logarithm_pair(a);
-    let limited = clamp(y, -LARGEST_EXPONENT, LARGEST_EXPONENT);
+    let limited = clamp(
+        y,
+        -Format::<R>::LARGEST_EXPONENT,
+        Format::<R>::LARGEST_EXPONENT,
+    );
     let product = exact_product(limited, logarithm.high).plus_low(limited * logarithm.low);
     // If the leading part is far out of range, its correction is larger than a rounding error.
-    let near = R::constant(800.0);
+    let (lowest, highest) = Format::<R>::EXPONENTIAL_RANGE;
+    let near = R::constant(Format::<R>::CORRECTED_RANGE);
     let value = exponential_of_pair(Pair {
-        high: clamp(product.high, -746.0, 710.0),
+        high: clamp(product.high, lowest, highest),
         low: R::select_less(product.high.abs(), near, product.low, zero),
     });
     let growth = R::select_equal(a, zero, -y, y);
@@ -63,7 +64,7 @@ fn power_of_magnitude<R: Real>(a: R, y: R) -> R {
 #[inline(always)]
 fn is_integral<R: Real>(y: R) -> R {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let bound = R::constant(TWO_TO_52);
+    let bound = R::constant(Format::<R>::ALL_INTEGERS);
     let magnitude = y.abs();
     let rounded = (magnitude + bound) - bound;
     let rounded = R::select_less(magnitude, bound, rounded, magnitude);

@@ -8,11 +8,12 @@
 //! Fused multiply-add, square root, rounding and conversion instructions are excluded, because some targets
 //! lack them or compute them differently.
 
+use crate::precision::{Double, Precision, Single};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Double-precision number that is computed (`f64`) or recorded (a traced value).
+/// Number that is computed (`f64`, `f32`) or recorded (a traced value).
 ///
-/// Arithmetic is IEEE 754 binary64, rounded to nearest even, never contracted.
+/// Arithmetic is that of its IEEE 754 format, rounded to nearest even, never contracted.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -21,7 +22,10 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Returns the literal `value`.
+    /// Format of the numbers.
+    type Precision: Precision;
+
+    /// Returns the literal `value`, rounded to the format.
     fn constant(value: f64) -> Self;
 
     /// Clears the sign bit, also for NaN.
@@ -37,14 +41,16 @@ pub trait Real:
     /// Returns `then` if `left == right`, else `otherwise`, also if either is NaN; `-0 == 0`.
     fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self;
 
-    /// Returns `2^self` for an integral value in `-1022..=1023`, and infinity for `1024`.
+    /// Returns `2^self` for an integral value in `-1022..=1023`, and infinity for `1024`; in single precision in
+    /// `-126..=127`, and for `128`.
     ///
-    /// Defined for every argument: add `2^52 + 1023`, shift the bits left by 52. Outside the stated range the
-    /// value is meaningless.
+    /// Defined for every argument: add `2^52 + 1023` (`2^23 + 127`), shift the bits left by 52 (23). Outside the
+    /// stated range the value is meaningless.
     fn power_of_two(self) -> Self;
 
     /// Returns the unbiased exponent field of a positive normal number `significand * 2^exponent`, as an
-    /// integral value. The sign bit is ignored; zero and subnormals give -1023, infinity and NaN 1024.
+    /// integral value. The sign bit is ignored; zero and subnormals give -1023 (-127), infinity and NaN 1024
+    /// (128).
     fn exponent(self) -> Self;
 
     /// Returns the mantissa field with the exponent of one: in `[1, 2)` for every argument. The sign bit is
@@ -52,53 +58,70 @@ pub trait Real:
     fn significand(self) -> Self;
 }
 
-/// `2^52 + 1023`: adding it to an integral `k` leaves `k + 1023` in the low bits of the sum.
-const EXPONENT_ALIGNER: f64 = ((1_u64 << 52) + 1023) as f64;
-const MANTISSA_BITS: u32 = 52;
-const MANTISSA_MASK: u64 = (1 << MANTISSA_BITS) - 1;
-const EXPONENT_MASK: u64 = 0x7ff;
-const EXPONENT_BIAS: f64 = 1023.0;
+/// Constants of the format of `R`.
+pub(crate) type Format<R> = <R as Real>::Precision;
 
-impl Real for f64 {
-    #[inline(always)]
-    fn constant(value: f64) -> f64 {
-        value
-    }
+macro_rules! implement_real {
+    ($number:ty, $precision:ty, $mantissa_bits:literal, $sign:expr, $exponent_mask:literal, $bias:literal) => {
+        impl Real for $number {
+            type Precision = $precision;
 
-    #[inline(always)]
-    fn abs(self) -> f64 {
-        f64::from_bits(self.to_bits() & !(1 << 63))
-    }
+            #[inline(always)]
+            fn constant(value: f64) -> $number {
+                value as $number
+            }
 
-    #[inline(always)]
-    fn copysign(self, sign: f64) -> f64 {
-        let sign_bit = sign.to_bits() & (1 << 63);
-        f64::from_bits((self.to_bits() & !(1 << 63)) | sign_bit)
-    }
+            #[inline(always)]
+            fn abs(self) -> $number {
+                <$number>::from_bits(self.to_bits() & !$sign)
+            }
 
-    #[inline(always)]
-    fn select_less(left: f64, right: f64, then: f64, otherwise: f64) -> f64 {
-        if left < right { then } else { otherwise }
-    }
+            #[inline(always)]
+            fn copysign(self, sign: $number) -> $number {
+                <$number>::from_bits((self.to_bits() & !$sign) | (sign.to_bits() & $sign))
+            }
 
-    #[inline(always)]
-    fn select_equal(left: f64, right: f64, then: f64, otherwise: f64) -> f64 {
-        if left == right { then } else { otherwise }
-    }
+            #[inline(always)]
+            fn select_less(
+                left: $number,
+                right: $number,
+                then: $number,
+                otherwise: $number,
+            ) -> $number {
+                if left < right { then } else { otherwise }
+            }
 
-    #[inline(always)]
-    fn power_of_two(self) -> f64 {
-        f64::from_bits((self + EXPONENT_ALIGNER).to_bits() << MANTISSA_BITS)
-    }
+            #[inline(always)]
+            fn select_equal(
+                left: $number,
+                right: $number,
+                then: $number,
+                otherwise: $number,
+            ) -> $number {
+                if left == right { then } else { otherwise }
+            }
 
-    #[inline(always)]
-    fn exponent(self) -> f64 {
-        let field = (self.to_bits() >> MANTISSA_BITS) & EXPONENT_MASK;
-        field as f64 - EXPONENT_BIAS
-    }
+            // The sum leaves k + bias in its low bits.
+            #[inline(always)]
+            fn power_of_two(self) -> $number {
+                let aligner = (1_u64 << $mantissa_bits) as $number + $bias;
+                <$number>::from_bits((self + aligner).to_bits() << $mantissa_bits)
+            }
 
-    #[inline(always)]
-    fn significand(self) -> f64 {
-        f64::from_bits((self.to_bits() & MANTISSA_MASK) | 1.0_f64.to_bits())
-    }
+            #[inline(always)]
+            fn exponent(self) -> $number {
+                let field = (self.to_bits() >> $mantissa_bits) & $exponent_mask;
+                field as $number - $bias
+            }
+
+            #[inline(always)]
+            fn significand(self) -> $number {
+                let mantissa = self.to_bits() & ((1 << $mantissa_bits) - 1);
+                <$number>::from_bits(mantissa | <$number>::to_bits(1.0))
+            }
+        }
+    };
 }
+
+implement_real!(f64, Double, 52, 1_u64 << 63, 0x7ff, 1023.0);
+implement_real!(f32, Single, 23, 1_u32 << 31, 0xff, 127.0);

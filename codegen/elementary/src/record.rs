@@ -4,19 +4,24 @@
 //! recording; unused ones are removed at the end. Nothing else is changed.
 
 use crate::kernel::{Kernel, Operation};
+use crate::precision::Precision;
 use crate::real::Real;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Value of the current recording on this thread, by the index of its operation.
+/// Value of the current recording on this thread, by the index of its operation, in a format.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Traced(usize);
+pub(crate) struct Traced<P>(usize, PhantomData<P>);
 
 /// Records `body` applied to `inputs` arguments.
-pub(crate) fn record(inputs: usize, body: impl FnOnce(&[Traced]) -> Vec<Traced>) -> Kernel {
+pub(crate) fn record<P: Precision>(
+    inputs: usize,
+    body: impl FnOnce(&[Traced<P>]) -> Vec<Traced<P>>,
+) -> Kernel {
     let outer = RECORDER.take();
-    let arguments: Vec<Traced> = (0..inputs).map(|i| emit(Operation::Input(i))).collect();
+    let arguments: Vec<Traced<P>> = (0..inputs).map(|i| emit(Operation::Input(i))).collect();
     let outputs: Vec<usize> = body(&arguments).into_iter().map(|t| t.0).collect();
     let recorder = RECORDER.replace(outer);
     without_dead_operations(inputs, &recorder.operations, &outputs)
@@ -61,14 +66,14 @@ impl Key {
 }
 
 /// Records `operation` if it is new, and returns its handle.
-fn emit(operation: Operation) -> Traced {
+fn emit<P>(operation: Operation) -> Traced<P> {
     RECORDER.with_borrow_mut(|recorder| {
         let Recorder { operations, known } = recorder;
         let index = *known.entry(Key::new(operation)).or_insert_with(|| {
             operations.push(operation);
             operations.len() - 1
         });
-        Traced(index)
+        Traced(index, PhantomData)
     })
 }
 
@@ -101,9 +106,9 @@ fn without_dead_operations(inputs: usize, all: &[Operation], outputs: &[usize]) 
 
 macro_rules! record_operator {
     ($($operator:ident $method:ident),*) => {$(
-        impl $operator for Traced {
-            type Output = Traced;
-            fn $method(self, other: Traced) -> Traced {
+        impl<P: Precision> $operator for Traced<P> {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
                 emit(Operation::$operator(self.0, other.0))
             }
         }
@@ -112,30 +117,32 @@ macro_rules! record_operator {
 
 record_operator!(Add add, Sub sub, Mul mul, Div div);
 
-impl Neg for Traced {
-    type Output = Traced;
-    fn neg(self) -> Traced {
+impl<P: Precision> Neg for Traced<P> {
+    type Output = Self;
+    fn neg(self) -> Self {
         emit(Operation::Neg(self.0))
     }
 }
 
-impl Real for Traced {
-    fn constant(value: f64) -> Traced {
-        emit(Operation::Constant(value))
+impl<P: Precision> Real for Traced<P> {
+    type Precision = P;
+
+    fn constant(value: f64) -> Self {
+        emit(Operation::Constant(P::round(value)))
     }
 
-    fn abs(self) -> Traced {
+    fn abs(self) -> Self {
         emit(Operation::Abs(self.0))
     }
 
-    fn copysign(self, sign: Traced) -> Traced {
+    fn copysign(self, sign: Self) -> Self {
         emit(Operation::CopySign {
             magnitude: self.0,
             sign: sign.0,
         })
     }
 
-    fn select_less(left: Traced, right: Traced, then: Traced, otherwise: Traced) -> Traced {
+    fn select_less(left: Self, right: Self, then: Self, otherwise: Self) -> Self {
         emit(Operation::SelectLess {
             left: left.0,
             right: right.0,
@@ -144,7 +151,7 @@ impl Real for Traced {
         })
     }
 
-    fn select_equal(left: Traced, right: Traced, then: Traced, otherwise: Traced) -> Traced {
+    fn select_equal(left: Self, right: Self, then: Self, otherwise: Self) -> Self {
         emit(Operation::SelectEqual {
             left: left.0,
             right: right.0,
@@ -153,15 +160,15 @@ impl Real for Traced {
         })
     }
 
-    fn power_of_two(self) -> Traced {
+    fn power_of_two(self) -> Self {
         emit(Operation::PowerOfTwo(self.0))
     }
 
-    fn exponent(self) -> Traced {
+    fn exponent(self) -> Self {
         emit(Operation::Exponent(self.0))
     }
 
-    fn significand(self) -> Traced {
+    fn significand(self) -> Self {
         emit(Operation::Significand(self.0))
     }
 }

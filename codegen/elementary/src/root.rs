@@ -1,25 +1,12 @@
 //! Square root, correctly rounded, with the same bits as a hardware square root.
 //!
-//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, two Newton steps, one step with the exact
+//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, Newton steps, one step with the exact
 //! remainder, and a final comparison of the exact remainder with half a unit in the last place.
 
 use crate::approximation::{nearest_integer, polynomial, split_exponent};
 use crate::pair::{Pair, exact_square};
-use crate::real::Real;
-
-/// `1/sqrt m`, `m` in `[1, 4]`, to 2^-12.2.
-const INVERSE_ROOT: [f64; 7] = [
-    2.081_649_629_276_674,
-    -2.032_425_431_582_041_6,
-    1.427_860_208_912_750_3,
-    -0.612_114_372_530_438,
-    0.154_845_229_307_336_9,
-    -0.021_231_322_940_888_833,
-    0.001_215_380_137_694_336,
-];
-
-/// Unit in the last place of a number in `[1, 2)`.
-const UNIT_IN_LAST_PLACE: f64 = f64::EPSILON;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 
 /// Computes the square root, correctly rounded; NaN for negative arguments, `-0` for `-0`.
 #[inline]
@@ -32,7 +19,7 @@ pub fn sqrt<R: Real>(x: R) -> R {
     R::select_equal(x, zero, x, root)
 }
 
-/// Computes the square root of a finite `x` as a pair, to about 90 bits; NaN for negative `x`.
+/// Computes the square root of a finite `x` as a pair, to about 90 bits (40 in single precision); NaN for negative `x`.
 #[inline(always)]
 pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
     let zero = R::constant(0.0);
@@ -60,7 +47,10 @@ impl<R: Real> Centred<R> {
         let halved = nearest_integer(exponent * half - R::constant(0.25));
         let odd = exponent - (halved + halved);
         let m = significand * (odd + R::constant(1.0));
-        let inverse = newton(m, newton(m, polynomial(m, &INVERSE_ROOT)));
+        let mut inverse = polynomial(m, Format::<R>::INVERSE_ROOT);
+        for _ in 0..Format::<R>::NEWTON_STEPS {
+            inverse = newton(m, inverse);
+        }
         Centred {
             m,
             scale: halved.power_of_two(),
@@ -68,7 +58,8 @@ impl<R: Real> Centred<R> {
         }
     }
 
-    /// Computes the root of `m`: a value accurate to 2^-46 and its correction, to 2^-91.
+    /// Computes the root of `m`: a value accurate to 2^-46 (2^-20 in single precision) and its
+    /// correction, which doubles the bits.
     #[inline(always)]
     fn root(&self) -> Pair<R> {
         let high = self.m * (self.half_inverse + self.half_inverse);
@@ -86,7 +77,7 @@ impl<R: Real> Centred<R> {
     #[inline(always)]
     fn rounded_root(&self) -> R {
         let root = self.root().round();
-        let last_place = R::constant(UNIT_IN_LAST_PLACE);
+        let last_place = R::constant(Format::<R>::EPSILON);
         let threshold = root * last_place;
         let left = self.remainder(root);
         let not_above = R::select_less(-threshold, left, root, root - last_place);

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use super::primitives::CFormat;
 use super::sine_and_cosine::{SineAndCosine, find_pair};
-use eomgen_elementary::ROUNDING_ALIGNER;
+use eomgen_elementary::{Double, Precision};
 
 use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
@@ -26,6 +27,8 @@ pub(super) struct Writer {
     pub(super) real: String,
     /// True if that type can be narrower than literals, which are then converted.
     narrow: bool,
+    /// Number by which kernels round.
+    rounding_aligner: f64,
 }
 
 impl Writer {
@@ -34,13 +37,16 @@ impl Writer {
             prefix: format!("{}_", program.name),
             real: format!("{}_real", program.name),
             narrow: true,
+            rounding_aligner: Double::ROUNDING_ALIGNER,
         }
     }
 
-    pub(super) fn double(program: &Program) -> Self {
+    /// Creates the writer of kernels in a format.
+    pub(super) fn in_format<P: CFormat>(program: &Program) -> Self {
         Self {
-            real: "double".to_owned(),
-            narrow: false,
+            real: P::NUMBER.to_owned(),
+            narrow: P::NUMBER == "float",
+            rounding_aligner: P::ROUNDING_ALIGNER,
             ..Self::new(program)
         }
     }
@@ -267,9 +273,16 @@ impl Writer {
     }
 
     fn binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
-        if let Some(x) = rounding_operand(operator, a, b) {
-            let function = format!("{}nearest_integer", self.prefix);
-            return (call(&function, &[self.expression(x)]), Level::Atom);
+        if let Some((x, aligner)) = rounding_operand(operator, a, b) {
+            let function = match aligner / self.rounding_aligner {
+                1.0 => Some("nearest_integer"),
+                4.0 => Some("nearest_multiple_of_four"),
+                _ => None,
+            };
+            if let Some(function) = function {
+                let function = format!("{}{function}", self.prefix);
+                return (call(&function, &[self.expression(x)]), Level::Atom);
+            }
         }
         let (sign, level, right) = match operator {
             Operator::Add => ("+", Level::Sum, Level::Product),
@@ -417,18 +430,20 @@ fn index_text(index: &Index) -> String {
     }
 }
 
-/// Returns x if the difference is the rounding x + c - c. It is written as a call, because compilers that may
+/// Returns x and c if the difference is x + c - c. A rounding is written as a call, because compilers that may
 /// reorder sums remove both operations.
 fn rounding_operand<'e>(
     operator: Operator,
     a: &'e Expression,
     b: &Expression,
-) -> Option<&'e Expression> {
-    let aligner = |e: &Expression| matches!(e, Expression::Number(n) if *n == ROUNDING_ALIGNER);
+) -> Option<(&'e Expression, f64)> {
     match (operator, a) {
-        (Operator::Subtract, Expression::Binary(Operator::Add, x, added)) => {
-            (aligner(added) && aligner(b)).then_some(x)
-        }
+        (Operator::Subtract, Expression::Binary(Operator::Add, x, added)) => match (&**added, b) {
+            (Expression::Number(added), Expression::Number(subtracted)) => {
+                (added == subtracted).then_some((x, *added))
+            }
+            _ => None,
+        },
         _ => None,
     }
 }

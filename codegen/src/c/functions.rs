@@ -3,28 +3,16 @@
 use super::comments::comment;
 use super::expression::Writer;
 use super::names::fill_template;
+use super::primitives::{CFormat, bits, primitives};
 use crate::program::Program;
 use crate::statements::layout::block;
 use crate::statements::{KernelStatements, RequiredFunctions, describe_elementary};
-use eomgen_elementary::Function as Elementary;
+use eomgen_elementary::{Double, Function as Elementary, Single};
 
+/// Writes the functions that stages call. Elementary functions are written in both formats, of which the
+/// preprocessor selects one.
 pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &str) -> String {
-    let mut elementary = needed.elementary.clone();
-    if needed.cholesky || needed.cholesky_of_matrix {
-        elementary.insert(Elementary::Sqrt);
-    }
-    let mut text = String::new();
-    for function in elementary {
-        let call = fill_template(program, &format!("NAME_{}(", function.name()));
-        // A sine or cosine that all stages compute as a pair needs no separate function.
-        let paired = matches!(function, Elementary::Sin | Elementary::Cos);
-        if !paired || stages.contains(&call) {
-            text += &elementary_function(program, function);
-        }
-    }
-    if stages.contains(&fill_template(program, "NAME_sin_cos(")) {
-        text += &sine_and_cosine(program);
-    }
+    let mut helpers = String::new();
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
@@ -36,24 +24,60 @@ pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &
         (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
     ] {
         if needed {
-            text += &fill_template(program, item);
+            helpers += &fill_template(program, item);
         }
     }
-    let mut primitives = String::new();
-    for (name, item) in PRIMITIVES {
-        let call = fill_template(program, &format!("NAME_{name}("));
-        if text.contains(&call) || stages.contains(&call) {
-            primitives += &fill_template(program, item);
-        }
+    let called = helpers.clone() + stages;
+    let double = elementary_functions::<Double>(program, needed, &called);
+    if double.is_empty() {
+        return helpers;
     }
-    if primitives.is_empty() {
-        return text;
-    }
-    fill_template(program, BITS) + &primitives + &text
+    let single = elementary_functions::<Single>(program, needed, &called);
+    fill_template(program, "#if NAME_IS_SINGLE(NAME_REAL)\n")
+        + &single
+        + "#else\n"
+        + &double
+        + "#endif\n"
+        + &helpers
 }
 
-/// Writes an elementary function, computed in double precision and rounded to the type of numbers.
-fn elementary_function(program: &Program, function: Elementary) -> String {
+/// Writes the elementary functions in a format, with the primitives that they and `called` call.
+fn elementary_functions<P: CFormat>(
+    program: &Program,
+    needed: &RequiredFunctions,
+    called: &str,
+) -> String {
+    let mut elementary = needed.elementary.clone();
+    if needed.cholesky || needed.cholesky_of_matrix {
+        elementary.insert(Elementary::Sqrt);
+    }
+    let mut text = String::new();
+    for function in elementary {
+        let call = fill_template(program, &format!("NAME_{}(", function.name()));
+        // A sine or cosine that all stages compute as a pair needs no separate function.
+        let paired = matches!(function, Elementary::Sin | Elementary::Cos);
+        if !paired || called.contains(&call) {
+            text += &elementary_function::<P>(program, function);
+        }
+    }
+    if called.contains(&fill_template(program, "NAME_sin_cos(")) {
+        text += &sine_and_cosine::<P>(program);
+    }
+    let mut operations = String::new();
+    for (name, item) in primitives::<P>() {
+        let call = fill_template(program, &format!("NAME_{name}("));
+        if text.contains(&call) || called.contains(&call) {
+            operations += &fill_template(program, &item);
+        }
+    }
+    if operations.is_empty() {
+        return text;
+    }
+    fill_template(program, &bits::<P>()) + &operations + &text
+}
+
+/// Writes an elementary function. That of double precision is rounded to the type of numbers.
+fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> String {
     let arguments: &[&str] = match (function, function.arity()) {
         (Elementary::Atan2, _) => &["y", "x"],
         (_, 2) => &["x", "y"],
@@ -67,11 +91,21 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
         typed.join(", ")
     };
     let name = function.name();
-    let kernel = KernelStatements::new(function, arguments);
-    let writer = Writer::double(program);
+    let kernel = KernelStatements::new::<P>(function, arguments);
+    let writer = Writer::in_format::<P>(program);
     let mut lines = writer.statements(&kernel.computed);
     if let Some(value) = kernel.value() {
         lines += &format!("return {};\n", writer.expression(value));
+    }
+    let description = comment(&[describe_elementary(function).to_owned()]);
+    let inline = inline::<P>(matches!(function, Elementary::Sin | Elementary::Cos));
+    let outer = format!(
+        "static {inline}NAME_real NAME_{name}({}) {{",
+        typed("NAME_real")
+    );
+    let outer = fill_template(program, &outer);
+    if P::NUMBER == "float" {
+        return description + &block(&outer, &lines, "}");
     }
     let head = format!(
         "static double NAME_{name}_in_double({}) {{",
@@ -85,20 +119,25 @@ fn elementary_function(program: &Program, function: Elementary) -> String {
         "return (NAME_real)NAME_{name}_in_double({});\n",
         passed.join(", ")
     );
-    let outer = format!("static NAME_real NAME_{name}({}) {{", typed("NAME_real"));
-    comment(&[describe_elementary(function).to_owned()])
+    description
         + &block(&fill_template(program, &head), &lines, "}")
-        + &block(
-            &fill_template(program, &outer),
-            &fill_template(program, &rounded),
-            "}",
-        )
+        + &block(&outer, &fill_template(program, &rounded), "}")
+}
+
+/// Returns the keyword of functions that are shorter than their constants and calls: sine and cosine in single
+/// precision.
+fn inline<P: CFormat>(of_angle: bool) -> &'static str {
+    if of_angle && P::NUMBER == "float" {
+        "inline "
+    } else {
+        ""
+    }
 }
 
 /// Writes the joint function of sine and cosine, with the same bits as the separate functions.
-fn sine_and_cosine(program: &Program) -> String {
-    let kernel = KernelStatements::sine_and_cosine("x");
-    let writer = Writer::double(program);
+fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
+    let kernel = KernelStatements::sine_and_cosine::<P>("x");
+    let writer = Writer::in_format::<P>(program);
     let mut lines = writer.statements(&kernel.computed);
     for (name, value) in ["sine", "cosine"].iter().zip(kernel.values()) {
         lines += &fill_template(
@@ -106,127 +145,14 @@ fn sine_and_cosine(program: &Program) -> String {
             &format!("*{name} = (NAME_real)({});\n", writer.expression(value)),
         );
     }
-    let head = "static void NAME_sin_cos(double x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {";
-    comment(&["Sine and cosine for |x| up to 1e9, NaN beyond.".to_owned()])
-        + &block(&fill_template(program, head), &lines, "}")
+    let head = format!(
+        "static {}void NAME_sin_cos({} x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {{",
+        inline::<P>(true),
+        P::NUMBER
+    );
+    let description = describe_elementary(Elementary::Sin).replace("Sine", "Sine and cosine");
+    comment(&[description]) + &block(&fill_template(program, &head), &lines, "}")
 }
-
-const BITS: &str = "\
-/** Number and its bits. */
-typedef union {
-    double number;
-    uint64_t bits;
-} NAME_bits;
-";
-
-/// Functions that kernels call and constants without a literal, by name.
-const PRIMITIVES: [(&str, &str); 8] = [
-    (
-        "nan",
-        "\
-/** NaN. */
-static double NAME_nan(void) {
-    NAME_bits value;
-    value.bits = (uint64_t)0x7ff8 << 48;
-    return value.number;
-}
-",
-    ),
-    (
-        "infinity",
-        "\
-/** Infinity. */
-static double NAME_infinity(void) {
-    NAME_bits value;
-    value.bits = (uint64_t)0x7ff0 << 48;
-    return value.number;
-}
-",
-    ),
-    (
-        "magnitude",
-        "\
-/** Magnitude of a number. */
-static double NAME_magnitude(double x) {
-    const double negated = 0.0 - x;
-    return x > negated ? x : negated;
-}
-",
-    ),
-    (
-        "nearest_integer",
-        "\
-/** Integer nearest to x, ties to even, for |x| up to 2^51. If the compiler may reorder sums, each step
- * is hidden from it in a register or in memory. */
-static double NAME_nearest_integer(double x) {
-#if !defined(__FAST_MATH__) && !defined(__ASSOCIATIVE_MATH__) && !defined(_M_FP_FAST)
-    return x + 6.755399441055744e15 - 6.755399441055744e15;
-#elif defined(__GNUC__) && defined(__SSE2__)
-    __asm__(\"\" : \"+x\"(x));
-    x = x + 6.755399441055744e15;
-    __asm__(\"\" : \"+x\"(x));
-    x = x - 6.755399441055744e15;
-    __asm__(\"\" : \"+x\"(x));
-    return x;
-#else
-    volatile double held = x;
-    held = held + 6.755399441055744e15;
-    held = held - 6.755399441055744e15;
-    return held;
-#endif
-}
-",
-    ),
-    (
-        "copy_sign",
-        "\
-/** Magnitude of one number with the sign bit of another. */
-static double NAME_copy_sign(double x, double sign) {
-    const uint64_t top = (uint64_t)1 << 63;
-    NAME_bits value, other;
-    value.number = x;
-    other.number = sign;
-    value.bits = (value.bits & ~top) | (other.bits & top);
-    return value.number;
-}
-",
-    ),
-    (
-        "power_of_two",
-        "\
-/** 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits. */
-static double NAME_power_of_two(double k) {
-    NAME_bits value;
-    value.number = k + 4503599627371519.0;
-    value.bits <<= 52;
-    return value.number;
-}
-",
-    ),
-    (
-        "exponent",
-        "\
-/** Unbiased exponent field. */
-static double NAME_exponent(double x) {
-    NAME_bits value;
-    value.number = x;
-    return (double)((value.bits >> 52) & 0x7ff) - 1023.0;
-}
-",
-    ),
-    (
-        "significand",
-        "\
-/** Mantissa with the exponent of 1. */
-static double NAME_significand(double x) {
-    NAME_bits value;
-    value.number = x;
-    value.bits = (value.bits & (((uint64_t)1 << 52) - 1)) | ((uint64_t)0x3ff << 52);
-    return value.number;
-}
-",
-    ),
-];
 
 /// f_k of Eq. (7).
 const DEADZONE: &str = "\

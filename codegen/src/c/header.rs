@@ -68,7 +68,12 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResul
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
          /** Type of all numbers. */\n\
          #ifndef NAME_REAL\n#define NAME_REAL NUMBER\n#endif\n\
-         typedef NAME_REAL NAME_real;\n"
+         typedef NAME_REAL NAME_real;\n\
+         /** 1 if the type of numbers is float: elementary functions are then computed in single precision. */\n\
+         #define NAME_TYPE_float 1\n\
+         #define NAME_TYPE_double 0\n\
+         #define NAME_IS_TYPE(type) NAME_TYPE_##type\n\
+         #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
     text += &sizes(file);

@@ -2,7 +2,8 @@
 //! allocation or library calls. Its results have the same bits as the emitted Rust.
 //!
 //! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
-//! `jacobians` and `controllers` write functions, `functions` their helpers. `casadi` is an additional interface. `expression`
+//! `jacobians` and `controllers` write functions, `functions` their helpers, with the operations on bits of
+//! `primitives`. `casadi` is an additional interface. `expression`
 //! writes statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
 //! the order of computation.
 
@@ -15,6 +16,7 @@ mod functions;
 mod header;
 mod jacobians;
 mod names;
+mod primitives;
 mod real;
 mod regimes;
 mod sine_and_cosine;

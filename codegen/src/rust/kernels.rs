@@ -5,7 +5,7 @@ use super::slopes;
 use crate::statements::layout::block;
 use crate::statements::layout::{DEEPER, SHALLOWER};
 use crate::statements::{KernelStatements, describe_elementary};
-use eomgen_elementary::Function as Elementary;
+use eomgen_elementary::{Double, Function as Elementary, Single};
 
 /// Writes the function that stages call, and the type that represents it.
 pub(super) fn elementary_function(function: Elementary) -> String {
@@ -26,10 +26,19 @@ pub(super) fn elementary_function(function: Elementary) -> String {
         "/// {description}\n#[inline(always)]\nfn {name}<T: Scalar>({x}: T{second}) -> T {{\n"
     ) + &format!("{DEEPER}{x}.{apply}::<{type_name}>({argument})\n{SHALLOWER}}}\n");
     let arguments: &[&str] = if binary { &[x, y] } else { &[x] };
-    let value = block(
-        &format!("#[inline(always)]\nfn value<T: Real>({x}: T{second}) -> T {{"),
-        &lines(&KernelStatements::new(function, arguments)),
-        "}",
+    let function_of_kernel = |name: &str, kernel: KernelStatements| {
+        block(
+            &format!("#[inline(always)]\nfn {name}<T: Real>({x}: T{second}) -> T {{"),
+            &lines(&kernel),
+            "}",
+        )
+    };
+    let value = function_of_kernel(
+        "value",
+        KernelStatements::new::<Double>(function, arguments),
+    ) + &function_of_kernel(
+        "single",
+        KernelStatements::new::<Single>(function, arguments),
     );
     call + &format!("enum {type_name} {{}}\n")
         + &block(

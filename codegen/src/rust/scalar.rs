@@ -35,7 +35,8 @@ where
         lines()
     }
 }
-/// Number type of the elementary functions: IEEE 754 double precision, or SIMD lanes of it.
+/// Number type of the elementary functions: IEEE 754 double precision, SIMD lanes of it, or single
+/// precision, with the bits in parentheses.
 pub trait Real: Scalar {
     /// Returns `then` if a = b, else `otherwise`, also if either is NaN.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
@@ -43,7 +44,8 @@ pub trait Real: Scalar {
     fn magnitude(self) -> Self;
     /// Returns the magnitude with the sign bit of another number.
     fn copy_sign(self, sign: Self) -> Self;
-    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits.
+    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 (2^23 + 127) moves k to the
+    /// exponent bits.
     fn power_of_two(self) -> Self;
     /// Returns the unbiased exponent field.
     fn exponent(self) -> Self;
@@ -52,15 +54,19 @@ pub trait Real: Scalar {
 }
 /// Elementary function: plain operations in a fixed order, with the same bits on every machine.
 pub trait Function {
-    /// Computes the value.
+    /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
+    /// Computes the value in single precision.
+    fn single<T: Real>(x: T) -> T;
     /// Computes the derivative at x; `value` is the value there.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 /// Elementary function of two arguments.
 pub trait FunctionOfTwo {
-    /// Computes the value.
+    /// Computes the value in double precision.
     fn value<T: Real>(x: T, y: T) -> T;
+    /// Computes the value in single precision.
+    fn single<T: Real>(x: T, y: T) -> T;
     /// Computes the derivatives by x and y; `value` is the value there.
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
@@ -116,8 +122,8 @@ impl Real for f64 {
         f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
     }
 }
-/// Elementary functions are computed in double precision and rounded: within 0.5001 units in the
-/// last place.
+/// Elementary functions are computed in single precision, within two units in the last place:
+/// sine, cosine and tangent for |x| up to 1e5.
 impl Scalar for f32 {
     #[inline(always)]
     fn number(value: f64) -> f32 {
@@ -133,15 +139,41 @@ impl Scalar for f32 {
     }
     #[inline]
     fn function<F: Function>(self) -> f32 {
-        F::value(f64::from(self)) as f32
+        F::single(self)
     }
     #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
-        F::value(f64::from(self), f64::from(other)) as f32
+        F::single(self, other)
     }
     #[inline(never)]
     fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
         lines()
+    }
+}
+impl Real for f32 {
+    #[inline(always)]
+    fn select_equal(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f32 {
+        f32::from_bits(self.to_bits() & !(1 << 31))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f32) -> f32 {
+        f32::from_bits((self.to_bits() & !(1 << 31)) | (sign.to_bits() & (1 << 31)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f32 {
+        f32::from_bits((self + 8388735.0).to_bits() << 23)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f32 {
+        ((self.to_bits() >> 23) & 0xff) as f32 - 127.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f32 {
+        f32::from_bits((self.to_bits() & 0x007f_ffff) | 0x3f80_0000)
     }
 }
 ";

@@ -2,7 +2,7 @@
 
 use super::expression::Expression;
 use super::statement::Statement;
-use eomgen_elementary::{Function as Elementary, Kernel, Operation, sin_cos_kernel};
+use eomgen_elementary::{Function as Elementary, Kernel, Operation, Precision, sin_cos_kernel};
 
 /// Returns the description of an elementary function.
 pub fn describe_elementary(function: Elementary) -> &'static str {
@@ -18,9 +18,9 @@ pub fn describe_elementary(function: Elementary) -> &'static str {
         Elementary::Sinh => "Hyperbolic sine.",
         Elementary::Cosh => "Hyperbolic cosine.",
         Elementary::Tanh => "Hyperbolic tangent.",
-        Elementary::Sin => "Sine for |x| up to 1e9, NaN beyond.",
-        Elementary::Cos => "Cosine for |x| up to 1e9, NaN beyond.",
-        Elementary::Tan => "Tangent for |x| up to 1e9, NaN beyond.",
+        Elementary::Sin => "Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
+        Elementary::Cos => "Cosine for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
+        Elementary::Tan => "Tangent for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
         Elementary::Asin => "Inverse sine.",
         Elementary::Acos => "Inverse cosine.",
         Elementary::Atan => "Inverse tangent.",
@@ -42,14 +42,14 @@ pub struct KernelStatements {
 }
 
 impl KernelStatements {
-    /// Writes the kernel of `function` with these argument names.
-    pub fn new(function: Elementary, arguments: &[&str]) -> Self {
-        Self::from_kernel(&function.kernel(), arguments)
+    /// Writes the kernel of `function` in a format with these argument names.
+    pub fn new<P: Precision>(function: Elementary, arguments: &[&str]) -> Self {
+        Self::from_kernel(&function.kernel_in::<P>(), arguments)
     }
 
-    /// Writes the kernel of the sine and the cosine, in this order.
-    pub fn sine_and_cosine(argument: &str) -> Self {
-        Self::from_kernel(&sin_cos_kernel(), &[argument])
+    /// Writes the kernel of the sine and the cosine in a format, in this order.
+    pub fn sine_and_cosine<P: Precision>(argument: &str) -> Self {
+        Self::from_kernel(&sin_cos_kernel::<P>(), &[argument])
     }
 
     fn from_kernel(kernel: &Kernel, arguments: &[&str]) -> Self {

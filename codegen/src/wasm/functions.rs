@@ -8,7 +8,7 @@ use super::indices::Indices;
 use super::memory::Memory;
 use crate::program::Program;
 use crate::statements::{EmitResult, Expression, KernelStatements, RequiredFunctions, Statement};
-use eomgen_elementary::Function as Elementary;
+use eomgen_elementary::{Double, Function as Elementary};
 
 #[derive(Debug)]
 pub(super) struct Helper {
@@ -56,7 +56,7 @@ fn kernel_helper(function: Elementary) -> Option<Helper> {
         2 => &["x", "y"],
         _ => &["x"],
     };
-    let kernel = KernelStatements::new(function, arguments);
+    let kernel = KernelStatements::new::<Double>(function, arguments);
     Some(Helper {
         name: function.name(),
         arguments,

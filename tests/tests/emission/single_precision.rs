@@ -17,6 +17,12 @@ const MOTOR: f64 = 100.0;
 /// Number in double precision with a bound of its error in single precision.
 type Single = Rounded<24>;
 
+/// Returns the error of an elementary function beyond the rounding of its result: at most two units in the last
+/// place together.
+fn function_error(value: f64) -> f64 {
+    3.0 * value.abs() / f64::from(1 << 24)
+}
+
 macro_rules! agrees {
     ($($module:ident $order:literal $test:ident)*) => {$(
         mod $module {
@@ -35,12 +41,13 @@ macro_rules! agrees {
             }
             fn function<F: $module::Function>(self) -> Self {
                 let value = F::value(self.number);
-                Self::result(value, F::slope(self.number, value).abs() * self.error)
+                Self::result(value, F::slope(self.number, value).abs() * self.error + function_error(value))
             }
             fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
                 let value = F::value(self.number, other.number);
                 let [first, second] = F::slopes(self.number, other.number, value);
-                Self::result(value, first.abs() * self.error + second.abs() * other.error)
+                let error = first.abs() * self.error + second.abs() * other.error;
+                Self::result(value, error + function_error(value))
             }
         }
 

@@ -2,7 +2,7 @@
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::Random;
-use eomgen_elementary::{Function, Kernel, sin_cos_kernel};
+use eomgen_elementary::{Double, Function, Kernel, sin_cos_kernel};
 use std::collections::HashSet;
 
 /// Returns zeros, ones, ends of every function's domain, infinities and NaN, with both signs.
@@ -95,7 +95,7 @@ fn kernels_match_native_bits_at_random_arguments() {
 
 #[test]
 fn sine_and_cosine_share_one_kernel() {
-    let both = sin_cos_kernel();
+    let both = sin_cos_kernel::<Double>();
     let mut random = Random(5);
     for _ in 0..1000 {
         let x = random.magnitude(-30, 29);
@@ -111,7 +111,7 @@ fn sine_and_cosine_share_one_kernel() {
 #[test]
 fn kernels_have_no_repeated_or_unused_operations() {
     let kernels = Function::ALL.map(Function::kernel);
-    for kernel in kernels.iter().chain([&sin_cos_kernel()]) {
+    for kernel in kernels.iter().chain([&sin_cos_kernel::<Double>()]) {
         let mut used: HashSet<usize> = kernel.outputs.iter().copied().collect();
         let mut seen = HashSet::new();
         for (index, operation) in kernel.operations.iter().enumerate() {
@@ -173,5 +173,5 @@ fn operation_counts_are_as_documented() {
         ("quantise", 10),
     ];
     assert_eq!(counted, documented);
-    assert_eq!(sin_cos_kernel().operation_count(), 71);
+    assert_eq!(sin_cos_kernel::<Double>().operation_count(), 71);
 }

@@ -5,5 +5,6 @@ mod hard_cases;
 mod kernels;
 mod oracle;
 mod powers_and_roots;
+mod single_precision;
 mod special_values;
 mod trigonometric;

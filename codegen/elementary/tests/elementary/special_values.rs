@@ -244,7 +244,7 @@ fn sign_magnitude_minimum_and_maximum() {
 fn missing_argument_is_nan() {
     assert_value(Sin, &[], NAN);
     assert_value(Atan2, &[1.0], NAN);
-    assert!(Sin.kernel().evaluate(&[])[0].is_nan());
+    assert!(Sin.kernel().evaluate::<f64>(&[])[0].is_nan());
 }
 
 #[test]

@@ -238,7 +238,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_8 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=736bda916bb5e61607b3bcb2b39d240d7df14df89dfa50bb33c3d702cbc45da5 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_8 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=0e22b1882fab6433f865499522681aed1d15df31e9e8cfa5d02e3ecbdbeab17c generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1077,7 +1077,8 @@ where
     }
 }
 
-/// Number type of the elementary functions: IEEE 754 double precision, or SIMD lanes of it.
+/// Number type of the elementary functions: IEEE 754 double precision, SIMD lanes of it, or single
+/// precision, with the bits in parentheses.
 pub trait Real: Scalar {
     /// Returns `then` if a = b, else `otherwise`, also if either is NaN.
     fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
@@ -1085,7 +1086,8 @@ pub trait Real: Scalar {
     fn magnitude(self) -> Self;
     /// Returns the magnitude with the sign bit of another number.
     fn copy_sign(self, sign: Self) -> Self;
-    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 moves k to the exponent bits.
+    /// Returns 2^k for an integral k: the addition of 2^52 + 1023 (2^23 + 127) moves k to the
+    /// exponent bits.
     fn power_of_two(self) -> Self;
     /// Returns the unbiased exponent field.
     fn exponent(self) -> Self;
@@ -1095,16 +1097,20 @@ pub trait Real: Scalar {
 
 /// Elementary function: plain operations in a fixed order, with the same bits on every machine.
 pub trait Function {
-    /// Computes the value.
+    /// Computes the value in double precision.
     fn value<T: Real>(x: T) -> T;
+    /// Computes the value in single precision.
+    fn single<T: Real>(x: T) -> T;
     /// Computes the derivative at x; `value` is the value there.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
 
 /// Elementary function of two arguments.
 pub trait FunctionOfTwo {
-    /// Computes the value.
+    /// Computes the value in double precision.
     fn value<T: Real>(x: T, y: T) -> T;
+    /// Computes the value in single precision.
+    fn single<T: Real>(x: T, y: T) -> T;
     /// Computes the derivatives by x and y; `value` is the value there.
     fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
 }
@@ -1161,8 +1167,8 @@ impl Real for f64 {
     }
 }
 
-/// Elementary functions are computed in double precision and rounded: within 0.5001 units in the
-/// last place.
+/// Elementary functions are computed in single precision, within two units in the last place:
+/// sine, cosine and tangent for |x| up to 1e5.
 impl Scalar for f32 {
     #[inline(always)]
     fn number(value: f64) -> f32 {
@@ -1178,15 +1184,41 @@ impl Scalar for f32 {
     }
     #[inline]
     fn function<F: Function>(self) -> f32 {
-        F::value(f64::from(self)) as f32
+        F::single(self)
     }
     #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
-        F::value(f64::from(self), f64::from(other)) as f32
+        F::single(self, other)
     }
     #[inline(never)]
     fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
         lines()
+    }
+}
+impl Real for f32 {
+    #[inline(always)]
+    fn select_equal(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f32 {
+        f32::from_bits(self.to_bits() & !(1 << 31))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f32) -> f32 {
+        f32::from_bits((self.to_bits() & !(1 << 31)) | (sign.to_bits() & (1 << 31)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f32 {
+        f32::from_bits((self + 8388735.0).to_bits() << 23)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f32 {
+        ((self.to_bits() >> 23) & 0xff) as f32 - 127.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f32 {
+        f32::from_bits((self.to_bits() & 0x007f_ffff) | 0x3f80_0000)
     }
 }
 
@@ -1246,7 +1278,7 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
     paired::<N, T>(&s)
 }
 
-/// Sine for |x| up to 1e9, NaN beyond.
+/// Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.
 #[inline(always)]
 fn sin<T: Scalar>(x: T) -> T {
     x.function::<Sin>()
@@ -1304,12 +1336,43 @@ impl Function for Sin {
         v92
     }
     #[inline(always)]
+    fn single<T: Real>(x: T) -> T {
+        let v8 = x * T::number(8.112963841460668e31);
+        let v15 = x * T::number(0.6366197466850281) + T::number(1.2582912e7)
+            - T::number(1.2582912e7) - (v8 - v8);
+        let v19 = x - v15 * T::number(1.5703125)
+            - v15 * T::number(0.0004825592041015625);
+        let v20 = v15 * T::number(1.2665987014770508e-6);
+        let v22 = v19 - v20;
+        let v25 = v22 - v15 * T::number(9.89530235528946e-10);
+        let v27 = v15 * T::number(2.563344285097524e-12) - (v19 - v22 - v20);
+        let v28 = v25 - v27;
+        let v29 = v28 * v28;
+        let v39 = v28 * v29
+            * (T::number(0.16666655242443085)
+                + v29
+                    * (T::number(-0.008332187309861183)
+                        + v29 * T::number(0.00019517897453624755))) + v27;
+        let v51 = v29
+            * (T::number(-0.5)
+                + v29
+                    * (T::number(0.041666653007268906)
+                        + v29
+                            * (T::number(-0.001388760982081294)
+                                + v29 * T::number(2.446174949000124e-5))));
+        let v56 = v15 + T::number(5.0331648e7) - T::number(5.0331648e7) - v15;
+        let v57 = T::magnitude(v56);
+        let v64 = (v25 - v39) * (T::number(1.0) - v57)
+            - (T::number(1.0) + v51) * (v56 * (T::number(2.0) - v57));
+        v64
+    }
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         cos(x)
     }
 }
 
-/// Cosine for |x| up to 1e9, NaN beyond.
+/// Cosine for |x| up to 1e9 (4194303 in single precision), NaN beyond.
 #[inline(always)]
 fn cos<T: Scalar>(x: T) -> T {
     x.function::<Cos>()
@@ -1365,6 +1428,37 @@ impl Function for Cos {
             v87,
         ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
         v93
+    }
+    #[inline(always)]
+    fn single<T: Real>(x: T) -> T {
+        let v8 = x * T::number(8.112963841460668e31);
+        let v15 = x * T::number(0.6366197466850281) + T::number(1.2582912e7)
+            - T::number(1.2582912e7) - (v8 - v8);
+        let v19 = x - v15 * T::number(1.5703125)
+            - v15 * T::number(0.0004825592041015625);
+        let v20 = v15 * T::number(1.2665987014770508e-6);
+        let v22 = v19 - v20;
+        let v25 = v22 - v15 * T::number(9.89530235528946e-10);
+        let v27 = v15 * T::number(2.563344285097524e-12) - (v19 - v22 - v20);
+        let v28 = v25 - v27;
+        let v29 = v28 * v28;
+        let v39 = v28 * v29
+            * (T::number(0.16666655242443085)
+                + v29
+                    * (T::number(-0.008332187309861183)
+                        + v29 * T::number(0.00019517897453624755))) + v27;
+        let v51 = v29
+            * (T::number(-0.5)
+                + v29
+                    * (T::number(0.041666653007268906)
+                        + v29
+                            * (T::number(-0.001388760982081294)
+                                + v29 * T::number(2.446174949000124e-5))));
+        let v56 = v15 + T::number(5.0331648e7) - T::number(5.0331648e7) - v15;
+        let v57 = T::magnitude(v56);
+        let v64 = (T::number(1.0) + v51) * (T::number(1.0) - v57)
+            + (v25 - v39) * (v56 * (T::number(2.0) - v57));
+        v64
     }
     #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {

@@ -38,6 +38,17 @@ const UNIT: f64 = 1.0 / (1_u64 << 24) as f64;
 const SMALLEST: f64 = 1.0 / ((1_u128 << 100) as f64 * (1_u64 << 50) as f64);
 
 impl Rounded {
+    /// Adds the error of an elementary function, at most two units in the last place, to that from its operands.
+    fn of_function(number: f64, error: f64) -> Self {
+        Self::result(number, error + 3.0 * (UNIT * number.abs() + SMALLEST))
+    }
+    /// Bound of the error of an argument. An angle above 1e5 counts as inexact by its last place, and angles
+    /// above 2^22 have no bound.
+    fn argument_error(self) -> f64 {
+        let size = self.number.abs() + self.error;
+        let last_place = if size > 1e5 { 2.0 * UNIT * size } else { 0.0 };
+        if size >= 4_194_304.0 { f64::INFINITY } else { self.error + last_place }
+    }
     /// Adds the rounding of the result to the error from its operands.
     fn result(number: f64, error: f64) -> Self {
         let error = error + UNIT * number.abs() + SMALLEST;
@@ -109,12 +120,13 @@ impl Scalar for Rounded {
     }
     fn function<F: Function>(self) -> Self {
         let value = F::value(self.number);
-        let error = [-self.error, 0.0, self.error].map(|error| {
+        let bound = self.argument_error();
+        let error = [-bound, 0.0, bound].map(|error| {
             let near: f64 = F::value(self.number + error);
             let slope: f64 = F::slope(self.number + error, near);
-            worse((near - value).abs(), slope.abs() * self.error)
+            worse((near - value).abs(), slope.abs() * bound)
         });
-        Self::result(value, worse(worse(error[0], error[1]), error[2]))
+        Self::of_function(value, worse(worse(error[0], error[1]), error[2]))
     }
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self {
         let value = F::value(self.number, other.number);
@@ -128,7 +140,7 @@ impl Scalar for Rounded {
                 error = worse(error, worse((near - value).abs(), bound));
             }
         }
-        Self::result(value, error)
+        Self::of_function(value, error)
     }
 }
 
