@@ -71,7 +71,7 @@ pub fn run(options: &Identify) -> Result {
     }
     if identities.is_empty() {
         warn(&format!(
-            "error: {} contains no identity: no emitted code, or code of a version before 0.3",
+            "error: {} contains no identity: no emitted code, or code emitted without identities",
             options.image.display()
         ));
         return Err(Error::Failed);

@@ -38,6 +38,14 @@ impl Kind {
             Self::Operations => "operations",
         }
     }
+
+    /// Returns the name of the difference, or `written` if writing the files removed it.
+    fn after(self, is_written: bool) -> &'static str {
+        match self {
+            Self::Missing | Self::Edited | Self::Stale | Self::Different if is_written => "written",
+            _ => self.name(),
+        }
+    }
 }
 
 /// Differences of one variant.
@@ -59,11 +67,13 @@ impl Findings {
     }
 
     /// Returns the kinds, each once.
-    fn state(&self) -> String {
+    /// Returns the state of the variant after the command.
+    fn state(&self, is_written: bool) -> String {
         let mut names: Vec<&str> = Vec::new();
         for (kind, _) in &self.0 {
-            if !names.contains(&kind.name()) {
-                names.push(kind.name());
+            let name = kind.after(is_written);
+            if !names.contains(&name) {
+                names.push(name);
             }
         }
         match names.is_empty() {
@@ -158,7 +168,12 @@ pub fn compare_built(
 }
 
 /// Returns a table of all variants if there are few or some differ, with the differences.
-pub fn table(family: &Family, manifest: &Manifest, findings: &[Findings]) -> String {
+pub fn table(
+    family: &Family,
+    manifest: &Manifest,
+    findings: &[Findings],
+    is_written: bool,
+) -> String {
     let rows = family.variants.iter().zip(findings);
     let rows: Vec<[String; 5]> = rows
         .filter(|(_, found)| family.variants.len() <= MAX_ROWS || !found.is_empty())
@@ -174,7 +189,7 @@ pub fn table(family: &Family, manifest: &Manifest, findings: &[Findings]) -> Str
                     .as_u64()
                     .map_or_else(|| "-".to_owned(), |count| count.to_string()),
                 manifest.verdict(&variant.name).unwrap_or("-").to_owned(),
-                found.state(),
+                found.state(is_written),
             ]
         })
         .collect();
@@ -192,7 +207,10 @@ pub fn table(family: &Family, manifest: &Manifest, findings: &[Findings]) -> Str
     }
     for (variant, found) in family.variants.iter().zip(findings) {
         for (kind, what) in &found.0 {
-            text += &format!("  {}: {}: {what}\n", variant.name, kind.name());
+            text += &match kind.after(is_written) {
+                "written" => format!("  {}: written ({}): {what}\n", variant.name, kind.name()),
+                name => format!("  {}: {name}: {what}\n", variant.name),
+            };
         }
     }
     text

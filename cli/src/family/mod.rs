@@ -178,7 +178,7 @@ fn print(
     options: &Options<'_>,
 ) -> Result {
     if !options.json {
-        let text = table(family, manifest, findings);
+        let text = table(family, manifest, findings, is_written);
         let verb = if is_written { "written" } else { "differ" };
         let files = count(manifest.file_count(), "file");
         return print_text(&format!("{text}{files}, {} {verb}\n", different.len()));
