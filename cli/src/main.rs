@@ -37,6 +37,7 @@ mod settings;
 mod significant;
 mod sweep_files;
 mod table;
+mod test_vectors;
 mod tour;
 
 use std::process::ExitCode;

@@ -55,6 +55,8 @@
 //! 5. [`rust`] and [`c`] (emitted source), [`wasm`] (a module for browsers) and [`report`] (equations as text
 //!    and LaTeX).
 //!
+//! [`vectors`] computes test vectors, which the backends write next to the source.
+//!
 //! [`variant`] derives the program of a model in one call and rejects dependent constraints
 //! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
 //! finds terms without a derivative at a point.
@@ -79,5 +81,7 @@ pub mod statements;
 pub mod symbolic;
 #[cfg(feature = "derive")]
 pub mod variant;
+#[cfg(feature = "derive")]
+pub mod vectors;
 #[cfg(feature = "derive")]
 pub mod wasm;

@@ -76,6 +76,10 @@ pub enum Extra {
     Output(Output),
     /// A benchmark.
     Bench,
+    /// Coefficients as constants.
+    Baked,
+    /// Test vectors and the function that compares them.
+    SelfTest,
 }
 
 impl Extra {
@@ -83,7 +87,7 @@ impl Extra {
     pub fn outputs(all: &[Self]) -> Vec<Output> {
         let request = |extra: &Self| match extra {
             Self::Output(output) => Some(*output),
-            Self::Bench => None,
+            Self::Bench | Self::Baked | Self::SelfTest => None,
         };
         all.iter().filter_map(request).collect()
     }
@@ -93,11 +97,14 @@ impl std::str::FromStr for Extra {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        if name == "bench" {
-            return Ok(Self::Bench);
+        match name {
+            "bench" => return Ok(Self::Bench),
+            "baked" => return Ok(Self::Baked),
+            "self_test" => return Ok(Self::SelfTest),
+            _ => {}
         }
         let output = parse_output(name).map(Self::Output);
-        output.map_err(|error| format!("{error}, bench"))
+        output.map_err(|error| format!("{error}, bench, baked, self_test"))
     }
 }
 
@@ -114,7 +121,8 @@ pub struct Generate {
     /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (Jacobian times vector), linearisation,
     /// regimes (rates for given contact states), step (a step of the solver fixed), lanes (an inlined copy of every function, for SIMD), hessians
-    /// (of the weighted rates, for CasADi), bench (a benchmark).
+    /// (of the weighted rates, for CasADi), bench (a benchmark), baked (the coefficients of the default parameters as
+    /// constants), self_test (test vectors and a function that compares a target with them).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
     /// Language of the emitted source.

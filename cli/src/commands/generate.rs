@@ -19,6 +19,7 @@ use crate::family;
 use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::settings::with_settings;
+use crate::test_vectors;
 
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
      --check`; nothing was written\n\nTo compare the files of other models, list them in a family file \
@@ -64,7 +65,14 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let model = with_settings(load(spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.order.text())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
-    let emitted = emission::files(&model, &variant, options.target)?;
+    let mut emitted = emission::files(&model, &variant, options.target)?;
+    emitted.extend(test_vectors::files(
+        &model,
+        &orders,
+        &variant.program,
+        &options.with,
+        options.target,
+    )?);
     let mut certificate = None;
     if options.certify {
         let sources = sources(&variant, &outputs, options.target)?;

@@ -20,6 +20,7 @@ use crate::certification::document;
 use crate::emission;
 use crate::error::{Error, Result};
 use crate::settings::with_settings;
+use crate::test_vectors;
 
 /// Name of a certificate.
 const CERTIFICATE: &str = "certificate.json";
@@ -119,11 +120,29 @@ impl Emitted {
             this.files
                 .insert(file.to_owned(), text.clone().into_bytes());
             this.sources.rust = Some(text);
+            this.files.extend(test_vectors::files(
+                model,
+                orders,
+                program,
+                &others,
+                Target::Rust,
+            )?);
         }
         if variant.has(Target::C99) {
             emission::outputs(Target::C99, &others, false)?;
             for (prefix, precision) in variant.c_prefixes() {
                 this.emit_c(&derived, &prefix, precision)?;
+                let mut program = program.clone();
+                program.name.clone_from(&prefix);
+                let files = test_vectors::files(model, orders, &program, &others, Target::C99)?;
+                for (name, contents) in files {
+                    // The variant's own prefix has `vectors.h`, that of another precision `PREFIX_vectors.h`.
+                    let name = match this.files.contains_key(&name) && name == "vectors.h" {
+                        true => format!("{prefix}_{name}"),
+                        false => name,
+                    };
+                    this.files.insert(name, contents);
+                }
             }
         }
         if variant.has(Target::Casadi) {

@@ -1,10 +1,8 @@
 //! Magnitude, sign, minimum, maximum and quantisation: a few selections each, with defined results for NaN.
 
 use crate::approximation::nearest_integer;
-use crate::real::Real;
-
-/// Quotients from here on are not rounded: `2^51`.
-const LARGEST_COUNT: f64 = (1_u64 << 51) as f64;
+use crate::precision::Precision;
+use crate::real::{Format, Real};
 
 /// Returns the magnitude; NaN for NaN.
 #[inline]
@@ -32,7 +30,7 @@ pub fn max<R: Real>(a: R, b: R) -> R {
     R::select_equal(b, b, R::select_less(a, b, b, a), b)
 }
 
-/// Returns the multiple of `step` that is nearest to x, halves away from zero, for up to `2^51` steps; NaN if `step` is
+/// Returns the multiple of `step` that is nearest to x, halves away from zero, for up to `2^51` steps (2^22 in single precision); NaN if `step` is
 /// 0.
 #[inline]
 pub fn quantise<R: Real>(x: R, step: R) -> R {
@@ -41,6 +39,8 @@ pub fn quantise<R: Real>(x: R, step: R) -> R {
     let even = nearest_integer(size);
     let next = even + R::constant(1.0);
     let nearest = R::select_equal(size - even, R::constant(0.5), next, even);
-    let count = R::select_less(size, R::constant(LARGEST_COUNT), nearest, size);
+    // Larger quotients are not rounded.
+    let largest = R::constant(0.5 * Format::<R>::ALL_INTEGERS);
+    let count = R::select_less(size, largest, nearest, size);
     step * count.copysign(ratio)
 }

@@ -3,8 +3,8 @@
 //!
 //! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
 //! `jacobians` and `controllers` write functions, `functions` their helpers, with the operations on bits of
-//! `primitives`. `casadi` is an additional interface. `expression`
-//! writes statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
+//! `primitives`; `vectors` writes test vectors. `casadi` is an additional interface. `expression` writes
+//! statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
 //! the order of computation.
 
 mod casadi;
@@ -23,11 +23,13 @@ mod sine_and_cosine;
 mod stages;
 mod step;
 mod types;
+mod vectors;
 
 pub use crate::statements::EmitError;
 pub use casadi::{CASADI_OUTPUTS, emit_casadi};
 pub use emit::{Files, emit, emit_with};
 pub use real::Real;
+pub use vectors::{baked, vectors};
 
 /// Returns true if a name is no word of C or C++.
 pub fn is_identifier(name: &str) -> bool {

@@ -23,10 +23,12 @@ mod slopes;
 mod stages;
 mod step;
 mod types;
+mod vectors;
 mod words;
 
 pub use crate::statements::EmitError;
 pub use emit::{ITEMS_MODULE, Packaging, emit};
+pub use vectors::{baked, vectors};
 
 /// Returns true if a name is no word of Rust.
 pub fn is_identifier(name: &str) -> bool {

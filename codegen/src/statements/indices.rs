@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::program::Program;
 
 /// Indices of one kind.
-pub(crate) struct Indices {
+pub struct Indices {
     /// Kind, in lower case.
     pub kind: &'static str,
     /// Description.
@@ -15,7 +15,7 @@ pub(crate) struct Indices {
 }
 
 /// Returns all kinds with at least one quantity.
-pub(crate) fn indices(program: &Program) -> Vec<Indices> {
+pub fn indices(program: &Program) -> Vec<Indices> {
     let inputs = program.inputs.iter().map(|input| input.name.clone());
     let parameters = program
         .parameters

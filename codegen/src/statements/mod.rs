@@ -36,12 +36,13 @@ pub(crate) use emit_error::EmitResult;
 pub(crate) use expression::{Array, Expression, Operator, Structure};
 pub(crate) use file::{File, quantity_line};
 pub(crate) use index::Index;
-pub(crate) use indices::{Indices, indices};
+pub use indices::{Indices, indices};
 pub(crate) use kernel::{KernelStatements, describe_elementary};
 pub(crate) use names::Words;
 pub(crate) use needed::RequiredFunctions;
 pub(crate) use preparation::{Preparation, PreparedValue, preparation};
 pub(crate) use requested::{jacobian_stage, rates_in_regime, requested_stages};
+pub use roots::coefficient_values;
 pub(crate) use roots::stage_roots;
 pub(crate) use stage::{Argument, Outcome, Size, Stage};
 pub(crate) use stages::{

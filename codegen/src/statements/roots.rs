@@ -27,7 +27,7 @@ pub fn stage_roots(program: &Program) -> Vec<ValueId> {
 }
 
 /// Returns the prepared values that stages read directly, without constants and tables.
-pub(super) fn coefficient_values(program: &Program) -> Vec<ValueId> {
+pub fn coefficient_values(program: &Program) -> Vec<ValueId> {
     let roots = stage_roots(program);
     let mut read: BTreeSet<ValueId> = program
         .reachable(&roots)

@@ -12,10 +12,12 @@ use eomgen_codegen::program::Output;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::{load, project, variant};
+use eomgen_tests::program::eomgen;
 
 /// Recorded counts; EOMGEN_REFRESH rewrites them.
 const COUNTS: &str = "examples/bare_metal/counts.txt";
 const OBSERVER_COUNTS: &str = "examples/bare_metal/observer_counts.txt";
+const MACHINE_COUNTS: &str = "examples/bare_metal/machine_counts.txt";
 
 /// Maximum increase of a count in percent; compilers differ slightly.
 const MAX_RISE_PERCENT: u64 = 5;
@@ -153,4 +155,84 @@ fn observer_on_microcontroller_matches_this_machine_bitwise() {
         page.contains(&errors.join("\n")),
         "docs/controllers.md does not print: {said}"
     );
+}
+
+/// Largest difference of the instructions of one machine between its states, in percent.
+const MAX_SPREAD_PERCENT: u64 = 5;
+
+/// Machines with angles in single precision: the firmware contains its identity and passes its self-test, its rates have the bits
+/// of this machine, and no count rises.
+#[test]
+fn machines_with_angles_on_microcontrollers_match_this_machine_bitwise() {
+    if let Some(missing) = missing_tool() {
+        skips::skip(&format!(
+            "machines with angles were not run on microcontrollers: {missing} is missing"
+        ));
+        return;
+    }
+    if !has_c_compilers() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new("bash");
+    command.arg(project().join("examples/bare_metal/count"));
+    let gimbal = project().join("tests/features/gimbal.toml");
+    for (name, specification) in [
+        ("gimbal", gimbal),
+        (
+            "puma_560",
+            project().join("model-spec/models/puma_560.toml"),
+        ),
+        (
+            "planetary_arm",
+            project().join("model-spec/models/planetary_arm.toml"),
+        ),
+    ] {
+        let out = folder.path().join(name);
+        for target in ["rust", "c99"] {
+            let status = eomgen()
+                .args([
+                    "generate",
+                    "--with",
+                    "self_test",
+                    "--target",
+                    target,
+                    "--out",
+                ])
+                .args([&out, &specification])
+                .status();
+            assert!(status.expect("eomgen").success());
+        }
+        command.arg(out);
+    }
+    let output = command.output().expect("bash");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success(),
+        "{printed}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let path = project().join(MACHINE_COUNTS);
+    if std::env::var_os("EOMGEN_REFRESH").is_some() {
+        std::fs::write(&path, &printed).expect("written");
+    }
+    let kept = std::fs::read_to_string(path).expect("the recorded counts");
+    assert_eq!(kept.lines().count(), printed.lines().count(), "{printed}");
+    for (kept, now) in kept.lines().zip(printed.lines()) {
+        let [_, most_before, _] = machine_counts(kept);
+        let [least, most, _] = machine_counts(now);
+        assert!(
+            100 * most <= (100 + MAX_RISE_PERCENT) * most_before,
+            "{kept}\n{now}"
+        );
+        assert!(100 * (most - least) <= MAX_SPREAD_PERCENT * least, "{now}");
+    }
+}
+
+/// Returns smallest and largest number of instructions and bytes of stack.
+fn machine_counts(line: &str) -> [u64; 3] {
+    let mut words = line.rsplit(' ').map(|word| word.parse().expect("a number"));
+    let mut next = || words.next().expect("three numbers");
+    let [stack, most, least] = [next(), next(), next()];
+    [least, most, stack]
 }

@@ -3,9 +3,12 @@
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
 
+use super::number::Number;
+
 /// Returns 1/a for a positive pivot, else NaN.
-pub(super) fn pivot_reciprocal(a: f64) -> f64 {
-    if a > 0.0 { 1.0 / a } else { f64::NAN }
+pub(super) fn pivot_reciprocal<N: Number>(a: N) -> N {
+    let [zero, one, none] = [0.0, 1.0, f64::NAN].map(N::constant);
+    if a > zero { one / a } else { none }
 }
 
 /// Definition of a function of the expression language.
@@ -22,7 +25,7 @@ pub enum PiecewiseFunction {
 }
 
 /// Computes a function of the expression language; functions of one argument ignore `b`.
-pub fn call(function: Function, a: f64, b: f64) -> f64 {
+pub fn call<N: Number>(function: Function, a: N, b: N) -> N {
     match piecewise_function(function) {
         PiecewiseFunction::Elementary(elementary) => elementary.apply(&[a, b]),
         PiecewiseFunction::Deadzone => deadzone(a, b),
@@ -32,18 +35,18 @@ pub fn call(function: Function, a: f64, b: f64) -> f64 {
 }
 
 /// Computes f_k of Eq. (7).
-fn deadzone(p: f64, b: f64) -> f64 {
+fn deadzone<N: Number>(p: N, b: N) -> N {
     let held = if p > b { b } else { p };
     p - if -b > held { -b } else { held }
 }
 
 /// Computes the indicator of |p| > b, Eq. (8).
-fn contact(p: f64, b: f64) -> f64 {
-    if p > b || p < -b { 1.0 } else { 0.0 }
+fn contact<N: Number>(p: N, b: N) -> N {
+    N::constant(if p > b || p < -b { 1.0 } else { 0.0 })
 }
 
-fn above(p: f64) -> f64 {
-    if p > 0.0 { 1.0 } else { 0.0 }
+fn above<N: Number>(p: N) -> N {
+    N::constant(if p > N::constant(0.0) { 1.0 } else { 0.0 })
 }
 
 /// Returns the definition of a function.

@@ -3,17 +3,22 @@
 
 use eomgen_elementary::Function as Elementary;
 
+use super::number::Number;
 use super::operands::Operands;
 use crate::program::{ScaledValue, ValueId};
 
 /// Computes left^T diag(weight) right.
-pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, right]: [ValueId; 3]) {
+pub(super) fn gram<N: Number>(
+    out: &mut [N],
+    operands: &Operands<'_, N>,
+    [left, weight, right]: [ValueId; 3],
+) {
     let (left, nodes, rows) = operands.matrix(left);
     let (right, _, columns) = operands.matrix(right);
     let (weight, stride) = operands.strided(weight);
     for r in 0..rows {
         for c in 0..columns {
-            out[r * columns + c] = (0..nodes).fold(0.0, |total, g| {
+            out[r * columns + c] = (0..nodes).fold(N::constant(0.0), |total, g| {
                 total + left[g * rows + r] * weight[g * stride] * right[g * columns + c]
             });
         }
@@ -21,35 +26,35 @@ pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, righ
 }
 
 /// Computes the diagonal of left^T diag(weight) right.
-pub(super) fn gram_diagonal(
-    out: &mut [f64],
-    operands: &Operands<'_>,
+pub(super) fn gram_diagonal<N: Number>(
+    out: &mut [N],
+    operands: &Operands<'_, N>,
     [left, weight, right]: [ValueId; 3],
 ) {
     let (left, nodes, modes) = operands.matrix(left);
     let (right, ..) = operands.matrix(right);
     let (weight, stride) = operands.strided(weight);
     for (r, slot) in out.iter_mut().enumerate() {
-        *slot = (0..nodes).fold(0.0, |total, g| {
+        *slot = (0..nodes).fold(N::constant(0.0), |total, g| {
             total + left[g * modes + r] * weight[g * stride] * right[g * modes + r]
         });
     }
 }
 
 /// Multiplies a matrix, or its transpose, by a vector.
-pub(super) fn apply(
-    out: &mut [f64],
-    (matrix, rows, columns): (&[f64], usize, usize),
+pub(super) fn apply<N: Number>(
+    out: &mut [N],
+    (matrix, rows, columns): (&[N], usize, usize),
     transposed: bool,
-    (vector, stride): (&[f64], usize),
+    (vector, stride): (&[N], usize),
 ) {
     for (i, slot) in out.iter_mut().enumerate() {
         *slot = if transposed {
-            (0..rows).fold(0.0, |total, g| {
+            (0..rows).fold(N::constant(0.0), |total, g| {
                 total + matrix[g * columns + i] * vector[g * stride]
             })
         } else {
-            (0..columns).fold(0.0, |total, c| {
+            (0..columns).fold(N::constant(0.0), |total, c| {
                 total + matrix[i * columns + c] * vector[c * stride]
             })
         };
@@ -57,13 +62,13 @@ pub(super) fn apply(
 }
 
 /// Computes a matrix of `columns` columns from its diagonal, outer products and scaled matrices.
-pub(super) fn assemble(
-    out: &mut [f64],
+pub(super) fn assemble<N: Number>(
+    out: &mut [N],
     columns: usize,
-    operands: &Operands<'_>,
+    operands: &Operands<'_, N>,
     (diagonal, outer, matrices): (Option<ValueId>, &[(ValueId, ValueId)], &[ScaledValue]),
 ) {
-    out.fill(0.0);
+    out.fill(N::constant(0.0));
     if let Some(diagonal) = diagonal {
         let (diagonal, stride) = operands.strided(diagonal);
         for r in 0..columns {
@@ -95,18 +100,18 @@ pub(super) fn assemble(
 }
 
 /// Computes the factor L of L L^T = matrix, row by row; the upper part of `out` becomes 0.
-pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
-    out.fill(0.0);
+pub(super) fn cholesky<N: Number>(out: &mut [N], matrix: &[N], size: usize) {
+    out.fill(N::constant(0.0));
     for r in 0..size {
         for c in 0..=r {
             let rest = (0..c).fold(matrix[r * size + c], |rest, k| {
                 rest - out[r * size + k] * out[c * size + k]
             });
             out[r * size + c] = if r == c {
-                if rest > 0.0 {
+                if rest > N::constant(0.0) {
                     Elementary::Sqrt.apply(&[rest])
                 } else {
-                    f64::NAN
+                    N::constant(f64::NAN)
                 }
             } else {
                 rest / out[c * size + c]
@@ -116,11 +121,11 @@ pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
 }
 
 /// Solves for `columns` right-hand sides; with stride 0 all rows share one number.
-pub(super) fn cholesky_solve(
-    out: &mut [f64],
+pub(super) fn cholesky_solve<N: Number>(
+    out: &mut [N],
     columns: usize,
-    (factor, size, _): (&[f64], usize, usize),
-    (right, stride): (&[f64], usize),
+    (factor, size, _): (&[N], usize, usize),
+    (right, stride): (&[N], usize),
 ) {
     for column in 0..columns {
         let right = (right, stride * columns);
@@ -130,12 +135,12 @@ pub(super) fn cholesky_solve(
 
 /// Solves for one column of the right-hand side. Both arrays hold `columns` numbers in a row; with stride 0
 /// all rows of the right-hand side share one number.
-fn solve_column(
-    out: &mut [f64],
+fn solve_column<N: Number>(
+    out: &mut [N],
     (column, columns): (usize, usize),
-    factor: &[f64],
+    factor: &[N],
     size: usize,
-    (right, stride): (&[f64], usize),
+    (right, stride): (&[N], usize),
 ) {
     let at = |r: usize| r * columns + column;
     for r in 0..size {

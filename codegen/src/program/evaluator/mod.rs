@@ -10,6 +10,7 @@ mod enclosure;
 mod functions;
 mod impacts;
 mod matrices;
+mod number;
 mod operands;
 mod outputs;
 mod places;
@@ -28,6 +29,7 @@ pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};
 pub use impacts::{FrictionValues, ImpactValues};
+use number::Number;
 pub use places::Places;
 pub use point::Point;
 pub use sliding::SlidingValues;
@@ -47,6 +49,10 @@ pub struct Evaluator {
     code: Option<Arc<dyn MachineCode>>,
     /// True for each stage that machine code computes.
     by_code: [bool; Stage::ALL.len()],
+    /// Prepared values that functions in single precision compute themselves.
+    recomputed: Vec<ValueId>,
+    /// Memory of the steps in single precision, if they compute in it.
+    single: Option<Vec<f32>>,
     /// Allocated when bounds are first computed.
     bounds: Option<BoundsMemory>,
 }
@@ -77,6 +83,8 @@ impl Evaluator {
             stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
             code: None,
             by_code: [false; Stage::ALL.len()],
+            recomputed: Vec::new(),
+            single: None,
             bounds: None,
             program,
         };
@@ -94,6 +102,21 @@ impl Evaluator {
         }
         evaluator.code = Some(code);
         evaluator
+    }
+
+    /// Computes the outputs from now on in single precision, with the bits of the emitted code for `f32` with
+    /// coefficients that are prepared in double precision and converted. Times, states and inputs must be numbers
+    /// of single precision.
+    ///
+    /// `coefficients` are the prepared values that the emitted functions read; they compute all others.
+    pub fn in_single_precision(mut self, coefficients: &[ValueId]) -> Self {
+        self.code = None;
+        self.single = Some(vec![0.0; self.places.size()]);
+        self.recomputed = self.prepare.clone();
+        self.recomputed.retain(|id| !coefficients.contains(id));
+        let defaults = self.program.default_parameters();
+        self.prepare(&defaults);
+        self
     }
 
     /// Returns the program.
@@ -120,6 +143,20 @@ impl Evaluator {
         if let Some(code) = &self.code {
             code.prepare(&mut self.memory);
         }
+        if self.single.is_some() {
+            self.convert_prepared();
+        }
+    }
+
+    /// Prepares as [`Evaluator::prepare`], in single precision: the parameters must be numbers of it. For outputs in
+    /// single precision.
+    pub fn prepare_in_single_precision(&mut self, parameters: &[f64]) {
+        for (id, place) in &self.parameters {
+            self.memory[self.places.offset(*id)] = parameters[*place];
+        }
+        let steps = std::mem::take(&mut self.prepare);
+        self.compute_single(&steps, &NO_POINT);
+        self.prepare = steps;
     }
 
     /// Returns true if every prepared pivot of the mass matrix is positive; otherwise the rates are NaN.
@@ -265,9 +302,41 @@ impl Evaluator {
             && self.by_code[stage as usize]
         {
             code.compute(stage, &mut self.memory, point);
-        } else {
-            let steps = &self.stages[stage as usize];
-            run(&mut self.memory, &self.places, &self.program, steps, point);
+            return;
+        }
+        if self.single.is_some() {
+            let steps = std::mem::take(&mut self.stages[stage as usize]);
+            self.compute_single(&steps, point);
+            self.stages[stage as usize] = steps;
+            return;
+        }
+        let steps = &self.stages[stage as usize];
+        run(&mut self.memory, &self.places, &self.program, steps, point);
+    }
+
+    /// Converts the coefficients to single precision, and computes the other prepared values from them.
+    fn convert_prepared(&mut self) {
+        for number in &mut self.memory {
+            *number = f64::from(*number as f32);
+        }
+        let steps = std::mem::take(&mut self.recomputed);
+        self.compute_single(&steps, &NO_POINT);
+        self.recomputed = steps;
+    }
+
+    /// Computes steps in single precision. Prepared values and arguments are read from the memory of double precision,
+    /// and results written to it, which is exact.
+    fn compute_single(&mut self, steps: &[ValueId], point: &Point<'_>) {
+        let (places, program) = (&self.places, &self.program);
+        let single = self.single.get_or_insert_default();
+        single.clear();
+        single.extend(self.memory.iter().map(|number| *number as f32));
+        run(single, places, program, steps, point);
+        for id in steps {
+            let start = places.offset(*id);
+            for place in start..start + program.values[id.0].extent.length() {
+                self.memory[place] = f64::from(single[place]);
+            }
         }
     }
 }
@@ -278,8 +347,8 @@ const NO_POINT: Point<'static> = Point {
     inputs: &[],
 };
 
-fn run(
-    memory: &mut [f64],
+fn run<N: Number>(
+    memory: &mut [N],
     places: &Places,
     program: &Program,
     steps: &[ValueId],

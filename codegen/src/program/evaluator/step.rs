@@ -4,14 +4,15 @@ use eomgen_elementary::Function as Elementary;
 
 use super::functions::{call, pivot_reciprocal};
 use super::matrices::{apply, assemble, cholesky, cholesky_solve, gram, gram_diagonal};
+use super::number::Number;
 use super::operands::Operands;
 use super::places::Places;
 use super::point::Point;
 use crate::program::{Arguments, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Computes the value `id` into its place in `memory`.
-pub(super) fn step(
-    memory: &mut [f64],
+pub(super) fn step<N: Number>(
+    memory: &mut [N],
     places: &Places,
     program: &Program,
     id: ValueId,
@@ -27,22 +28,24 @@ pub(super) fn step(
     };
     let degrees = program.degrees_of_freedom();
     match &value.op {
-        Op::Constant(number) => out[0] = *number,
-        Op::Table(place) => out.copy_from_slice(&program.tables[*place].values),
+        Op::Constant(number) => out[0] = N::constant(*number),
+        Op::Table(place) => convert(out, &program.tables[*place].values),
         Op::Parameter(_) | Op::Argument(..) => {}
-        Op::Coordinate(index) => out[0] = point.state[*index],
-        Op::Rate(index) => out[0] = point.state[degrees + index.index()],
+        Op::Coordinate(index) => out[0] = N::constant(point.state[*index]),
+        Op::Rate(index) => out[0] = N::constant(point.state[degrees + index.index()]),
         Op::ModeCoordinates(field) => {
             let start = program.mode_offset(*field);
-            out.copy_from_slice(&point.state[start..start + out.len()]);
+            convert(out, &point.state[start..]);
         }
         Op::ModeRates(field) => {
             let start = degrees + program.mode_offset(*field);
-            out.copy_from_slice(&point.state[start..start + out.len()]);
+            convert(out, &point.state[start..]);
         }
-        Op::State(index) => out[0] = point.state[2 * degrees + index.index()],
-        Op::Input(index) => out[0] = point.inputs.get(index.index()).copied().unwrap_or(0.0),
-        Op::Time => out[0] = point.t,
+        Op::State(index) => out[0] = N::constant(point.state[2 * degrees + index.index()]),
+        Op::Input(index) => {
+            out[0] = N::constant(point.inputs.get(index.index()).copied().unwrap_or(0.0));
+        }
+        Op::Time => out[0] = N::constant(point.t),
         Op::Negate(a) => unary(out, &operands, *a, |a| -a),
         Op::PivotReciprocal(a) => unary(out, &operands, *a, pivot_reciprocal),
         Op::Add(a, b) => binary(out, &operands, *a, *b, |a, b| a + b),
@@ -123,12 +126,12 @@ pub(super) fn step(
 }
 
 /// Sums the elements in the order that `Op::Total` defines.
-fn total(elements: &[f64]) -> f64 {
+fn total<N: Number>(elements: &[N]) -> N {
     let (first, rest) = elements.split_at(elements.len().min(PARTIAL_SUMS));
-    let mut partial = [0.0; PARTIAL_SUMS];
+    let mut partial = [N::constant(0.0); PARTIAL_SUMS];
     partial[..first.len()].copy_from_slice(first);
     for (i, x) in rest.iter().enumerate() {
-        partial[i % PARTIAL_SUMS] += x;
+        partial[i % PARTIAL_SUMS] += *x;
     }
     let mut count = first.len();
     while count > 1 {
@@ -143,19 +146,31 @@ fn total(elements: &[f64]) -> f64 {
     partial[0]
 }
 
-fn unary(out: &mut [f64], operands: &Operands<'_>, a: ValueId, function: impl Fn(f64) -> f64) {
+/// Converts numbers to the type of the computation; `numbers` has at least as many as `out`.
+fn convert<N: Number>(out: &mut [N], numbers: &[f64]) {
+    for (slot, number) in out.iter_mut().zip(numbers) {
+        *slot = N::constant(*number);
+    }
+}
+
+fn unary<N: Number>(
+    out: &mut [N],
+    operands: &Operands<'_, N>,
+    a: ValueId,
+    function: impl Fn(N) -> N,
+) {
     let (a, stride) = operands.strided(a);
     for (i, slot) in out.iter_mut().enumerate() {
         *slot = function(a[i * stride]);
     }
 }
 
-fn binary(
-    out: &mut [f64],
-    operands: &Operands<'_>,
+fn binary<N: Number>(
+    out: &mut [N],
+    operands: &Operands<'_, N>,
     a: ValueId,
     b: ValueId,
-    function: impl Fn(f64, f64) -> f64,
+    function: impl Fn(N, N) -> N,
 ) {
     let (a, b) = (operands.strided(a), operands.strided(b));
     for (i, slot) in out.iter_mut().enumerate() {

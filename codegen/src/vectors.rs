@@ -1,0 +1,107 @@
+//! Test vectors of a program: states with the bits of all outputs, and the coefficients of the default parameters.
+//! The backends write them next to the emitted source, with a function that compares a target with them.
+
+use crate::program::evaluator::{Evaluator, Point};
+use crate::program::{Program, ValueId};
+use crate::statements::coefficient_values;
+
+/// Time, state and inputs of a call.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// Time in s.
+    pub time: f64,
+    /// State, in SI units.
+    pub state: Vec<f64>,
+    /// Inputs, in SI units.
+    pub inputs: Vec<f64>,
+}
+
+impl Given {
+    /// Returns time, state and inputs in this order.
+    pub fn numbers(&self) -> Vec<f64> {
+        [&[self.time][..], &self.state, &self.inputs].concat()
+    }
+
+    fn rounded(&self) -> Self {
+        let round = |number: &f64| f64::from(*number as f32);
+        Self {
+            time: round(&self.time),
+            state: self.state.iter().map(round).collect(),
+            inputs: self.inputs.iter().map(round).collect(),
+        }
+    }
+}
+
+/// Call with its results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestVector {
+    /// Arguments.
+    pub given: Given,
+    /// Rates, observables, energy, power, guards and mass matrix, in this order.
+    pub expected: Vec<f64>,
+}
+
+/// Test vectors in both precisions. The numbers of single precision are exact in `f32`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TestVectors {
+    /// Double precision.
+    pub double: Vec<TestVector>,
+    /// Single precision, with coefficients that are prepared in double precision.
+    pub single: Vec<TestVector>,
+}
+
+impl TestVectors {
+    /// Computes all outputs of `program` at each of the calls. Calls with results that are not finite are left out.
+    pub fn new(program: &Program, calls: &[Given]) -> Self {
+        let vectors = |evaluator: &mut Evaluator, calls: Vec<Given>| {
+            let calls = calls.into_iter();
+            let vectors = calls.map(|given| TestVector {
+                expected: results(evaluator, &given),
+                given,
+            });
+            vectors
+                .filter(|vector| vector.expected.iter().all(|number| number.is_finite()))
+                .collect()
+        };
+        let mut evaluator = Evaluator::new(program.clone());
+        let double = vectors(&mut evaluator, calls.to_vec());
+        let mut evaluator = evaluator.in_single_precision(&coefficient_values(program));
+        let single = vectors(&mut evaluator, calls.iter().map(Given::rounded).collect());
+        Self { double, single }
+    }
+}
+
+fn results(evaluator: &mut Evaluator, given: &Given) -> Vec<f64> {
+    let program = evaluator.program();
+    let (states, degrees) = (program.states(), program.degrees_of_freedom());
+    let (known, observables) = (program.observable_values.len(), program.observables.len());
+    let guards = evaluator.guard_count();
+    let [mut rates, mut values, mut surfaces, mut mass] =
+        [states, known, guards, degrees * degrees].map(|length| vec![0.0; length]);
+    let point = Point {
+        t: given.time,
+        state: &given.state,
+        inputs: &given.inputs,
+    };
+    evaluator.rates(point, &mut rates);
+    evaluator.observables(point, &mut values);
+    evaluator.guards(point, &mut surfaces);
+    evaluator.mass_matrix(point, &mut mass);
+    let energy_and_power = &values[known - 2..];
+    [
+        &rates[..],
+        &values[..observables],
+        energy_and_power,
+        &surfaces,
+        &mass,
+    ]
+    .concat()
+}
+
+/// Returns the numbers of the coefficients `ids` for the default parameters, and whether the mass matrix is positive
+/// definite.
+pub(crate) fn default_coefficients(program: &Program, ids: &[ValueId]) -> (Vec<Vec<f64>>, bool) {
+    let evaluator = Evaluator::new(program.clone());
+    let numbers = ids.iter().map(|id| evaluator.slice(*id).to_vec());
+    (numbers.collect(), evaluator.pivots_are_positive())
+}
