@@ -50,6 +50,7 @@ pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Ce
         not_applicable: &[],
         outputs: (!outputs.is_empty()).then_some(&functions),
         emitted: Err("judged elsewhere".to_owned()),
+        program: None,
         c_source: None,
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),

@@ -20,7 +20,9 @@ pub fn run(options: &Verify) -> Result {
     let text = read(&options.file)?;
     let (sources, expected) = sources(options, &certificate, text.clone())?;
     let found = sha256(&text);
-    let is_same = expected == found;
+    let header = sources.c.as_ref().map(|source| sha256(&source.header));
+    let is_header_same = header.is_none() || header == certificate.c_header_sha256;
+    let is_same = expected == found && is_header_same;
     let repeated = {
         let _note = Note::new(format!("verifying {}", options.file.display()));
         let orders = vec![certificate.order; certificate.model.fields.len()];
@@ -37,6 +39,9 @@ pub fn run(options: &Verify) -> Result {
     } else {
         let hash = match is_same {
             true => format!("hash: as certified, {found}\n"),
+            false if !is_header_same => {
+                "hash: the header is DIFFERENT from the certified one\n".to_owned()
+            }
             false => format!("hash: DIFFERENT, {found} instead of {expected}\n"),
         };
         print_text(&(summary(&repeated) + &hash))?;
@@ -61,6 +66,7 @@ struct Certificate {
     outputs: Vec<Output>,
     source_sha256: String,
     c_source_sha256: Option<String>,
+    c_header_sha256: Option<String>,
 }
 
 impl Certificate {
@@ -121,6 +127,7 @@ impl Certificate {
             outputs,
             source_sha256: string("source_sha256")?,
             c_source_sha256: document["c_source_sha256"].as_str().map(str::to_owned),
+            c_header_sha256: document["c_header_sha256"].as_str().map(str::to_owned),
         })
     }
 }

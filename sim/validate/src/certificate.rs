@@ -24,6 +24,8 @@ pub struct Certificate {
     pub source_sha256: Option<String>,
     /// SHA-256 of the emitted C; `None` if no C was emitted.
     pub c_source_sha256: Option<String>,
+    /// SHA-256 of the header of the emitted C, if any.
+    pub c_header_sha256: Option<String>,
     /// Hashes of the sources in their identities, as `eomgen identify` prints them.
     pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
@@ -134,6 +136,8 @@ pub struct CertificateHeader {
     pub source_sha256: Option<String>,
     /// SHA-256 of the emitted C, if any.
     pub c_source_sha256: Option<String>,
+    /// SHA-256 of the header of the emitted C, if any.
+    pub c_header_sha256: Option<String>,
     /// Hashes of the sources in their identities.
     pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
@@ -173,6 +177,7 @@ impl Certificate {
             specification_sha256: about.specification_sha256,
             source_sha256: about.source_sha256,
             c_source_sha256: about.c_source_sha256,
+            c_header_sha256: about.c_header_sha256,
             identities: about.identities,
             settings: about.settings,
             specification: about.specification,
@@ -272,6 +277,18 @@ impl Worst {
             value: if value.is_nan() { f64::INFINITY } else { value },
             detail: detail.into(),
         }
+    }
+
+    /// Adds the deviation of another comparison, with its detail if only it deviates.
+    pub fn with(self, other: Option<Self>) -> Self {
+        let Some(other) = other else { return self };
+        let detail = match (self.value > 0.0, other.value > 0.0) {
+            (true, _) => self.detail,
+            (false, true) => other.detail,
+            (false, false) if other.detail.is_empty() => self.detail,
+            (false, false) => format!("{}, {}", self.detail, other.detail),
+        };
+        Self::from_deviation(self.value + other.value, detail)
     }
 
     /// Keeps the larger of two values, with its detail.

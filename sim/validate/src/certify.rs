@@ -10,6 +10,7 @@ use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
 use super::variant::Variant;
 use eomgen_codegen::identity::find;
+use eomgen_codegen::program::Program;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
@@ -48,6 +49,8 @@ pub struct Subject<'s> {
     pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// Emitted source with the parameters of the specification, or the reason for its absence.
     pub emitted: Result<Emitted, String>,
+    /// Program of the emitted sources, to compare their interface with; `None` leaves this out.
+    pub program: Option<&'s Program>,
     /// Emitted C, if there is any.
     pub c_source: Option<&'s CSource>,
     /// Emitted source with kernels of regimes, or the reason for its absence.
@@ -86,6 +89,7 @@ pub fn certificate_header(
         specification_sha256: model.hash(),
         source_sha256: rust_hash.or(c_hash.clone()),
         c_source_sha256: c_hash,
+        c_header_sha256: c.map(|emitted| sha256(&emitted.header)),
         identities: [
             rust.map(|emitted| &emitted.source),
             c.map(|emitted| &emitted.source),
@@ -103,6 +107,37 @@ pub fn certificate_header(
             .unwrap_or_default(),
         parameters: names.zip(parameters.iter().copied()).collect(),
     }
+}
+
+/// Runs only the checks that compile the emitted sources.
+///
+/// # Errors
+/// A variant that cannot be evaluated.
+pub fn check_sources(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
+    let oracle = build_oracle(subject, subject.order)?;
+    let mut variant = (subject.variants)(subject.order)?;
+    let mut outputs = subject.outputs.map(|make| make()).transpose()?;
+    source_checks(subject, &oracle, variant.as_mut(), outputs.as_deref_mut())
+}
+
+fn source_checks(
+    subject: &Subject<'_>,
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    outputs: Option<&mut (dyn Outputs + 'static)>,
+) -> Result<Vec<Check>, String> {
+    let mut checks = match &subject.emitted {
+        Ok(emitted) => {
+            let source = (emitted, subject.program);
+            emitted::check(oracle, variant, outputs, source).map_err(describe_error)?
+        }
+        Err(reason) => emitted::skipped_checks(None, SkipKind::NotApplicable, reason),
+    };
+    if let Some(source) = subject.c_source {
+        let judged = (variant, subject.program);
+        checks.push(emitted_c::check(oracle, judged, source).map_err(describe_error)?);
+    }
+    Ok(checks)
 }
 
 fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
@@ -128,16 +163,8 @@ fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
     }
     let jacobians = outputs.as_deref_mut();
     checks.extend(zeros::check(&oracle, variant, jacobians).map_err(describe_error)?);
-    checks.extend(match &subject.emitted {
-        Ok(emitted) => {
-            let outputs = outputs.as_deref_mut();
-            emitted::check(&oracle, variant, outputs, emitted).map_err(describe_error)?
-        }
-        Err(reason) => emitted::skipped_checks(None, SkipKind::NotApplicable, reason),
-    });
-    if let Some(source) = subject.c_source {
-        checks.push(emitted_c::check(&oracle, variant, source).map_err(describe_error)?);
-    }
+    let of_sources = outputs.as_deref_mut();
+    checks.extend(source_checks(subject, &oracle, variant, of_sources)?);
     checks.push(match &subject.regimes {
         Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(describe_error)?,
         Err(reason) => regimes::skipped_check(reason),

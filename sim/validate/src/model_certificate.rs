@@ -15,9 +15,9 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::variant::ModelError;
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, Check};
 use crate::certify::{
-    CSource, Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify,
+    self, CSource, Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify,
 };
 use crate::derived::Derived;
 use crate::derived_outputs::DerivedOutputs;
@@ -122,6 +122,33 @@ fn certificate(
     outputs: &[Output],
     sources: &Sources,
 ) -> Result<Certificate, ModelError> {
+    with_subject(model, order, outputs, sources, certify)
+}
+
+/// Runs only the checks of [`certify_sources`] that compile the sources.
+///
+/// # Errors
+/// As [`certify_model`], and a variant that cannot be evaluated.
+pub fn check_sources(
+    model: &Model,
+    orders: &[usize],
+    outputs: &[Output],
+    sources: &Sources,
+) -> Result<Vec<Check>, Error> {
+    let order = common_order(model, orders)?;
+    let checks = with_subject(model, order, outputs, sources, certify::check_sources)
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
+    checks.map_err(Error::Request)
+}
+
+/// Calls `work` with everything that the checks of the sources need.
+fn with_subject<R>(
+    model: &Model,
+    order: usize,
+    outputs: &[Output],
+    sources: &Sources,
+    work: impl FnOnce(&Subject<'_>) -> R,
+) -> Result<R, ModelError> {
     let parameters = model.parameter_values()?;
     let reference_equations = reference_equations(model, order, &parameters);
     let variants = |order: usize| build_variant(model, order, &parameters);
@@ -132,12 +159,13 @@ fn certificate(
         Err(reason) => Err(reason.clone()),
     };
     let emitted = emitted_source(model, outputs, sources);
+    let program = build_program(model, order, &parameters, outputs);
     let inputs: Vec<String> = model
         .inputs
         .iter()
         .map(|input| input.name.clone())
         .collect();
-    Ok(certify(&Subject {
+    Ok(work(&Subject {
         model,
         order,
         parameters: &parameters,
@@ -147,6 +175,7 @@ fn certificate(
         outputs: (!outputs.is_empty()).then_some(&output_functions),
         regimes: generate_kernels(model, order, &parameters, &inputs),
         emitted: emitted.ok_or_else(|| "no Rust was emitted".to_owned()),
+        program: program.as_ref().ok(),
         c_source: sources.c.as_ref(),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),

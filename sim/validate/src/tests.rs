@@ -34,6 +34,7 @@ fn certify_model(
         not_applicable: &[],
         outputs: None,
         emitted,
+        program: None,
         c_source: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
@@ -84,6 +85,7 @@ fn certify_preload(kernel: &str, derivative: bool) -> Certificate {
         not_applicable: &[],
         outputs: None,
         emitted: Err("not emitted".into()),
+        program: None,
         c_source: None,
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
@@ -398,6 +400,7 @@ fn certify_faulty_outputs(wrong: &'static str) -> Certificate {
         not_applicable: &[],
         outputs: Some(&outputs),
         emitted: Err("not emitted".into()),
+        program: None,
         c_source: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),

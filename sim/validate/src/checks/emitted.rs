@@ -6,11 +6,14 @@ use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
+use super::interface::{Calls, Precision, USUAL_FUNCTIONS, rust_harness};
 use super::linked_program::{
-    Emitted, EmittedFunction, count_differences, format_bits, run_program,
+    Emitted, EmittedFunction, count_differences, format_bits, run_linked, run_program,
 };
 use super::number_types::{self, BorrowedOutputs};
+use eomgen_codegen::program::Program;
 use std::fmt::Write as _;
+use std::path::Path;
 
 const NAME: &str = "emitted_rust";
 const STATES: usize = 100;
@@ -21,7 +24,7 @@ pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
     functions: Option<BorrowedOutputs<'_>>,
-    emitted: &Emitted,
+    (emitted, program): (&Emitted, Option<&Program>),
 ) -> Result<Vec<Check>, OracleError> {
     let samples = draw_samples(oracle)?;
     if samples.is_empty() {
@@ -58,12 +61,34 @@ pub fn check(
         Ok(worst) => worst,
         Err(message) => Worst::from_deviation(f64::INFINITY, message),
     };
-    let mut checks = vec![Check::from_deviation(NAME, worst, 0.0)];
+    let interface = program
+        .filter(|_| emitted.outputs.is_some())
+        .map(|program| {
+            check_interface(&compiler, folder, emitted, &Calls::new(program, &samples))
+                .unwrap_or_else(|message| Worst::from_deviation(f64::INFINITY, message))
+        });
+    let mut checks = vec![Check::from_deviation(NAME, worst.with(interface), 0.0)];
     let judged = (variant, functions);
     checks.extend(number_types::check(
         &compiler, folder, emitted, judged, &samples,
     ));
     Ok(checks)
+}
+
+/// Compares the interface in double and in single precision.
+fn check_interface(
+    compiler: &Compiler,
+    folder: &Path,
+    emitted: &Emitted,
+    calls: &Calls<'_>,
+) -> Result<Worst, String> {
+    let harness = rust_harness(calls.program, &emitted.source);
+    let harness = ("interface", &*harness);
+    let found = run_linked(compiler, folder, harness, Optimization::Full, &calls.text())?;
+    let mut lines = found.lines();
+    let double = calls.compare(&mut lines, Precision::Double, (true, USUAL_FUNCTIONS));
+    let single = calls.compare(&mut lines, Precision::Cast, (false, USUAL_FUNCTIONS));
+    Ok(double.with(Some(single)))
 }
 
 /// Returns the checks of emitted source with `outputs` as skipped.

@@ -4,7 +4,10 @@
 use std::path::Path;
 use std::process::Command;
 
+use eomgen_codegen::program::Program;
+
 use super::emitted::{compare, draw_samples};
+use super::interface::{Calls, Precision, c_harness};
 use super::linked_program::{EmittedFunction, format_samples, require_success};
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::compiler::{self, execute, run, write};
@@ -63,6 +66,11 @@ impl CCompiler {
         words.map(String::as_str).collect::<Vec<_>>().join(" ")
     }
 
+    /// Returns true if the options choose the number type.
+    fn sets_precision(&self) -> bool {
+        self.options.iter().any(|option| option.contains("_REAL="))
+    }
+
     /// Compiles an empty file, which any usable compiler can.
     fn probe(&self, folder: &Path) -> Result<(), String> {
         let probe = folder.join("probe.c");
@@ -93,10 +101,10 @@ const FUNCTIONS: [EmittedFunction; 6] = [
     EmittedFunction::MassMatrix,
 ];
 
-/// Compiles `emitted` and counts the numbers that differ from `variant` by a bit.
+/// Compiles `emitted` and counts the numbers that differ from `variant` and, with its interface, from `program` by a bit.
 pub fn check(
     oracle: &Oracle,
-    variant: &mut dyn Variant,
+    (variant, program): (&mut dyn Variant, Option<&Program>),
     emitted: &CSource,
 ) -> Result<Check, OracleError> {
     let samples = draw_samples(oracle)?;
@@ -116,8 +124,38 @@ pub fn check(
     }
     let found = run_harness(folder.path(), emitted, &format_samples(&samples));
     let worst = found.and_then(|lines| compare(variant, &FUNCTIONS, &samples, &lines));
+    let interface = program
+        .map(|program| check_interface(folder.path(), emitted, &Calls::new(program, &samples)));
+    let worst = worst.and_then(|worst| Ok(worst.with(interface.transpose()?)));
     let worst = worst.unwrap_or_else(|message| Worst::from_deviation(f64::INFINITY, message));
     Ok(Check::from_deviation(NAME, worst, 0.0))
+}
+
+/// Compares the interface in double and in single precision, unless the options of the compiler choose one.
+fn check_interface(folder: &Path, emitted: &CSource, calls: &Calls<'_>) -> Result<Worst, String> {
+    let CSource { name, compiler, .. } = emitted;
+    write(&folder.join("interface.c"), &c_harness(calls.program, name))?;
+    if compiler.sets_precision() {
+        return Ok(Worst::from_deviation(0.0, String::new()));
+    }
+    let run = |number: &str, precision: Precision| {
+        let real = format!("-D{name}_REAL={number}");
+        let arguments = [
+            "-I.",
+            &real,
+            "-o",
+            "interface",
+            "interface.c",
+            "model.c",
+            "-lm",
+        ];
+        require_success("the emitted source", compiler.compile(folder, &arguments)?)?;
+        let output = execute(&folder.join("interface"), &calls.text())?;
+        let found = require_success("the compiled model", output)?;
+        Ok::<Worst, String>(calls.compare(&mut found.lines(), precision, (true, usize::MAX)))
+    };
+    let double = run("double", Precision::Double)?;
+    Ok(double.with(Some(run("float", Precision::Single)?)))
 }
 
 fn not_run(reason: &str) -> Check {
@@ -140,11 +178,7 @@ fn run_harness(folder: &Path, emitted: &CSource, samples: &str) -> Result<String
     write(&folder.join("harness.c"), &harness)?;
     // The evaluator computes in double precision.
     let double = format!("-D{name}_REAL=double");
-    let first = match compiler
-        .options
-        .iter()
-        .any(|option| option.contains("_REAL="))
-    {
+    let first = match compiler.sets_precision() {
         true => vec!["-I."],
         false => vec!["-I.", &*double],
     };

@@ -6,7 +6,7 @@
 //! - [`nesting`]: agreement between orders;
 //! - [`outputs`]: requested outputs;
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
-//! - [`emitted_c`]: emitted C;
+//! - [`emitted_c`]: emitted C; `interface` compares names, conversions, parameters and precisions of both;
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!
@@ -17,6 +17,7 @@ pub mod balance;
 pub mod emitted;
 pub mod emitted_c;
 pub mod exact;
+mod interface;
 pub mod linked_program;
 pub mod nesting;
 mod number_types;

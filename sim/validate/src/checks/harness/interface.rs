@@ -1,0 +1,52 @@
+// Prints the interface of emitted Rust, then reads parameters, times, states and inputs as hexadecimal bits, and prints
+// the results of the functions the same way, in double precision and then in single precision.
+#![allow(unused_variables)]
+
+fn show<T: Copy + Into<f64>>(numbers: &[T]) {
+    let words: Vec<String> = numbers.iter().map(|x| format!("{:016x}", (*x).into().to_bits())).collect();
+    println!("{}", words.join(" "));
+}
+
+fn results<T: model::Scalar + Into<f64>>(
+    numbers: &[f64],
+    coefficients: &model::Coefficients/*OF T*/,
+    convert: fn(f64) -> T,
+) {
+    let (given, signals) = numbers.split_at(1 + model::STATES);
+    let t = convert(given[0]);
+    let state: [T; model::STATES] = std::array::from_fn(|i| convert(given[1 + i]));
+    let signals: [T; model::INPUTS] = std::array::from_fn(|i| convert(signals[i]));
+    let inputs = model::Inputs::from(signals);
+    let mut rates = [t; model::STATES];
+    model::rates_into(t, &state, &inputs, coefficients, &mut rates);
+    show(&rates);
+    show(&model::observables(t, &state, &inputs, coefficients));
+    show(&[model::energy(t, &state, &inputs, coefficients)]);
+    show(&[model::power(t, &state, &inputs, coefficients)]);
+    show(&model::guards(t, &state, &inputs, coefficients));
+    show(model::mass_matrix(t, &state, &inputs, coefficients).as_flattened());
+}
+
+fn main() {
+    //INTERFACE
+    let lines: Vec<Vec<f64>> = (std::io::stdin().lines())
+        .map(|line| {
+            let line = line.unwrap();
+            let words = line.split(' ').map(|word| u64::from_str_radix(word, 16).unwrap());
+            words.map(f64::from_bits).collect()
+        })
+        .collect();
+    for is_single in [false, true] {
+        for numbers in &lines {
+            let (numbers, point) = numbers.split_at(model::PARAMETERS);
+            let parameters: [f64; model::PARAMETERS] = std::array::from_fn(|i| numbers[i]);
+            let coefficients = model::Coefficients::prepare(&model::Parameters::from(parameters));
+            println!("{}", i32::from(coefficients.positive_definite));
+            if is_single {
+                results::<f32>(point, &coefficients/*CAST*/, |x| x as f32);
+            } else {
+                results::<f64>(point, &coefficients, |x| x);
+            }
+        }
+    }
+}

@@ -1,0 +1,480 @@
+//! Everything that emitted source offers to its callers, compared with its program: sizes, names, indices, default
+//! parameters, conversions from arrays, preparation with other parameters, and all functions at zeros, in the domain
+//! and at large values, in double and in single precision, bit for bit.
+
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::statements::{Indices, coefficient_values, indices};
+
+use super::linked_program::{count_differences, format_bits};
+use crate::certificate::Worst;
+use crate::random::Random;
+use crate::sampler::Sample;
+
+const SEED: u64 = 0x1a7e_0f0c;
+/// Number of parameter sets, with that of the specification.
+const PARAMETER_SETS: usize = 4;
+/// Number of states in the domain for each set.
+const STATES: usize = 5;
+/// Number of functions of every emitted source: rates, observables, energy, power, guards and mass matrix.
+pub const USUAL_FUNCTIONS: usize = 6;
+/// Factor of states far outside the usual range, exact in any precision.
+const LARGE: f64 = 1024.0;
+
+/// Precision of a harness.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Everything in double precision.
+    Double,
+    /// Functions in single precision, preparation in double precision.
+    Cast,
+    /// Preparation and functions in single precision.
+    Single,
+}
+
+impl Precision {
+    fn round(self, number: f64) -> f64 {
+        match self {
+            Self::Double => number,
+            Self::Cast | Self::Single => f64::from(number as f32),
+        }
+    }
+}
+
+/// Call of all functions: parameters, time, state and inputs.
+struct Call {
+    parameters: Vec<f64>,
+    sample: Sample,
+}
+
+/// Calls of the harnesses.
+pub struct Calls<'p> {
+    /// Program with the expected results.
+    pub program: &'p Program,
+    calls: Vec<Call>,
+}
+
+impl<'p> Calls<'p> {
+    /// Draws parameters and combines them with states of the domain, zeros and large states.
+    pub fn new(program: &'p Program, samples: &[Sample]) -> Self {
+        let mut random = Random::new(SEED);
+        let defaults = program.default_parameters();
+        let mut calls = Vec::new();
+        for set in 0..PARAMETER_SETS {
+            let parameters: Vec<f64> = match set {
+                0 => defaults.clone(),
+                _ => (defaults.iter())
+                    .map(|value| value * (1.0 + 0.3 * random.symmetric()))
+                    .collect(),
+            };
+            let start = (set * STATES).min(samples.len().saturating_sub(STATES));
+            let drawn = samples.iter().skip(start).take(STATES);
+            let far = samples.get(start).map(|sample| scaled(sample, LARGE));
+            let zero = samples.first().map(|sample| scaled(sample, 0.0));
+            for sample in drawn.cloned().chain(zero).chain(far) {
+                calls.push(Call {
+                    parameters: parameters.clone(),
+                    sample,
+                });
+            }
+        }
+        Self { program, calls }
+    }
+
+    /// Returns the calls as lines of bits: parameters, time, state, inputs.
+    pub fn text(&self) -> String {
+        let line = |call: &Call| {
+            let Sample {
+                time,
+                state,
+                inputs,
+            } = &call.sample;
+            format_bits(&[&call.parameters[..], &[*time], state, inputs].concat()) + "\n"
+        };
+        self.calls.iter().map(line).collect()
+    }
+
+    /// Counts the lines of `found` that differ from those of the program: those of the interface if `with_names`, then
+    /// those of the calls. Returns the first one. `functions` is the number of functions that the harness calls.
+    pub fn compare<'f>(
+        &self,
+        found: &mut impl Iterator<Item = &'f str>,
+        precision: Precision,
+        (with_names, functions): (bool, usize),
+    ) -> Worst {
+        let mut expected = Vec::new();
+        if with_names {
+            interface_lines(self.program, precision, &mut expected);
+        }
+        self.result_lines(precision, functions, &mut expected);
+        let (mut differing, mut first) = (0, None);
+        for (what, expected) in &expected {
+            let found = found.next().unwrap_or("nothing");
+            let wrong = match what.starts_with("vector_jacobian_product") {
+                true => count_differences(
+                    &without_sign_of_zero(found),
+                    &without_sign_of_zero(expected),
+                ),
+                false => count_differences(found, expected),
+            };
+            differing += wrong;
+            if wrong > 0 && first.is_none() {
+                first = Some(format!("first in {what}"));
+            }
+        }
+        let detail = first.unwrap_or_else(|| format!("{} lines of the interface", expected.len()));
+        Worst::from_deviation(differing as f64, detail)
+    }
+
+    fn result_lines(
+        &self,
+        precision: Precision,
+        functions: usize,
+        lines: &mut Vec<(String, String)>,
+    ) {
+        let mut evaluator = Evaluator::new(self.program.clone());
+        if precision != Precision::Double {
+            evaluator = evaluator.in_single_precision(&coefficient_values(self.program));
+        }
+        for (count, call) in (1..).zip(&self.calls) {
+            let round = |number: &f64| precision.round(*number);
+            match precision {
+                Precision::Single => {
+                    let parameters: Vec<f64> = call.parameters.iter().map(round).collect();
+                    evaluator.prepare_in_single_precision(&parameters);
+                }
+                _ => evaluator.prepare(&call.parameters),
+            }
+            let state: Vec<f64> = call.sample.state.iter().map(round).collect();
+            let inputs: Vec<f64> = call.sample.inputs.iter().map(round).collect();
+            let point = Point {
+                t: precision.round(call.sample.time),
+                state: &state,
+                inputs: &inputs,
+            };
+            let definite = u8::from(evaluator.pivots_are_positive());
+            lines.push((
+                format!("positive_definite, call {count}"),
+                definite.to_string(),
+            ));
+            for (name, numbers) in results(&mut evaluator, point).into_iter().take(functions) {
+                // The evaluator adds two numbers of a product in double precision.
+                let numbers: Vec<f64> = numbers.iter().map(round).collect();
+                lines.push((format!("{name}, call {count}"), format_bits(&numbers)));
+            }
+        }
+    }
+}
+
+/// Replaces negative zeros: a product that is added to an entry of zeros has none.
+fn without_sign_of_zero(line: &str) -> String {
+    line.replace("8000000000000000", "0000000000000000")
+}
+
+fn scaled(sample: &Sample, factor: f64) -> Sample {
+    Sample {
+        time: sample.time,
+        state: sample.state.iter().map(|number| factor * number).collect(),
+        inputs: sample.inputs.clone(),
+    }
+}
+
+/// Returns number `place` of an argument that is the same in every call, exact in any precision.
+fn argument(place: usize) -> f64 {
+    0.5 + 0.25 * place as f64
+}
+
+/// Returns `count` numbers of an argument.
+fn arguments(count: usize) -> Vec<f64> {
+    (0..count).map(argument).collect()
+}
+
+/// Returns names and results of all functions with an array as result, in the order of the harnesses.
+fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>)> {
+    let program = evaluator.program();
+    let (states, degrees, guards) = (
+        program.states(),
+        program.degrees_of_freedom(),
+        evaluator.guard_count(),
+    );
+    let (observables, known) = (program.observables.len(), program.observable_values.len());
+    let jacobians: Vec<(String, usize)> = (program.outputs.jacobians.iter())
+        .map(|jacobian| (jacobian.name.to_owned(), jacobian.nonzeros()))
+        .collect();
+    let inputs = program.inputs.len();
+    let parameters = program.parameters.len();
+    let room = |length: usize| vec![0.0; length];
+    let mut all = Vec::new();
+    let mut add = |name: &str, numbers: Vec<f64>| all.push((name.to_owned(), numbers));
+    let mut rates = room(states);
+    evaluator.rates(point, &mut rates);
+    add("rates", rates);
+    let mut values = room(known);
+    evaluator.observables(point, &mut values);
+    add("observables", values[..observables].to_vec());
+    add("energy", vec![values[known - 2]]);
+    add("power", vec![values[known - 1]]);
+    let mut surfaces = room(guards);
+    evaluator.guards(point, &mut surfaces);
+    add("guards", surfaces);
+    let mut mass = room(degrees * degrees);
+    evaluator.mass_matrix(point, &mut mass);
+    add("mass_matrix", mass);
+    let mut out = room(degrees);
+    if evaluator.bias_forces(point, &mut out) {
+        add("bias_forces", out.clone());
+    }
+    if evaluator.inverse_dynamics(point, &arguments(degrees), &mut out) {
+        add("inverse_dynamics", out);
+    }
+    let mut rates = room(guards);
+    if evaluator.guard_rates(point, &mut rates) {
+        add("guard_rates", rates);
+    }
+    for (place, (name, nonzeros)) in jacobians.iter().enumerate() {
+        let mut out = room(*nonzeros);
+        if evaluator.jacobian(place, point, &mut out) {
+            add(name, out);
+        }
+    }
+    let (mut product, mut input_product) = (room(states), room(inputs));
+    let direction = (&*arguments(states), &*arguments(inputs));
+    if evaluator.jacobian_vector_product(point, direction, &mut product) {
+        add("jacobian_vector_product", product.clone());
+    }
+    let weights = arguments(states);
+    let products = (&mut *product, &mut *input_product);
+    if evaluator.vector_jacobian_product(point, &weights, products) {
+        add("vector_jacobian_product", [product, input_product].concat());
+    }
+    let mut product = room(parameters);
+    if evaluator.vector_jacobian_product_by_parameters(point, &weights, &mut product) {
+        add("vector_jacobian_product_by_parameters", product);
+    }
+    all
+}
+
+/// Returns the lines of sizes, names, indices, default parameters and conversions from arrays.
+fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(String, String)>) {
+    let mut add = |what: &str, text: String| lines.push((what.to_owned(), text));
+    let guards = Evaluator::new(program.clone()).guard_count();
+    let sizes = [
+        program.degrees_of_freedom(),
+        program.states(),
+        program.observables.len(),
+        guards,
+        program.inputs.len(),
+        program.parameters.len(),
+    ];
+    for size in sizes {
+        add("sizes", size.to_string());
+    }
+    add("the hash of the specification", program.spec_hash.clone());
+    for field in &program.fields {
+        add("the orders", field.order.to_string());
+    }
+    for Indices { kind, entries, .. } in indices(program) {
+        for (place, (name, _)) in entries.iter().enumerate() {
+            add(&format!("the names of kind {kind}"), name.clone());
+            add(&format!("the indices of kind {kind}"), place.to_string());
+        }
+    }
+    let count = program.parameters.len();
+    let round = |numbers: Vec<f64>| -> Vec<f64> {
+        let of_parameters = |number: f64| match precision {
+            Precision::Single => precision.round(number),
+            _ => number,
+        };
+        numbers.into_iter().map(of_parameters).collect()
+    };
+    add(
+        "the default parameters",
+        format_bits(&round(program.default_parameters())),
+    );
+    add("parameters from an array", format_bits(&arguments(count)));
+    add(
+        "inputs from an array",
+        format_bits(&arguments(program.inputs.len())),
+    );
+}
+
+/// Writes the harness for emitted C with the prefix `name`.
+pub fn c_harness(program: &Program, name: &str) -> String {
+    let mut interface = String::new();
+    for size in [
+        "DEGREES_OF_FREEDOM",
+        "STATES",
+        "OBSERVABLES",
+        "GUARDS",
+        "INPUTS",
+        "PARAMETERS",
+    ] {
+        interface += &format!("    printf(\"%d\\n\", (int)NAME_{size});\n");
+    }
+    interface += "    printf(\"%s\\n\", NAME_SPECIFICATION_SHA256);\n";
+    for place in 0..program.fields.len() {
+        interface += &format!("    printf(\"%d\\n\", NAME_orders[{place}]);\n");
+    }
+    for Indices { kind, entries, .. } in indices(program) {
+        for (place, (_, constant)) in entries.iter().enumerate() {
+            let capitals = kind.to_uppercase();
+            interface += &format!(
+                "    printf(\"%s\\n%d\\n\", NAME_{kind}_names[{place}], (int)NAME_{capitals}_{constant});\n"
+            );
+        }
+    }
+    let show = |of: &str, names: &[&str]| {
+        let values: Vec<String> = names.iter().map(|field| format!("{of}.{field}")).collect();
+        let values = if values.is_empty() {
+            "0".to_owned()
+        } else {
+            values.join(", ")
+        };
+        format!(
+            "    {{ const NAME_real all[] = {{{values}}}; show(all, {}); }}\n",
+            names.len()
+        )
+    };
+    let parameters: Vec<&str> = (program.parameters.iter())
+        .map(|parameter| &*parameter.quantity.name)
+        .collect();
+    let inputs: Vec<&str> = program.inputs.iter().map(|input| &*input.name).collect();
+    interface += "    NAME_default_parameters(&parameters);\n";
+    interface += &show("parameters", &parameters);
+    interface += "    NAME_parameters_from_array(given, &parameters);\n";
+    interface += &show("parameters", &parameters);
+    interface += "    NAME_inputs_from_array(given, &inputs);\n";
+    interface += &show("inputs", &inputs);
+    let at = "t[0], state, &inputs, &coefficients";
+    let mut calls = String::new();
+    let mut array = |name: &str, more: &str, length: usize| {
+        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
+    };
+    let guards = Evaluator::new(program.clone()).guard_count();
+    let (states, degrees) = (program.states(), program.degrees_of_freedom());
+    array("rates", "", states);
+    array("observables", "", program.observables.len());
+    for name in ["energy", "power"] {
+        calls += &format!("        out[0] = NAME_{name}({at}); show(out, 1);\n");
+    }
+    let mut array = |name: &str, more: &str, length: usize| {
+        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
+    };
+    array("guards", "", guards);
+    let matrix = "(NAME_real (*)[NAME_DEGREES_OF_FREEDOM])out";
+    calls += &format!(
+        "        NAME_mass_matrix({at}, {matrix}); show(out, {});\n",
+        degrees * degrees
+    );
+    let mut array = |name: &str, more: &str, length: usize| {
+        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
+    };
+    let outputs = &program.outputs;
+    if outputs.bias_forces.is_some() {
+        array("bias_forces", "", degrees);
+    }
+    if outputs.inverse_dynamics.is_some() {
+        array("inverse_dynamics", ", given", degrees);
+    }
+    if outputs.guard_rates.is_some() {
+        array("guard_rates", "", guards);
+    }
+    for jacobian in &outputs.jacobians {
+        array(jacobian.name, "", jacobian.nonzeros());
+    }
+    if outputs.products.is_some() {
+        array("jacobian_vector_product", ", given, &given_inputs", states);
+        let fields: String = (inputs.iter().enumerate())
+            .map(|(place, field)| format!("out[{states} + {place}] = product.{field}; "))
+            .collect();
+        calls += &format!(
+            "        {{ NAME_inputs product; NAME_vector_jacobian_product({at}, given, out, &product); {fields}show(out, {}); }}\n",
+            states + inputs.len()
+        );
+        calls += &format!(
+            "        NAME_vector_jacobian_product_by_parameters({at}, given, out); show(out, {});\n",
+            parameters.len()
+        );
+    }
+    let jacobians = outputs.jacobians.iter().map(|jacobian| jacobian.nonzeros());
+    let room = jacobians
+        .max()
+        .unwrap_or(0)
+        .max(degrees * degrees)
+        .max(states + inputs.len());
+    let room = room
+        .max(program.observables.len())
+        .max(guards)
+        .max(parameters.len());
+    include_str!("harness/interface.c")
+        .replace("/*INTERFACE*/", &interface)
+        .replace("/*CALLS*/", &calls)
+        .replace("ROOM", &(room + 1).to_string())
+        .replace("NAME.h", &format!("{name}.h"))
+        .replace("NAME_", &format!("{name}_"))
+}
+
+/// Writes the harness for emitted Rust: the interface, the calls in double precision, then those in single precision.
+pub fn rust_harness(program: &Program, emitted: &str) -> String {
+    let mut interface = String::new();
+    for size in [
+        "DEGREES_OF_FREEDOM",
+        "STATES",
+        "OBSERVABLES",
+        "GUARDS",
+        "INPUTS",
+        "PARAMETERS",
+    ] {
+        interface += &format!("    println!(\"{{}}\", model::{size});\n");
+    }
+    interface += "    println!(\"{}\", model::SPECIFICATION_SHA256);\n";
+    for place in 0..program.fields.len() {
+        interface += &format!("    println!(\"{{}}\", model::ORDERS[{place}]);\n");
+    }
+    for Indices { kind, entries, .. } in indices(program) {
+        for (place, (_, constant)) in entries.iter().enumerate() {
+            let capitals = kind.to_uppercase();
+            interface += &format!(
+                "    println!(\"{{}}\\n{{}}\", model::{capitals}_NAMES[{place}], model::{kind}::{constant});\n"
+            );
+        }
+    }
+    let show = |of: &str, names: Vec<&str>| {
+        let values: Vec<String> = names.iter().map(|field| format!("{of}.{field}")).collect();
+        format!("    show::<f64>(&[{}]);\n", values.join(", "))
+    };
+    let parameters = || (program.parameters.iter()).map(|parameter| &*parameter.quantity.name);
+    let inputs = || program.inputs.iter().map(|input| &*input.name);
+    let numbers = |count: usize| {
+        let numbers: Vec<String> = arguments(count)
+            .iter()
+            .map(|n| format!("{n:?}_f64"))
+            .collect();
+        format!("[{}] as [f64; {count}]", numbers.join(", "))
+    };
+    interface += "    let parameters = model::Parameters::default();\n";
+    interface += &show("parameters", parameters().collect());
+    interface += &format!(
+        "    let parameters = model::Parameters::from({});\n",
+        numbers(program.parameters.len())
+    );
+    interface += &show("parameters", parameters().collect());
+    interface += &format!(
+        "    let inputs = model::Inputs::from({});\n",
+        numbers(program.inputs.len())
+    );
+    interface += &show("inputs", inputs().collect());
+    let source = include_str!("harness/interface.rs").replace("    //INTERFACE\n", &interface);
+    // A type without numbers is not generic.
+    let has_coefficients = emitted.contains("pub struct Coefficients<");
+    source
+        .replace(
+            "/*CAST*/",
+            if has_coefficients {
+                ".cast::<f32>()"
+            } else {
+                ""
+            },
+        )
+        .replace("/*OF T*/", if has_coefficients { "<T>" } else { "" })
+}
