@@ -5,5 +5,6 @@ pub mod contacts;
 pub mod coverage;
 pub mod grazing;
 pub mod hosts;
+pub mod mutations;
 pub mod sample;
 pub mod solvers;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{contacts, coverage, grazing, hosts, solvers};
+use eomgen_studies::{contacts, coverage, grazing, hosts, mutations, solvers};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -21,6 +21,8 @@ enum Study {
     Grazing(Sample),
     /// Stacks of balls and boxes that fall on a floor
     Contacts(Sample),
+    /// Faults in emitted code, which the checks of `eomgen verify` must notice
+    Mutations(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
     Coverage(Sample),
     /// Agreement of all hosts on every shipped machine and on random ones
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
     let report = match Options::parse().study {
         Study::Grazing(sample) => grazing::run(&sample),
         Study::Contacts(sample) => contacts::run(&sample),
+        Study::Mutations(sample) => mutations::run(&sample),
         Study::Coverage(sample) => coverage::run(&sample),
         Study::Hosts(sample) => hosts::run(&sample),
         Study::Solvers(sample) => solvers::run(&sample),
