@@ -301,9 +301,9 @@ impl Precision for Single {
     const NEWTON_STEPS: usize = 1;
 
     const PI: [Pair<f64>; 3] = [
-        pair(3.141_592_7, -8.742_278e-8),
-        pair(1.570_796_4, -4.371_139e-8),
-        pair(0.785_398_2, -2.185_569_4e-8),
+        pair(core::f32::consts::PI as f64, -8.742_278e-8),
+        pair(core::f32::consts::FRAC_PI_2 as f64, -4.371_139e-8),
+        pair(core::f32::consts::FRAC_PI_4 as f64, -2.185_569_4e-8),
     ];
     const ARCTAN_HALF: Pair<f64> = pair(0.463_647_6, 5.012_158_7e-9);
     // Arc tangent to 2^-30.6.

@@ -89,7 +89,9 @@ fn short_sin_cos<R: Real>(x: R, overflowing: f64) -> (R, R) {
     let one = R::constant(1.0);
     let [first, second, third, fourth, rest] = Format::<R>::HALF_PI_PARTS.map(R::constant);
     let scaled = x * R::constant(overflowing);
-    let k = nearest_integer(x * R::constant(core::f64::consts::FRAC_2_PI)) - (scaled - scaled);
+    let rounded = nearest_integer(x * R::constant(core::f64::consts::FRAC_2_PI));
+    #[expect(clippy::eq_op, reason = "NaN for an infinite product")]
+    let k = rounded - (scaled - scaled);
     let leading = (x - k * first) - k * second;
     let (third, fourth) = (k * third, k * fourth);
     let near = leading - third;

@@ -270,6 +270,7 @@ fn operation_counts_are_as_documented() {
         ("atan", 49),
         ("atan2", 64),
         ("pow", 206),
+        ("quantise", 10),
     ];
     assert_eq!(counted, documented);
     assert_eq!(sin_cos_kernel::<Single>().operation_count(), 49);
