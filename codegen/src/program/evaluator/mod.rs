@@ -111,6 +111,7 @@ impl Evaluator {
     /// `coefficients` are the prepared values that the emitted functions read; they compute all others.
     pub fn in_single_precision(mut self, coefficients: &[ValueId]) -> Self {
         self.code = None;
+        self.by_code = [false; Stage::ALL.len()];
         self.single = Some(vec![0.0; self.places.size()]);
         self.recomputed = self.prepare.clone();
         self.recomputed.retain(|id| !coefficients.contains(id));
