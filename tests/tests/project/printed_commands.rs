@@ -397,6 +397,9 @@ fn form(command: &str) -> Form<'_> {
             ..,
         ] => Form::Ci(vec!["target/release/studies ", study]),
         ["cargo", "doc", ..] => Form::Ci(vec!["cargo doc --release --workspace --no-deps"]),
+        ["cargo", "build", "--release", "-p", ..] => {
+            Form::Ci(vec!["cargo build --release -p eomgen-cli -p eomgen-python"])
+        }
         ["cargo", "build", "--release"] => Form::Ci(vec!["cargo run --release"]),
         ["apt-get", "install", package] => Form::Ci(vec!["for tool in", package]),
         ["rustup", "target", "add", target] => Form::Ci(vec!["rustup target add", target]),

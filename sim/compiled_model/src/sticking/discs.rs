@@ -9,15 +9,12 @@ use std::ops::Range;
 
 use eomgen_sim::friction_discs::DiscVerdict;
 
-use super::surface_states::MAX_DRIFT_FRACTION;
+/// Smallest velocity with a direction, in roundings of the velocity, which then turn it by little.
+const SLOWEST_ROUNDINGS: f64 = 1000.0;
 
-/// Rounding of the velocity relative to its largest value. At a thousand times as much it turns the unit vector by
-/// little.
-const SLOWEST_FRACTION: f64 = 1000.0 * MAX_DRIFT_FRACTION;
-
-/// Smallest velocity with a direction, in tolerances times the largest velocity. The error that the solver allows
-/// turns a smaller one, and explicit steps of that length oscillate about the direction of the force.
-const SLOWEST_TOLERANCES: f64 = 10.0;
+/// Smallest velocity with a direction, in allowed errors of the velocity. They turn a smaller one, and explicit steps of
+/// that length oscillate about the direction of the force.
+const SLOWEST_ERRORS: f64 = 10.0;
 
 /// State of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,10 +77,11 @@ impl Disc {
         self.slowest
     }
 
-    /// Sets the velocity that counts as zero and the smallest one with a direction, from the largest velocity and the relative tolerance of the states.
-    pub fn set_size(&mut self, largest: f64, tolerance: f64) {
-        self.floor = MAX_DRIFT_FRACTION * largest;
-        self.slowest = SLOWEST_FRACTION.max(SLOWEST_TOLERANCES * tolerance) * largest;
+    /// Sets the velocity that counts as zero, its rounding, and the smallest one with a direction, for an error of the
+    /// velocity that the solver allows.
+    pub fn set_roundings(&mut self, rounding: f64, allowed_error: f64) {
+        self.floor = rounding;
+        self.slowest = (SLOWEST_ROUNDINGS * rounding).max(SLOWEST_ERRORS * allowed_error);
     }
 
     /// Returns true if the motion begins to slide and rounding still determines its direction.

@@ -286,7 +286,8 @@ impl SurfaceStates {
             *size = size.max(value.abs());
         }
         for disc in &mut self.discs {
-            disc.set_size(norm(disc.velocity(&self.sizes)), self.tolerance);
+            let largest = norm(disc.velocity(&self.sizes));
+            disc.set_roundings(MAX_DRIFT_FRACTION * largest, self.tolerance * largest);
         }
     }
 

@@ -6,7 +6,7 @@ use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver, Typi
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
 
-use super::drawn;
+use super::drawn::{self, Sine};
 use super::kind::Kind;
 use crate::sample::Sample;
 
@@ -42,8 +42,8 @@ const MAX_REDUCTIONS: i32 = 4;
 /// Input of a case.
 pub(crate) struct CaseInput {
     pub name: String,
-    /// Function of t in the unit of the input, in place of samples.
-    pub function: Option<String>,
+    /// Function of time, in place of samples.
+    pub sine: Option<Sine>,
     /// Value from each sample on, SI; empty for a function of time.
     pub samples: Vec<f64>,
 }
@@ -70,8 +70,8 @@ impl Case {
 
     /// Returns the expression of t that gives an input in its unit.
     pub fn expression(&self, input: &CaseInput) -> String {
-        if let Some(function) = &input.function {
-            return function.clone();
+        if let Some(sine) = &input.sine {
+            return format!("{:e}*sin({:e}*t)", sine.amplitude, sine.frequency);
         }
         let known = &self.model.model().inputs;
         let known = known.iter().find(|known| known.name == input.name);
@@ -234,9 +234,9 @@ fn drawn_case(place: usize, random: &mut Random, folder: &Path) -> Result<Case, 
         model,
     };
     case.inputs = match machine.input {
-        Some((name, function)) => vec![CaseInput {
-            name,
-            function: Some(function),
+        Some((name, sine)) => vec![CaseInput {
+            name: name.to_owned(),
+            sine: Some(sine),
             samples: Vec::new(),
         }],
         None => draw_inputs(&case, DISPLACEMENT, random)?,
@@ -268,7 +268,7 @@ fn draw_inputs(case: &Case, size: f64, random: &mut Random) -> Result<Vec<CaseIn
         let before = |sample: usize| INPUT_SAMPLES.iter().filter(|at| **at <= sample).count();
         drawn.push(CaseInput {
             name: input.name.clone(),
-            function: None,
+            sine: None,
             samples: (0..=INTERVALS).map(|k| values[before(k)]).collect(),
         });
     }

@@ -13,6 +13,9 @@ use crate::solvers::growth::{STARTS, difference, growth, magnitudes};
 /// Tolerance of the hosts.
 pub const TOLERANCE: f64 = 1e-9;
 
+/// Tolerance of pages.
+const PAGE_TOLERANCE: f64 = 1e-8;
+
 /// Tolerance of the motions that measure the growth of small differences.
 const GROWTH_TOLERANCE: f64 = 1e-11;
 
@@ -61,11 +64,9 @@ impl Reference {
     /// A motion that stops early.
     pub fn new(case: &Case) -> Result<Self, String> {
         let times = case.times();
-        let functions = case.inputs.iter().filter_map(|input| {
-            let function = input.function.as_ref()?;
-            Some(format!("{}={function}", input.name))
-        });
-        let texts: Vec<String> = functions.collect();
+        let sines = case.inputs.iter().filter(|input| input.sine.is_some());
+        let sines = sines.map(|input| format!("{}={}", input.name, case.expression(input)));
+        let texts: Vec<String> = sines.collect();
         let given = split_assignments("--input", &texts).map_err(|e| e.to_string())?;
         let model = with_prescribed_inputs(case.model.model().clone(), &given)
             .map_err(|e| e.to_string())?;
@@ -117,6 +118,7 @@ pub fn judge(reference: &Reference, run: HostRun) -> Verdict {
         Answer::Motion(states) => {
             let allowed = match run.host {
                 Host::ModelExchange => ALLOWED_EXCHANGE,
+                Host::Page => ALLOWED_TOLERANCES * PAGE_TOLERANCE,
                 _ => ALLOWED_TOLERANCES * TOLERANCE,
             };
             let expected = match states.len() {

@@ -7,13 +7,20 @@ use eomgen_validate::random::Random;
 use super::kind::Kind;
 use crate::solvers::machine;
 
+/// Input amplitude*sin(frequency*t) in SI, with the frequency in rad/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Sine {
+    pub amplitude: f64,
+    pub frequency: f64,
+}
+
 /// Random machine as text.
 pub struct Drawn {
     pub text: String,
     /// Kind, if the text does not show it.
     pub kind: Option<Kind>,
-    /// Name of an input and its function of time.
-    pub input: Option<(String, String)>,
+    /// Name of an input and its sine.
+    pub input: Option<(&'static str, Sine)>,
     /// Duration, s.
     pub until: f64,
 }
@@ -159,8 +166,11 @@ fn driven_pendulum(random: &mut Random) -> Drawn {
         text: write("driven_pendulum", &parameters, PENDULUM),
         kind: Some(Kind::InputFunction),
         input: Some((
-            "u".to_owned(),
-            format!("{amplitude:e}*sin({frequency:e}*t)"),
+            "u",
+            Sine {
+                amplitude,
+                frequency,
+            },
         )),
         until: 4.0,
     }

@@ -87,10 +87,13 @@ pub fn runs(case: &Case, folder: &Path) -> Result<Vec<HostRun>, String> {
 }
 
 fn describe(case: &Case, units: &serde_json::Map<String, Value>) -> Value {
+    let known = &case.model.model().inputs;
     let inputs = case.inputs.iter().map(|input| {
         json!({
             "name": input.name,
+            "place": known.iter().position(|known| known.name == input.name),
             "expression": case.expression(input),
+            "sine": input.sine.map(|sine| [sine.amplitude, sine.frequency]),
             "samples": input.samples,
         })
     });
@@ -101,6 +104,7 @@ fn describe(case: &Case, units: &serde_json::Map<String, Value>) -> Value {
         "initial": case.initial,
         "times": case.times(),
         "inputs": inputs.collect::<Vec<_>>(),
+        "default_inputs": case.model.default_inputs(),
         "tolerance": TOLERANCE,
     })
 }
@@ -169,5 +173,10 @@ fn page(case: &Case, job: &Value, folder: &Path) -> Result<Answer, String> {
     }
     let mut job = job.clone();
     job["page"] = json!(out);
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../sim/page/src/play/engine.js"
+    );
+    job["script"] = json!(script);
     answer(&run_script("node", "page.mjs", &job, folder)?)
 }
