@@ -67,6 +67,7 @@ pub(crate) fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Function;
     use crate::span::Span;
 
     fn number(value: f64) -> Expr {

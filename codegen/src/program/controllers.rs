@@ -5,7 +5,7 @@ use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
 
 use super::evaluator::call;
-use super::types::Quantity;
+use super::quantity::Quantity;
 
 /// Operation of a controller. Operands are indices of earlier operations.
 #[derive(Clone, Debug, PartialEq)]

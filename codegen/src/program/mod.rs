@@ -21,6 +21,7 @@ pub mod evaluator;
 pub mod lowering;
 #[cfg(feature = "derive")]
 mod operation_count;
+mod quantity;
 mod types;
 mod value;
 
@@ -33,8 +34,8 @@ pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
+pub use quantity::Quantity;
 pub use types::{
-    MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, Quantity,
-    RowValues,
+    MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, RowValues,
 };
 pub use value::{Extent, Op, PARTIAL_SUMS, ScaledValue, Value, ValueId};

@@ -1,22 +1,12 @@
 //! Program, quantities, rows and blocks.
 
 use super::controllers::ProgramController;
+use super::quantity::Quantity;
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::impact::Impact;
 use crate::mechanics::outputs::{Outputs, Products};
 use crate::symbolic::variable::Variable;
 use eomgen_model_spec::ids::FieldId;
-
-/// Named quantity with its unit.
-#[derive(Clone, Debug)]
-pub struct Quantity {
-    /// ASCII name.
-    pub name: String,
-    /// SI unit, as text.
-    pub unit: String,
-    /// Description.
-    pub doc: String,
-}
 
 /// Independent parameter.
 #[derive(Clone, Debug)]

@@ -190,7 +190,7 @@ fn machines_with_angles_on_microcontrollers_match_this_machine_bitwise() {
     ] {
         let out = folder.path().join(name);
         for target in ["rust", "c99"] {
-            let status = eomgen()
+            let output = eomgen()
                 .args([
                     "generate",
                     "--with",
@@ -200,8 +200,8 @@ fn machines_with_angles_on_microcontrollers_match_this_machine_bitwise() {
                     "--out",
                 ])
                 .args([&out, &specification])
-                .status();
-            assert!(status.expect("eomgen").success());
+                .output();
+            assert!(output.expect("eomgen").status.success());
         }
         command.arg(out);
     }

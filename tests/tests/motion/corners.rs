@@ -1,12 +1,11 @@
 //! Motions where the energies jump: against closed forms, the corner conditions solved here, and limits of
 //! smooth models; and rejected models and hosts.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Request, Solver};
 use eomgen_sim::inputs::{HeldInputs, InputFunction};
-use eomgen_tests::program::{run, run_rejected};
+use eomgen_tests::program::run;
 use eomgen_tests::random_numbers::Numbers;
 
 const SOLVERS: [Solver; 2] = [Solver::Rk, Solver::Radau];

@@ -335,9 +335,9 @@ impl Evaluator {
         run(single, places, program, steps, point);
         for id in steps {
             let start = places.offset(*id);
-            for place in start..start + program.values[id.0].extent.length() {
-                self.memory[place] = f64::from(single[place]);
-            }
+            let own = start..start + program.values[id.0].extent.length();
+            let numbers = self.memory[own.clone()].iter_mut().zip(&single[own]);
+            numbers.for_each(|(number, single)| *number = f64::from(*single));
         }
     }
 }
