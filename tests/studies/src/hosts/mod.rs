@@ -26,7 +26,7 @@ use table::Table;
 const PRINTED_COUNT: usize = 24;
 
 /// Runs the study with `count` random machines and returns its table. With the default seed and
-/// [`PRINTED_COUNT`] machines the table must be that of README.md.
+/// as many machines as there the table must be that of README.md.
 ///
 /// # Errors
 /// Returns the table and a report of all hosts with another motion.
