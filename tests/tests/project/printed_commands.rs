@@ -85,6 +85,11 @@ const TESTED_ELSEWHERE: [(&str, &str); 19] = [
         "examples/bare_metal/run rig4/lib.rs",
         "tests/tests/emission/bare_metal.rs",
     ),
+    // The test runs the script for three machines and compares its output.
+    (
+        "examples/bare_metal/count puma",
+        "tests/tests/emission/bare_metal.rs",
+    ),
     // The test runs the script and compares its output.
     (
         "examples/bare_metal/observe rig4_jacobians/lib.rs",

@@ -69,6 +69,7 @@ features! {
         functions: [0];
         shorter_functions: [0];
         pendulum_chain: [0];
+        gimbal: [0];
         heavy_top: [0];
         vectors: [0, 1, 3];
         states_of_first_order: [0, 1, 3];

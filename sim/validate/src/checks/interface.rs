@@ -119,7 +119,12 @@ impl<'p> Calls<'p> {
             };
             differing += wrong;
             if wrong > 0 && first.is_none() {
-                first = Some(format!("first in {what}"));
+                let mode = match precision {
+                    Precision::Double => "double",
+                    Precision::Cast => "converted",
+                    Precision::Single => "single",
+                };
+                first = Some(format!("first in {what}, {mode} precision"));
             }
         }
         let detail = first.unwrap_or_else(|| format!("{} lines of the interface", expected.len()));
@@ -133,6 +138,7 @@ impl<'p> Calls<'p> {
         lines: &mut Vec<(String, String)>,
     ) {
         let mut evaluator = Evaluator::new(self.program.clone());
+        let mut double = Evaluator::new(self.program.clone());
         if precision != Precision::Double {
             evaluator = evaluator.in_single_precision(&coefficient_values(self.program));
         }
@@ -152,7 +158,14 @@ impl<'p> Calls<'p> {
                 state: &state,
                 inputs: &inputs,
             };
-            let definite = u8::from(evaluator.pivots_are_positive());
+            // Converted coefficients keep the answer of the double precision that prepared them.
+            let definite = match precision {
+                Precision::Cast => {
+                    double.prepare(&call.parameters);
+                    u8::from(double.pivots_are_positive())
+                }
+                _ => u8::from(evaluator.pivots_are_positive()),
+            };
             lines.push((
                 format!("positive_definite, call {count}"),
                 definite.to_string(),
