@@ -40,7 +40,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 19] = [
+const TESTED_ELSEWHERE: [(&str, &str); 20] = [
     // The test compiles an image with two variants and lists them.
     (
         "cargo run --release -- identify firmware.elf ",
