@@ -2,8 +2,8 @@
 //! The backends write them next to the emitted source, with a function that compares a target with them.
 
 use crate::program::evaluator::{Evaluator, Point};
-use crate::program::{Program, ValueId};
-use crate::statements::coefficient_values;
+use crate::program::{Extent, Program, ValueId};
+use crate::statements::{EmitError, File, coefficient_values};
 
 /// Time, state and inputs of a call.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,13 @@ pub struct TestVector {
     pub given: Given,
     /// Rates, observables, energy, power, guards and mass matrix, in this order.
     pub expected: Vec<f64>,
+}
+
+impl TestVector {
+    /// Returns the arguments, then the results.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        [self.given.numbers(), self.expected.clone()].concat()
+    }
 }
 
 /// Test vectors in both precisions. The numbers of single precision are exact in `f32`.
@@ -98,10 +105,44 @@ fn results(evaluator: &mut Evaluator, given: &Given) -> Vec<f64> {
     .concat()
 }
 
-/// Returns the numbers of the coefficients `ids` for the default parameters, and whether the mass matrix is positive
-/// definite.
-pub(crate) fn default_coefficients(program: &Program, ids: &[ValueId]) -> (Vec<Vec<f64>>, bool) {
-    let evaluator = Evaluator::new(program.clone());
-    let numbers = ids.iter().map(|id| evaluator.slice(*id).to_vec());
-    (numbers.collect(), evaluator.pivots_are_positive())
+/// Coefficients of the default parameters as literals.
+pub(crate) struct DefaultCoefficients {
+    /// Names of the fields with their literals, in the order of the file.
+    pub fields: Vec<(String, String)>,
+    /// True if the mass matrix is positive definite.
+    pub is_definite: bool,
+}
+
+/// Computes the coefficients of the default parameters and writes each number by `literal` and each array by `array`.
+///
+/// # Errors
+/// A coefficient that is not finite, with its name.
+pub(crate) fn default_coefficients(
+    file: &File<'_>,
+    literal: impl Fn(f64) -> String,
+    array: impl Fn(&[String]) -> String,
+) -> Result<DefaultCoefficients, EmitError> {
+    let evaluator = Evaluator::new(file.program.clone());
+    let field = |id: &ValueId| {
+        let (name, numbers) = (&file.field_names[id], evaluator.slice(*id));
+        if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(EmitError::Value(format!(
+                "the coefficient `{name}` is {bad} for the default parameters"
+            )));
+        }
+        let literals: Vec<String> = numbers.iter().map(|number| literal(*number)).collect();
+        let text = match file.program.value(*id).extent {
+            Extent::Scalar => literals.concat(),
+            Extent::Vector(_) => array(&literals),
+            Extent::Matrix(_, columns) => {
+                let rows: Vec<String> = literals.chunks(columns.max(1)).map(&array).collect();
+                array(&rows)
+            }
+        };
+        Ok((name.clone(), text))
+    };
+    Ok(DefaultCoefficients {
+        fields: file.fields.iter().map(field).collect::<Result<_, _>>()?,
+        is_definite: evaluator.pivots_are_positive(),
+    })
 }

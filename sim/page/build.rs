@@ -6,14 +6,20 @@ use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Sources of the engine, relative to the workspace.
-const SOURCES: [&str; 9] = [
+/// Sources of the engine and of the crates that it uses, relative to the workspace. Cargo compiles only those with
+/// changes for the engine.
+const SOURCES: [&str; 14] = [
     "Cargo.lock",
     "Cargo.toml",
+    "codegen/Cargo.toml",
+    "codegen/elementary/Cargo.toml",
     "codegen/elementary/src",
-    "codegen/src/independence",
-    "codegen/src/program",
-    "model-spec/src/function.rs",
+    "codegen/src",
+    "model-spec/Cargo.toml",
+    "model-spec/src",
+    "sim/Cargo.toml",
+    "sim/analysis/Cargo.toml",
+    "sim/analysis/src",
     "sim/compiled_model",
     "sim/engine",
     "sim/src",

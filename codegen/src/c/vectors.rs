@@ -4,7 +4,7 @@
 use super::comments::comment;
 use super::expression::{initialiser, number};
 use super::names::{WORDS, fill_template};
-use crate::program::{Extent, Program};
+use crate::program::Program;
 use crate::statements::layout;
 use crate::statements::{EmitError, File};
 use crate::vectors::{TestVector, TestVectors, default_coefficients};
@@ -16,26 +16,9 @@ use crate::vectors::{TestVector, TestVectors, default_coefficients};
 /// As for [`emit`](super::emit()), and coefficients that are not finite.
 pub fn baked(program: &Program) -> Result<String, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let (numbers, is_definite) = default_coefficients(program, &file.fields);
-    let mut fields = Vec::new();
-    for (id, numbers) in file.fields.iter().zip(&numbers) {
-        if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
-            return Err(EmitError::Value(format!(
-                "the coefficient `{}` is {bad} for the default parameters",
-                file.field_names[id]
-            )));
-        }
-        let literals: Vec<String> = numbers.iter().map(|value| literal(*value)).collect();
-        fields.push(match program.value(*id).extent {
-            Extent::Scalar => literals.concat(),
-            Extent::Vector(_) => initialiser(&literals),
-            Extent::Matrix(_, columns) => {
-                let rows: Vec<String> = literals.chunks(columns.max(1)).map(initialiser).collect();
-                initialiser(&rows)
-            }
-        });
-    }
-    fields.push(i32::from(is_definite).to_string());
+    let found = default_coefficients(&file, literal, initialiser)?;
+    let mut fields: Vec<String> = found.fields.into_iter().map(|(_, text)| text).collect();
+    fields.push(i32::from(found.is_definite).to_string());
     let text = comment(&[
         "Coefficients of the default parameters, prepared in double precision. The identity remains in programs"
             .to_owned(),
@@ -81,8 +64,11 @@ pub fn vectors(program: &Program, vectors: &TestVectors) -> Result<String, EmitE
 
 fn rows(vectors: &[TestVector]) -> String {
     let rows = vectors.iter().map(|vector| {
-        let numbers = [vector.given.numbers(), vector.expected.clone()].concat();
-        let literals: Vec<String> = numbers.iter().map(|value| literal(*value)).collect();
+        let literals: Vec<String> = vector
+            .numbers()
+            .iter()
+            .map(|value| literal(*value))
+            .collect();
         initialiser(&literals)
     });
     let rows: Vec<String> = rows.collect();

@@ -4,7 +4,7 @@
 use super::expression::array;
 use super::literals::number;
 use super::words::WORDS;
-use crate::program::{Extent, Program};
+use crate::program::Program;
 use crate::statements::layout;
 use crate::statements::{EmitError, File};
 use crate::vectors::{TestVector, TestVectors, default_coefficients};
@@ -16,38 +16,26 @@ use crate::vectors::{TestVector, TestVectors, default_coefficients};
 /// As for [`emit`](super::emit()), and coefficients that are not finite.
 pub fn baked(program: &Program) -> Result<String, EmitError> {
     let file = File::new(program, &WORDS)?;
-    let (numbers, is_definite) = default_coefficients(program, &file.fields);
     let constant = |name: &str, argument: &str, convert: fn(f64) -> f64| {
-        let mut fields = String::new();
-        for (id, numbers) in file.fields.iter().zip(&numbers) {
-            let literals: Vec<String> = numbers
-                .iter()
-                .map(|value| number(convert(*value)))
-                .collect();
-            let value = match program.value(*id).extent {
-                Extent::Scalar => literals.concat(),
-                Extent::Vector(_) => array(&literals),
-                Extent::Matrix(_, columns) => {
-                    let rows = literals.chunks(columns.max(1));
-                    array(&rows.map(array).collect::<Vec<_>>())
-                }
-            };
-            fields += &format!("    {}: {value},\n", file.field_names[id]);
-        }
-        let argument = if numbers.is_empty() { "" } else { argument };
-        format!(
+        let found = default_coefficients(&file, |value| number(convert(value)), array)?;
+        let fields = found.fields.iter();
+        let fields: String = fields
+            .map(|(field, text)| format!("    {field}: {text},\n"))
+            .collect();
+        let argument = if found.fields.is_empty() {
+            ""
+        } else {
+            argument
+        };
+        let is_definite = found.is_definite;
+        Ok::<_, EmitError>(format!(
             "/// Coefficients of the default parameters.\npub const {name}: model::Coefficients{argument} = model::Coefficients {{\n\
              {fields}    positive_definite: {is_definite},\n}};\n"
-        )
+        ))
     };
-    if let Some(bad) = numbers.iter().flatten().find(|number| !number.is_finite()) {
-        return Err(EmitError::Value(format!(
-            "a coefficient is {bad} for the default parameters"
-        )));
-    }
     let text = BAKED_HEAD.to_owned()
-        + &constant("BAKED", "<f64>", |value| value)
-        + &constant("BAKED_SINGLE", "<f32>", |value| f64::from(value as f32));
+        + &constant("BAKED", "<f64>", |value| value)?
+        + &constant("BAKED_SINGLE", "<f32>", |value| f64::from(value as f32))?;
     Ok(layout::source(&text))
 }
 
@@ -69,7 +57,7 @@ pub fn vectors(program: &Program, vectors: &TestVectors) -> Result<String, EmitE
     };
     let rows = |vectors: &[TestVector]| {
         let rows = vectors.iter().map(|vector| {
-            let numbers = [vector.given.numbers(), vector.expected.clone()].concat();
+            let numbers = vector.numbers();
             array(
                 &numbers
                     .iter()

@@ -18,8 +18,8 @@ use crate::labels::Labels;
 use crate::motion_model::MotionModel;
 use crate::sticking::SidedModel;
 
-/// Programs of a model that its motions need, with names, units and sizes. A host without the derivation moves it as
-/// `simulate` does with a general solver.
+/// Programs of a model that its motions need, with names, units and sizes. A host without the derivation simulates it with
+/// the general solvers.
 pub struct ExportedModel {
     labels: Labels,
     program: Program,

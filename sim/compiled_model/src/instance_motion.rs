@@ -1,4 +1,4 @@
-//! What motions need of an instance.
+//! Instances as models of motions.
 
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::Evaluator;

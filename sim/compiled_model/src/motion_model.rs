@@ -1,4 +1,4 @@
-//! What a motion needs of a model at one set of parameters.
+//! Models at one set of parameters, as their motions need them.
 
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::program::evaluator::Evaluator;

@@ -7,7 +7,7 @@ use std::process::Command;
 use eomgen_codegen::program::Program;
 
 use super::emitted::{compare, draw_samples};
-use super::interface::{Calls, Precision, c_harness};
+use super::interface::{BITS, Calls, Precision, c_harness};
 use super::linked_program::{EmittedFunction, format_samples, require_success};
 use crate::certificate::{Check, SkipKind, Worst};
 use crate::compiler::{self, execute, run, write};
@@ -173,6 +173,7 @@ fn run_harness(folder: &Path, emitted: &CSource, samples: &str) -> Result<String
     write(&folder.join(format!("{name}.h")), header)?;
     write(&folder.join("model.c"), source)?;
     let harness = include_str!("harness/c99.c")
+        .replace("/*BITS*/", BITS)
         .replace("NAME_", &format!("{name}_"))
         .replace("NAME.h", &format!("{name}.h"));
     write(&folder.join("harness.c"), &harness)?;

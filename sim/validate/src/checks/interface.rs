@@ -21,6 +21,18 @@ pub const USUAL_FUNCTIONS: usize = 6;
 /// Factor of states far outside the usual range, exact in any precision.
 const LARGE: f64 = 1024.0;
 
+/// Names of the constants with sizes, in the order of the lines.
+const SIZES: [&str; 6] = [
+    "DEGREES_OF_FREEDOM",
+    "STATES",
+    "OBSERVABLES",
+    "GUARDS",
+    "INPUTS",
+    "PARAMETERS",
+];
+/// Functions of the C harnesses that read and print bits.
+pub const BITS: &str = include_str!("harness/bits.c");
+
 /// Precision of a harness.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
@@ -314,14 +326,7 @@ fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(Str
 /// Writes the harness for emitted C with the prefix `name`.
 pub fn c_harness(program: &Program, name: &str) -> String {
     let mut interface = String::new();
-    for size in [
-        "DEGREES_OF_FREEDOM",
-        "STATES",
-        "OBSERVABLES",
-        "GUARDS",
-        "INPUTS",
-        "PARAMETERS",
-    ] {
+    for size in SIZES {
         interface += &format!("    printf(\"%d\\n\", (int)NAME_{size});\n");
     }
     interface += "    printf(\"%s\\n\", NAME_SPECIFICATION_SHA256);\n";
@@ -360,43 +365,37 @@ pub fn c_harness(program: &Program, name: &str) -> String {
     interface += &show("inputs", &inputs);
     let at = "t[0], state, &inputs, &coefficients";
     let mut calls = String::new();
-    let mut array = |name: &str, more: &str, length: usize| {
-        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
+    let array = |name: &str, more: &str, length: usize| {
+        format!("        NAME_{name}({at}{more}, out); show(out, {length});\n")
     };
     let guards = Evaluator::new(program.clone()).guard_count();
     let (states, degrees) = (program.states(), program.degrees_of_freedom());
-    array("rates", "", states);
-    array("observables", "", program.observables.len());
+    calls += &array("rates", "", states);
+    calls += &array("observables", "", program.observables.len());
     for name in ["energy", "power"] {
         calls += &format!("        out[0] = NAME_{name}({at}); show(out, 1);\n");
     }
-    let mut array = |name: &str, more: &str, length: usize| {
-        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
-    };
-    array("guards", "", guards);
+    calls += &array("guards", "", guards);
     let matrix = "(NAME_real (*)[NAME_DEGREES_OF_FREEDOM])out";
     calls += &format!(
         "        NAME_mass_matrix({at}, {matrix}); show(out, {});\n",
         degrees * degrees
     );
-    let mut array = |name: &str, more: &str, length: usize| {
-        calls += &format!("        NAME_{name}({at}{more}, out); show(out, {length});\n");
-    };
     let outputs = &program.outputs;
     if outputs.bias_forces.is_some() {
-        array("bias_forces", "", degrees);
+        calls += &array("bias_forces", "", degrees);
     }
     if outputs.inverse_dynamics.is_some() {
-        array("inverse_dynamics", ", given", degrees);
+        calls += &array("inverse_dynamics", ", given", degrees);
     }
     if outputs.guard_rates.is_some() {
-        array("guard_rates", "", guards);
+        calls += &array("guard_rates", "", guards);
     }
     for jacobian in &outputs.jacobians {
-        array(jacobian.name, "", jacobian.nonzeros());
+        calls += &array(jacobian.name, "", jacobian.nonzeros());
     }
     if outputs.products.is_some() {
-        array("jacobian_vector_product", ", given, &given_inputs", states);
+        calls += &array("jacobian_vector_product", ", given, &given_inputs", states);
         let fields: String = (inputs.iter().enumerate())
             .map(|(place, field)| format!("out[{states} + {place}] = product.{field}; "))
             .collect();
@@ -420,6 +419,7 @@ pub fn c_harness(program: &Program, name: &str) -> String {
         .max(guards)
         .max(parameters.len());
     include_str!("harness/interface.c")
+        .replace("/*BITS*/", BITS)
         .replace("/*INTERFACE*/", &interface)
         .replace("/*CALLS*/", &calls)
         .replace("ROOM", &(room + 1).to_string())
@@ -430,14 +430,7 @@ pub fn c_harness(program: &Program, name: &str) -> String {
 /// Writes the harness for emitted Rust: the interface, the calls in double precision, then those in single precision.
 pub fn rust_harness(program: &Program, emitted: &str) -> String {
     let mut interface = String::new();
-    for size in [
-        "DEGREES_OF_FREEDOM",
-        "STATES",
-        "OBSERVABLES",
-        "GUARDS",
-        "INPUTS",
-        "PARAMETERS",
-    ] {
+    for size in SIZES {
         interface += &format!("    println!(\"{{}}\", model::{size});\n");
     }
     interface += "    println!(\"{}\", model::SPECIFICATION_SHA256);\n";

@@ -94,7 +94,7 @@ impl Reference {
             .map_err(|error| format!("the reference: {error}"))?;
         let states = motion.trajectory.states;
         let sizes = magnitudes(&states, &model.state_units());
-        // A disturbed body that touches another one overlaps it, and a controller restarts its hold.
+        // A disturbed body that touches another one overlaps it, and a controller loses the inputs that it holds.
         let starts = match case.kind {
             Kind::Impacts | Kind::ContactFriction | Kind::Controller => &STARTS[..1],
             _ => &STARTS[..],
