@@ -388,7 +388,7 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, (point.t, &point.y), 0.0);
+        let watched = WatchedSystem::new(&Growth, (point.t, &point.y));
         for _ in 0..steps {
             point = make_step(&watched, &point, 4.0 / f64::from(steps)).expect("a step");
         }
@@ -408,7 +408,7 @@ mod tests {
                 t: 0.0,
                 y: vec![1.0],
             };
-            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
             let mut stepper = DormandPrince853::new(
                 start.clone(),
                 length,
@@ -437,7 +437,7 @@ mod tests {
                 y: vec![1.0],
             };
             let scale = start.t.sin().exp();
-            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
             let tolerance = 10.0_f64.powi(-(4 + place % 6));
             let magnitudes = Magnitudes::new(&start.y, &[1.0], tolerance);
             let mut stepper = DormandPrince853::new(start.clone(), 4.0, magnitudes);
@@ -476,7 +476,7 @@ mod tests {
                 t: 0.0,
                 y: vec![10.0_f64.powi(exponent)],
             };
-            let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+            let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
             let point = make_step(&watched, &start, 3.0);
             assert!(point.is_some(), "from {:e}: {point:?}", start.y[0]);
         }
@@ -488,7 +488,7 @@ mod tests {
             t: 0.0,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+        let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
         let mut stepper =
             DormandPrince853::new(start.clone(), 3.0, Magnitudes::new(&start.y, &[1.0], 1e-10));
         let outcome = stepper.advance(&watched, 10.0).expect("a trial");
@@ -508,7 +508,7 @@ mod tests {
             t: 0.1,
             y: vec![1.0],
         };
-        let watched = WatchedSystem::new(&Growth, (start.t, &start.y), 0.0);
+        let watched = WatchedSystem::new(&Growth, (start.t, &start.y));
         let mut stepper =
             DormandPrince853::new(start.clone(), 0.5, Magnitudes::new(&start.y, &[1.0], 1e-3));
         let outcome = stepper.advance(&watched, 0.3).expect("a step");

@@ -152,6 +152,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
 
     /// Starts a motion: modes and samples at its first point.
     pub fn start(&mut self) {
+        self.update_root_bands();
         self.watched.write_modes(&mut self.run.modes);
         self.take_samples_here();
     }
@@ -477,11 +478,23 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
     }
 
+    /// Finds the surfaces here near which the rates grow as a root.
+    fn update_root_bands(&mut self) {
+        if self.watched.has_guards() {
+            let stepper = &self.run.stepper;
+            let here = stepper.current_point();
+            let allowed: Vec<f64> = stepper.magnitudes().allowed(&here.y).collect();
+            self.watched.update_root_bands(here.t, &here.y, &allowed);
+        }
+    }
+
     /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.run.stepper.current_point();
         let t = here.t;
         self.watched.update_modes(t, &here.y);
+        self.update_root_bands();
+        let here = self.run.stepper.current_point();
         self.watched.enter_regime(t, &here.y);
         std::mem::swap(&mut self.run.modes, &mut self.run.earlier_modes);
         self.watched.write_modes(&mut self.run.modes);

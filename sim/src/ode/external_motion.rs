@@ -39,7 +39,7 @@ impl<S: System> ExternalMotion<S> {
     pub fn start(system: S, (t, y): (f64, &[f64]), modes: &[SurfaceMode], tolerance: f64) -> Self {
         system.assume_modes(modes);
         let record = {
-            let watched = WatchedSystem::new(&system, (t, y), tolerance);
+            let watched = WatchedSystem::new(&system, (t, y));
             watched.assume_sides(modes);
             watched.pause()
         };

@@ -41,11 +41,6 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
         let first = self.run.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
-            let here = self.run.stepper.current_point();
-            if self.watched.release_if_continuous(guard, t, &here.y) {
-                self.run.recent.clear();
-                return Ok(());
-            }
             if self.run.recent.iter().all(|(_, other)| *other == guard) {
                 return Err(SolveError::Sticking { t: first, guard });
             }

@@ -124,7 +124,7 @@ impl Magnitudes {
     }
 
     /// Returns the error allowed to each component at `y`, in its own unit.
-    fn allowed(&self, y: &[f64]) -> impl Iterator<Item = f64> {
+    pub(super) fn allowed(&self, y: &[f64]) -> impl Iterator<Item = f64> {
         let sizes = self.largest.iter().zip(y).zip(&self.roundings);
         sizes.map(|((largest, y), rounding)| self.tolerance * (largest + y.abs()) + rounding)
     }

@@ -92,7 +92,7 @@ impl Simulation {
             t,
             y: state.to_vec(),
         };
-        let record = WatchedSystem::new(system, (t, state), settings.tolerance).pause();
+        let record = WatchedSystem::new(system, (t, state)).pause();
         let sizes = system.typical_sizes();
         let start = (&point, FIRST_STEP * length, &sizes[..]);
         let run: Box<dyn Continue> = match settings.method {

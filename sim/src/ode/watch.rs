@@ -7,6 +7,7 @@ use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::events::SurfaceMode;
 use super::point::Point;
+use super::roots::{GuardHistory, RootBand, has_band};
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 
@@ -31,15 +32,15 @@ pub struct Record {
     has_released_sides: Cell<bool>,
     /// The last side of every surface that was not 0.
     last_sides: RefCell<Regime>,
-    /// Surfaces at which the rates are continuous, so that their side is 0 within the tolerance.
-    continuous: RefCell<Vec<usize>>,
-    /// Relative tolerance of the states.
-    tolerance: f64,
+    /// Surfaces near the present point near which the rates grow as a root.
+    bands: RefCell<Vec<RootBand>>,
+    /// The past of each switching function.
+    histories: RefCell<Vec<GuardHistory>>,
 }
 
 impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     /// Wraps `system` for a simulation from time `t` and state `y`.
-    pub fn new(system: &'a S, (t, y): (f64, &[f64]), tolerance: f64) -> Self {
+    pub fn new(system: &'a S, (t, y): (f64, &[f64])) -> Self {
         let record = Record {
             regime: RefCell::new(vec![0.0; system.guard_count()]),
             horizon: Cell::new(f64::INFINITY),
@@ -48,8 +49,12 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             evaluations: Cell::new(0),
             has_released_sides: Cell::new(true),
             last_sides: RefCell::new(vec![0.0; system.guard_count()]),
-            continuous: RefCell::default(),
-            tolerance,
+            bands: RefCell::default(),
+            histories: RefCell::new(
+                (0..system.guard_count())
+                    .map(|_| GuardHistory::new())
+                    .collect(),
+            ),
         };
         let watched = Self { system, record };
         watched.enter_regime(t, y);
@@ -129,13 +134,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.record.evaluations.get()
     }
 
-    /// Computes the rates at `t` and `y` in the present regime. Returns true if they are finite.
+    /// Computes the rates at `t` and `y` in the present regime, interpolated within [`RootBand`]s. Returns true if they
+    /// are finite.
     pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
         let t = self.seen(t);
-        self.system.rates(t, y, out);
-        self.record
-            .evaluations
-            .set(self.record.evaluations.get() + 1);
+        match &self.record.bands.borrow()[..] {
+            [] => self.count_rates(t, y, out),
+            bands => self.interpolate_rates(bands, (t, y), out),
+        }
         let not_finite = out.iter().position(|rate| !rate.is_finite());
         if let Some(state) = not_finite {
             self.record.not_finite.set(Some(state));
@@ -146,6 +152,14 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             }
         }
         not_finite.is_none()
+    }
+
+    /// Computes the rates of the system and counts the evaluation.
+    pub(super) fn count_rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        self.system.rates(t, y, out);
+        self.record
+            .evaluations
+            .set(self.record.evaluations.get() + 1);
     }
 
     /// Projects a state onto constraints and invariants; see [`System::project`]. Returns false if
@@ -160,7 +174,16 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Computes the Jacobian of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.system.jacobian(self.seen(t), y, out);
+        let bands = self.record.bands.borrow();
+        self.interpolate_jacobian(&bands, (self.seen(t), y), out);
+    }
+
+    /// Finds the surfaces at `t` and `y` near which rates grow as a root, for a method with the errors `allowed` to the
+    /// states: rates are interpolated there.
+    pub fn update_root_bands(&self, t: f64, y: &[f64], allowed: &[f64]) {
+        let histories = &mut self.record.histories.borrow_mut();
+        let bands = self.find_root_bands(histories, (t, y), allowed);
+        self.record.bands.replace(bands);
     }
 
     /// Returns true if the system has switching surfaces.
@@ -250,26 +273,13 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         let mut last = self.record.last_sides.borrow_mut();
         let sides = regime.iter_mut().zip(guards).enumerate();
         for (index, (side, guard)) in sides.filter(|(_, (_, guard))| guard.abs() > 0.0) {
-            let is_continuous = self.record.continuous.borrow().contains(&index);
-            if is_continuous && self.is_at_surface((index, guard), (t, y), self.record.tolerance) {
+            if has_band(&self.record.bands.borrow(), index) {
                 *side = 0.0;
                 continue;
             }
             last[index] = guard.signum();
             *side = guard.signum();
         }
-    }
-
-    /// Lets steps pass the surface `guard` where they come near it, if the rates are continuous there. Returns true
-    /// if it is a new one.
-    pub fn release_if_continuous(&self, guard: usize, t: f64, y: &[f64]) -> bool {
-        let is_new = !self.record.continuous.borrow().contains(&guard)
-            && self.has_continuous_rates(guard, (t, y), self.record.tolerance);
-        if is_new {
-            self.record.continuous.borrow_mut().push(guard);
-            self.enter_regime(t, y);
-        }
-        is_new
     }
 
     /// Applies the jumps of an event between a point just before a surface and one just beyond it.

@@ -246,3 +246,124 @@ m = "1/2*m*dot(x)^2"
         }
     }
 }
+
+/// h' = -k sign(h) |h|^a from h = b is b (1 - t/T)^(1/(1 - a)) and ends at T = b^(1 - a)/(k (1 - a)) in rest at 0, where
+/// the slope of the rate has no bound.
+#[test]
+fn states_that_end_at_zero_of_root_stay_there() {
+    let laws = [
+        ("sign(h)*sqrt(abs(h))", "m^(1/2)", 0.5),
+        ("sign(h)*abs(h)^0.3", "m^(7/10)", 0.3),
+        ("sqrt(max(h, 0))", "m^(1/2)", 0.5),
+        ("h/sqrt(abs(h) + 1e-300*b)", "m^(1/2)", 0.5),
+    ];
+    for (law, unit, power) in laws {
+        let model = of_text(&format!(
+            r#"
+[model]
+name = "tank"
+[coordinates]
+x = {{ unit = "m" }}
+[states]
+h = {{ unit = "m", rate = "-k*{law}", initial = "b" }}
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+b = {{ value = 1, unit = "m" }}
+k = {{ value = 1, unit = "{unit}/s" }}
+[kinetic]
+m = "1/2*m*dot(x)^2"
+"#
+        ));
+        for size in [1e-6, 1.0, 1e6] {
+            let k = f64::powf(size, 1.0 - power);
+            let duration = 1.0 / (1.0 - power);
+            let times = [0.0, 0.5, 1.0, 0.99 * duration, 2.0 * duration];
+            for solver in [Solver::Radau, Solver::Auto] {
+                let motion = simulated(&model, &[("b", size), ("k", k)], &times, solver);
+                for (t, state) in times.iter().zip(&motion.trajectory.states) {
+                    let right = size * (1.0 - t / duration).max(0.0).powf(duration);
+                    assert!(
+                        (state[2] - right).abs() < 3e-8 * size,
+                        "{law}, {solver}, {size:e} at {t}: {:e} {right:e}",
+                        state[2]
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A mass that a force -c sign(v) sqrt(|v|) stops at 2 v0^(3/2)/(3 c).
+#[test]
+fn root_drag_stops_mass() {
+    let model = of_text(
+        r#"
+[model]
+name = "drag"
+[parameters]
+m = { value = 1, unit = "kg" }
+c = { value = 1, unit = "N s^(1/2)/m^(1/2)" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+[kinetic]
+m = "1/2*m*dot(x)^2"
+[forces]
+drag = { on = "x", value = "-c*sign(dot(x))*sqrt(abs(dot(x)))" }
+"#,
+    );
+    for solver in GENERAL {
+        let motion = simulated(&model, &[], &[0.0, 1.9, 2.1], solver);
+        let [_, moving, stopped] = &motion.trajectory.states[..] else {
+            panic!("three states");
+        };
+        assert!(
+            (moving[1] - 0.05_f64.powi(2)).abs() < 1e-8,
+            "{solver}: {moving:?}"
+        );
+        assert!(
+            (stopped[0] - 2.0 / 3.0).abs() < 1e-8,
+            "{solver}: {stopped:?}"
+        );
+        assert!(stopped[1].abs() < 2e-9, "{solver}: {stopped:?}");
+    }
+}
+
+/// Three chambers that exchange their contents through roots of the differences end with equal contents at one time:
+/// several surfaces meet.
+#[test]
+fn chambers_joined_by_orifices_come_to_rest_together() {
+    let model = of_text(
+        r#"
+[model]
+name = "joined"
+[coordinates]
+x = { unit = "m" }
+[states]
+a = { unit = "m", rate = "-k*sign(a - b)*sqrt(abs(a - b))", initial = 1 }
+b = { unit = "m", rate = "k*sign(a - b)*sqrt(abs(a - b)) - k*sign(b - c)*sqrt(abs(b - c))" }
+c = { unit = "m", rate = "k*sign(b - c)*sqrt(abs(b - c))" }
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "m^(1/2)/s" }
+[kinetic]
+m = "1/2*m*dot(x)^2"
+"#,
+    );
+    let times = [0.0, 0.5, 1.0, 3.0, 20.0];
+    // SciPy, LSODA at 1e-12; at the end the mean of the contents.
+    let right = [
+        [1.0, 0.0, 0.0],
+        [0.60552625754, 0.25120973860, 0.14326400387],
+        [0.39341686114, 0.32439824635, 0.28218489251],
+        [1.0 / 3.0; 3],
+        [1.0 / 3.0; 3],
+    ];
+    for solver in [Solver::Radau, Solver::Auto] {
+        let motion = simulated(&model, &[], &times, solver);
+        for ((t, state), right) in times.iter().zip(&motion.trajectory.states).zip(right) {
+            for (value, right) in state[2..].iter().zip(right) {
+                assert!((value - right).abs() < 3e-8, "{solver} at {t}: {state:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Rates that grow as a root of a switching function near its surface, such as sign(v)*sqrt(abs(v)).
+//!
+//! Their derivative has no bound at the surface. With a huge derivative the first change of Newton's method is small for
+//! any residual, and an implicit method accepts a wrong state. If the tolerance of the states can change the sign of the
+//! switching function, the rates are therefore interpolated between the two edges of that band. This changes no state by
+//! more than the tolerance.
+
+use super::system::System;
+use super::watch::WatchedSystem;
+
+/// Largest number of surfaces at one point whose rates are interpolated. Each doubles the number of evaluations.
+const MAX_BANDS: usize = 4;
+
+/// Largest growth of a difference of rates, between the two distances of [`WatchedSystem::rate_differences`], that counts
+/// as a root: that of the distance to the power 0.9.
+const MAX_ROOT_GROWTH: f64 = 12.0;
+
+/// Fraction to which a switching function falls until its gradient is computed again.
+const APPROACHED: f64 = 0.25;
+
+/// Ratio of the two distances at which rates on both sides are compared.
+const DISTANCE_RATIO: f64 = 16.0;
+
+/// Least growth of a difference of rates that vanishes at the surface; that of a root grows fourfold.
+const MIN_GROWTH: f64 = 1.5;
+
+/// Differences below this part of the rates are rounding.
+const RATE_ROUNDING: f64 = 1e-12;
+
+/// Difference of one rate on both sides of a surface.
+struct RateDifference {
+    /// At the part 1/[`DISTANCE_RATIO`] of the distance.
+    near: f64,
+    far: f64,
+    /// Size of the rate.
+    size: f64,
+}
+
+impl RateDifference {
+    /// Returns true if the difference vanishes towards the surface.
+    fn is_continuous(&self) -> bool {
+        self.is_rounding() || self.far >= MIN_GROWTH * self.near
+    }
+
+    fn is_rounding(&self) -> bool {
+        self.near <= RATE_ROUNDING * self.size
+    }
+}
+
+/// A switching surface near a state, near which rates grow as a root.
+pub(super) struct RootBand {
+    guard: usize,
+    /// Value of the switching function at the edge of the band.
+    width: f64,
+    /// Change of the state from the surface to the edge of the band.
+    to_edge: Vec<f64>,
+    /// Derivatives of the switching function by the states.
+    gradient: Vec<f64>,
+}
+
+/// The past of a switching function on the way to its surface.
+pub(super) struct GuardHistory {
+    /// Magnitude of the switching function when its gradient was last computed, or a larger one since.
+    reference: f64,
+    /// True if rates grow as a root near the surface; `None` until the motion is near it.
+    is_root: Option<bool>,
+}
+
+impl GuardHistory {
+    /// Before the first point.
+    pub(super) const fn new() -> Self {
+        Self {
+            reference: f64::INFINITY,
+            is_root: None,
+        }
+    }
+
+    /// Takes note of the magnitude of the switching function. Returns true if its gradient is needed: in a band, and
+    /// where the magnitude has fallen to a part.
+    fn follow(&mut self, magnitude: f64) -> bool {
+        if self.is_root != Some(true) && magnitude >= APPROACHED * self.reference {
+            if magnitude > self.reference {
+                *self = Self {
+                    reference: magnitude,
+                    is_root: None,
+                };
+            }
+            return false;
+        }
+        self.reference = magnitude;
+        true
+    }
+}
+
+impl RootBand {
+    /// Returns the band in which the errors `allowed` to the states can change the sign of a switching function with this
+    /// gradient; `None` if they do not change it.
+    fn new(guard: usize, gradient: &[f64], allowed: &[f64]) -> Option<Self> {
+        let changes = gradient.iter().zip(allowed);
+        let width: f64 = changes
+            .map(|(slope, allowed)| (slope * allowed).abs())
+            .sum();
+        let steps = gradient.iter().zip(allowed);
+        let steps = steps.map(|(slope, allowed)| match *slope == 0.0 {
+            true => 0.0,
+            false => allowed * slope.signum(),
+        });
+        width.is_normal().then(|| Self {
+            guard,
+            width,
+            to_edge: steps.collect(),
+            gradient: gradient.to_vec(),
+        })
+    }
+
+    /// Returns the position in the band of a point with this value of the switching function: -1 and 1 at its edges, and
+    /// beyond it.
+    fn position(&self, value: f64) -> f64 {
+        (value / self.width).clamp(-1.0, 1.0)
+    }
+
+    /// Returns the states at the two edges of the band, from the position of `y`.
+    fn edges(&self, y: &[f64], position: f64) -> [Vec<f64>; 2] {
+        [-1.0, 1.0].map(|edge| {
+            let moved = y.iter().zip(&self.to_edge);
+            moved
+                .map(|(y, step)| y + step * (edge - position))
+                .collect()
+        })
+    }
+}
+
+impl<S: System + ?Sized> WatchedSystem<'_, S> {
+    /// Finds the surfaces within the errors `allowed` to the states at `t` and `y` near which rates grow as a root.
+    /// `histories` has an entry per switching function and knows the earlier points.
+    pub(super) fn find_root_bands(
+        &self,
+        histories: &mut [GuardHistory],
+        (t, y): (f64, &[f64]),
+        allowed: &[f64],
+    ) -> Vec<RootBand> {
+        let here = self.evaluate_guards(t, y);
+        let near = histories.iter_mut().zip(&here).enumerate();
+        let near: Vec<usize> = near
+            .filter_map(|(guard, (history, value))| history.follow(value.abs()).then_some(guard))
+            .collect();
+        if near.is_empty() {
+            return Vec::new();
+        }
+        let gradients = self.guard_gradients((t, y), allowed, &here);
+        let mut bands = Vec::new();
+        for guard in near {
+            let (value, history) = (here[guard], &mut histories[guard]);
+            let band = RootBand::new(guard, &gradients[guard], allowed);
+            let Some(band) = band.filter(|band| value.abs() <= band.width) else {
+                history.is_root = None;
+                continue;
+            };
+            let is_root = history.is_root.get_or_insert_with(|| {
+                let on_surface = y.iter().zip(&band.to_edge);
+                let on_surface = on_surface.map(|(y, step)| y - step * value / band.width);
+                self.grow_as_root(
+                    (t, &on_surface.collect::<Vec<f64>>()),
+                    &band.to_edge,
+                    allowed,
+                )
+            });
+            if *is_root && bands.len() < MAX_BANDS {
+                bands.push(band);
+            }
+        }
+        bands
+    }
+
+    /// Returns the derivatives of the switching functions by the states, from differences of the size `allowed`.
+    fn guard_gradients(
+        &self,
+        (t, y): (f64, &[f64]),
+        allowed: &[f64],
+        here: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut gradients = vec![vec![0.0; y.len()]; here.len()];
+        let mut beside = y.to_vec();
+        for (state, allowed) in allowed.iter().enumerate() {
+            beside[state] = y[state] + allowed;
+            let step = beside[state] - y[state];
+            if step > 0.0 {
+                let guards = self.evaluate_guards(t, &beside);
+                for ((gradient, there), here) in gradients.iter_mut().zip(guards).zip(here) {
+                    gradient[state] = (there - here) / step;
+                }
+            }
+            beside[state] = y[state];
+        }
+        gradients
+    }
+
+    /// Returns true if the rates are continuous at the surface at `y` and their differences, relative to the errors
+    /// `allowed` to the states, grow as a root from it to the distance `to_edge`.
+    fn grow_as_root(&self, at: (f64, &[f64]), to_edge: &[f64], allowed: &[f64]) -> bool {
+        let differences = self.rate_differences(at, to_edge);
+        let growing = differences.iter().zip(allowed);
+        let growing = growing.filter(|(difference, _)| !difference.is_rounding());
+        let (near, far) = growing.fold((0.0, 0.0), |(near, far), (difference, allowed)| {
+            (
+                f64::hypot(near, difference.near / allowed),
+                f64::hypot(far, difference.far / allowed),
+            )
+        });
+        let is_root = near > 0.0 && (MIN_GROWTH..=MAX_ROOT_GROWTH).contains(&(far / near));
+        is_root && differences.iter().all(RateDifference::is_continuous)
+    }
+
+    /// Returns the differences of the rates on both sides of a surface at `y`, one per state: at the distance
+    /// `to_edge` and at the part 1/[`DISTANCE_RATIO`] of it.
+    fn rate_differences(&self, (t, y): (f64, &[f64]), to_edge: &[f64]) -> Vec<RateDifference> {
+        self.fix_sides(false);
+        let rates = |distance: f64| {
+            let beside = y.iter().zip(to_edge);
+            let beside: Vec<f64> = beside.map(|(y, step)| y + distance * step).collect();
+            let mut rates = vec![0.0; y.len()];
+            self.count_rates(t, &beside, &mut rates);
+            rates
+        };
+        let [below, above] = [-1.0, 1.0].map(|edge| rates(edge / DISTANCE_RATIO));
+        let [far_below, far_above] = [-1.0, 1.0].map(rates);
+        self.fix_sides(true);
+        let difference = |row: usize| RateDifference {
+            near: (above[row] - below[row]).abs(),
+            far: (far_above[row] - far_below[row]).abs(),
+            size: above[row].abs().max(below[row].abs()),
+        };
+        (0..y.len()).map(difference).collect()
+    }
+
+    /// Writes the rates at `t` and `y`, interpolated within these bands.
+    pub(super) fn interpolate_rates(
+        &self,
+        bands: &[RootBand],
+        (t, y): (f64, &[f64]),
+        out: &mut [f64],
+    ) {
+        let Some((band, others)) = bands.split_first() else {
+            self.count_rates(t, y, out);
+            return;
+        };
+        let position = band.position(self.evaluate_guards(t, y)[band.guard]);
+        if position.abs() == 1.0 {
+            return self.interpolate_rates(others, (t, y), out);
+        }
+        let [below, above] = band.edges(y, position);
+        let mut rates = vec![0.0; out.len()];
+        self.interpolate_rates(others, (t, &below), &mut rates);
+        self.interpolate_rates(others, (t, &above), out);
+        for (above, below) in out.iter_mut().zip(rates) {
+            *above = 0.5 * ((1.0 - position) * below + (1.0 + position) * *above);
+        }
+    }
+
+    /// Writes the derivatives of the rates of [`WatchedSystem::interpolate_rates`] by the states, row by row.
+    pub(super) fn interpolate_jacobian(
+        &self,
+        bands: &[RootBand],
+        (t, y): (f64, &[f64]),
+        out: &mut [f64],
+    ) {
+        let Some((band, others)) = bands.split_first() else {
+            self.system().jacobian(t, y, out);
+            return;
+        };
+        let position = band.position(self.evaluate_guards(t, y)[band.guard]);
+        if position.abs() == 1.0 {
+            return self.interpolate_jacobian(others, (t, y), out);
+        }
+        let states = y.len();
+        let edges = band.edges(y, position);
+        let rates = edges.each_ref().map(|edge| {
+            let mut rates = vec![0.0; states];
+            self.interpolate_rates(others, (t, edge), &mut rates);
+            rates
+        });
+        let [below, above] = edges.each_ref().map(|edge| {
+            let mut jacobian = vec![0.0; out.len()];
+            self.interpolate_jacobian(others, (t, edge), &mut jacobian);
+            jacobian
+        });
+        let shares = [0.5 * (1.0 - position), 0.5 * (1.0 + position)];
+        let differences = rates[0].iter().zip(&rates[1]);
+        let differences = differences.map(|(below, above)| 0.5 * (above - below));
+        for (row, difference) in differences.enumerate() {
+            let first = row * states;
+            let mean =
+                |state: usize| shares[0] * below[first + state] + shares[1] * above[first + state];
+            // An edge keeps its distance from the surface wherever the state is.
+            let along: f64 = (0..states)
+                .map(|state| mean(state) * band.to_edge[state])
+                .sum();
+            for state in 0..states {
+                let slope = band.gradient[state] / band.width;
+                out[first + state] = mean(state) + (difference - along) * slope;
+            }
+        }
+    }
+}
+
+/// Returns true if the surface `guard` has one of these bands.
+pub(super) fn has_band(bands: &[RootBand], guard: usize) -> bool {
+    bands.iter().any(|band| band.guard == guard)
+}
