@@ -112,7 +112,7 @@ def test_certificate_is_that_of_the_program(chain, run, tmp_path):
 
 @pytest.mark.parametrize(
     "target, extras",
-    [("rust", ["jacobians"]), ("c99", []), ("casadi", ["hessians"])],
+    [("rust", ["jacobians"]), ("c99", []), ("cuda", []), ("casadi", ["hessians"])],
 )
 def test_generated_files_are_those_of_the_program(chain, run, tmp_path, target, extras):
     with_extras = ["--with", ",".join(extras)] if extras else []
@@ -127,7 +127,7 @@ def test_generated_files_are_those_of_the_program(chain, run, tmp_path, target, 
 
 def test_invalid_generation_is_rejected(chain, tmp_path):
     for arguments, said in [
-        ({"target": "ada"}, 'expected one of "rust", "c99", "casadi"'),
+        ({"target": "ada"}, 'expected one of "rust", "c99", "cuda", "casadi"'),
         ({"extras": ["jacobian"]}, "jacobians"),
         ({"target": "fmu2"}, "eomgen generate SPEC --target fmu2"),
         ({"target": "c99", "extras": ["lanes"]}, "lanes"),

@@ -47,6 +47,8 @@ pub enum Target {
     Rust,
     /// C99 that is also C++, without allocation or libraries: `NAME.h` and `NAME.c`, named after the model.
     C99,
+    /// Device functions of CUDA C++ (nvcc, NVRTC, clang), with the bits of the C: `NAME.cuh`.
+    Cuda,
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
     /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
     Casadi,
@@ -62,6 +64,7 @@ impl From<Target> for eomgen_targets::Target {
         match target {
             Target::Rust => Self::Rust,
             Target::C99 => Self::C99,
+            Target::Cuda => Self::Cuda,
             Target::Casadi => Self::Casadi,
             Target::Fmu2 => Self::Fmu2,
             Target::Fmu3 => Self::Fmu3,

@@ -145,6 +145,10 @@ impl Emitted {
                 }
             }
         }
+        if variant.has(Target::Cuda) {
+            this.files
+                .extend(emission::files(model, &derived, Target::Cuda)?);
+        }
         if variant.has(Target::Casadi) {
             let derived = derive(&emission::outputs(Target::Casadi, &of_casadi, false)?)?;
             this.files

@@ -354,12 +354,12 @@ impl Reader<'_> {
     }
 
     fn targets(&mut self, words: &[StringValue]) -> Option<Vec<Target>> {
-        let known = "expected \"rust\", \"c99\" or \"casadi\"";
+        let known = "expected \"rust\", \"c99\", \"cuda\" or \"casadi\"";
         let mut targets = Vec::new();
         for word in words {
             let target = Target::from_str(&word.text, false).ok();
             match target {
-                Some(target @ (Target::Rust | Target::C99 | Target::Casadi)) => {
+                Some(target @ (Target::Rust | Target::C99 | Target::Cuda | Target::Casadi)) => {
                     targets.push(target)
                 }
                 Some(Target::Fmu2 | Target::Fmu3) => {

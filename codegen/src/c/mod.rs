@@ -3,13 +3,14 @@
 //!
 //! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
 //! `jacobians` and `controllers` write functions, `functions` their helpers, with the operations on bits of
-//! `primitives`; `vectors` writes test vectors. `casadi` is an additional interface. `expression` writes
+//! `primitives`; `vectors` writes test vectors. `casadi` and `cuda` are additional interfaces. `expression` writes
 //! statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
 //! the order of computation.
 
 mod casadi;
 mod comments;
 mod controllers;
+mod cuda;
 mod emit;
 mod expression;
 mod functions;
@@ -27,6 +28,7 @@ mod vectors;
 
 pub use crate::statements::EmitError;
 pub use casadi::{CASADI_OUTPUTS, emit_casadi};
+pub use cuda::emit_cuda;
 pub use emit::{Files, emit, emit_with};
 pub use real::Real;
 pub use vectors::{baked, vectors};

@@ -43,6 +43,10 @@ pub fn emit(
                 EmittedFile::text(format!("{name}.h"), header),
             ])
         }
+        Target::Cuda => {
+            let source = c::emit_cuda(program).map_err(EmissionError::request)?;
+            Ok(vec![EmittedFile::text(format!("{name}.cuh"), source)])
+        }
         Target::Casadi => {
             let source = c::emit_casadi(program).map_err(EmissionError::request)?;
             Ok(vec![EmittedFile::text(format!("{name}_casadi.c"), source)])
@@ -78,7 +82,7 @@ pub fn parse_output(name: &str) -> Result<Output, String> {
 pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
     let has = |output: Output| with.contains(&output);
     let reason = match target {
-        Target::Rust | Target::C99 if has(Output::Hessians) => {
+        Target::Rust | Target::C99 | Target::Cuda if has(Output::Hessians) => {
             "--with hessians needs --target casadi"
         }
         Target::Rust => return Ok(with.to_vec()),
@@ -86,7 +90,7 @@ pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
             "--with lanes needs --target rust: its functions are generic over the number type, \
              which C does not support"
         }
-        Target::C99 => return Ok(with.to_vec()),
+        Target::C99 | Target::Cuda => return Ok(with.to_vec()),
         Target::Casadi if with.iter().all(|output| *output == Output::Hessians) => {
             return Ok([&c::CASADI_OUTPUTS[..], with].concat());
         }

@@ -7,6 +7,8 @@ pub enum Target {
     Rust,
     /// C99 that is also C++: `NAME.c` and `NAME.h`.
     C99,
+    /// Device functions of CUDA C++: `NAME.cuh`.
+    Cuda,
     /// External functions of CasADi: `NAME_casadi.c`.
     Casadi,
     /// Functional mock-up unit, FMI 2.0: `NAME.fmu`.
@@ -17,7 +19,14 @@ pub enum Target {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 5] = [Self::Rust, Self::C99, Self::Casadi, Self::Fmu2, Self::Fmu3];
+    pub const ALL: [Self; 6] = [
+        Self::Rust,
+        Self::C99,
+        Self::Cuda,
+        Self::Casadi,
+        Self::Fmu2,
+        Self::Fmu3,
+    ];
 
     /// Returns true for functional mock-up units.
     pub fn is_unit(self) -> bool {
@@ -29,6 +38,7 @@ impl Target {
         match self {
             Self::Rust => "rust",
             Self::C99 => "c99",
+            Self::Cuda => "cuda",
             Self::Casadi => "casadi",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",

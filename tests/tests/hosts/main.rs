@@ -3,6 +3,7 @@
 
 mod c99;
 mod casadi;
+mod cuda;
 mod fmi;
 mod mujoco;
 mod page;

@@ -40,7 +40,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 20] = [
+const TESTED_ELSEWHERE: [(&str, &str); 22] = [
     // The test compiles an image with two variants and lists them.
     (
         "cargo run --release -- identify firmware.elf ",
@@ -55,6 +55,9 @@ const TESTED_ELSEWHERE: [(&str, &str); 20] = [
         "cargo install --path cli",
         "tests/tests/project/installed.rs",
     ),
+    // The test builds and runs them if `nvcc` is installed.
+    ("examples/cuda/build ", "tests/tests/hosts/cuda/mod.rs"),
+    ("examples/cuda/arms_double", "tests/tests/hosts/cuda/mod.rs"),
     // The package's own page prints the same commands.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
     ("pip install ./python", "tests/tests/hosts/python.rs"),

@@ -1,0 +1,157 @@
+//! Header of a program for CUDA C++: the functions of the emitted C as device functions.
+//!
+//! [`emit`](super::emit::emit) starts every declaration and definition in the first column. This module adds the
+//! qualifiers of CUDA to these lines, and leaves out the lists of names, which only the host can read.
+
+use super::comments::comment;
+use super::emit::emit;
+use super::header::documentation;
+use super::names::fill_template;
+use crate::program::Program;
+use crate::statements::EmitError;
+
+/// Qualifier of functions.
+const FUNCTION: &str = "inline __device__ ";
+
+/// Qualifier of tables.
+const TABLE: &str = "static __device__ ";
+
+/// Lines of the header that declare the functions for C, which device functions do not need.
+const LINKAGE: [&str; 2] = [
+    "#ifdef __cplusplus\nextern \"C\" {\n#endif\n",
+    "#ifdef __cplusplus\n}\n#endif\n",
+];
+
+/// Writes a program as the header `NAME.cuh` of device functions, which `nvcc`, NVRTC and clang compile.
+///
+/// # Errors
+/// As for [`emit`](super::emit::emit).
+pub fn emit_cuda(program: &Program) -> Result<String, EmitError> {
+    let files = emit(program)?;
+    let name = &program.name;
+    let mut text = comment(&notes(program));
+    text += &fill_template(program, OPENING);
+    let header = LINKAGE
+        .iter()
+        .fold(files.header, |text, lines| text.replace(lines, ""));
+    for part in [&header, &files.source] {
+        let lines = part.lines().filter(|line| !line.starts_with("#include"));
+        text += &convert(lines, name);
+    }
+    text += &fill_template(program, CLOSING);
+    Ok(text)
+}
+
+fn notes(program: &Program) -> Vec<String> {
+    let name = &program.name;
+    let text = format!(
+        "\nDevice functions in double precision, or in single precision with -D{name}_REAL=float. They do\n\
+         not allocate or call a library. `{name}_prepare` needs one call for each set of parameters.\n\
+         \n\
+         Compile with -fmad=false. The results then have the same bits as those of the emitted C and Rust.\n\
+         `{name}_is_unfused` tests this on the device."
+    );
+    let mut lines = documentation(program);
+    lines.extend(text.split('\n').map(str::to_owned));
+    lines
+}
+
+/// Lines before the declarations. NVRTC has no standard headers.
+const OPENING: &str = "#ifndef NAME_CUH
+#define NAME_CUH
+#ifdef __CUDACC_RTC__
+typedef int int32_t;
+typedef unsigned int uint32_t;
+typedef unsigned long long uint64_t;
+#else
+#include <stdint.h>
+#endif
+";
+
+/// Lines after the definitions. The square of 1 + 2^-n has the last bit 2^-2n, which a rounded product does not keep.
+const CLOSING: &str = "
+/**
+ * Returns 1 if the compiler rounds each product before it is added, as -fmad=false prescribes. `one` is 1, and unknown to the
+ * compiler.
+ */
+inline __device__ int NAME_is_unfused(NAME_real one) {
+    const NAME_real small = sizeof(NAME_real) == 4 ? (NAME_real)2.44140625e-4 : (NAME_real)7.450580596923828e-9;
+    const NAME_real number = one + small;
+    const NAME_real square = one + (NAME_real)2.0 * small;
+    return number * number - square == (NAME_real)0.0;
+}
+#endif
+";
+
+/// Adds the qualifiers to the lines of C, and removes what belongs to the host: guards of the header, lists of names with
+/// their documentation.
+fn convert<'l>(lines: impl Iterator<Item = &'l str>, name: &str) -> String {
+    let mut text = String::new();
+    // Lines of documentation and conditions that wait for what they belong to.
+    let mut waiting = String::new();
+    let mut lines = lines.peekable();
+    let mut is_first_comment = true;
+    while let Some(line) = lines.next() {
+        let ends_list = |line: &str| line.ends_with(';');
+        if line.starts_with("/**") {
+            waiting = format!("{line}\n");
+            let mut last = line;
+            while !last.ends_with("*/") {
+                let Some(next) = lines.next() else { break };
+                waiting += &format!("{next}\n");
+                last = next;
+            }
+            if std::mem::take(&mut is_first_comment) {
+                waiting.clear();
+            }
+            continue;
+        }
+        if is_list_of_names(line, name) {
+            let mut last = line;
+            while !ends_list(last) {
+                let Some(next) = lines.next() else { break };
+                last = next;
+            }
+            waiting.clear();
+            continue;
+        }
+        text += &std::mem::take(&mut waiting);
+        text += &qualify(line, name);
+        text.push('\n');
+    }
+    text
+}
+
+/// Returns the head of the line that defines the identity.
+fn identity_head(name: &str) -> String {
+    format!("const char {name}_identity[] = ")
+}
+
+/// Returns true for the first line of a list that is no table of numbers, and for declarations.
+fn is_list_of_names(line: &str, name: &str) -> bool {
+    let is_list = ["const char ", "const int ", "extern const "];
+    is_list.iter().any(|head| line.starts_with(head)) && !line.starts_with(&identity_head(name))
+}
+
+/// Adds the qualifier to a line that begins a function or a table.
+fn qualify(line: &str, name: &str) -> String {
+    let is_inside = line.starts_with([' ', '#', '}', ')', '/']) || line.is_empty();
+    let declares_type = ["typedef", "enum"]
+        .iter()
+        .any(|head| line.starts_with(head));
+    if is_inside || declares_type {
+        return line.to_owned();
+    }
+    if line.starts_with("static const ") {
+        return format!("{TABLE}{}", &line["static ".len()..]);
+    }
+    if line.starts_with(&identity_head(name)) {
+        return format!("{TABLE}{line}");
+    }
+    let head = line.strip_prefix("static ").unwrap_or(line);
+    let head = head.strip_prefix("inline ").unwrap_or(head);
+    match line.contains(&format!("{name}_")) && line.contains('(') {
+        true => format!("{FUNCTION}{head}"),
+        false => line.to_owned(),
+    }
+}
