@@ -62,8 +62,17 @@ pub(super) struct RootBand {
 pub(super) struct GuardHistory {
     /// Magnitude of the switching function when its gradient was last computed, or a larger one since.
     reference: f64,
-    /// True if rates grow as a root near the surface; `None` until the motion is near it.
-    is_root: Option<bool>,
+    /// Decision near the surface; `None` until the motion is near it.
+    decision: Option<Decision>,
+}
+
+/// Decision about the rates near a surface.
+#[derive(Clone, Copy)]
+struct Decision {
+    /// True if they grow as a root.
+    is_root: bool,
+    /// Value of the switching function at the edge of the band.
+    width: f64,
 }
 
 impl GuardHistory {
@@ -71,20 +80,22 @@ impl GuardHistory {
     pub(super) const fn new() -> Self {
         Self {
             reference: f64::INFINITY,
-            is_root: None,
+            decision: None,
         }
     }
 
-    /// Takes note of the magnitude of the switching function. Returns true if its gradient is needed: in a band, and
-    /// where the magnitude has fallen to a part.
+    /// Takes note of the magnitude of the switching function. Returns true if its gradient is needed: in the band of a
+    /// root, and if the magnitude has fallen to a part.
     fn follow(&mut self, magnitude: f64) -> bool {
-        if self.is_root != Some(true) && magnitude >= APPROACHED * self.reference {
-            if magnitude > self.reference {
-                *self = Self {
-                    reference: magnitude,
-                    is_root: None,
-                };
+        if let Some(Decision { is_root, width }) = self.decision {
+            if APPROACHED * magnitude <= width {
+                return is_root;
             }
+            self.decision = None;
+            self.reference = magnitude;
+        }
+        if magnitude >= APPROACHED * self.reference {
+            self.reference = self.reference.max(magnitude);
             return false;
         }
         self.reference = magnitude;
@@ -153,19 +164,18 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             let (value, history) = (here[guard], &mut histories[guard]);
             let band = RootBand::new(guard, &gradients[guard], allowed);
             let Some(band) = band.filter(|band| value.abs() <= band.width) else {
-                history.is_root = None;
                 continue;
             };
-            let is_root = history.is_root.get_or_insert_with(|| {
+            let decision = history.decision.get_or_insert_with(|| {
                 let on_surface = y.iter().zip(&band.to_edge);
                 let on_surface = on_surface.map(|(y, step)| y - step * value / band.width);
-                self.grow_as_root(
-                    (t, &on_surface.collect::<Vec<f64>>()),
-                    &band.to_edge,
-                    allowed,
-                )
+                let on_surface: Vec<f64> = on_surface.collect();
+                Decision {
+                    is_root: self.grow_as_root((t, &on_surface), &band.to_edge, allowed),
+                    width: band.width,
+                }
             });
-            if *is_root && bands.len() < MAX_BANDS {
+            if decision.is_root && bands.len() < MAX_BANDS {
                 bands.push(band);
             }
         }
