@@ -6,7 +6,7 @@ use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::model::Model;
 
-use crate::error::{Error, Result, print_diagnostics};
+use crate::error::{Error, Result, print_diagnostics, warn};
 
 /// Reads and checks a specification and prints its warnings.
 pub fn load(path: &Path) -> Result<Checked> {
@@ -38,15 +38,24 @@ pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
 }
 
 pub fn derive(model: Model, orders: &[usize]) -> Result<CompiledModel> {
-    Ok(CompiledModel::derive(model, Orders::PerField(orders))?)
+    let compiled = CompiledModel::derive(model, Orders::PerField(orders))?;
+    note_redundancy(&compiled.redundancy_notes());
+    Ok(compiled)
+}
+
+/// Prints notes about constraints that depend on each other.
+pub fn note_redundancy(notes: &[String]) {
+    for note in notes {
+        warn(&format!("note: {note}"));
+    }
 }
 
 /// Loads and derives a model to print its equations; coordinates without inertia are accepted.
 pub fn load_to_read(path: &Path, order: Option<&str>) -> Result<CompiledModel> {
     let model = load(path)?.model;
     let orders = orders(&model, order)?;
-    Ok(CompiledModel::derive_without_inertia_check(
-        model,
-        Orders::PerField(&orders),
-    )?)
+    let orders = Orders::PerField(&orders);
+    let compiled = CompiledModel::derive_without_inertia_check(model, orders)?;
+    note_redundancy(&compiled.redundancy_notes());
+    Ok(compiled)
 }

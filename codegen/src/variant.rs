@@ -5,14 +5,15 @@ use eomgen_model_spec::model::Model;
 
 use crate::examination;
 use crate::independence::bounds::check_signs;
-use crate::independence::check_independence;
 use crate::independence::constraint_program::{constraint_program, residual_places};
+use crate::independence::find_redundancy;
 use crate::independence::rows::ConstraintRows;
 use crate::mechanics::corners::{add_corner_sides, has_jumping_momenta};
-use crate::mechanics::equations::{Equations, derive};
+use crate::mechanics::equations::{Equations, derive, derive_with_redundancy};
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
+use crate::mechanics::redundancy::Redundancy;
 use crate::mechanics::sliding::{SideInputs, add_side_inputs, can_hold_motion};
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
@@ -32,7 +33,7 @@ impl Variant {
     /// Derives `model`; `orders` has one truncation order for each field.
     ///
     /// # Errors
-    /// Inadmissible parameter values, expressions that cannot be derived, constraints that depend on each
+    /// Inadmissible parameter values, expressions that cannot be derived, constraints that contradict each
     /// other or that no state satisfies, and coordinates without inertia at the initial state, each with its
     /// place in the specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
@@ -68,7 +69,7 @@ impl Variant {
         let values = model
             .parameter_values()
             .map_err(|error| found(error.diagnostic()))?;
-        let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
+        let mut equations = derive_equations(model, orders).map_err(found)?;
         let outputs = derive_outputs(&mut equations, outputs).map_err(|error| {
             let message = Diagnostic::error(error.to_string());
             let terms = model.kinetic.iter().chain(&model.potential);
@@ -79,26 +80,43 @@ impl Variant {
                 None => message,
             })
         })?;
-        check_signs(model, &equations.graph, &equations.residuals, &values).map_err(found)?;
-        if let Some(program) = constraint_program(model, &equations, &values) {
-            let residuals = residual_places(model, &program);
-            let mut rows = ConstraintRows::new(program, residuals);
-            check_independence(model, orders, &mut rows).map_err(found)?;
-        }
         let mut program = lower_with_outputs(model, &equations, &values, &outputs);
         program.controllers = lower_controllers(model, &program).map_err(found)?;
         Ok(Self { equations, program })
     }
 }
 
-/// Applies the checks of [`Variant::derive`]. The work grows linearly with the specification if no equations
-/// of motion are needed.
+/// Derives the equations of motion of `model`; constraints may depend on each other.
+///
+/// # Errors
+/// The errors of [`Variant::derive`], without those about inertia.
+pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Diagnostic> {
+    let values = model
+        .parameter_values()
+        .map_err(|error| error.diagnostic())?;
+    let equations = derive(model, orders).map_err(DeriveError::diagnostic)?;
+    check_signs(model, &equations.graph, &equations.residuals, &values)?;
+    let Some(program) = constraint_program(model, &equations, &values) else {
+        return Ok(equations);
+    };
+    let residuals = residual_places(model, &program);
+    let redundancy = find_redundancy(model, orders, &mut ConstraintRows::new(program, residuals))?;
+    match redundancy.groups.is_empty() {
+        true => Ok(equations),
+        false => {
+            derive_with_redundancy(model, orders, &redundancy).map_err(DeriveError::diagnostic)
+        }
+    }
+}
+
+/// Applies the checks of [`Variant::derive`] and returns the constraints that depend on each other. The work grows
+/// linearly with the specification if no equations of motion are needed.
 ///
 /// # Errors
 /// The errors of [`Variant::derive`].
-pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
+pub fn examine(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
     match examination::examine(model) {
-        Ok(Some(_)) => Ok(()),
+        Ok(Some(found)) => Ok(found.redundancy),
         Ok(None) => examine_by_equations(model, orders),
         Err(diagnostic) => Err(Diagnostics::from_one(model.source.clone(), diagnostic)),
     }
@@ -106,7 +124,7 @@ pub fn examine(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
 
 /// Checks the model by its equations of motion, without impacts: the rate changes by impacts grow with the
 /// square of their number and cause no error.
-fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<(), Diagnostics> {
+fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<Redundancy, Diagnostics> {
     let translated = translate_impacts(&mut Translator::new(model, orders));
     let found =
         |error: DeriveError| Diagnostics::from_one(model.source.clone(), error.diagnostic());
@@ -115,7 +133,7 @@ fn examine_by_equations(model: &Model, orders: &[usize]) -> Result<(), Diagnosti
         impacts: Vec::new(),
         ..model.clone()
     };
-    Variant::derive(&without_impacts, orders).map(drop)
+    Variant::derive(&without_impacts, orders).map(|variant| variant.equations.redundancy)
 }
 
 fn check_inertia(model: &Model, orders: &[usize], variant: &Variant) -> Result<(), Diagnostic> {
@@ -169,8 +187,8 @@ pub fn lower_with_sides(
 }
 
 /// Derives the program of the momenta and the energy at corners of the motion, in which the sides of their
-/// surfaces are additional inputs, after those of the model; see [`corners`](crate::mechanics::corners).
-/// Returns None if no momenta can jump.
+/// surfaces are additional inputs, after those of the model; see [`corners`](crate::mechanics::corners). It does not
+/// depend on the redundancy of constraints. Returns None if no momenta can jump.
 ///
 /// # Errors
 /// Expressions that cannot be derived.

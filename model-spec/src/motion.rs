@@ -200,25 +200,14 @@ impl Checker<'_, '_> {
 
     fn constraints(&mut self) -> Vec<bool> {
         let model = self.model;
-        let degrees = model.coordinates.len();
-        let most = match model.fields.is_empty() {
-            true => degrees.min(MAX_CONSTRAINTS),
-            false => MAX_CONSTRAINTS,
-        };
-        if let Some(excess) = model.constraints.get(most) {
-            let help = match most < MAX_CONSTRAINTS {
-                true => {
-                    format!("{degrees} constraints already fix all {degrees} coordinates")
-                }
-                false => format!("give at most {MAX_CONSTRAINTS} constraints"),
-            };
+        if let Some(excess) = model.constraints.get(MAX_CONSTRAINTS) {
             self.found.push(
                 Diagnostic::error(format!(
                     "the model has too many constraints: {}",
                     model.constraints.len()
                 ))
                 .with_span(excess.span, "one constraint too many")
-                .with_help(help),
+                .with_help(format!("give at most {MAX_CONSTRAINTS} constraints")),
             );
             return Vec::new();
         }

@@ -8,13 +8,15 @@ use serde_json::{Value, json};
 use crate::arguments::Check;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_diagnostics, print_json, print_text};
-use crate::model::orders;
+use crate::model::{note_redundancy, orders};
 
-/// Model without errors, orders of its fields, and warnings.
+/// Model without errors, orders of its fields, warnings and notes.
 struct CheckedModel {
     model: Model,
     orders: Vec<usize>,
     warnings: Diagnostics,
+    /// Notes about constraints that depend on each other.
+    notes: Vec<String>,
 }
 
 pub fn run(options: &Check) -> Result {
@@ -35,14 +37,16 @@ pub fn run(options: &Check) -> Result {
     if !examined.warnings.is_empty() {
         print_diagnostics(&examined.warnings);
     }
+    note_redundancy(&examined.notes);
     print_text(&summary(&examined))
 }
 
 fn examine_specification(options: &Check) -> Result<CheckedModel> {
     let checked = eomgen_model_spec::load(&options.model.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.model.order.text())?;
-    examine(&checked.model, &orders).map_err(Error::Specification)?;
+    let redundancy = examine(&checked.model, &orders).map_err(Error::Specification)?;
     Ok(CheckedModel {
+        notes: redundancy.describe(&checked.model),
         model: checked.model,
         orders,
         warnings: checked.warnings,
@@ -57,6 +61,7 @@ fn record(examined: &CheckedModel) -> Value {
         "orders": examined.orders,
         "state": examined.model.state_names(&examined.orders),
         "diagnostics": examined.warnings.records(),
+        "notes": examined.notes,
     })
 }
 

@@ -1,16 +1,17 @@
-//! Rejection of constraints that depend on each other at every state that satisfies them. The accelerations
-//! of such a model are determined, its multipliers are not, and the solution divides by the rounding error of
-//! a pivot. Several states are tested, because a singular initial position is no error.
+//! Constraints that depend on each other at every state that satisfies them. The accelerations of such a model are
+//! determined, its multipliers are not. Several states are tested, because at a singular position more constraints
+//! depend on each other. Constraints that contradict each other or have no effect are rejected.
 
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::{Constraint, Model};
 use eomgen_model_spec::variant::ModelError;
 
-use super::dependence::dependent_combination;
+use super::dependence::dependent_combinations;
 use super::geometry::ConstraintGeometry;
 use super::projection::{Place, project};
 use super::rows::positive_or_one;
 use super::vectors::norm;
+use crate::mechanics::redundancy::{DependentGroup, Redundancy};
 
 /// Largest remainder of a dependent row, relative to the row's largest length. The projection reaches a state
 /// to about 1e-6.
@@ -29,8 +30,9 @@ const OTHER_STATES: u64 = 4;
 const FIRST_MOVE: f64 = 1e-12;
 const MOVE_COUNT: i32 = 40;
 
-/// Smallest factor of a named constraint, relative to the largest factor.
-const MIN_RELATIVE_FACTOR: f64 = 1e-3;
+/// Smallest factor of a constraint in a dependent combination, relative to the largest factor; smaller ones are errors
+/// of the projection.
+const MIN_RELATIVE_FACTOR: f64 = 1e-4;
 
 /// Constraints contradict each other if the residual of their combination exceeds this fraction of the
 /// largest residual.
@@ -39,16 +41,17 @@ const MIN_RELATIVE_RESIDUAL: f64 = 0.1;
 /// Residuals below this fraction of the initial ones are rounding errors.
 const MAX_ROUNDING_RESIDUAL: f64 = 1e-6;
 
-/// Rejects constraints that depend on each other at every tested state near the initial one, or that no state
-/// satisfies. `orders` are the truncation orders of the fields.
+/// Returns the constraints that depend on each other at every tested state near the initial one. `orders` are the
+/// truncation orders of the fields.
 ///
 /// # Errors
-/// The last constraint of a dependent set, with the places of the others; initial values that are not finite.
-pub(crate) fn check_independence(
+/// Constraints without effect, constraints that contradict each other, and constraints on rates that depend on
+/// constraints on coordinates, with the places of the others; initial values that are not finite.
+pub(crate) fn find_redundancy(
     model: &Model,
     orders: &[usize],
     rows: &mut dyn ConstraintGeometry,
-) -> Result<(), Diagnostic> {
+) -> Result<Redundancy, Diagnostic> {
     let refused = |error: ModelError| error.diagnostic();
     let state = &model.initial_state(orders).map_err(refused)?;
     let inputs = &model.typical_inputs(1.0).map_err(refused)?;
@@ -61,17 +64,18 @@ pub(crate) fn check_independence(
         rows,
         inputs,
     };
-    let Some(mut found) = search.dependence(state) else {
-        return Ok(());
-    };
+    let mut found = search.dependence(state);
     for seed in 0..OTHER_STATES {
+        if found.combinations.is_empty() {
+            break;
+        }
         let moved = search.move_state(state, seed);
-        match search.dependence(&moved) {
-            Some(other) => found = other,
-            None => return Ok(()),
+        let other = search.dependence(&moved);
+        if other.combinations.len() <= found.combinations.len() {
+            found = other;
         }
     }
-    Err(found.diagnostic(model, &search.largest))
+    found.redundancy(model, &search.largest)
 }
 
 struct Search<'s> {
@@ -84,17 +88,21 @@ struct Search<'s> {
     largest: Vec<f64>,
 }
 
-/// Combination of constraints whose derivative is zero at the nearest state that satisfies them.
+/// Combinations of constraints whose derivatives are zero at the nearest state that satisfies them.
 struct Dependence {
-    /// Factors of the scaled rows.
-    parts: Vec<f64>,
-    factors: Vec<f64>,
+    combinations: Vec<Combination>,
     residuals: Vec<f64>,
 }
 
+struct Combination {
+    /// Factors of the scaled rows.
+    parts: Vec<f64>,
+    factors: Vec<f64>,
+}
+
 impl Search<'_> {
-    /// Returns the dependent combination of constraints near `from`, or None if they are independent.
-    fn dependence(&mut self, from: &[f64]) -> Option<Dependence> {
+    /// Returns the dependent combinations of constraints near `from`.
+    fn dependence(&mut self, from: &[f64]) -> Dependence {
         let inputs = self.inputs;
         let at = |state| Place { state, inputs };
         self.scaled_rows(from);
@@ -105,15 +113,20 @@ impl Search<'_> {
         let scales: Vec<f64> = self.scales.iter().copied().map(positive_or_one).collect();
         let state = project(self.rows, at(from), &self.holonomic, &scales);
         let scaled = self.scaled_rows(&state);
-        let parts = dependent_combination(&scaled, MAX_DEPENDENT_REMAINDER)?;
-        let scaled = parts.iter().zip(&self.scales);
-        Some(Dependence {
-            factors: scaled
-                .map(|(part, scale)| part / positive_or_one(*scale))
-                .collect(),
-            parts,
+        let combinations = dependent_combinations(&scaled, MAX_DEPENDENT_REMAINDER).into_iter();
+        let combinations = combinations.map(|parts| {
+            let scaled = parts.iter().zip(&self.scales);
+            Combination {
+                factors: scaled
+                    .map(|(part, scale)| part / positive_or_one(*scale))
+                    .collect(),
+                parts,
+            }
+        });
+        Dependence {
+            combinations: combinations.collect(),
             residuals: self.rows.residuals(at(&state).point()),
-        })
+        }
     }
 
     /// Returns the rows at `state`, divided by their largest lengths so far.
@@ -168,40 +181,83 @@ fn symmetric(seed: u64, place: u64) -> f64 {
 }
 
 impl Dependence {
-    /// `began` are the largest initial residuals.
-    fn diagnostic(&self, model: &Model, began: &[f64]) -> Diagnostic {
-        let last = self
-            .parts
-            .iter()
-            .rposition(|part| *part != 0.0)
-            .unwrap_or(0);
-        let most = self
-            .parts
-            .iter()
-            .fold(0.0_f64, |most, part| most.max(part.abs()));
-        let own = &model.constraints[last];
-        let others = (0..last).filter(|k| self.parts[*k].abs() > MIN_RELATIVE_FACTOR * most);
-        let others: Vec<&Constraint> = others.map(|k| &model.constraints[k]).collect();
+    /// Returns the groups of dependent constraints. `began` are the largest initial residuals.
+    fn redundancy(&self, model: &Model, began: &[f64]) -> Result<Redundancy, Diagnostic> {
+        let mut groups: Vec<DependentGroup> = Vec::new();
+        for combination in &self.combinations {
+            let members = combination.members();
+            if let Some(error) = self.error(model, combination, &members, began) {
+                return Err(error);
+            }
+            let shares = |group: &DependentGroup| {
+                let mut own = group.constraints.iter();
+                own.any(|place| members.contains(place))
+            };
+            let (connected, others): (Vec<_>, Vec<_>) = groups.into_iter().partition(shares);
+            let mut constraints = members;
+            let mut excess = 1;
+            for group in connected {
+                excess += group.constraints.len() - group.rank;
+                constraints.extend(group.constraints);
+            }
+            constraints.sort_unstable();
+            constraints.dedup();
+            groups = others;
+            groups.push(DependentGroup {
+                rank: constraints.len() - excess,
+                constraints,
+            });
+        }
+        groups.sort_by(|a, b| a.constraints.cmp(&b.constraints));
+        Ok(Redundancy { groups })
+    }
+
+    /// Returns the error of a combination of these constraints, if they are no redundant ones.
+    fn error(
+        &self,
+        model: &Model,
+        combination: &Combination,
+        members: &[usize],
+        began: &[f64],
+    ) -> Option<Diagnostic> {
+        let (last, others) = members.split_last()?;
+        let own = &model.constraints[*last];
+        let others: Vec<&Constraint> = others.iter().map(|k| &model.constraints[*k]).collect();
+        let kind = own.is_nonholonomic;
+        let is_mixed = others.iter().any(|other| other.is_nonholonomic != kind);
+        let apart = match is_mixed {
+            true => None,
+            false => self.combined_residual(combination, members, began),
+        };
+        if apart.is_none() && !is_mixed && !others.is_empty() {
+            return None;
+        }
         let names: Vec<String> = others
             .iter()
             .map(|other| format!("`{}`", other.name))
             .collect();
-        let apart = self.combined_residual(last, began);
         let (message, label, help) = message_parts(own, &names.join(", "), apart);
         let found = Diagnostic::error(message)
             .with_span(own.zero.span, label)
             .with_help(help);
         let others = others.into_iter();
-        others.fold(found, |found, other| {
+        Some(others.fold(found, |found, other| {
             found.with_related_span(other.zero.span, "depends on it")
-        })
+        }))
     }
 
-    /// Returns the residual of the combination in the unit of the constraint `last` if the constraints
-    /// contradict each other, that is, if the residual is no sum of vanishing residuals.
-    fn combined_residual(&self, last: usize, began: &[f64]) -> Option<f64> {
-        let part = |k: usize, residual: f64| self.factors[k] / self.factors[last] * residual;
-        let all = 0..=last;
+    /// Returns the residual of a combination in the unit of its last constraint if the constraints contradict each
+    /// other, that is, if the residual is no sum of vanishing residuals.
+    fn combined_residual(
+        &self,
+        combination: &Combination,
+        members: &[usize],
+        began: &[f64],
+    ) -> Option<f64> {
+        let factors = &combination.factors;
+        let last = members.last()?;
+        let part = |k: usize, residual: f64| factors[k] / factors[*last] * residual;
+        let all = members.iter().copied();
         let apart: f64 = all.clone().map(|k| part(k, self.residuals[k])).sum();
         let most = |residuals: &[f64]| {
             let parts = all.clone().map(|k| part(k, residuals[k]).abs());
@@ -211,6 +267,16 @@ impl Dependence {
         (apart.abs() > MIN_RELATIVE_RESIDUAL * largest
             && largest > MAX_ROUNDING_RESIDUAL * most(began))
         .then_some(apart)
+    }
+}
+
+impl Combination {
+    /// Returns the constraints of the combination, ascending.
+    fn members(&self) -> Vec<usize> {
+        let parts = self.parts.iter();
+        let most = parts.fold(0.0_f64, |most, part| most.max(part.abs()));
+        let is_member = |place: &usize| self.parts[*place].abs() > MIN_RELATIVE_FACTOR * most;
+        (0..self.parts.len()).filter(is_member).collect()
     }
 }
 
@@ -244,11 +310,12 @@ fn message_parts(
         ),
         (false, None) => (
             format!(
-                "the constraint `{name}` is redundant: at every state that satisfies the constraints, its derivative \
-                 is a linear combination of the derivatives of {others}"
+                "the constraint `{name}` is redundant: constraints on coordinates and on rates restrict the same motion, \
+                 because at every state that satisfies them, its derivative is a linear combination of the derivatives \
+                 of {others}"
             ),
             "adds no restriction to the others",
-            "remove one of them: the equations do not determine the force of each",
+            "remove the constraint on the rates: the one on the coordinates implies it",
         ),
     }
 }

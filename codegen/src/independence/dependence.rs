@@ -22,6 +22,24 @@ impl Remainder {
 /// Returns the factors of a combination of `rows` no longer than `tolerance`, or `None` if the rows are
 /// independent. Rows must have lengths of about 1; one row of the combination has a factor of about 1.
 pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f64>> {
+    dependent_combinations(rows, tolerance).pop()
+}
+
+/// Returns the factors of all independent combinations of `rows` no longer than `tolerance`, by the last row of each.
+/// Rows must have lengths of about 1; one row of each combination has a factor of about 1, and no other contains it.
+pub fn dependent_combinations(rows: &[Vec<f64>], tolerance: f64) -> Vec<Vec<f64>> {
+    let found = remainders(rows, tolerance).into_iter();
+    found.map(|(_, rest)| rest.parts).collect()
+}
+
+/// Returns the indices of rows that depend on the others, ascending; the others are independent.
+pub fn dependent_rows(rows: &[Vec<f64>], tolerance: f64) -> Vec<usize> {
+    let found = remainders(rows, tolerance).into_iter();
+    found.map(|(place, _)| place).collect()
+}
+
+/// Returns the rows whose remainders are no longer than `tolerance`, with their places, ascending.
+fn remainders(rows: &[Vec<f64>], tolerance: f64) -> Vec<(usize, Remainder)> {
     let unit = |place: usize| {
         (0..rows.len())
             .map(|k| f64::from(u8::from(k == place)))
@@ -44,11 +62,11 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
     {
         let size = rests[longest].1.size;
         if size.is_nan() {
-            return None;
+            break;
         }
         if size <= tolerance {
-            let last = rests.into_iter().max_by_key(|(place, _)| *place);
-            return last.map(|(_, rest)| rest.parts);
+            rests.sort_by_key(|(place, _)| *place);
+            return rests;
         }
         let (_, mut chosen) = rests.swap_remove(longest);
         for entry in chosen.vector.iter_mut().chain(&mut chosen.parts) {
@@ -65,7 +83,7 @@ pub fn dependent_combination(rows: &[Vec<f64>], tolerance: f64) -> Option<Vec<f6
             }
         }
     }
-    None
+    Vec::new()
 }
 
 #[cfg(test)]
@@ -84,6 +102,26 @@ mod tests {
         assert!((factors[1] / last + 1.25).abs() < 1e-12);
         assert!((factors[0] / last - 0.75).abs() < 1e-12);
         assert_eq!(dependent_combination(&rows[..2], 1e-9), None);
+    }
+
+    #[test]
+    fn each_dependent_row_has_a_combination() {
+        let rows = [
+            vec![1.0, 0.0, 0.0],
+            vec![-1.0, 0.0, 0.0],
+            vec![0.0, 1.0, 0.0],
+            vec![0.8, 0.6, 0.0],
+        ];
+        let found = dependent_combinations(&rows, 1e-9);
+        assert_eq!(found.len(), 2);
+        assert_eq!(dependent_rows(&rows, 1e-9).len(), 2);
+        for parts in found {
+            for column in 0..3 {
+                let entries = parts.iter().zip(&rows);
+                let sum: f64 = entries.map(|(part, row)| part * row[column]).sum();
+                assert!(sum.abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

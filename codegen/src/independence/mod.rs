@@ -1,8 +1,8 @@
-//! Rejection of constraints that depend on each other or that no state satisfies.
+//! Constraints that depend on each other, and rejection of those that have no effect or that no state satisfies.
 //!
 //! `rows` evaluates the constraint derivatives with the program of `constraint_program`, `nodes` with graph nodes, both scaled to one
 //! unit and with the interface of `geometry`. `dependence` finds dependent rows, `projection` finds states that satisfy the constraints, `check`
-//! rejects dependent constraints, and `bounds` rejects constraints that are never zero.
+//! finds dependent constraints, and `bounds` rejects constraints that are never zero.
 
 #[cfg(feature = "derive")]
 pub(crate) mod bounds;
@@ -21,4 +21,4 @@ pub mod rows;
 pub mod vectors;
 
 #[cfg(feature = "derive")]
-pub(crate) use check::check_independence;
+pub(crate) use check::find_redundancy;

@@ -52,6 +52,18 @@ impl ConstraintRows {
         rows
     }
 
+    /// Returns the sum of |A_kj| s_j of each row k for sizes s of the coordinates, SI.
+    pub fn weighted_lengths(&mut self, point: Point<'_>, sizes: &[f64]) -> Vec<f64> {
+        let inertia = self.diagonal(point);
+        let weighted = |row: Vec<f64>| {
+            let entries = row.iter().zip(&inertia).zip(sizes);
+            entries
+                .map(|((entry, inertia), size)| entry.abs() * inertia.sqrt() * size)
+                .sum()
+        };
+        self.rows(point).into_iter().map(weighted).collect()
+    }
+
     /// Returns the diagonal of the mass matrix, with 1 for a coordinate without inertia.
     pub(super) fn diagonal(&mut self, point: Point<'_>) -> Vec<f64> {
         let degrees = self.degrees_of_freedom();

@@ -12,12 +12,13 @@
 //!
 //! The terms with w vanish with the residuals; nonzero residuals decay at the rate w (J. Baumgarte,
 //! Stabilization of constraints and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1,
-//! 1972), the parameter `stabilisation_rate`. `solve` solves the system.
+//! 1972), the parameter `stabilisation_rate`. `solve` solves the system; see [`Redundancy`] for dependent rows of A.
 
 use eomgen_model_spec::ids::{ConstraintId, ParameterId};
 use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
 
 use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::redundancy::Redundancy;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
@@ -31,11 +32,20 @@ pub(crate) struct Constraints {
     pub right: Vec<NodeId>,
     /// Residuals.
     pub residuals: Vec<NodeId>,
+    /// Dependent rows.
+    pub redundancy: Redundancy,
 }
 
 impl Constraints {
-    pub(crate) fn derive(translator: &mut Translator, variables: &Variables) -> Derived<Self> {
-        let mut constraints = Self::default();
+    pub(crate) fn derive(
+        translator: &mut Translator,
+        variables: &Variables,
+        redundancy: &Redundancy,
+    ) -> Derived<Self> {
+        let mut constraints = Self {
+            redundancy: redundancy.clone(),
+            ..Self::default()
+        };
         let model = translator.model;
         let mut parameters = ParameterId::first(model.parameters.len()).zip(&model.parameters);
         let rate = parameters.find(|(_, parameter)| parameter.name == STABILISATION_RATE);

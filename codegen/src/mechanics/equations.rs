@@ -16,6 +16,7 @@ use crate::mechanics::kinetic::KineticRows;
 use crate::mechanics::lagrange::Variables;
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
 use crate::mechanics::observed_rates::derive_observable;
+use crate::mechanics::redundancy::Redundancy;
 use crate::mechanics::rigid_tree::bodies::RigidBodies;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
@@ -55,6 +56,8 @@ pub struct Equations {
     pub residuals: Vec<NodeId>,
     /// Derivatives A of the constraints by coordinates, or by rates.
     pub(crate) constraint_rows: Vec<RowNodes>,
+    /// Constraints that depend on each other.
+    pub redundancy: Redundancy,
     /// Impacts.
     pub impacts: Vec<Impact<NodeId, RowNodes>>,
     /// Rates of the first-order states.
@@ -97,8 +100,18 @@ impl Equations {
     }
 }
 
-/// Derives the equations of motion; `orders` are the truncation orders of the fields.
+/// Derives the equations of motion of a model with independent constraints; `orders` are the truncation orders of
+/// the fields.
 pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
+    derive_with_redundancy(model, orders, &Redundancy::default())
+}
+
+/// Derives the equations of motion of a model with these dependent constraints.
+pub fn derive_with_redundancy(
+    model: &Model,
+    orders: &[usize],
+    redundancy: &Redundancy,
+) -> Derived<Equations> {
     let mut translator = Translator::new(model, orders);
     let derived_parameters = derived_parameters(&mut translator)?;
     let mut terms = Vec::new();
@@ -121,7 +134,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
     let forces = variables.with_potential(&mut translator.graph, &applied, potential);
     let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
-    let constraints = Constraints::derive(&mut translator, &variables)?;
+    let constraints = Constraints::derive(&mut translator, &variables, redundancy)?;
     let (accelerations, multipliers) =
         solve(&mut translator.graph, &mass, &right_side, &constraints);
     for (constraint, multiplier) in model.constraints.iter().zip(&multipliers) {
@@ -195,6 +208,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         multipliers,
         residuals: constraints.residuals,
         constraint_rows: constraints.rows,
+        redundancy: constraints.redundancy,
         impacts,
         state_rates,
         power,

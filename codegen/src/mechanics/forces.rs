@@ -96,7 +96,12 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
         let (function, arguments) = match graph.operation(id).clone() {
             Operation::Call(function, arguments) => (function, arguments.to_vec()),
             // Derivative of min or max. That of min has the opposite sign.
-            Operation::Select { a, b, .. } => {
+            Operation::Select {
+                a,
+                b,
+                is_switch: true,
+                ..
+            } => {
                 let turned = graph.subtract(b, a);
                 if found.iter().any(|guard| guard.value == turned) {
                     continue;
@@ -201,7 +206,9 @@ pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
     }
     graph.reachable(&[id]).into_iter().any(|part| {
         let switches = match graph.operation(part) {
-            Operation::Select { .. } => graph.guarded_power(part).is_none(),
+            Operation::Select { is_switch, .. } => {
+                *is_switch && graph.guarded_power(part).is_none()
+            }
             Operation::Call(function, _) => function.has_switches(),
             _ => false,
         };

@@ -97,7 +97,7 @@ fn check_momenta(translator: &mut Translator, energies: &Energies) -> Derived<()
     let graph = &translator.graph;
     let switches = graph.reachable(&[energies.kinetic]).into_iter().any(|id| {
         let is_switch = match graph.operation(id) {
-            Operation::Select { .. } => graph.guarded_power(id).is_none(),
+            Operation::Select { is_switch, .. } => *is_switch && graph.guarded_power(id).is_none(),
             Operation::Call(function, _) => function.has_switches(),
             _ => false,
         };
@@ -227,7 +227,7 @@ impl Steps {
 /// Returns true for a function that jumps.
 fn is_step(graph: &Graph, id: NodeId) -> bool {
     let jumps = match graph.operation(id) {
-        Operation::Select { .. } => graph.guarded_power(id).is_none(),
+        Operation::Select { is_switch, .. } => *is_switch && graph.guarded_power(id).is_none(),
         Operation::Call(function, _) => matches!(
             function,
             Function::Sign | Function::Above | Function::Contact

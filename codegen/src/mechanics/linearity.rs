@@ -125,6 +125,7 @@ impl Degrees<'_> {
                 b,
                 then,
                 otherwise,
+                ..
             } => {
                 self.highest_degree([*a, *b])?;
                 self.highest_degree([*then, *otherwise])

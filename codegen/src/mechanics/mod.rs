@@ -3,7 +3,7 @@
 //! - `translate` and `fields` translate expressions to nodes.
 //! - `lagrange`, `sweeps`, `forces` and `kinetic` derive the rows of Lagrange's equations.
 //! - `rigid_tree` derives inverse dynamics from frame to frame.
-//! - `constraints`, `impacts` (of `impact`s) and `sliding` derive their terms; `solve` derives the accelerations.
+//! - `constraints` (with their `redundancy`), `impacts` (of `impact`s) and `sliding` derive their terms; `solve` derives the accelerations.
 //! - `coefficients` derives named coefficients as in Eq. (22).
 //! - `equations` combines these; `outputs` derives additional functions on request.
 //! - `jumps` finds the surfaces at which the energies jump; `corners` derives the jumps of the rates there.
@@ -47,6 +47,8 @@ pub mod mass_matrix;
 #[cfg(feature = "derive")]
 mod observed_rates;
 pub mod outputs;
+#[cfg(feature = "derive")]
+pub mod redundancy;
 #[cfg(feature = "derive")]
 mod rigid_tree;
 #[cfg(feature = "derive")]

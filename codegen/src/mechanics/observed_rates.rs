@@ -67,7 +67,7 @@ fn can_jump(graph: &Graph, node: NodeId) -> bool {
                     Function::Sign | Function::Above | Function::Contact
                 )
             }
-            Operation::Select { .. } => true,
+            Operation::Select { is_switch, .. } => *is_switch,
             _ => false,
         }
     };

@@ -87,6 +87,7 @@ impl Sides {
                 b,
                 then,
                 otherwise,
+                is_switch: true,
             } => {
                 let difference = graph.subtract(a, b);
                 let side = match parameter(graph, difference) {

@@ -15,6 +15,7 @@ pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
             b,
             then,
             otherwise,
+            ..
         } => Some([a, b, then, otherwise]),
         Operation::Call(function, arguments) => match (function, &**arguments) {
             (Function::Max, &[a, b]) => Some([a, b, a, b]),
@@ -23,4 +24,16 @@ pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
         },
         _ => None,
     }
+}
+
+/// Returns false for a selection between two results that agree near the surface.
+pub(crate) fn is_switch(graph: &Graph, id: NodeId) -> bool {
+    let is_equivalent = matches!(
+        graph.operation(id),
+        Operation::Select {
+            is_switch: false,
+            ..
+        }
+    );
+    !is_equivalent
 }

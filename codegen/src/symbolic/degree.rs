@@ -49,6 +49,7 @@ fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -
             b,
             then,
             otherwise,
+            ..
         } if !moves(graph, *a) && !moves(graph, *b) => {
             let branches = [*then, *otherwise];
             let mut degrees = branches

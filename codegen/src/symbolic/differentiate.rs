@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::branches::choice;
+use crate::symbolic::branches::{choice, is_switch};
 use crate::symbolic::flat::guard_partial;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 use crate::symbolic::node_map::NodeMap;
@@ -208,7 +208,7 @@ pub(super) fn choose(
         return graph.guard_flat(guard, inner);
     }
     let (taken, skipped) = (derivative(graph, then), derivative(graph, otherwise));
-    graph.select(a, b, taken, skipped)
+    graph.select_between([a, b], taken, skipped, is_switch(graph, id))
 }
 
 /// Returns, for an elementwise operation, each varying operand with its partial derivative (for functions
@@ -232,8 +232,9 @@ pub(crate) fn partial_derivatives(
     }
     if let Some([a, b, then, otherwise]) = choice(graph, id) {
         let (zero, one) = (graph.zero(), graph.one());
-        let taken = graph.select(a, b, one, zero);
-        let skipped = graph.select(a, b, zero, one);
+        let is_switch = is_switch(graph, id);
+        let taken = graph.select_between([a, b], one, zero, is_switch);
+        let skipped = graph.select_between([a, b], zero, one, is_switch);
         return vec![(then, taken), (otherwise, skipped)];
     }
     if let Some((base, exponent)) = graph.guarded_power(id) {

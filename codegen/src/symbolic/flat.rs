@@ -32,6 +32,7 @@ impl Graph {
                 b,
                 then,
                 otherwise,
+                ..
             } if self.is_zero(then) && self.as_constant(otherwise).is_some() => {
                 self.select(a, b, zero, inner)
             }

@@ -354,6 +354,7 @@ impl Graph {
                 b,
                 then,
                 otherwise,
+                ..
             } => vec![*a, *b, *then, *otherwise],
             Operation::Total(a) | Operation::Cholesky(a) | Operation::PivotReciprocal(a) => {
                 vec![*a]

@@ -86,6 +86,7 @@ impl Graph {
             b,
             then,
             otherwise,
+            ..
         } = operation
         else {
             return None;

@@ -90,6 +90,8 @@ pub enum Operation {
         then: NodeId,
         /// Result otherwise.
         otherwise: NodeId,
+        /// False if both results agree near a = b, so that this is no switching surface.
+        is_switch: bool,
     },
     /// Sum of a vector's elements.
     Total(NodeId),

@@ -345,6 +345,27 @@ impl Graph {
 
     /// Returns `if a > b { then } else { otherwise }`. Law: equal branches need no selection.
     pub fn select(&mut self, a: NodeId, b: NodeId, then: NodeId, otherwise: NodeId) -> NodeId {
+        self.select_between([a, b], then, otherwise, true)
+    }
+
+    /// Returns `if a > b { then } else { otherwise }` for results that agree near a = b.
+    pub(crate) fn select_equivalent(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        then: NodeId,
+        otherwise: NodeId,
+    ) -> NodeId {
+        self.select_between([a, b], then, otherwise, false)
+    }
+
+    pub(crate) fn select_between(
+        &mut self,
+        [a, b]: [NodeId; 2],
+        then: NodeId,
+        otherwise: NodeId,
+        is_switch: bool,
+    ) -> NodeId {
         if then == otherwise {
             return then;
         }
@@ -353,6 +374,7 @@ impl Graph {
             b,
             then,
             otherwise,
+            is_switch,
         })
     }
 

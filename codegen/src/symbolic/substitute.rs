@@ -59,10 +59,11 @@ fn rebuild(
             b,
             then,
             otherwise,
+            is_switch,
         } => {
-            let (a, b) = (inner(graph, a), inner(graph, b));
+            let condition = [inner(graph, a), inner(graph, b)];
             let (then, otherwise) = (inner(graph, then), inner(graph, otherwise));
-            graph.select(a, b, then, otherwise)
+            graph.select_between(condition, then, otherwise, is_switch)
         }
         Operation::Total(a) => {
             let vector = inner(graph, a);

@@ -28,7 +28,7 @@ impl FlatGuard {
 /// Returns true if an operation switches between sides.
 pub(super) fn is_switch(operation: &Operation) -> bool {
     match operation {
-        Operation::Select { .. } => true,
+        Operation::Select { is_switch, .. } => *is_switch,
         Operation::Call(function, _) => matches!(
             function,
             Function::Max

@@ -4,7 +4,7 @@
 use std::borrow::Borrow;
 use std::cell::RefCell;
 
-use eomgen_codegen::independence::dependence::dependent_combination;
+use eomgen_codegen::independence::dependence::dependent_combinations;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
@@ -23,6 +23,9 @@ const MAX_INITIAL_CORRECTIONS: usize = 100;
 /// Derivatives are dependent if less than this fraction of one remains after the others are
 /// eliminated.
 const MIN_INDEPENDENT_FRACTION: f64 = 1e-9;
+
+/// Largest residual of a dependent constraint, relative to the terms of its rate of change, that counts as rounding.
+const MAX_RELATIVE_RESIDUAL: f64 = 1e-9;
 
 /// Smallest coefficient of a constraint in a dependent combination, relative to the largest, at
 /// which an error names it.
@@ -75,7 +78,11 @@ impl dyn MotionModel + '_ {
         };
         let degrees = rows.degrees_of_freedom();
         Ok(Some(Projection {
-            singularity_watch: RefCell::new(SingularityWatch::new(rows, names)),
+            singularity_watch: RefCell::new(SingularityWatch::new(
+                rows,
+                names,
+                self.labels().constraint_excess,
+            )),
             unmoved_sizes: self.unmoved_sizes(degrees),
             positive_rate_model: at(LARGE_RATE_PER_S)?,
             negative_rate_model: at(-LARGE_RATE_PER_S)?,
@@ -136,6 +143,7 @@ impl dyn MotionModel + '_ {
         if let Some(reason) = self.describe_dependent_constraint(t, &found, inputs)? {
             return Err(Error::Request(reason));
         }
+        self.check_redundancy(t, &found, inputs)?;
         self.remove_rounding_overlap((t, until), &mut found, inputs)?;
         let Labels {
             state_names,
@@ -227,7 +235,11 @@ impl dyn MotionModel + '_ {
         for (row, length) in all.iter_mut().zip(&lengths) {
             row.iter_mut().for_each(|entry| *entry /= length);
         }
-        let Some(parts) = dependent_combination(&all, MIN_INDEPENDENT_FRACTION) else {
+        let mut combinations = dependent_combinations(&all, MIN_INDEPENDENT_FRACTION);
+        if combinations.len() <= self.labels().constraint_excess {
+            return Ok(None);
+        }
+        let Some(parts) = combinations.pop() else {
             return Ok(None);
         };
         let last = parts.iter().rposition(|part| *part != 0.0).unwrap_or(0);
@@ -248,6 +260,55 @@ impl dyn MotionModel + '_ {
             scale: combined.map(f64::abs).fold(0.0, f64::max),
         };
         Ok(Some(depends.reason()))
+    }
+
+    /// Checks that constraints that depend on each other do not contradict each other.
+    ///
+    /// # Errors
+    /// [`Error::Request`] with the residuals at a state that satisfies as many constraints as possible.
+    fn check_redundancy(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<(), Error> {
+        let Labels {
+            constraints,
+            constraint_excess,
+            typical_sizes,
+            ..
+        } = self.labels();
+        let (true, Some(mut rows)) = (*constraint_excess > 0, self.constraint_rows()) else {
+            return Ok(());
+        };
+        let point = Point { t, state, inputs };
+        let degrees = rows.degrees_of_freedom();
+        let entries = state.iter().zip(typical_sizes);
+        let sizes: Vec<f64> = entries
+            .map(|(entry, typical)| entry.abs().max(*typical))
+            .collect();
+        let [of_coordinates, of_rates] =
+            [&sizes[..degrees], &sizes[degrees..]].map(|own| rows.weighted_lengths(point, own));
+        let residuals = rows.residuals(point);
+        let is_unsatisfied = |place: &usize| {
+            let scale = match constraints[*place].is_nonholonomic {
+                true => of_rates[*place],
+                false => of_coordinates[*place],
+            };
+            residuals[*place].abs() > MAX_RELATIVE_RESIDUAL * scale
+        };
+        let left: Vec<String> = (0..constraints.len())
+            .filter(is_unsatisfied)
+            .map(|place| {
+                let (residual, own) = (residuals[place], &constraints[place]);
+                format!(
+                    "the residual of `{}` stays at {residual:.3e} {}",
+                    own.name, own.unit
+                )
+            })
+            .collect();
+        match left.is_empty() {
+            true => Ok(()),
+            false => Err(Error::Request(format!(
+                "the constraints contradict each other at these parameters: {}; remove or correct one of them",
+                left.join(", ")
+            ))),
+        }
     }
 
     fn unsatisfied_constraints_error(&self, t: f64, state: &[f64], inputs: &[f64]) -> Error {

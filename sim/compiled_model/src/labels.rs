@@ -3,7 +3,7 @@
 use eomgen_codegen::encode_structures;
 
 encode_structures! {
-    Labels { state_names, state_units, typical_sizes, impacts, constraints }
+    Labels { state_names, state_units, typical_sizes, impacts, constraints, constraint_excess }
     ImpactLabel { name, unit, coordinates }
     ConstraintLabel { name, unit, is_nonholonomic }
 }
@@ -18,6 +18,8 @@ pub(crate) struct Labels {
     pub typical_sizes: Vec<f64>,
     pub impacts: Vec<ImpactLabel>,
     pub constraints: Vec<ConstraintLabel>,
+    /// Number of constraints beyond those that are needed, because they depend on each other.
+    pub constraint_excess: usize,
 }
 
 /// Label of an impact.

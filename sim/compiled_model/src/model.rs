@@ -161,6 +161,11 @@ impl CompiledModel {
         &self.equations
     }
 
+    /// Returns a note for each group of constraints that depend on each other.
+    pub fn redundancy_notes(&self) -> Vec<String> {
+        self.equations.redundancy.describe(&self.model)
+    }
+
     /// Returns the program of the equations.
     pub fn program(&self) -> &Program {
         &self.program
@@ -225,6 +230,7 @@ impl CompiledModel {
                 typical_sizes: self.typical_sizes().to_vec(),
                 impacts: impacts.collect(),
                 constraints: constraints.collect(),
+                constraint_excess: self.equations.redundancy.excess(),
             }
         })
     }

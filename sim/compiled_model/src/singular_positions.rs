@@ -6,6 +6,9 @@
 //! before and after has the eigenvalue -1, for any step length. Inside a step, coordinates follow
 //! the cubic through the coordinates and rates at both ends.
 //!
+//! If constraints depend on each other everywhere, R contains as many rows as are independent, the best ones at the
+//! start of each interval. At a singular position every choice loses rank.
+//!
 //! The rounding of accelerations grows with the reciprocal square of the least singular value of
 //! R, so steps may fail before the position is reached. The motion is then extrapolated from the
 //! coordinates, rates and accelerations of its last state.
@@ -15,7 +18,7 @@ use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, RowDVector, SymmetricEigen};
 
 /// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60
 /// degrees.
@@ -43,9 +46,11 @@ const KEPT_STATES: usize = 2;
 struct WatchedState {
     t: f64,
     state: Vec<f64>,
-    /// The orthonormal rows F.
-    frame: DMatrix<f64>,
-    /// Least singular value of the scaled rows.
+    /// The scaled rows R of all constraints.
+    rows: DMatrix<f64>,
+    /// The orthonormal rows F if all constraints are independent.
+    frame: Option<DMatrix<f64>>,
+    /// Least singular value of the scaled rows, without those that vanish everywhere.
     least: f64,
     /// Combination of the constraints for the least singular value.
     dependent_combination: DVector<f64>,
@@ -58,6 +63,8 @@ type Path<'p> = dyn Fn(f64) -> Vec<f64> + 'p;
 pub(crate) struct SingularityWatch {
     rows: ConstraintRows,
     names: Vec<String>,
+    /// Number of constraints that depend on the others everywhere.
+    excess: usize,
     /// Largest length of each row up to now; a single row may vanish.
     lengths: Vec<f64>,
     passed: Vec<WatchedState>,
@@ -65,9 +72,11 @@ pub(crate) struct SingularityWatch {
 }
 
 impl SingularityWatch {
-    pub(crate) fn new(rows: ConstraintRows, names: Vec<String>) -> Self {
+    /// Creates the detector for constraints of which `excess` depend on the others everywhere.
+    pub(crate) fn new(rows: ConstraintRows, names: Vec<String>, excess: usize) -> Self {
         Self {
             rows,
+            excess,
             lengths: vec![0.0; names.len()],
             names,
             passed: Vec::new(),
@@ -145,19 +154,39 @@ impl SingularityWatch {
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let mut squares = symmetric_eigen(&(&rows * rows.transpose()))?;
-        let (place, least) = squares.eigenvalues.argmin();
+        let squares = symmetric_eigen(&(&rows * rows.transpose()))?;
+        let mut order: Vec<usize> = (0..squares.eigenvalues.len()).collect();
+        order.sort_by(|a, b| squares.eigenvalues[*a].total_cmp(&squares.eigenvalues[*b]));
+        let place = *order.get(self.excess)?;
+        let least = squares.eigenvalues[place];
         let combined = squares.eigenvectors.column(place).into_owned();
-        for value in squares.eigenvalues.iter_mut() {
-            *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
-        }
         Some(WatchedState {
             t,
             state,
-            frame: squares.recompose() * rows,
+            frame: (self.excess == 0).then(|| orthonormal_rows(squares, &rows)),
+            rows,
             least: least.max(0.0).sqrt(),
             dependent_combination: combined,
         })
+    }
+
+    /// Returns the frames of two states, for the same constraints.
+    fn frames(&self, a: &WatchedState, b: &WatchedState) -> Option<[DMatrix<f64>; 2]> {
+        if let (Some(a), Some(b)) = (&a.frame, &b.frame) {
+            return Some([a.clone(), b.clone()]);
+        }
+        let count = a.rows.nrows();
+        let mut places = RowDVector::from_fn(count, |_, place| place as f64);
+        let factors = a.rows.transpose().col_piv_qr();
+        factors.p().permute_columns(&mut places);
+        let best = places.iter().take(count - self.excess);
+        let best: Vec<usize> = best.map(|place| *place as usize).collect();
+        let frame = |state: &WatchedState| {
+            let rows = state.rows.select_rows(&best);
+            let squares = symmetric_eigen(&(&rows * rows.transpose()))?;
+            Some(orthonormal_rows(squares, &rows))
+        };
+        Some([frame(a)?, frame(b)?])
     }
 
     fn find_singularity_between(
@@ -212,7 +241,8 @@ impl SingularityWatch {
         inputs: &HeldInputs,
         halvings: u32,
     ) -> Option<WatchedState> {
-        let turned = &a.frame * b.frame.transpose();
+        let [from, to] = self.frames(a, b)?;
+        let turned = from * to.transpose();
         let symmetric = 0.5 * (&turned + turned.transpose());
         if symmetric_eigen(&symmetric)?.eigenvalues.min() > MIN_TURN_EIGENVALUE {
             return None;
@@ -250,6 +280,14 @@ impl SingularityWatch {
              shorten the time, or avoid the position (add a stop, or choose another initial state with --state)"
         )
     }
+}
+
+/// Returns (R R^T)^(-1/2) R of the rows R, from the eigenvalues of R R^T.
+fn orthonormal_rows(mut squares: SymmetricEigen<f64, Dyn>, rows: &DMatrix<f64>) -> DMatrix<f64> {
+    for value in squares.eigenvalues.iter_mut() {
+        *value = value.max(f64::MIN_POSITIVE).sqrt().recip();
+    }
+    squares.recompose() * rows
 }
 
 fn cubic(a: &WatchedState, b: &WatchedState, degrees: usize) -> impl Fn(f64) -> Vec<f64> + use<> {

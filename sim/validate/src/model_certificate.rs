@@ -2,14 +2,13 @@
 
 use std::cell::RefCell;
 
-use eomgen_codegen::mechanics::equations::derive;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::mechanics::outputs::derive_outputs;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::lowering::lower_with_outputs;
 use eomgen_codegen::rust::{Packaging, emit};
-use eomgen_codegen::variant::Variant as DerivedVariant;
+use eomgen_codegen::variant::{Variant as DerivedVariant, derive_equations};
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -290,7 +289,7 @@ fn build_program(
     outputs: &[Output],
 ) -> Result<Program, String> {
     let orders = vec![order; model.fields.len()];
-    let mut equations = derive(model, &orders).map_err(|error| error.to_string())?;
+    let mut equations = derive_equations(model, &orders).map_err(|error| error.message)?;
     let formed = derive_outputs(&mut equations, outputs).map_err(|error| error.to_string())?;
     Ok(lower_with_outputs(model, &equations, parameters, &formed))
 }

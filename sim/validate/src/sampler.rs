@@ -199,8 +199,11 @@ impl<'o> Sampler<'o> {
         Ok(None)
     }
 
-    fn accept_in_domain(&mut self, sample: Sample) -> Result<Option<SampledState>, OracleError> {
-        if !self.is_within(&sample) {
+    fn accept_in_domain(
+        &mut self,
+        mut sample: Sample,
+    ) -> Result<Option<SampledState>, OracleError> {
+        if !self.move_onto_constraints(&mut sample)? || !self.is_within(&sample) {
             return Ok(None);
         }
         let (state, inputs) = (&sample.state, &sample.inputs);
@@ -216,6 +219,18 @@ impl<'o> Sampler<'o> {
             self.draw_fraction *= 0.5;
         }
         Ok(None)
+    }
+
+    /// Moves a sample onto constraints that depend on each other. Returns false if it leaves its regime or if no state on
+    /// them is found.
+    fn move_onto_constraints(&mut self, sample: &mut Sample) -> Result<bool, OracleError> {
+        if !self.oracle.has_dependent_constraints() {
+            return Ok(true);
+        }
+        let regime = Regime::from_state(self.oracle, sample)?;
+        let (time, inputs) = (sample.time, sample.inputs.clone());
+        let is_found = self.oracle.project(time, &mut sample.state, &inputs);
+        Ok(is_found && Regime::from_state(self.oracle, sample)? == regime)
     }
 
     /// Returns true if all entries are within their ranges and `MAX_RELATIVE_ENTRY` times their sizes.

@@ -18,6 +18,7 @@ mod impacts;
 mod invalid_requests;
 mod passed_surfaces;
 mod piecewise;
+mod redundant_constraints;
 mod reference_trajectory;
 mod stopped;
 mod taylor;

@@ -52,6 +52,7 @@ impl Point<'_> {
                 b,
                 then,
                 otherwise,
+                ..
             } => match of(a) > of(b) {
                 true => of(then),
                 false => of(otherwise),

@@ -1,7 +1,96 @@
-//! Reciprocals of pivots and inner products over modes, for the elimination of modes and coordinates.
+//! Elimination without pivoting, reciprocals of pivots, and inner products over modes.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use eomgen_model_spec::ids::FieldId;
+
+/// System of scalars during its elimination.
+pub(super) struct Elimination {
+    pub(super) matrix: Vec<Vec<NodeId>>,
+    pub(super) right: Vec<NodeId>,
+    /// True if both halves of the matrix are the same nodes.
+    is_symmetric: bool,
+    /// Pivots so far; those of rows with negative pivots have the opposite sign.
+    pub(super) pivots: Vec<NodeId>,
+    reciprocals: Vec<NodeId>,
+}
+
+impl Elimination {
+    pub(super) fn new(matrix: Vec<Vec<NodeId>>, right: Vec<NodeId>) -> Self {
+        let mut rows = matrix.iter().enumerate();
+        let is_symmetric = rows.all(|(row, entries)| {
+            let mut columns = 0..row;
+            columns.all(|column| entries[column] == matrix[column][row])
+        });
+        Self {
+            matrix,
+            right,
+            is_symmetric,
+            pivots: Vec::new(),
+            reciprocals: Vec::new(),
+        }
+    }
+
+    /// Eliminates the next row of `order`.
+    pub(super) fn eliminate_next(
+        &mut self,
+        graph: &mut Graph,
+        order: &[usize],
+        has_negative_pivot: bool,
+    ) {
+        let step = self.pivots.len();
+        let (matrix, right) = (&mut self.matrix, &mut self.right);
+        let pivot_row = order[step];
+        let own = matrix[pivot_row][pivot_row];
+        let (pivot, reciprocal) = if has_negative_pivot {
+            let pivot = graph.negate(own);
+            let reciprocal = pivot_reciprocal(graph, pivot);
+            (pivot, graph.negate(reciprocal))
+        } else {
+            (own, pivot_reciprocal(graph, own))
+        };
+        self.pivots.push(pivot);
+        self.reciprocals.push(reciprocal);
+        for (place, &row) in order.iter().enumerate().skip(step + 1) {
+            if graph.is_zero(matrix[row][pivot_row]) {
+                continue;
+            }
+            let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
+            // The remainder of a symmetric matrix is symmetric: its upper half suffices.
+            let first = if self.is_symmetric { place } else { step + 1 };
+            for &column in &order[first..] {
+                let product = graph.multiply(factor, matrix[pivot_row][column]);
+                matrix[row][column] =
+                    graph.combine_flat(&[(1.0, matrix[row][column]), (-1.0, product)]);
+                if self.is_symmetric {
+                    matrix[column][row] = matrix[row][column];
+                }
+            }
+            let product = graph.multiply(factor, right[pivot_row]);
+            right[row] = graph.combine_flat(&[(1.0, right[row]), (-1.0, product)]);
+        }
+    }
+
+    /// Computes the unknowns of the eliminated rows from those of the other rows of `order`.
+    pub(super) fn substitute_back(
+        &self,
+        graph: &mut Graph,
+        order: &[usize],
+        unknowns: &mut [NodeId],
+    ) {
+        for (step, reciprocal) in self.reciprocals.iter().enumerate().rev() {
+            let row = order[step];
+            let mut terms = vec![(1.0, self.right[row])];
+            for &column in &order[step + 1..] {
+                let entry = self.matrix[row][column];
+                if !graph.is_zero(entry) {
+                    terms.push((-1.0, graph.multiply(entry, unknowns[column])));
+                }
+            }
+            let rest = graph.combine(&terms);
+            unknowns[row] = graph.multiply(rest, *reciprocal);
+        }
+    }
+}
 
 /// Returns the reciprocal of a pivot. A plain product of parameters can cancel against the row that it
 /// divides; the preparation of the coefficients checks it. Any other pivot is checked when it is used.

@@ -13,10 +13,12 @@
 //!   be negative although M is positive definite (see `ModalBlock::orthogonalise`).
 //! - If the basis is not orthogonal, the modal block is dense and its Cholesky factor replaces D.
 //! - Pivots must be positive; the reciprocal of any other pivot is NaN.
+//! - Dependent constraints have the multipliers of least norm (see `redundant`).
 
 mod critical_path;
 mod elimination;
 mod modal;
+mod redundant;
 mod separation;
 mod small;
 
@@ -26,6 +28,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::operation_count::count_operations;
 use modal::{ModalBlock, ModalInverse};
+use redundant::DependentRows;
 use small::SmallSystem;
 
 /// Accelerations with their pivots.
@@ -66,7 +69,11 @@ pub(crate) fn solve(
     let (mass, right) = &border_matrix(graph, mass, right, constraints);
     let modal = ModalBlock::new(graph, mass, right);
     let multipliers = constraints.rows.len();
-    let system = SmallSystem::new(graph, mass, right, &modal, multipliers);
+    let dependent = DependentRows {
+        rows: constraints.redundancy.constraints(),
+        rank: constraints.redundancy.rank(),
+    };
+    let system = SmallSystem::new(graph, mass, right, &modal, (multipliers, dependent));
     let coordinates = right.scalars.len() - multipliers;
     let mut solved_in = |order: Vec<usize>| {
         let (mut unknowns, mut pivots) = system.eliminate(graph, &order);

@@ -1,8 +1,9 @@
 //! Small system of interface forces and coordinates after the elimination of the modes, solved without
 //! pivoting.
 
-use super::elimination::{inner_product, pivot_reciprocal};
+use super::elimination::{Elimination, inner_product};
 use super::modal::ModalBlock;
+use super::redundant::{DependentRows, DependentSystem};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Space};
@@ -13,6 +14,8 @@ pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
     /// Number of rows of multipliers at the end, whose pivots are negative.
     multipliers: usize,
+    /// Multipliers that depend on each other; they are eliminated last.
+    dependent: DependentRows,
     pub(super) matrix: Vec<Vec<NodeId>>,
     pub(super) right: Vec<NodeId>,
     /// D^-1 f_q of each field.
@@ -36,7 +39,7 @@ impl SmallSystem {
         mass: &MassMatrix,
         right: &RowNodes,
         modal: &ModalBlock,
-        multipliers: usize,
+        (multipliers, dependent): (usize, DependentRows),
     ) -> Self {
         let mut solved = |vectors: &[NodeId]| -> Vec<NodeId> {
             let fields = FieldId::first(vectors.len()).zip(vectors);
@@ -53,6 +56,7 @@ impl SmallSystem {
         let mut system = Self {
             interfaces: modal.interfaces.len(),
             multipliers,
+            dependent,
             matrix: Vec::new(),
             right: Vec::new(),
             free_modes,
@@ -174,14 +178,6 @@ impl SmallSystem {
         self.matrix.push(entries);
     }
 
-    /// Returns true if both halves of the matrix are the same nodes.
-    fn is_symmetric(&self) -> bool {
-        let mut rows = self.matrix.iter().enumerate();
-        rows.all(|(row, entries)| {
-            (0..row).all(|column| entries[column] == self.matrix[column][row])
-        })
-    }
-
     /// Eliminates without pivoting: interfaces, coordinates in the given order, multipliers. Returns the
     /// unknowns in their original order, and the pivots (with opposite sign for multipliers), which must be
     /// positive.
@@ -191,57 +187,51 @@ impl SmallSystem {
         coordinates: &[usize],
     ) -> (Vec<NodeId>, Vec<NodeId>) {
         let first_multiplier = self.interfaces + coordinates.len();
-        let order: Vec<usize> = (0..self.interfaces)
+        let rows = self.dependent.rows.iter();
+        let dependent: Vec<usize> = rows.map(|row| first_multiplier + row).collect();
+        let multipliers = (first_multiplier..).take(self.multipliers);
+        let mut order: Vec<usize> = (0..self.interfaces)
             .chain(coordinates.iter().map(|index| self.interfaces + index))
-            .chain((first_multiplier..).take(self.multipliers))
+            .chain(multipliers.filter(|row| !dependent.contains(row)))
             .collect();
-        let mut matrix = self.matrix.clone();
-        let mut right = self.right.clone();
-        let symmetric = self.is_symmetric();
-        let mut reciprocals = Vec::with_capacity(order.len());
-        let mut pivots = Vec::with_capacity(order.len());
-        for (step, &pivot_row) in order.iter().enumerate() {
-            let own = matrix[pivot_row][pivot_row];
-            let (pivot, reciprocal) = if pivot_row < first_multiplier {
-                (own, pivot_reciprocal(graph, own))
-            } else {
-                let pivot = graph.negate(own);
-                let reciprocal = pivot_reciprocal(graph, pivot);
-                (pivot, graph.negate(reciprocal))
+        let eliminated = order.len();
+        order.extend(&dependent);
+        let mut rest = Elimination::new(self.matrix.clone(), self.right.clone());
+        for _ in 0..first_multiplier {
+            rest.eliminate_next(graph, &order, false);
+        }
+        let scales = dependent.iter();
+        let scales = scales.map(|row| graph.negate(rest.matrix[*row][*row]));
+        let scales: Vec<NodeId> = scales.collect();
+        for _ in first_multiplier..eliminated {
+            rest.eliminate_next(graph, &order, true);
+        }
+        let mut pivots = std::mem::take(&mut rest.pivots);
+        let mut unknowns = vec![graph.zero(); order.len()];
+        if !dependent.is_empty() {
+            let mut negated = |entry: NodeId| graph.negate(entry);
+            let mut matrix_row = |row: usize| -> Vec<NodeId> {
+                let columns = dependent.iter();
+                let entry =
+                    |column: &usize| negated(rest.matrix[row.min(*column)][row.max(*column)]);
+                columns.map(entry).collect()
             };
-            pivots.push(pivot);
-            reciprocals.push(reciprocal);
-            for (place, &row) in order.iter().enumerate().skip(step + 1) {
-                if graph.is_zero(matrix[row][pivot_row]) {
-                    continue;
-                }
-                let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
-                // The remainder of a symmetric matrix is symmetric: its upper half suffices.
-                let first = if symmetric { place } else { step + 1 };
-                for &column in &order[first..] {
-                    let product = graph.multiply(factor, matrix[pivot_row][column]);
-                    matrix[row][column] =
-                        graph.combine_flat(&[(1.0, matrix[row][column]), (-1.0, product)]);
-                    if symmetric {
-                        matrix[column][row] = matrix[row][column];
-                    }
-                }
-                let product = graph.multiply(factor, right[pivot_row]);
-                right[row] = graph.combine_flat(&[(1.0, right[row]), (-1.0, product)]);
+            let system = DependentSystem {
+                matrix: dependent.iter().map(|row| matrix_row(*row)).collect(),
+                right: (dependent.iter())
+                    .map(|row| negated(rest.right[*row]))
+                    .collect(),
+                scales,
+                rank: self.dependent.rank,
+                has_unit_diagonal: eliminated == first_multiplier,
+            };
+            let (found, own_pivots) = system.solve(graph);
+            for (row, value) in dependent.iter().zip(found) {
+                unknowns[*row] = value;
             }
+            pivots.extend(own_pivots);
         }
-        let zero = graph.zero();
-        let mut unknowns = vec![zero; order.len()];
-        for (step, &row) in order.iter().enumerate().rev() {
-            let mut terms = vec![(1.0, right[row])];
-            for &column in &order[step + 1..] {
-                if !graph.is_zero(matrix[row][column]) {
-                    terms.push((-1.0, graph.multiply(matrix[row][column], unknowns[column])));
-                }
-            }
-            let rest = graph.combine(&terms);
-            unknowns[row] = graph.multiply(rest, reciprocals[step]);
-        }
+        rest.substitute_back(graph, &order, &mut unknowns);
         (unknowns, pivots)
     }
 

@@ -257,6 +257,7 @@ impl<'g> Lowering<'g> {
                 b,
                 then,
                 otherwise,
+                ..
             } => Op::Select {
                 a: self.value(*a),
                 b: self.value(*b),

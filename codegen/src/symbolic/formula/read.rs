@@ -207,6 +207,7 @@ impl<'a> Reader<'a> {
                 b,
                 then,
                 otherwise,
+                ..
             } => Formula::Choice(Box::new(Choice {
                 a: self.node(*a),
                 b: self.node(*b),

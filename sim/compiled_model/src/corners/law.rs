@@ -1,10 +1,15 @@
 //! The corner conditions at one surface: rates beyond it, or reflected from it.
 
+use eomgen_codegen::independence::dependence::dependent_rows;
+use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::{CornerValues, Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
 
 /// Difference of Hamiltonians, relative to their magnitude, that counts as rounding.
 const ENERGY_ROUNDING: f64 = 1e-13;
+
+/// Largest remainder of a dependent row of the constraints, relative to its length.
+const MAX_DEPENDENT_REMAINDER: f64 = 1e-9;
 
 /// Model with given sides of its surfaces, at a position and time.
 pub(super) struct SidedPoint<'e> {
@@ -47,11 +52,10 @@ impl SidedPoint<'_> {
         mass.clone().cholesky()?;
         let rates = self.rates();
         let momenta = DVector::from_column_slice(&values.momenta);
-        let count = values.constraints.len();
-        let constraints = DMatrix::from_fn(count, degrees, |row, column| {
-            values.constraints[row].1[column]
-        });
-        let all = DVector::from_iterator(count, values.constraints.iter().map(|row| row.0));
+        let rows = independent_constraints(&values, &mass);
+        let count = rows.len();
+        let constraints = DMatrix::from_fn(count, degrees, |row, column| rows[row].1[column]);
+        let all = DVector::from_iterator(count, rows.iter().map(|row| row.0));
         let mut matrix = DMatrix::zeros(degrees + count, degrees + count);
         matrix.view_mut((0, 0), (degrees, degrees)).copy_from(&mass);
         let below = &mut matrix.view_mut((degrees, 0), (count, degrees));
@@ -65,6 +69,24 @@ impl SidedPoint<'_> {
             values,
         })
     }
+}
+
+/// Returns the rates of the constraints with their rows, without those that depend on the others.
+fn independent_constraints<'v>(
+    values: &'v CornerValues,
+    mass: &DMatrix<f64>,
+) -> Vec<&'v (f64, Vec<f64>)> {
+    let inertia = mass.diagonal();
+    let scaled = values.constraints.iter().map(|(_, row)| {
+        let entries = row.iter().zip(inertia.iter());
+        let mut scaled: Vec<f64> = entries.map(|(entry, mass)| entry / mass.sqrt()).collect();
+        let length = norm(&scaled);
+        scaled.iter_mut().for_each(|entry| *entry /= length);
+        scaled
+    });
+    let dependent = dependent_rows(&scaled.collect::<Vec<_>>(), MAX_DEPENDENT_REMAINDER);
+    let places = (0..values.constraints.len()).filter(|place| !dependent.contains(place));
+    places.map(|place| &values.constraints[place]).collect()
 }
 
 /// Equations M q' - A^T mu = p - b, A q' = -a_t for the rates at given momenta.

@@ -44,6 +44,15 @@ pub(super) fn stabilisation_rate(model: &Model, parameters: &[f64]) -> f64 {
 }
 
 impl LoweredConstraint {
+    /// Returns the residual of a holonomic constraint (0 for others), and its rate or the residual of others.
+    pub(super) fn values(&self, scene: &Scene<'_>) -> (f64, f64) {
+        let zero = Pass::new(scene, Direction::Time, Direction::Zero).value(&self.zero);
+        match self.is_nonholonomic {
+            true => (0.0, zero.re.value),
+            false => (zero.re.value, zero.eps1.value),
+        }
+    }
+
     pub(super) fn row(&self, scene: &Scene<'_>, stabilisation_rate: f64) -> ConstraintRow {
         let entry = |row: usize| {
             if !scene.system.depends_on_row(&self.dependence, row) {

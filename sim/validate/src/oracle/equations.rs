@@ -23,6 +23,8 @@ pub struct Equations {
     pub state_rates: Vec<Vec<Conditioned>>,
     /// Constraints. Their forces act in the rows.
     pub constraints: Vec<ConstraintRow>,
+    /// Number of constraints that depend on the others at every state that satisfies them.
+    pub excess: usize,
 }
 
 /// Contribution of one addend of a term to every row.
@@ -101,6 +103,12 @@ impl Residual {
 /// Minimum square of a pivot of the scaled mass matrix, below which rounding decides.
 const SMALLEST_PIVOT: f64 = 1e-13;
 
+/// Smallest nonzero eigenvalue of the scaled A M^-1 A^T of dependent constraints.
+const SMALLEST_EIGENVALUE: f64 = 1e-6;
+
+/// Largest eigenvalue of the scaled A M^-1 A^T that counts as 0.
+const LARGEST_ZERO_EIGENVALUE: f64 = 1e-11;
+
 impl Equations {
     /// Returns true if all numbers are finite.
     pub fn is_finite(&self) -> bool {
@@ -120,8 +128,35 @@ impl Equations {
     /// Returns true if mass is positive definite and constraints independent, beyond rounding.
     pub fn is_definite(&self) -> bool {
         has_pivots(&self.scaled_mass().1)
-            && (self.constraint_compliance())
-                .is_some_and(|compliance| has_pivots(&scale_to_unit_diagonal(&compliance).1))
+            && match self.excess {
+                0 => (self.constraint_compliance())
+                    .is_some_and(|compliance| has_pivots(&scale_to_unit_diagonal(&compliance).1)),
+                excess => self.compliance_eigenvalues().is_some_and(|eigenvalues| {
+                    eigenvalues[excess - 1].abs() < LARGEST_ZERO_EIGENVALUE
+                        && eigenvalues[excess] > SMALLEST_EIGENVALUE
+                }),
+            }
+    }
+
+    /// Returns the number of vanishing eigenvalues of the scaled A M^-1 A^T.
+    pub(super) fn count_dependent_constraints(&self) -> Option<usize> {
+        let eigenvalues = self.compliance_eigenvalues()?;
+        let zero = eigenvalues.iter();
+        Some(
+            zero.filter(|value| value.abs() < LARGEST_ZERO_EIGENVALUE)
+                .count(),
+        )
+    }
+
+    /// Returns the eigenvalues of the scaled A M^-1 A^T, ascending.
+    fn compliance_eigenvalues(&self) -> Option<Vec<f64>> {
+        let (_, compliance) = scale_to_unit_diagonal(&self.constraint_compliance()?);
+        if compliance.iter().any(|entry| !entry.is_finite()) {
+            return None;
+        }
+        let mut found: Vec<f64> = compliance.symmetric_eigenvalues().iter().copied().collect();
+        found.sort_by(f64::total_cmp);
+        Some(found)
     }
 
     fn gradients(&self) -> DMatrix<f64> {
@@ -146,13 +181,17 @@ impl Equations {
     }
 
     /// Returns the multipliers of the constraints with the magnitudes of their terms, from A M^-1
-    /// A^T lambda = b - A M^-1 (f - c). Returns `None` if the accelerations cannot be solved for.
+    /// A^T lambda = b - A M^-1 (f - c); those of dependent constraints have the least norm, each scaled with the square
+    /// root of its diagonal entry. Returns `None` if the accelerations cannot be solved for.
     pub fn multipliers(&self) -> Option<Vec<Conditioned>> {
         if self.constraints.is_empty() {
             return Some(Vec::new());
         }
         let (scale, compliance) = scale_to_unit_diagonal(&self.constraint_compliance()?);
-        let inverse = Cholesky::new(compliance)?.inverse();
+        let inverse = match self.excess {
+            0 => Cholesky::new(compliance)?.inverse(),
+            excess => pseudo_inverse(&compliance, excess)?,
+        };
         let (free, sizes) = self.free_accelerations()?;
         let gaps: Vec<Conditioned> = self
             .constraints
@@ -368,6 +407,21 @@ fn scale_to_unit_diagonal(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>)
     (scale, scaled)
 }
 
+/// Returns the pseudo-inverse of a symmetric matrix with `excess` vanishing eigenvalues.
+fn pseudo_inverse(matrix: &DMatrix<f64>, excess: usize) -> Option<DMatrix<f64>> {
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return None;
+    }
+    let mut parts = matrix.clone().symmetric_eigen();
+    let mut order: Vec<usize> = (0..parts.eigenvalues.len()).collect();
+    order.sort_by(|a, b| parts.eigenvalues[*a].total_cmp(&parts.eigenvalues[*b]));
+    for (count, place) in order.into_iter().enumerate() {
+        let value = parts.eigenvalues[place];
+        parts.eigenvalues[place] = if count < excess { 0.0 } else { value.recip() };
+    }
+    Some(parts.recompose())
+}
+
 /// Returns true if the pivots of a scaled matrix are positive with a margin over rounding.
 fn has_pivots(scaled: &DMatrix<f64>) -> bool {
     Cholesky::new(scaled.clone()).is_some_and(|factor| {
@@ -418,6 +472,7 @@ mod tests {
             )],
             state_rates: Vec::new(),
             constraints: Vec::new(),
+            excess: 0,
         }
     }
 
@@ -429,6 +484,25 @@ mod tests {
         assert_eq!(solution.len(), 2);
         assert!(equations.worst_residual(&solution) < 1e-15);
         assert!(equations.distance(&solution, &[13.0 / 7.0, -5.0 / 7.0]) < 1e-15);
+    }
+
+    #[test]
+    fn doubled_constraint_shares_its_force() {
+        let mut equations = equations();
+        let row = |factor: f64| ConstraintRow {
+            gradient: vec![factor.into(), 0.0.into()],
+            right_side: 0.0.into(),
+        };
+        equations.constraints = vec![row(1.0)];
+        let single = equations.multipliers().expect("a multiplier")[0].value;
+        equations.constraints = vec![row(1.0), row(-2.0)];
+        equations.excess = 1;
+        assert!(equations.is_definite());
+        let shared = equations.multipliers().expect("multipliers");
+        assert!((shared[0].value - 0.5 * single).abs() < 1e-14 * single.abs());
+        assert!((shared[1].value + 0.25 * single).abs() < 1e-14 * single.abs());
+        let solution = equations.accelerations().expect("accelerations");
+        assert!(equations.worst_residual(solution.as_slice()) < 1e-14);
     }
 
     #[test]

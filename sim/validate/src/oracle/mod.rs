@@ -10,7 +10,8 @@
 //! - `evaluate` evaluates any number type, with `functions`; [`Conditioned`] numbers carry a scale
 //!   of their rounding error;
 //! - `integrals` caches results that all rows share;
-//! - `terms`, `constraints` and `rows` compute the rows of an [`Oracle`];
+//! - `terms`, `constraints` and `rows` compute the rows of an [`Oracle`]; `projection` moves states onto dependent
+//!   constraints;
 //! - `energy` and `observables` compute energies, powers and observables;
 //! - `switches` finds the switching surfaces of piecewise functions.
 //!
@@ -42,6 +43,7 @@ mod lower;
 mod nonzero;
 mod observables;
 mod places;
+mod projection;
 mod ranges;
 mod rows;
 mod scene;
@@ -91,6 +93,8 @@ pub struct Oracle {
     switches: Vec<Switch>,
     observables: Vec<Option<Tree>>,
     constraints: Vec<LoweredConstraint>,
+    /// Number of constraints that depend on the others.
+    excess: usize,
     stabilisation_rate: f64,
 }
 
@@ -131,8 +135,10 @@ impl Oracle {
             switches: Vec::new(),
             observables,
             constraints,
+            excess: 0,
             stabilisation_rate: stabilisation_rate(model, parameters),
         };
+        oracle.excess = oracle.count_excess();
         oracle.switches = switches::find_switches(&oracle, model);
         Ok(oracle)
     }

@@ -80,6 +80,7 @@ impl Oracle {
             constraints: (self.constraints.iter())
                 .map(|constraint| constraint.row(scene, self.stabilisation_rate))
                 .collect(),
+            excess: self.excess,
         }
     }
 

@@ -1,9 +1,10 @@
 //! Directions of differentiation: by state, inputs and parameters.
 
 use super::check_context::CheckContext;
-use crate::differences::Direction;
-use crate::oracle::OracleError;
+use crate::differences::{Direction, Slope, slopes};
+use crate::oracle::{Oracle, OracleError};
 use crate::random::Random;
+use crate::sampler::Sample;
 use crate::sizes;
 use eomgen_model_spec::model::ParameterValue;
 
@@ -12,6 +13,9 @@ const DIRECTIONS: usize = 40;
 /// Maximum number of coordinates to vary each variable, and of directions for larger models.
 const SMALL_MODEL_LIMITS: (usize, usize) = (12, 8);
 
+/// Step of the differences of projected states, in sizes of the states.
+const TANGENT_STEP: f64 = 1.0 / 128.0;
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum VariableKind {
     State,
@@ -19,9 +23,11 @@ pub(super) enum VariableKind {
     Parameters,
 }
 
-/// Returns directions in one kind of variable each: every variable, or some and sums of all.
+/// Returns directions in one kind of variable each: every variable, or some and sums of all. With dependent constraints,
+/// states move along them, and variables that move the constraints are omitted.
 pub(super) fn directions(
     judged: &CheckContext<'_>,
+    sample: &Sample,
     names: &[String],
     parameters_too: bool,
     random: &mut Random,
@@ -59,7 +65,45 @@ pub(super) fn directions(
             found.push((VariableKind::Parameters, direction));
         }
     }
+    if oracle.has_dependent_constraints() {
+        return Ok(move_along_constraints(oracle, sample, found));
+    }
     Ok(found)
+}
+
+/// Returns the directions that do not move the constraints, those of states made tangential to the constraints.
+fn move_along_constraints(
+    oracle: &Oracle,
+    sample: &Sample,
+    directions: Vec<(VariableKind, Direction)>,
+) -> Vec<(VariableKind, Direction)> {
+    let mut found = Vec::new();
+    for (kind, mut direction) in directions {
+        let is_kept = match kind {
+            VariableKind::State => {
+                let along = tangent(oracle, sample, &direction.state);
+                along.map(|along| direction.state = along).is_some()
+            }
+            VariableKind::Inputs => !oracle.has_prescribed_motion(),
+            VariableKind::Parameters => false,
+        };
+        if is_kept {
+            found.push((kind, direction));
+        }
+    }
+    found
+}
+
+/// Returns the derivative of the projected state along a direction; `None` if a projection fails.
+fn tangent(oracle: &Oracle, sample: &Sample, direction: &[f64]) -> Option<Vec<f64>> {
+    let along = slopes(TANGENT_STEP, |length| {
+        let entries = sample.state.iter().zip(direction);
+        let mut moved: Vec<f64> = entries.map(|(from, by)| from + length * by).collect();
+        let is_found = oracle.project(sample.time, &mut moved, &sample.inputs);
+        let entries = moved.into_iter().map(|value| Slope { value, scale: 0.0 });
+        is_found.then(|| entries.collect())
+    })?;
+    Some(along.iter().map(|slope| slope.value).collect())
 }
 
 /// Returns the sizes of independent parameters; 0 for derived parameters and for zeros.

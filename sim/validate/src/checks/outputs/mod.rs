@@ -59,7 +59,7 @@ pub(crate) fn check(
             unknowns,
         };
         let known = OutputValues::new(judged, &equations, outputs, sample, &mut random);
-        for direction in directions(judged, &names, count <= 2, &mut random)? {
+        for direction in directions(judged, sample, &names, count <= 2, &mut random)? {
             compare_along(
                 &mut rows,
                 &surroundings,
