@@ -104,7 +104,7 @@ impl Residual {
 const SMALLEST_PIVOT: f64 = 1e-13;
 
 /// Smallest nonzero eigenvalue of the scaled A M^-1 A^T of dependent constraints.
-const SMALLEST_EIGENVALUE: f64 = 1e-6;
+const SMALLEST_EIGENVALUE: f64 = 1e-3;
 
 /// Largest eigenvalue of the scaled A M^-1 A^T that counts as 0.
 const LARGEST_ZERO_EIGENVALUE: f64 = 1e-11;

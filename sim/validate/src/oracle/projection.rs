@@ -12,13 +12,13 @@ use super::Oracle;
 const MAX_STEPS: usize = 50;
 
 /// Number of corrections of the rates, which enter linearly; each multiplies their error by the damping or less.
-const RATE_CORRECTIONS: usize = 6;
+const RATE_CORRECTIONS: usize = 20;
 
 /// Added to the squares of the singular values of the scaled rows.
 const DAMPING: f64 = 1e-6;
 
 /// Largest last step, relative to the largest scaled entry of the state.
-const LAST_STEP: f64 = 1e-13;
+const LAST_STEP: f64 = 1e-15;
 
 /// Displacements of the initial state, relative to its entries, at which constraints are tested.
 const DISPLACEMENTS: [f64; 4] = [0.0, 0.11, -0.07, 0.19];
