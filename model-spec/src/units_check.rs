@@ -2,6 +2,7 @@
 //! displacement in J; parameters, initial values and observables as declared. `infer` computes
 //! the unit of an expression.
 
+use crate::ast::BinaryOperator;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::infer::{Inference, UnitPhrase, difference};
@@ -303,7 +304,24 @@ impl Units<'_, '_> {
             let expected = format!("expected {}", UnitPhrase(*dimension));
             self.expect(value, *dimension, subject, &expected);
         }
-        !clean || self.found.is_empty()
+        // A quotient with the divisor 0 has no unit; `constants` reports it.
+        let has_unit = |(value, ..): &(Expr, Dimension, String)| !self.divides_by_zero(value);
+        let all_have_units = demanded.iter().all(has_unit);
+        !clean || self.found.is_empty() && all_have_units
+    }
+
+    /// Returns true if a divisor in an expression is a number 0, which has no unit.
+    fn divides_by_zero(&self, expr: &Expr) -> bool {
+        match &expr.kind {
+            ExprKind::Binary(operator, left, right) => {
+                let is_zero = *operator == BinaryOperator::Divide
+                    && matches!(self.known.infer(right), Ok(None));
+                is_zero || self.divides_by_zero(left) || self.divides_by_zero(right)
+            }
+            ExprKind::Negate(operand) => self.divides_by_zero(operand),
+            ExprKind::Call(_, arguments) => arguments.iter().any(|part| self.divides_by_zero(part)),
+            _ => false,
+        }
     }
 
     /// Checks that the components of a vector have one unit.
