@@ -6,6 +6,8 @@ use super::insert::{parameter, term};
 use super::substitute::{replaced, syntax};
 use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section};
 use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
 
 pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
     let (unit, has_rates) = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
@@ -13,6 +15,7 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
         name: edit.name.clone(),
     })?;
     let tree = syntax(&edit.value)?;
+    reject_motion(document, edit, &tree)?;
     let value = if has_only_numbers(&tree) {
         // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
         // unit of the input, supply the units.
@@ -41,11 +44,72 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
         format!("({value})*(1 + 0*t/{second})")
     };
     define(document, &edit.name, value)?;
-    let rate = format!("{}_dot", edit.name);
+    let [rate, second] = ["dot", "ddot"].map(|suffix| format!("{}_{suffix}", edit.name));
+    if contains_name(document, &second) {
+        let message = format!(
+            "the model contains `{second}`, the second rate of the input, which is not derived from an expression"
+        );
+        let help = "drive the input by a record, or in Python by a function that returns (s, s_dot, s_ddot)";
+        return Err(rejected(
+            edit,
+            tree.span,
+            &message,
+            ("needs a second rate", help),
+        ));
+    }
     if contains_name(document, &rate) {
         define(document, &rate, format!("dot({})", edit.name))?;
     }
     Ok(())
+}
+
+/// Returns the error of an expression at a place in it.
+fn rejected(
+    edit: &PrescribeInput,
+    span: Span,
+    message: &str,
+    (label, help): (&str, &str),
+) -> EditError {
+    let diagnostic = Diagnostic::error(message)
+        .with_span(span, label)
+        .with_help(help);
+    EditError::Expression {
+        text: edit.value.clone(),
+        diagnostic: Box::new(diagnostic),
+    }
+}
+
+/// Rejects an expression that contains a coordinate or a state of the machine.
+fn reject_motion(
+    document: &DocumentMut,
+    edit: &PrescribeInput,
+    tree: &Syntax,
+) -> Result<(), EditError> {
+    let kinds = [
+        ("coordinates", "coordinate"),
+        ("states", "first-order state"),
+    ];
+    let mut wrong = None;
+    tree.visit(&mut |part| {
+        let SyntaxKind::Name(name) = &part.kind else {
+            return;
+        };
+        for (section, kind) in kinds {
+            let entries = document.get(section).and_then(Item::as_table_like);
+            if wrong.is_none() && entries.is_some_and(|entries| entries.contains_key(name)) {
+                wrong = Some((part.span, name.clone(), kind));
+            }
+        }
+    });
+    let Some((span, name, kind)) = wrong else {
+        return Ok(());
+    };
+    let input = &edit.name;
+    let message =
+        format!("`{name}` is a {kind}: the input `{input}` is an expression of t and parameters");
+    let help = "write a force that depends on the motion under [forces], and a feedback under [controllers]";
+    let label = "not known before the motion";
+    Err(rejected(edit, span, &message, (label, help)))
 }
 
 fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), EditError> {

@@ -57,6 +57,21 @@ fn overflowing_energy_has_no_warning_of_the_audit() {
 }
 
 #[test]
+fn input_that_depends_on_the_motion_is_rejected_at_its_place() {
+    for (input, column) in [("u=x", 3), ("u=0.5*x", 7), ("u=1 - sin(3*x)", 13)] {
+        let (status, message) = simulate(&["--input", input]);
+        assert_eq!(status, Some(2), "{message}");
+        let expected = "`x` is a coordinate: the input `u` is an expression of t and parameters";
+        assert!(message.contains(expected), "{message}");
+        assert!(
+            message.contains(&format!("--input:1:{column}")),
+            "{message}"
+        );
+        assert!(message.contains("[controllers]"), "{message}");
+    }
+}
+
+#[test]
 fn input_without_a_finite_value_is_named_with_its_time() {
     // Infinite at the start, in between and at the end; not a number from a time on; infinite between steps.
     for (input, cause, status) in [
