@@ -142,6 +142,11 @@ impl<'m> Instance<'m> {
         Ok(instance)
     }
 
+    /// Returns the changed parameters, in declared units.
+    pub(crate) fn settings(&self) -> &[(String, f64)] {
+        &self.settings
+    }
+
     /// Returns the compiled model.
     pub fn model(&self) -> &CompiledModel {
         &self.model

@@ -5,6 +5,7 @@ mod discrete;
 mod drawn_modes;
 mod given;
 mod growth;
+mod lost_stiffness;
 mod nonlinear;
 mod tables;
 

@@ -1,0 +1,52 @@
+//! `modes` beside a stiffness so large that rounding hides the others.
+
+use std::f64::consts::TAU;
+
+use eomgen_tests::program::run_rejected;
+
+use super::{run_json, write_model};
+
+/// Returns a model of two masses of 1 kg with the stiffnesses `stiff` and 25 N/m in these springs.
+fn masses(stiff: &str, springs: &str) -> String {
+    format!(
+        "[model]\nname = \"masses\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+         k = {{ value = {stiff}, unit = \"N/m\" }}\nc = {{ value = 25, unit = \"N/m\" }}\n\
+         [coordinates]\nx = {{ unit = \"m\" }}\ny = {{ unit = \"m\" }}\n\
+         [kinetic]\nT = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n[potential]\nV = \"{springs}\"\n"
+    )
+}
+
+#[test]
+fn lost_stiffness_is_rejected_with_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // Both masses move together on c: 25/2 is lost beside 1e30.
+    for stiff in ["1e20", "1e30", "1e120"] {
+        let text = masses(stiff, "1/2*k*(x - y)^2 + 1/2*c*y^2");
+        let message = run_rejected(&["modes", &write_model(folder.path(), &text)]);
+        assert!(
+            message.contains("the term with `c` is below the rounding"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn visible_stiffness_and_rigid_motions_keep_their_frequencies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lowest = |stiff: &str, springs: &str| {
+        let spec = write_model(folder.path(), &masses(stiff, springs));
+        let found = run_json(&["modes", &spec, "--json"]);
+        found["modes"][0]["frequency"].as_f64().expect("a number")
+    };
+    // The soft spring hangs on the stiff one, or moves both masses.
+    for (stiff, springs, square) in [
+        ("1e30", "1/2*k*x^2 + 1/2*c*(y - x)^2", 25.0),
+        ("1e9", "1/2*k*(x - y)^2 + 1/2*c*y^2", 12.5),
+    ] {
+        let right = f64::sqrt(square) / TAU;
+        let found = lowest(stiff, springs);
+        assert!((found / right - 1.0).abs() < 1e-5, "{stiff}: {found}");
+    }
+    // No term is lost in a free pair.
+    assert_eq!(lowest("1e30", "1/2*k*(x - y)^2 + 0*c*x^2"), 0.0);
+}
