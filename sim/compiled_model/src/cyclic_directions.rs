@@ -100,17 +100,31 @@ impl Instance<'_> {
         points: &[OperatingPoint],
     ) -> Result<bool, Error> {
         let mut evaluator = self.interpreter()?;
+        // A model without Jacobians has no known terms.
+        let mut state_space = self.state_space_evaluator().ok();
         let mut pairs = Vec::with_capacity(points.len());
+        let mut sizes = Vec::with_capacity(points.len());
         for at in points {
             let mut turned = at.clone();
             turned.state[coordinate] += std::f64::consts::TAU;
             pairs.push([at, &turned].map(|at| self.accelerations(&mut evaluator, at)));
+            // In steady motion the terms of a rate cancel; its derivative times a radian does not.
+            let matrix = state_space
+                .as_mut()
+                .and_then(|found| found.evaluate(at.point()).ok());
+            let degrees = self.model().program().degrees_of_freedom();
+            sizes.push(matrix.map_or(Vec::new(), |matrix| {
+                let rows = matrix.a.chunks_exact(at.state.len()).skip(degrees);
+                rows.map(|row| row[coordinate].abs()).collect()
+            }));
         }
         let count = pairs.first().map_or(0, |[rates, _]| rates.len());
         Ok((0..count).all(|row| {
+            let terms = sizes.iter().filter_map(|sizes: &Vec<f64>| sizes.get(row));
             let size = pairs
                 .iter()
                 .map(|[rates, _]| rates[row].abs())
+                .chain(terms.copied())
                 .fold(0.0, f64::max);
             let mut differences = pairs.iter().map(|[a, b]| (a[row] - b[row]).abs());
             differences.all(|difference| difference <= MAX_UNCHANGED_FRACTION * size)

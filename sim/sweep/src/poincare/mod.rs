@@ -345,7 +345,13 @@ impl Poincare<'_> {
         let mut found = find_repetition(&points, parts).ok_or(Failure::Undefined)?;
         if found[0] == 0.0 {
             let seen = (seen, &mut points[..]);
-            remove_drift(instance, &self.quantity, looks, seen, &mut parts)?;
+            remove_drift(
+                (instance, resolution),
+                &self.quantity,
+                looks,
+                seen,
+                &mut parts,
+            )?;
             found = find_repetition(&points, parts).ok_or(Failure::Undefined)?;
         }
         Ok(SectionPoints {

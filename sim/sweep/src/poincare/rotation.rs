@@ -34,8 +34,9 @@ impl MotionSamples<'_> {
 }
 
 /// Replaces the comparison of a drifting coordinate, and removes full turns from the points.
+/// `resolution`: relative error of the states.
 pub fn remove_drift(
-    instance: &Instance<'_>,
+    (instance, resolution): (&Instance<'_>, f64),
     quantity: &Quantity,
     looks: &MotionSamples<'_>,
     (seen, points): (&[[f64; 2]], &mut [[f64; 2]]),
@@ -51,6 +52,12 @@ pub fn remove_drift(
         parts[shown] = CoordinateComparison::Angle;
     } else {
         return Ok(());
+    }
+    // The error of a solver is relative to the angle, which grows without bound; it enters the rate.
+    let [angle, rate] = [shown, 1 - shown].map(|place| extents(seen.iter())[place]);
+    let size = |(least, greatest): (f64, f64)| least.abs().max(greatest.abs());
+    if is_angle && rate.1 - rate.0 <= resolution * size(angle).max(1.0) * size(rate) {
+        parts[1 - shown] = CoordinateComparison::Ignored;
     }
     if is_angle {
         let start = looks.start.state[place];

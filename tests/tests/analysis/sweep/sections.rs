@@ -184,6 +184,25 @@ c = "1/2*c*dot(phi)^2"
 motor = { on = "phi", value = "T_0 + T_1*cos(omega*t)" }
 "#;
 
+/// Shaft that a rotating field locks to its speed; the phase of the lock does not depend on d.
+const LOCKED_SHAFT: &str = r#"
+[model]
+name = "locked"
+[parameters]
+J = { value = 2, unit = "kg m^2" }
+d = { value = 5, unit = "N m s" }
+k = { value = 50, unit = "N m" }
+omega = { value = 6, unit = "rad/s" }
+[coordinates]
+phi = { unit = "rad" }
+[kinetic]
+k = "1/2*J*dot(phi)^2"
+[dissipation]
+b = "1/2*d*(dot(phi) - omega)^2"
+[forces]
+field = { on = "phi", value = "-k*sin(phi - omega*t)" }
+"#;
+
 /// Returns the period and the largest value sampled once per forcing period.
 fn repetition(place: &SweepFolder, text: &str, vary: &str, quantity: &str) -> (f64, f64) {
     std::fs::write(place.path_to("model.toml"), text).expect("a specification");
@@ -258,6 +277,20 @@ fn rotating_and_travelling_machines_have_period_one() {
         );
     let (period, greatest) = repetition(&place, &pendulum, "c=0.5:0.5:1", "phi");
     assert!(period == 1.0 && greatest <= PI, "{period} {greatest}");
+}
+
+#[test]
+fn locked_shaft_has_period_one() {
+    let place = SweepFolder::new();
+    for quantity in ["phi", "phi_dot"] {
+        for vary in ["d=4:6:2", "omega=6:6:1"] {
+            let (period, _) = repetition(&place, LOCKED_SHAFT, vary, quantity);
+            assert_eq!(period, 1.0, "{quantity}, {vary}");
+        }
+    }
+    // A load that pulsates at half the frequency of the field.
+    let pulsating = LOCKED_SHAFT.replace("omega*t)\" }", "omega*t) + 0.1*k*sin(omega*t/2)\" }");
+    assert_eq!(repetition(&place, &pulsating, "d=5:5:1", "phi_dot").0, 2.0);
 }
 
 /// Rotor in a potential V that decelerates and accelerates it.
