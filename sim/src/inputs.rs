@@ -109,8 +109,9 @@ impl HeldInputs {
         self
     }
 
-    /// Sets the times (s) at which functions jump, so that solvers end a step there. Times that
-    /// are not finite are ignored.
+    /// Sets the times (s) at which functions jump, so that solvers end a step there. A jump belongs
+    /// to the motion after it: at such a time, functions are evaluated at the next larger number.
+    /// Times that are not finite are ignored.
     #[must_use]
     pub fn with_jump_times(mut self, mut breaks: Vec<f64>) -> Self {
         breaks.retain(|time| time.is_finite());
@@ -169,9 +170,11 @@ impl HeldInputs {
             return Cow::Borrowed(held);
         }
         let mut inputs = held.to_vec();
+        let is_jump = (self.jump_times).binary_search_by(|time| time.total_cmp(&t));
+        let after = if is_jump.is_ok() { t.next_up() } else { t };
         for given in &self.functions {
             let places = given.place..given.place + given.count;
-            given.function.write(t, &mut inputs[places]);
+            given.function.write(after, &mut inputs[places]);
         }
         for (place, spline) in &self.prescribed {
             inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));
@@ -320,6 +323,25 @@ mod tests {
         fn write(&self, t: f64, out: &mut [f64]) {
             out.fill(2.0 * t);
         }
+    }
+
+    /// Function that is 0 up to and at 3 s, and 1 later.
+    #[derive(Debug)]
+    struct LateStep;
+
+    impl super::InputFunction for LateStep {
+        fn write(&self, t: f64, out: &mut [f64]) {
+            out.fill(f64::from(u8::from(t > 3.0)));
+        }
+    }
+
+    #[test]
+    fn function_at_its_break_has_the_value_after_it() {
+        let held = HeldInputs::zero(1).with_function(0, 1, std::sync::Arc::new(LateStep));
+        assert_eq!(*held.evaluate(3.0), [0.0]);
+        let held = held.with_jump_times(vec![1.0, 3.0, 7.0]);
+        assert_eq!(*held.evaluate(3.0), [1.0]);
+        assert_eq!(*held.evaluate(3.0_f64.next_down()), [0.0]);
     }
 
     #[test]
