@@ -5,6 +5,9 @@ use crate::residual_force::equations::Equation;
 use crate::residual_force::types::{ForceKind, Profile, ResidualForce, SimpleFunction, SimpleTerm};
 use crate::thresholds;
 
+/// Relative rounding error of a frequency.
+const RELATIVE_ROUNDING: f64 = 1e-9;
+
 /// Describes the residual force of the original model in one or two sentences.
 pub fn describe_residual_force(force: &ResidualForce) -> String {
     let Some(kind) = &force.kind else {
@@ -68,16 +71,28 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
                     if is_looked_at
                         && frequencies.explained_fraction > 0.5 * force.explained_fraction =>
                 {
-                    format!(
-                        "{text}, most of it near {:.3} Hz with an amplitude of {}",
-                        frequencies.arguments[peak],
-                        in_unit(frequencies.values[peak], equation.force_unit())
-                    )
+                    match is_resolved(frequencies, peak) {
+                        true => format!(
+                            "{text}, most of it near {:.3} Hz with an amplitude of {}",
+                            frequencies.arguments[peak],
+                            in_unit(frequencies.values[peak], equation.force_unit())
+                        ),
+                        false => format!(
+                            "{text}, most of it below the frequency resolution of windows of this length"
+                        ),
+                    }
                 }
                 _ => text,
             }
         }
     }
+}
+
+/// Returns true if a wave of a profile over the frequency has enough periods in a window to be
+/// distinguished from a drift. The first wave of the profile has one.
+fn is_resolved(frequencies: &Profile, peak: usize) -> bool {
+    let least = thresholds::FIRST_SPECTRAL_LINE as f64 * frequencies.arguments[0];
+    frequencies.arguments[peak] > (1.0 - RELATIVE_ROUNDING) * least
 }
 
 /// Returns the words for rate and position.
@@ -181,5 +196,24 @@ fn plain(value: f64) -> String {
         format!("{value:.*}", digits.max(0) as usize)
     } else {
         format!("{value:.1e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_resolved;
+    use crate::residual_force::types::Profile;
+
+    #[test]
+    fn waves_of_less_than_three_periods_per_window_are_not_resolved() {
+        // Windows of 0.7 s.
+        let frequencies = Profile {
+            arguments: [1.0, 2.0, 3.0, 4.0, 6.4]
+                .map(|periods| periods / 0.7)
+                .to_vec(),
+            ..Profile::default()
+        };
+        let resolved = [0, 1, 2, 3, 4].map(|wave| is_resolved(&frequencies, wave));
+        assert_eq!(resolved, [false, false, true, true, true]);
     }
 }
