@@ -97,16 +97,25 @@ fn parse_file(input: ParseStream<'_>) -> syn::Result<Arguments> {
     }
 }
 
-/// Parses `[jacobians, products]`.
+/// Parses `[jacobians:states, products]`.
 fn parse_outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
     let list;
     bracketed!(list in input);
-    let names = list.parse_terminated(Ident::parse, Token![,])?;
-    let output = |name: &Ident| {
-        let known: Result<Output, _> = name.to_string().parse();
-        known.map_err(|error| Error::new(name.span(), error.to_string()))
-    };
-    names.iter().map(output).collect()
+    let outputs = list.parse_terminated(parse_output, Token![,])?;
+    Ok(outputs.into_iter().collect())
+}
+
+/// Parses `jacobians` or `jacobians:states`.
+fn parse_output(input: ParseStream<'_>) -> syn::Result<Output> {
+    let first: Ident = input.parse()?;
+    let mut name = first.to_string();
+    if input.peek(Token![:]) {
+        input.parse::<Token![:]>()?;
+        let part: Ident = input.parse()?;
+        name += &format!(":{part}");
+    }
+    let known: Result<Output, _> = name.parse();
+    known.map_err(|error| Error::new(first.span(), error.to_string()))
 }
 
 fn parse_path(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {

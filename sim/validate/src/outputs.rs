@@ -1,6 +1,7 @@
 //! Interface to the requested outputs under test.
 
 use super::sampler::Sample;
+use eomgen_codegen::program::Output;
 use nalgebra::DMatrix;
 
 /// Jacobians of the rates and of the observables, by state, inputs and independent parameters.
@@ -12,6 +13,18 @@ pub const JACOBIANS: [&str; 6] = [
     "observables_by_inputs",
     "observables_by_parameters",
 ];
+
+/// Returns the names of the Jacobians among the requested outputs `names`.
+pub fn requested_jacobians(names: &[String]) -> Vec<&'static str> {
+    let outputs: Vec<Output> = names.iter().filter_map(|name| name.parse().ok()).collect();
+    let is_requested = |jacobian: &&str| {
+        let (_, by) = jacobian.rsplit_once('_').unwrap_or_default();
+        outputs
+            .iter()
+            .any(|output| output.includes_jacobians_by(by))
+    };
+    JACOBIANS.into_iter().filter(is_requested).collect()
+}
 
 /// Output functions of one variant, `None` if not requested. Observables end in `energy`, `power`.
 pub trait Outputs {

@@ -36,9 +36,15 @@ pub fn derive_outputs(
         ..Outputs::default()
     };
     let has = |output| outputs.contains(&output);
-    let differentiated = has(Output::Jacobians)
+    let has_jacobians_by = |suffix: &str| {
+        outputs
+            .iter()
+            .any(|output| output.includes_jacobians_by(suffix))
+    };
+    let differentiated = ["state", "inputs", "parameters"]
+        .into_iter()
+        .any(has_jacobians_by)
         || has(Output::Products)
-        || has(Output::Linearisation)
         || has(Output::TimeDerivatives)
         || has(Output::Tangents)
         || has(Output::Hessians);
@@ -57,9 +63,7 @@ pub fn derive_outputs(
         result.bias_forces = has(Output::BiasForces).then_some(bias);
     }
     result.guard_rates = has(Output::GuardRates).then(|| guard_rates(equations));
-    if has(Output::Jacobians) || has(Output::Linearisation) {
-        result.jacobians = jacobians(equations);
-    }
+    result.jacobians = jacobians(equations, has_jacobians_by);
     if has(Output::Tangents) {
         result
             .jacobians
@@ -307,14 +311,41 @@ fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     })
 }
 
-fn jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
+/// Derives the Jacobians by the variables that are requested, first of the rates, then of the observables.
+fn jacobians(
+    equations: &mut Equations,
+    is_requested_by: impl Fn(&str) -> bool,
+) -> Vec<Jacobian<NodeId>> {
+    let [by_state, by_inputs, by_all_parameters] =
+        ["state", "inputs", "parameters"].map(is_requested_by);
+    if !(by_state || by_inputs || by_all_parameters) {
+        return Vec::new();
+    }
     let (rates, observables) = (rate_rows(equations), observable_rows(equations));
-    vec![
-        by_variables(equations, &rates, "rates_by_state", false),
-        by_variables(equations, &rates, "rates_by_inputs", true),
-        by_parameters(equations, &rates, "rates_by_parameters"),
-        by_variables(equations, &observables, "observables_by_state", false),
-        by_variables(equations, &observables, "observables_by_inputs", true),
-        by_parameters(equations, &observables, "observables_by_parameters"),
-    ]
+    let mut found = Vec::new();
+    for (rows, names) in [
+        (
+            &rates,
+            ["rates_by_state", "rates_by_inputs", "rates_by_parameters"],
+        ),
+        (
+            &observables,
+            [
+                "observables_by_state",
+                "observables_by_inputs",
+                "observables_by_parameters",
+            ],
+        ),
+    ] {
+        if by_state {
+            found.push(by_variables(equations, rows, names[0], false));
+        }
+        if by_inputs {
+            found.push(by_variables(equations, rows, names[1], true));
+        }
+        if by_all_parameters {
+            found.push(by_parameters(equations, rows, names[2]));
+        }
+    }
+    found
 }

@@ -11,6 +11,12 @@ pub enum Output {
     GuardRates,
     /// Jacobians of rates and observables by state, inputs and parameters.
     Jacobians,
+    /// Jacobians of rates and observables by state.
+    StateJacobians,
+    /// Jacobians of rates and observables by inputs.
+    InputJacobians,
+    /// Jacobians of rates and observables by parameters.
+    ParameterJacobians,
     /// Products of the rates' Jacobian with a direction, and of weights with the Jacobian.
     Products,
     /// Matrices A, B, C and D of a linearisation; includes the Jacobians.
@@ -35,11 +41,14 @@ pub enum Output {
 
 impl Output {
     /// Every output that all languages support and a request can name.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::BiasForces,
         Self::InverseDynamics,
         Self::GuardRates,
         Self::Jacobians,
+        Self::StateJacobians,
+        Self::InputJacobians,
+        Self::ParameterJacobians,
         Self::Products,
         Self::Linearisation,
         Self::Regimes,
@@ -54,6 +63,9 @@ impl Output {
             Self::InverseDynamics => "inverse_dynamics",
             Self::GuardRates => "guard_rates",
             Self::Jacobians => "jacobians",
+            Self::StateJacobians => "jacobians:states",
+            Self::InputJacobians => "jacobians:inputs",
+            Self::ParameterJacobians => "jacobians:parameters",
             Self::Products => "products",
             Self::Linearisation => "linearisation",
             Self::Regimes => "regimes",
@@ -62,6 +74,18 @@ impl Output {
             Self::Hessians => "hessians",
             Self::Step => "step",
             Self::Lanes => "lanes",
+        }
+    }
+
+    /// Returns true if this request includes the Jacobians by the variables of `suffix`: `state`, `inputs` or
+    /// `parameters`.
+    pub fn includes_jacobians_by(self, suffix: &str) -> bool {
+        match self {
+            Self::Jacobians | Self::Linearisation => true,
+            Self::StateJacobians => suffix == "state",
+            Self::InputJacobians => suffix == "inputs",
+            Self::ParameterJacobians => suffix == "parameters",
+            _ => false,
         }
     }
 

@@ -6,7 +6,7 @@
 
 use super::super::certificate::{Check, SkipKind, Worst};
 use super::super::compiler::{Compiler, Optimization};
-use super::super::outputs::{JACOBIANS, Outputs};
+use super::super::outputs::{Outputs, requested_jacobians};
 use super::super::random::Random;
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
@@ -165,16 +165,14 @@ fn harness_calls(outputs: &[String]) -> Vec<Call> {
             );
         }
     }
-    if has("jacobians") || has("linearisation") {
-        for name in JACOBIANS {
-            let (rows, columns) = jacobian_extents(name);
-            let pattern = name.to_uppercase();
-            let text = format!(
-                "let dense: [[f64; model::{columns}]; model::{rows}] = \
-                 model::{pattern}.dense(&model::{name}({at})); dense.print();"
-            );
-            add("emitted_requests", name, text);
-        }
+    for name in requested_jacobians(outputs) {
+        let (rows, columns) = jacobian_extents(name);
+        let pattern = name.to_uppercase();
+        let text = format!(
+            "let dense: [[f64; model::{columns}]; model::{rows}] = \
+             model::{pattern}.dense(&model::{name}({at})); dense.print();"
+        );
+        add("emitted_requests", name, text);
     }
     if has("products") {
         let text = format!(

@@ -3,6 +3,7 @@
 use super::check_context::CheckContext;
 use crate::differences::{Direction, Slope, slopes};
 use crate::oracle::{Oracle, OracleError};
+use crate::outputs::requested_jacobians;
 use crate::random::Random;
 use crate::sampler::Sample;
 use crate::sizes;
@@ -32,8 +33,8 @@ pub(super) fn directions(
     parameters_too: bool,
     random: &mut Random,
 ) -> Result<Vec<(VariableKind, Direction)>, OracleError> {
-    let wanted = ["jacobians", "linearisation", "products"];
-    if !names.iter().any(|name| wanted.contains(&name.as_str())) {
+    let has_products = names.iter().any(|name| name == "products");
+    if !has_products && requested_jacobians(names).is_empty() {
         return Ok(Vec::new());
     }
     let oracle = judged.oracle;

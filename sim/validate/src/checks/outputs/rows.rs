@@ -2,7 +2,7 @@
 
 use super::check_context::CheckContext;
 use crate::certificate::{Check, SkipKind, Worst};
-use crate::outputs::JACOBIANS;
+use crate::outputs::requested_jacobians;
 
 /// Tolerance of differences, relative to the largest term of the row, for a change of the variable
 /// by its size. The rows are accurate to 1e-14 of that. The division by the step size increases
@@ -92,9 +92,7 @@ pub(super) fn expected_checks(names: &[String]) -> Vec<&'static str> {
             found.push(name);
         }
     }
-    if has("jacobians") || has("linearisation") {
-        found.extend(JACOBIANS);
-    }
+    found.extend(requested_jacobians(names));
     if has("products") {
         found.extend([
             "jacobian_vector_product",
