@@ -39,6 +39,7 @@ mod sweep_files;
 mod table;
 mod test_vectors;
 mod tour;
+mod trace_file;
 
 use std::process::ExitCode;
 

@@ -55,6 +55,7 @@
 //! 5. [`rust`] and [`c`] (emitted source), [`wasm`] (a module for browsers) and [`report`] (equations as text
 //!    and LaTeX).
 //!
+//! `trace` finds the terms of the specification from which each value comes, for comments in emitted source.
 //! [`vectors`] computes test vectors, which the backends write next to the source.
 //!
 //! [`variant`] derives the program of a model in one call and rejects dependent constraints
@@ -79,6 +80,8 @@ pub mod singular_terms;
 #[cfg(feature = "derive")]
 pub mod statements;
 pub mod symbolic;
+#[cfg(feature = "derive")]
+pub mod trace;
 #[cfg(feature = "derive")]
 pub mod variant;
 #[cfg(feature = "derive")]

@@ -18,8 +18,10 @@ use crate::mechanics::sliding::{SideInputs, add_side_inputs, can_hold_motion};
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
 use crate::program::evaluator::{Evaluator, Point};
-use crate::program::lowering::{lower_controllers, lower_with_outputs};
-use crate::program::{Program, Quantity};
+use crate::program::lowering::{lower_controllers, lower_with_outputs, lower_with_values};
+use crate::program::{Program, Quantity, ValueId};
+use crate::symbolic::graph::NodeId;
+use crate::trace::trace_program;
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
@@ -27,6 +29,8 @@ pub struct Variant {
     pub equations: Equations,
     /// Program whose parameter defaults are the values of the model.
     pub program: Program,
+    /// Values of the nodes of the equations.
+    values: Vec<(NodeId, ValueId)>,
 }
 
 impl Variant {
@@ -80,9 +84,34 @@ impl Variant {
                 None => message,
             })
         })?;
-        let mut program = lower_with_outputs(model, &equations, &values, &outputs);
+        let (mut program, lowered) = lower_with_values(model, &equations, &values, &outputs);
         program.controllers = lower_controllers(model, &program).map_err(found)?;
-        Ok(Self { equations, program })
+        Ok(Self {
+            equations,
+            program,
+            values: lowered,
+        })
+    }
+
+    /// Derives `model` with outputs, with the origin of all values for the comments of emitted files.
+    ///
+    /// # Errors
+    /// The errors of [`Variant::derive_with`].
+    pub fn derive_with_trace(
+        model: &Model,
+        orders: &[usize],
+        outputs: &[Output],
+    ) -> Result<Self, Diagnostics> {
+        let mut variant = Self::derive_with(model, orders, outputs)?;
+        variant.add_trace(model);
+        Ok(variant)
+    }
+
+    /// Finds the terms of `model`, from which this variant was derived, for each value of the program. Emitted source
+    /// then has them in comments.
+    pub fn add_trace(&mut self, model: &Model) {
+        let values = self.values.iter().copied();
+        self.program.trace = trace_program(model, &self.equations, &self.program, values);
     }
 }
 

@@ -141,7 +141,7 @@ fn generate_variant(
         let found = Diagnostics::from_one(model.source.clone(), error.diagnostic());
         specification_error(&found)
     })?;
-    let variant = Variant::derive_with(model, &orders, outputs)
+    let variant = Variant::derive_with_trace(model, &orders, outputs)
         .map_err(|found| specification_error(&found))?;
     let text =
         emit(&variant.program, Packaging::Items).map_err(|error| Error(error.to_string()))?;

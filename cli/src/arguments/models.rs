@@ -83,6 +83,8 @@ pub enum Extra {
     Baked,
     /// Test vectors and the function that compares them.
     SelfTest,
+    /// Lines of the source with the terms of the specification.
+    Trace,
 }
 
 impl Extra {
@@ -90,7 +92,7 @@ impl Extra {
     pub fn outputs(all: &[Self]) -> Vec<Output> {
         let request = |extra: &Self| match extra {
             Self::Output(output) => Some(*output),
-            Self::Bench | Self::Baked | Self::SelfTest => None,
+            Self::Bench | Self::Baked | Self::SelfTest | Self::Trace => None,
         };
         all.iter().filter_map(request).collect()
     }
@@ -104,10 +106,11 @@ impl std::str::FromStr for Extra {
             "bench" => return Ok(Self::Bench),
             "baked" => return Ok(Self::Baked),
             "self_test" => return Ok(Self::SelfTest),
+            "trace" => return Ok(Self::Trace),
             _ => {}
         }
         let output = parse_output(name).map(Self::Output);
-        output.map_err(|error| format!("{error}, bench, baked, self_test"))
+        output.map_err(|error| format!("{error}, bench, baked, self_test, trace"))
     }
 }
 
@@ -122,10 +125,12 @@ pub struct Generate {
     #[command(flatten)]
     pub parameters: ParameterValues,
     /// Functions to emit in addition to rates, observables, energy, power, guards and mass matrix:
-    /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (Jacobian times vector), linearisation,
+    /// bias_forces, inverse_dynamics, guard_rates, jacobians (jacobians:states, jacobians:inputs or
+    /// jacobians:parameters: those by one kind of variables), products (Jacobian times vector), linearisation,
     /// regimes (rates for given contact states), step (a step of the solver fixed), lanes (an inlined copy of every function, for SIMD), hessians
     /// (of the weighted rates, for CasADi), bench (a benchmark), baked (the coefficients of the default parameters as
-    /// constants), self_test (test vectors and a function that compares a target with them).
+    /// constants), self_test (test vectors and a function that compares a target with them), trace (`trace.json`: unit
+    /// and terms of the specification of each value, by line of the source).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
     /// Language of the emitted source.

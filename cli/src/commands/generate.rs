@@ -20,6 +20,7 @@ use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::settings::with_settings;
 use crate::test_vectors;
+use crate::trace_file::{self, TRACE};
 
 const CHECK_WITHOUT_ALL: &str = "`--check` compares the checked-in variants only, as `generate --all \
      --check`; nothing was written\n\nTo compare the files of other models, list them in a family file \
@@ -64,7 +65,8 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let outputs = emission::outputs(options.target, &options.with, options.certify)?;
     let model = with_settings(load(spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.order.text())?;
-    let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
+    let variant =
+        Variant::derive_with_trace(&model, &orders, &outputs).map_err(Error::Specification)?;
     let mut emitted = emission::files(&model, &variant, options.target)?;
     emitted.extend(test_vectors::files(
         &model,
@@ -73,6 +75,11 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         &options.with,
         options.target,
     )?);
+    if options.with.contains(&Extra::Trace) {
+        let sources = emitted.iter().map(|(name, text)| (&**name, &**text));
+        let trace = trace_file::document(&variant.program, sources)?;
+        emitted.push((TRACE.to_owned(), trace.into_bytes()));
+    }
     let mut certificate = None;
     if options.certify {
         let sources = sources(&variant, &outputs, options.target)?;

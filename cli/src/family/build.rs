@@ -21,6 +21,7 @@ use crate::emission;
 use crate::error::{Error, Result};
 use crate::settings::with_settings;
 use crate::test_vectors;
+use crate::trace_file::{self, TRACE};
 
 /// Name of a certificate.
 const CERTIFICATE: &str = "certificate.json";
@@ -95,7 +96,7 @@ impl Emitted {
             return Err(Error::input("`hessians` needs the target `casadi`"));
         }
         let derive = |outputs: &[Output]| {
-            let derived = Derived::derive_with(model, orders, outputs);
+            let derived = Derived::derive_with_trace(model, orders, outputs);
             let mut derived = derived.map_err(Error::Specification)?;
             derived.program.name.clone_from(&variant.prefix);
             Ok::<Derived, Error>(derived)
@@ -148,6 +149,11 @@ impl Emitted {
         if variant.has(Target::Cuda) {
             this.files
                 .extend(emission::files(model, &derived, Target::Cuda)?);
+        }
+        if others.contains(&Extra::Trace) {
+            let sources = this.files.iter().map(|(name, text)| (&**name, &**text));
+            let trace = trace_file::document(program, sources)?;
+            this.files.insert(TRACE.to_owned(), trace.into_bytes());
         }
         if variant.has(Target::Casadi) {
             let derived = derive(&emission::outputs(Target::Casadi, &of_casadi, false)?)?;

@@ -36,7 +36,7 @@ pub(super) fn resolve_links(program: &Program, lines: &str) -> Vec<String> {
 
 /// Removes beginnings and ends of comments, control characters, characters that change the direction of text,
 /// and trigraphs.
-fn clean(text: &str) -> String {
+pub(super) fn clean(text: &str) -> String {
     let mut clean = String::with_capacity(text.len());
     for c in text.chars() {
         let last = clean.chars().next_back();

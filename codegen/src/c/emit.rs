@@ -17,8 +17,8 @@ use crate::program::{Extent, Op, Program};
 use crate::statements::layout;
 use crate::statements::{
     EmitError, EmitResult, File, RequiredFunctions, Stage, controller_stages, guards,
-    jacobian_stage, mass_matrix, observables, rates, rates_in_regime, requested_stages,
-    stage_roots,
+    jacobian_stage, mass_matrix, observables, preparation, rates, rates_in_regime,
+    requested_stages, stage_roots,
 };
 
 /// C files of a program.
@@ -45,10 +45,10 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
 pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
     let file = File::new(program, &WORDS)?;
     let mut needed = RequiredFunctions::default();
-    let filling = fill_functions(&file, &mut needed)?;
+    let prepared = preparation(&file, &mut needed)?;
     let stages = stages(&file, &mut needed)?;
-    let header = header(&file, &stages, real)?;
-    let mut defined = filling;
+    let header = header(&file, &prepared, &stages, real)?;
+    let mut defined = fill_functions(&file, prepared)?;
     for stage in stages {
         defined += &definition(program, stage);
     }

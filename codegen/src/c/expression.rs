@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use super::comments::clean;
 use super::primitives::CFormat;
 use super::sine_and_cosine::{SineAndCosine, find_pair};
 use eomgen_elementary::{Double, Precision};
 
 use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
-use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
+use crate::statements::{Array, Expression, Index, Notes, Operator, Place, Statement, Structure};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
@@ -29,6 +30,8 @@ pub(super) struct Writer {
     narrow: bool,
     /// Number by which kernels round.
     rounding_aligner: f64,
+    /// Origin of the values of the function.
+    pub(super) notes: Notes,
 }
 
 impl Writer {
@@ -38,6 +41,7 @@ impl Writer {
             real: format!("{}_real", program.name),
             narrow: true,
             rounding_aligner: Double::ROUNDING_ALIGNER,
+            notes: Notes::new(),
         }
     }
 
@@ -61,12 +65,19 @@ impl Writer {
             match find_pair(&statements[place..]) {
                 Some((ahead, sine_and_cosine)) => {
                     together.insert(place + ahead);
+                    text += &self.note(statement);
                     text += &self.sine_and_cosine(&sine_and_cosine);
                 }
-                None => text += &self.statement(statement),
+                None => text += &(self.note(statement) + &self.statement(statement)),
             }
         }
         text
+    }
+
+    /// Writes the origin of the value that a statement defines.
+    fn note(&self, statement: &Statement) -> String {
+        let note = statement.defined().and_then(|name| self.notes.get(name));
+        note.map_or_else(String::new, |note| format!("/* {} */\n", clean(note)))
     }
 
     fn sine_and_cosine(&self, both: &SineAndCosine) -> String {

@@ -11,7 +11,7 @@ use super::step;
 use super::types;
 use super::types::structures;
 use crate::program::Program;
-use crate::statements::{EmitResult, File, Indices, Stage, indices};
+use crate::statements::{EmitResult, File, Indices, Preparation, Stage, indices};
 
 /// Returns title and origin of a file, by lines.
 pub(super) fn documentation(program: &Program) -> Vec<String> {
@@ -55,7 +55,12 @@ fn notes(program: &Program, (other, precision): (&str, &str)) -> Vec<String> {
     lines
 }
 
-pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResult<String> {
+pub(super) fn header(
+    file: &File<'_>,
+    prepared: &Preparation,
+    stages: &[Stage],
+    real: Real,
+) -> EmitResult<String> {
     let program = file.program;
     let (number, other, precision) = match real {
         Real::Double => ("double", "float", "single"),
@@ -76,9 +81,11 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResul
          #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
+    let [hide, restore] = hidden_macros(file);
+    text += &hide;
     text += &sizes(file);
     text += &jacobians::sizes(program);
-    text += &structures(file)?;
+    text += &structures(file, prepared)?;
     text += &types::declarations(program);
     for stage in stages {
         text += &declaration(program, stage);
@@ -90,7 +97,37 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage], real: Real) -> EmitResul
     text += &step::declaration(program);
     text += &jacobians::declarations(program);
     text += &controllers::declarations(program);
-    Ok(text + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
+    Ok(text + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
+}
+
+/// Macros of `<complex.h>`, which a caller can include before this header.
+const COMPLEX_MACROS: [&str; 3] = ["I", "complex", "imaginary"];
+
+/// Returns the lines that hide macros with the name of a field, and those that restore them.
+fn hidden_macros(file: &File<'_>) -> [String; 2] {
+    let program = file.program;
+    let parameters = program
+        .parameters
+        .iter()
+        .map(|parameter| &parameter.quantity.name);
+    let inputs = program.inputs.iter().map(|input| &input.name);
+    let fields: Vec<&String> = parameters
+        .chain(inputs)
+        .chain(file.field_names.values())
+        .collect();
+    let [mut hide, mut restore] = [String::new(), String::new()];
+    for name in COMPLEX_MACROS {
+        if fields.iter().any(|field| *field == name) {
+            hide += &format!("#pragma push_macro(\"{name}\")\n#undef {name}\n");
+            restore += &format!("#pragma pop_macro(\"{name}\")\n");
+        }
+    }
+    if !hide.is_empty() {
+        hide = "/** The header <complex.h> defines macros with the name of a field. */\n"
+            .to_owned()
+            + &hide;
+    }
+    [hide, restore]
 }
 
 fn sizes(file: &File<'_>) -> String {

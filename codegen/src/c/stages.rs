@@ -84,7 +84,8 @@ pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
 pub(super) fn definition(program: &Program, stage: Stage) -> String {
     let arguments = arguments(&stage);
     let head = head(program, (result(&stage), stage.name), &arguments, true);
-    let writer = Writer::new(program);
+    let mut writer = Writer::new(program);
+    writer.notes.clone_from(&stage.notes);
     let mut used = UsedNames::from_outcome(&stage.outcome);
     let written = used.retain(stage.written);
     let computed = used.retain(stage.computed);

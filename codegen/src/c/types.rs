@@ -4,14 +4,13 @@ use super::comments::comment;
 use super::expression::{Writer, assignment, number, write_loop};
 use super::names::fill_template;
 use super::stages::{head, nest_lines};
-use crate::program::describe::describe_value;
 use crate::program::{Extent, Program, Quantity};
 use crate::statements::layout::block;
 use crate::statements::{
-    EmitResult, File, PreparedValue, RequiredFunctions, UsedNames, preparation, quantity_line,
+    EmitResult, File, Preparation, PreparedValue, UsedNames, describe_coefficient, quantity_line,
 };
 
-pub(super) fn structures(file: &File<'_>) -> EmitResult<String> {
+pub(super) fn structures(file: &File<'_>, prepared: &Preparation) -> EmitResult<String> {
     let program = file.program;
     let mut fields = String::new();
     for parameter in &program.parameters {
@@ -31,7 +30,7 @@ pub(super) fn structures(file: &File<'_>) -> EmitResult<String> {
             Extent::Matrix(rows, columns) => format!("[{rows}][{columns}]"),
         };
         let name = &file.field_names[id];
-        fields += &comment(&[describe_value(program, *id)]);
+        fields += &comment(&[describe_coefficient(file, prepared, *id)]);
         fields += &fill_template(program, &format!("NAME_real {name}{extents};\n"));
     }
     let mut lines = vec![
@@ -115,10 +114,7 @@ pub(super) fn declarations(program: &Program) -> String {
     declared.concat()
 }
 
-pub(super) fn fill_functions(
-    file: &File<'_>,
-    needed: &mut RequiredFunctions,
-) -> EmitResult<String> {
+pub(super) fn fill_functions(file: &File<'_>, preparation: Preparation) -> EmitResult<String> {
     let program = file.program;
     let [defaults, parameters, inputs, prepare] =
         FILLING.map(|(name, arguments, _)| head(program, ("void ", name), arguments, true));
@@ -132,7 +128,7 @@ pub(super) fn fill_functions(
     text += &from_array(&parameters, "parameters", names);
     let names = program.inputs.iter().map(|input| input.name.as_str());
     text += &from_array(&inputs, "inputs", names);
-    Ok(text + &prepared(file, &prepare, needed)?)
+    Ok(text + &prepared(file, &prepare, preparation))
 }
 
 fn from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) -> String {
@@ -152,11 +148,11 @@ fn write_function(head: &str, none: &str, lines: String) -> String {
     block(&format!("{head} {{"), &lines, "}")
 }
 
-fn prepared(file: &File<'_>, head: &str, needed: &mut RequiredFunctions) -> EmitResult<String> {
+fn prepared(file: &File<'_>, head: &str, prepared: Preparation) -> String {
     let program = file.program;
-    let prepared = preparation(file, needed)?;
     let mut used = UsedNames::from_preparation(&prepared);
-    let writer = Writer::new(program);
+    let mut writer = Writer::new(program);
+    writer.notes.clone_from(&prepared.notes);
     let computed = used.retain(prepared.computed);
     // The reference keeps the identity in programs from which the linker removes unused items.
     let kept = "const char *volatile identity = NAME_identity;\n(void)identity;\n";
@@ -183,5 +179,5 @@ fn prepared(file: &File<'_>, head: &str, needed: &mut RequiredFunctions) -> Emit
     }
     let check = writer.expression(&prepared.positive_definite);
     lines += &assignment("coefficients->positive_definite", &check);
-    Ok(block(&format!("{head} {{"), &lines, "}"))
+    block(&format!("{head} {{"), &lines, "}")
 }

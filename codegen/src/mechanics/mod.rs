@@ -18,6 +18,8 @@ pub mod coefficients;
 #[cfg(feature = "derive")]
 pub(crate) mod constraints;
 #[cfg(feature = "derive")]
+pub(crate) mod contributions;
+#[cfg(feature = "derive")]
 pub mod corners;
 #[cfg(feature = "derive")]
 mod discs;

@@ -1,76 +1,124 @@
 //! Formulas of program values for the documentation of emitted code, in terms of named quantities.
 
+use super::content::leaf_name;
 use crate::program::{Op, Program, ValueId};
 
-/// Largest length of a formula in characters; longer ones are cut.
+/// Largest length of a formula that contains no names of intermediate values, in characters.
 const MAX_FORMULA_LENGTH: usize = 160;
 
-/// Returns the formula of a value on one line.
-pub fn describe_value(program: &Program, id: ValueId) -> String {
-    let text = formula(program, id, true, 0);
-    if text.len() <= MAX_FORMULA_LENGTH {
-        return format!("`{text}`");
-    }
-    let cut: String = text.chars().take(MAX_FORMULA_LENGTH).collect();
-    format!("`{cut}...`")
-}
-
-/// Largest depth of a formula; deeper parts are omitted, because shared nodes make a tree exponentially
-/// larger than its graph.
+/// Largest depth of such a formula, because shared nodes make a tree exponentially larger than its graph.
 const MAX_DEPTH: usize = 8;
 
-fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
-    let value = program.value(id);
-    if let (Some(name), false) = (&value.name, root) {
-        return name.clone();
-    }
-    if depth > MAX_DEPTH {
-        return "...".to_owned();
-    }
-    let part = |id: ValueId| formula(program, id, false, depth + 1);
-    let atom = |id: ValueId| {
-        let text = part(id);
-        let simple = text
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || "_.'".contains(c));
-        if simple { text } else { format!("({text})") }
+/// Returns the formula of a value on one line, in named quantities. A long formula contains the intermediate values of the
+/// preparation, which `intermediate` names.
+pub fn describe_value<'n>(
+    program: &Program,
+    id: ValueId,
+    intermediate: &dyn Fn(ValueId) -> Option<&'n str>,
+) -> String {
+    let quantities = |id: ValueId| program.value(id).name.clone();
+    let whole = Formula {
+        program,
+        name: &quantities,
+        depth: MAX_DEPTH,
     };
-    match &value.op {
-        Op::Constant(number) => format!("{number:?}"),
-        Op::Table(place) => program.tables[*place].name.clone(),
-        Op::Parameter(place) => program.parameters[*place].quantity.name.clone(),
-        Op::Negate(a) => format!("-{}", atom(*a)),
-        Op::Add(a, b) => format!("{} + {}", part(*a), part(*b)),
-        Op::Subtract(a, b) => format!("{} - {}", part(*a), atom(*b)),
-        Op::Multiply(a, b) => format!(
-            "{}*{}",
-            factor(program, *a, depth),
-            factor(program, *b, depth)
-        ),
-        Op::Divide(a, b) => format!("{}/{}", factor(program, *a, depth), atom(*b)),
-        Op::Power(a, b) => format!("{}^{}", atom(*a), atom(*b)),
-        Op::Call(function, arguments) => {
-            let arguments: Vec<String> = arguments.iter().map(|a| part(*a)).collect();
-            format!("{}({})", function.name(), arguments.join(", "))
-        }
-        Op::PivotReciprocal(a) => format!("1/{}", atom(*a)),
-        Op::Total(a) => format!("sum_i({})", part(*a)),
-        Op::Cholesky(a) => format!("cholesky({})", part(*a)),
-        Op::CholeskySolve(a, b) => format!("solve({}, {})", part(*a), part(*b)),
-        Op::Apply { matrix, vector, .. } => format!("{} . {}", atom(*matrix), atom(*vector)),
-        Op::Gram { .. } | Op::GramDiagonal { .. } => "weighted integral of mode shapes".to_owned(),
-        Op::Assemble { .. } => "block of the mass matrix".to_owned(),
-        _ => "...".to_owned(),
+    if let Some(text) = whole
+        .write(id, 0)
+        .filter(|text| text.len() <= MAX_FORMULA_LENGTH)
+    {
+        return format!("`{text}`");
+    }
+    let named = |id: ValueId| {
+        let known = intermediate(id).map(str::to_owned);
+        known.or_else(|| program.value(id).name.clone())
+    };
+    let parts = Formula {
+        program,
+        name: &named,
+        depth: usize::MAX,
+    };
+    match parts.write(id, 0) {
+        Some(text) => format!("`{text}` with values of the preparation"),
+        None => "`value of the preparation`".to_owned(),
     }
 }
 
-/// Returns a factor of a product; products inside products need no parentheses.
-fn factor(program: &Program, id: ValueId, depth: usize) -> String {
-    let text = formula(program, id, false, depth + 1);
-    let compound = program.value(id).name.is_none()
-        && matches!(
-            program.value(id).op,
-            Op::Add(..) | Op::Subtract(..) | Op::Negate(_)
-        );
-    if compound { format!("({text})") } else { text }
+/// Writer of the formulas of a program.
+struct Formula<'f> {
+    program: &'f Program,
+    /// Name that replaces the formula of a value.
+    name: &'f dyn Fn(ValueId) -> Option<String>,
+    /// Largest depth.
+    depth: usize,
+}
+
+impl Formula<'_> {
+    /// Returns the formula of a value; None beyond the largest depth.
+    fn write(&self, id: ValueId, depth: usize) -> Option<String> {
+        if depth > self.depth {
+            return None;
+        }
+        if depth > 0
+            && let Some(name) = (self.name)(id)
+        {
+            return Some(name);
+        }
+        let program = self.program;
+        let op = &program.value(id).op;
+        if let Some(leaf) = leaf_name(program, op) {
+            return Some(leaf);
+        }
+        let part = |id: &ValueId| self.write(*id, depth + 1);
+        let atom = |id: &ValueId| {
+            let text = part(id)?;
+            let simple = text
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || "_.'".contains(c));
+            Some(if simple { text } else { format!("({text})") })
+        };
+        let factor = |id: &ValueId| {
+            let text = part(id)?;
+            let is_sum = matches!(
+                program.value(*id).op,
+                Op::Add(..) | Op::Subtract(..) | Op::Negate(_)
+            );
+            let compound = (self.name)(*id).is_none() && is_sum;
+            Some(if compound { format!("({text})") } else { text })
+        };
+        Some(match op {
+            Op::Constant(number) => format!("{number:?}"),
+            Op::Negate(a) => format!("-{}", atom(a)?),
+            Op::Add(a, b) => format!("{} + {}", part(a)?, part(b)?),
+            Op::Subtract(a, b) => format!("{} - {}", part(a)?, atom(b)?),
+            Op::Multiply(a, b) => format!("{}*{}", factor(a)?, factor(b)?),
+            Op::Divide(a, b) => format!("{}/{}", factor(a)?, atom(b)?),
+            Op::Power(a, b) => format!("{}^{}", atom(a)?, atom(b)?),
+            Op::Call(function, arguments) => {
+                let arguments: Option<Vec<String>> = arguments.iter().map(part).collect();
+                format!("{}({})", function.name(), arguments?.join(", "))
+            }
+            Op::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => format!(
+                "({} if {} > {} else {})",
+                part(then)?,
+                part(a)?,
+                part(b)?,
+                part(otherwise)?
+            ),
+            Op::PivotReciprocal(a) => format!("1/{}", atom(a)?),
+            Op::Total(a) => format!("sum_i({})", part(a)?),
+            Op::Cholesky(a) => format!("cholesky({})", part(a)?),
+            Op::CholeskySolve(a, b) => format!("solve({}, {})", part(a)?, part(b)?),
+            Op::Apply { matrix, vector, .. } => format!("{} . {}", atom(matrix)?, atom(vector)?),
+            Op::Gram { .. } | Op::GramDiagonal { .. } => {
+                "weighted integral of mode shapes".to_owned()
+            }
+            Op::Assemble { .. } => "block of the mass matrix".to_owned(),
+            _ => return None,
+        })
+    }
 }

@@ -265,7 +265,7 @@ encode_structures! {
         parameters, coordinates, fields, first_order, inputs, observables, tables, values,
         accelerations, first_order_rates, mass, velocity_terms, forces, observable_values, guards,
         impacts, pivots, outputs;
-        name, specification, title, spec_hash, coefficient_values, controllers
+        name, specification, title, spec_hash, coefficient_values, controllers, trace
     }
 }
 

@@ -8,10 +8,12 @@
 //!
 //! `value`, `types` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
 //! them, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
-//! values, and `operation_count` estimates the cost of a call.
+//! values, `content` names values by their content, `trace` has their origin, `units` infers their units, and `operation_count` estimates the cost of a call.
 
 #[cfg(feature = "derive")]
 pub mod affine;
+#[cfg(feature = "derive")]
+pub mod content;
 mod controllers;
 #[cfg(feature = "derive")]
 pub mod describe;
@@ -22,7 +24,10 @@ pub mod lowering;
 #[cfg(feature = "derive")]
 mod operation_count;
 mod quantity;
+mod trace;
 mod types;
+#[cfg(feature = "derive")]
+pub mod units;
 mod value;
 
 pub use crate::mechanics::impact::{Friction, Impact};
@@ -35,6 +40,7 @@ pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
 pub use quantity::Quantity;
+pub use trace::{Trace, TraceTerm, ValueTrace};
 pub use types::{
     MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, RowValues,
 };

@@ -2,6 +2,7 @@
 
 use super::controllers::ProgramController;
 use super::quantity::Quantity;
+use super::trace::Trace;
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::impact::Impact;
 use crate::mechanics::outputs::{Outputs, Products};
@@ -120,6 +121,8 @@ pub struct Program {
     pub controllers: Vec<ProgramController>,
     /// Requested outputs.
     pub outputs: Outputs<ValueId, RowValues>,
+    /// Origin of the values, for comments; empty unless it was computed.
+    pub trace: Trace,
 }
 
 /// Table of constants.

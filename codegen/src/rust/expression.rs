@@ -7,7 +7,7 @@ use crate::statements::layout::{
     BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FLOW, FLOW_EVEN, FLOW_OUT,
     LAYOUT_BOUNDARY, SPACE, SPACE_OUT, ZERO,
 };
-use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
+use crate::statements::{Array, Expression, Index, Notes, Operator, Place, Statement, Structure};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
@@ -36,11 +36,20 @@ pub(super) struct Writer {
     /// True if coefficients are read for SIMD lanes.
     pub(super) lanes: bool,
     pub(super) conversions: Conversions,
+    /// Origin of the values of the current function.
+    pub(super) notes: Notes,
 }
 
 impl Writer {
     pub(super) fn statements(&mut self, statements: &[Statement]) -> String {
-        statements.iter().map(|one| self.statement(one)).collect()
+        let mut text = String::new();
+        for statement in statements {
+            if let Some(note) = statement.defined().and_then(|name| self.notes.get(name)) {
+                text += &format!("// {note}\n");
+            }
+            text += &self.statement(statement);
+        }
+        text
     }
 
     fn statement(&mut self, statement: &Statement) -> String {

@@ -57,6 +57,7 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
             Argument::Weights => arguments += "weights: &[T; STATES],\n",
         }
     }
+    writer.notes.clone_from(&stage.notes);
     let mut statements = writer.statements(&stage.computed);
     let written = writer.statements(&stage.written);
     let result = match &stage.outcome {

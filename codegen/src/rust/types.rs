@@ -3,12 +3,12 @@
 use super::expression::Writer;
 use super::generics::type_with_generics;
 use super::literals::{doc, number};
-use crate::program::describe::describe_value;
 use crate::program::{Extent, Quantity};
 use crate::statements::layout::block;
 use crate::statements::layout::{CLOSE, FLOW_EVEN, SPACE};
 use crate::statements::{
-    EmitResult, File, PreparedValue, RequiredFunctions, preparation, quantity_line,
+    EmitResult, File, PreparedValue, RequiredFunctions, describe_coefficient, preparation,
+    quantity_line,
 };
 
 /// Largest number of characters of a struct literal on one line.
@@ -83,12 +83,13 @@ pub(super) fn coefficients(
     writer: &mut Writer,
 ) -> EmitResult<String> {
     let prepared = preparation(file, needed)?;
+    writer.notes.clone_from(&prepared.notes);
     let statements = writer.statements(&prepared.computed);
     let mut fields = String::new();
     let (mut values, mut casts) = (Vec::new(), Vec::new());
     for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
         let name = &file.field_names[id];
-        fields.push_str(&doc(&[describe_value(file.program, *id)]));
+        fields.push_str(&doc(&[describe_coefficient(file, &prepared, *id)]));
         let value = match coefficient {
             PreparedValue::Number(value) => writer.expression(value),
             PreparedValue::Numbers(array) => writer.array(array),

@@ -12,7 +12,7 @@ impl Body<'_> {
     /// Returns the loop that sums an element of a matrix-vector product or of a Gram matrix's diagonal, and
     /// the name of the vector.
     pub(super) fn summed_element(&mut self, id: ValueId) -> EmitResult<(Statement, String)> {
-        let name = self.names.value_name(self.program, id, "s")?;
+        let name = self.name(id)?;
         let (summand, length) = match self.program.value(id).op.clone() {
             Op::Apply {
                 matrix,
@@ -62,7 +62,7 @@ impl Body<'_> {
         rows: usize,
         columns: usize,
     ) -> EmitResult<()> {
-        let name = self.names.value_name(self.program, id, "s")?;
+        let name = self.name(id)?;
         match self.program.value(id).op.clone() {
             Op::Cholesky(matrix) => {
                 self.needed.cholesky = true;

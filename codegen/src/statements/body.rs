@@ -8,9 +8,10 @@ use std::collections::{HashMap, HashSet};
 use super::emit_error::EmitResult;
 use super::expression::{Array, Expression};
 use super::index::Index;
-use super::names::{Names, Words};
+use super::names::Names;
 use super::needed::RequiredFunctions;
 use super::sides::Switches;
+use super::stage::Notes;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
@@ -33,6 +34,7 @@ pub struct Body<'a> {
     uses: HashMap<ValueId, usize>,
     in_loops: HashMap<ValueId, bool>,
     pub(super) bound: HashMap<ValueId, String>,
+    notes: Notes,
     statements: Vec<Statement>,
     /// Functions that the statements call.
     pub needed: &'a mut RequiredFunctions,
@@ -42,14 +44,14 @@ pub struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// Starts a stage that computes `roots`, with names according to `words`. A regime decides the branches
+    /// Starts a stage that computes `roots`, with names from `names`. A regime decides the branches
     /// of the values in `switches`. A value with several uses is bound to a name.
     ///
     /// # Errors
-    /// A name that is not an identifier in the language of `words`.
+    /// A name that is not an identifier in the language of the file.
     pub fn new(
         program: &'a Program,
-        words: &'static Words,
+        names: Names,
         access: Access<'a>,
         roots: &[ValueId],
         needed: &'a mut RequiredFunctions,
@@ -58,10 +60,11 @@ impl<'a> Body<'a> {
         let mut body = Self {
             program,
             access,
-            names: Names::new(program, words),
+            names,
             uses: HashMap::new(),
             in_loops: HashMap::new(),
             bound: HashMap::new(),
+            notes: Notes::default(),
             statements: Vec::new(),
             needed,
             arrays: HashSet::new(),
@@ -107,6 +110,25 @@ impl<'a> Body<'a> {
         std::mem::take(&mut self.statements)
     }
 
+    /// Returns the names of the values with a statement.
+    pub fn take_names(&mut self) -> HashMap<ValueId, String> {
+        std::mem::take(&mut self.bound)
+    }
+
+    /// Returns the origin of the values with a statement, by name.
+    pub fn take_notes(&mut self) -> Notes {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// Names a value of a statement.
+    pub(super) fn name(&mut self, id: ValueId) -> EmitResult<String> {
+        let name = self.names.value_name(self.program, id, "s")?;
+        if let Some(note) = self.program.trace.note(id) {
+            self.notes.insert(name.clone(), note);
+        }
+        Ok(name)
+    }
+
     /// Adds a statement.
     pub fn push(&mut self, statement: Statement) {
         self.statements.push(statement);
@@ -131,7 +153,7 @@ impl<'a> Body<'a> {
     }
 
     fn bind(&mut self, id: ValueId, expression: Expression) -> EmitResult<()> {
-        let name = self.names.value_name(self.program, id, "s")?;
+        let name = self.name(id)?;
         self.push(Statement::Let(name.clone(), expression));
         self.bound.insert(id, name);
         Ok(())
@@ -161,7 +183,7 @@ impl<'a> Body<'a> {
             ) => {
                 let expression = self.leaf(id)?;
                 let name = self.leaf_name(id);
-                let name = self.names.assign(id, &name, "s")?;
+                let name = self.names.assign(self.program, id, &name, "s")?;
                 self.push(Statement::Let(name.clone(), expression));
                 self.bound.insert(id, name);
                 Ok(())
@@ -199,7 +221,7 @@ impl<'a> Body<'a> {
     }
 
     fn write_total(&mut self, id: ValueId, vector: ValueId) -> EmitResult<()> {
-        let name = self.names.value_name(self.program, id, "s")?;
+        let name = self.name(id)?;
         let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
         if length > PARTIAL_SUMS {
@@ -227,7 +249,7 @@ impl<'a> Body<'a> {
         }
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
             self.needed.cholesky = true;
-            let name = self.names.value_name(self.program, id, "s")?;
+            let name = self.name(id)?;
             let factor = self.numbers(factor)?;
             let right = self.vector_array(vector, length)?;
             self.push(Statement::CholeskySolve {
@@ -242,7 +264,7 @@ impl<'a> Body<'a> {
         }
         if elementwise {
             let element = self.element(id)?;
-            let name = self.names.value_name(self.program, id, "s")?;
+            let name = self.name(id)?;
             let place = Place::new(&*name, [Index::Variable("i")]);
             self.push_filled(&name, length, Statement::Assign(place, element));
             self.bound.insert(id, name);
@@ -272,7 +294,7 @@ impl<'a> Body<'a> {
             return Ok(array);
         }
         let element = self.element(id)?;
-        let name = self.names.value_name(self.program, id, "s")?;
+        let name = self.name(id)?;
         let place = Place::new(&*name, [Index::Variable("i")]);
         self.push_filled(&name, length, Statement::Assign(place, element));
         Ok(Array::Local(name))

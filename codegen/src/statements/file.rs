@@ -1,6 +1,7 @@
 //! Program, names and coefficients that the stages of a file share.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use super::body::{Access, Body};
 use super::emit_error::EmitResult;
@@ -8,6 +9,7 @@ use super::names::{Names, Words};
 use super::needed::RequiredFunctions;
 use super::roots::coefficient_values;
 use super::sides::Switches;
+use crate::program::content::Contents;
 use crate::program::{Program, ValueId};
 
 /// Program, names and coefficients that the stages of a file share.
@@ -20,6 +22,7 @@ pub struct File<'p> {
     pub fields: Vec<ValueId>,
     /// Names of the prepared values.
     pub field_names: HashMap<ValueId, String>,
+    contents: Rc<Contents>,
 }
 
 impl<'p> File<'p> {
@@ -28,7 +31,8 @@ impl<'p> File<'p> {
     /// # Errors
     /// A name that is not an identifier in the language of `words`.
     pub fn new(program: &'p Program, words: &'static Words) -> EmitResult<Self> {
-        let mut names = Names::new(program, words);
+        let contents = Rc::new(Contents::new(program));
+        let mut names = Names::new(program, words, &contents);
         let fields = coefficient_values(program);
         let mut field_names = HashMap::new();
         for id in &fields {
@@ -39,6 +43,7 @@ impl<'p> File<'p> {
             words,
             fields,
             field_names,
+            contents,
         })
     }
 
@@ -68,7 +73,12 @@ impl<'p> File<'p> {
         switches: Switches,
     ) -> EmitResult<Body<'b>> {
         let access = Access::Coefficients(&self.field_names);
-        Body::new(self.program, self.words, access, roots, needed, switches)
+        Body::new(self.program, self.names(), access, roots, needed, switches)
+    }
+
+    /// Returns the names of a new stage.
+    pub(super) fn names(&self) -> Names {
+        Names::new(self.program, self.words, &self.contents)
     }
 }
 

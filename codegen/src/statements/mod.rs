@@ -40,11 +40,11 @@ pub use indices::{Indices, indices};
 pub(crate) use kernel::{KernelStatements, describe_elementary};
 pub(crate) use names::Words;
 pub(crate) use needed::RequiredFunctions;
-pub(crate) use preparation::{Preparation, PreparedValue, preparation};
+pub(crate) use preparation::{Preparation, PreparedValue, describe_coefficient, preparation};
 pub(crate) use requested::{jacobian_stage, rates_in_regime, requested_stages};
 pub use roots::coefficient_values;
 pub(crate) use roots::stage_roots;
-pub(crate) use stage::{Argument, Outcome, Size, Stage};
+pub(crate) use stage::{Argument, Notes, Outcome, Size, Stage};
 pub(crate) use stages::{
     RATES_ORDER_DOC, describe_rate_limits, guards, mass_matrix, observables, rates,
 };

@@ -1,8 +1,10 @@
-//! Unique names of emitted variables and fields: those of the specification if possible, else numbered ones.
+//! Unique names of emitted variables and fields: those of the specification if possible, else names by content.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::emit_error::EmitError;
+use crate::program::content::Contents;
 use crate::program::{Program, ValueId};
 
 /// Rules for names in an emitted language.
@@ -48,13 +50,13 @@ pub struct Names {
     prefix: Option<String>,
     used: HashSet<String>,
     given: HashMap<ValueId, String>,
-    next: HashMap<&'static str, usize>,
+    contents: Rc<Contents>,
 }
 
 impl Names {
     /// Reserves the names used by emitted functions, by tables, by Jacobians, and by the flags `positive_1`
     /// and so on, one for each pivot.
-    pub fn new(program: &Program, words: &'static Words) -> Self {
+    pub fn new(program: &Program, words: &'static Words, contents: &Rc<Contents>) -> Self {
         let tables = program.tables.iter().map(|table| table.name.clone());
         let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
         let patterns = program.outputs.jacobians.iter().flat_map(|jacobian| {
@@ -67,11 +69,11 @@ impl Names {
             prefix: words.prefixed.then(|| format!("{}_", program.name)),
             used: taken.chain(tables).chain(flags).chain(patterns).collect(),
             given: HashMap::new(),
-            next: HashMap::new(),
+            contents: Rc::clone(contents),
         }
     }
 
-    /// Returns the name of a value: its preferred name if that is free, else `stem` with a number.
+    /// Returns the name of a value: its preferred name if that is free, else `stem` with its content.
     pub fn value_name(
         &mut self,
         program: &Program,
@@ -84,7 +86,7 @@ impl Names {
         let preferred = program.value(id).name.clone();
         let name = match preferred {
             Some(name) if self.is_free(&name) => name,
-            _ => self.numbered(stem),
+            _ => self.name_by_content(program, id, stem)?,
         };
         self.used.insert(name.clone());
         let name = self.identifier(&name)?.to_owned();
@@ -92,9 +94,10 @@ impl Names {
         Ok(name)
     }
 
-    /// Gives `name` to a value, or `stem` with a number if `name` is taken.
+    /// Gives `name` to a value, or `stem` with its content if `name` is taken.
     pub fn assign(
         &mut self,
+        program: &Program,
         id: ValueId,
         name: &str,
         stem: &'static str,
@@ -102,7 +105,7 @@ impl Names {
         let name = if self.is_free(name) {
             name.to_owned()
         } else {
-            self.numbered(stem)
+            self.name_by_content(program, id, stem)?
         };
         self.used.insert(name.clone());
         let name = self.identifier(&name)?.to_owned();
@@ -120,14 +123,18 @@ impl Names {
         !self.used.contains(name) && !self.prefix.as_ref().is_some_and(prefixed)
     }
 
-    fn numbered(&mut self, stem: &'static str) -> String {
-        loop {
-            let next = self.next.entry(stem).or_insert(0);
-            *next += 1;
-            let name = format!("{stem}_{next}");
-            if self.is_free(&name) {
-                return name;
-            }
-        }
+    fn name_by_content(
+        &self,
+        program: &Program,
+        id: ValueId,
+        stem: &str,
+    ) -> Result<String, EmitError> {
+        // All names of a model `s` begin with `s_` in C.
+        let is_prefix = |stem: &str| self.prefix.as_deref() == Some(&format!("{stem}_"));
+        let stem = if is_prefix(stem) { "v" } else { stem };
+        let names = self.contents.names(program, id);
+        let mut names = names.map(|name| format!("{stem}_{name}"));
+        let free = names.find(|name| self.is_free(name));
+        free.ok_or_else(|| EmitError::Value(format!("value {} has no free name", id.index())))
     }
 }

@@ -1,5 +1,7 @@
 //! Preparation of the coefficients, which depend only on the parameters.
 
+use std::collections::HashMap;
+
 use super::body::{Access, Body};
 use super::emit_error::EmitResult;
 use super::expression::{Array, Expression};
@@ -7,7 +9,9 @@ use super::file::File;
 use super::index::Index;
 use super::needed::RequiredFunctions;
 use super::sides::Switches;
+use super::stage::Notes;
 use super::statement::{Place, Statement};
+use crate::program::describe::describe_value;
 use crate::program::{Extent, ValueId};
 
 /// Coefficient.
@@ -28,6 +32,10 @@ pub struct Preparation {
     pub coefficients: Vec<PreparedValue>,
     /// Condition that all prepared pivots are positive and finite.
     pub positive_definite: Expression,
+    /// Names of the intermediate values.
+    pub names: HashMap<ValueId, String>,
+    /// Origin of the intermediate values.
+    pub notes: Notes,
 }
 
 /// Builds the preparation of the coefficients of a file.
@@ -36,7 +44,7 @@ pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
     let roots: Vec<ValueId> = roots.copied().collect();
     let access = Access::Prepare;
     let none = Switches::new();
-    let mut body = Body::new(file.program, file.words, access, &roots, needed, none)?;
+    let mut body = Body::new(file.program, file.names(), access, &roots, needed, none)?;
     let mut coefficients = Vec::new();
     for id in &file.fields {
         coefficients.push(match file.program.value(*id).extent {
@@ -49,6 +57,8 @@ pub fn preparation(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
         computed: body.take_statements(),
         coefficients,
         positive_definite,
+        names: body.take_names(),
+        notes: body.take_notes(),
     })
 }
 
@@ -90,4 +100,15 @@ fn is_positive(pivot: &Expression) -> [Expression; 2] {
         Expression::greater(pivot.clone(), Expression::Number(0.0)),
         Expression::greater(Expression::Number(f64::INFINITY), pivot.clone()),
     ]
+}
+
+/// Returns formula, unit and terms of a coefficient on one line.
+pub fn describe_coefficient(file: &File<'_>, prepared: &Preparation, id: ValueId) -> String {
+    let formula = describe_value(file.program, id, &|part| {
+        prepared.names.get(&part).map(String::as_str)
+    });
+    match file.program.trace.note(id) {
+        Some(note) => format!("{formula} {note}"),
+        None => formula,
+    }
 }

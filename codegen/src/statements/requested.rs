@@ -71,6 +71,7 @@ fn forces(
         outcome: Outcome::Array("values", Size::DegreesOfFreedom),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -99,6 +100,7 @@ fn jacobian_vector_product(
         outcome: Outcome::Array("product", Size::States),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -160,6 +162,7 @@ fn vector_jacobian_product(
         outcome: Outcome::ArrayAndInputs(named),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -187,6 +190,7 @@ fn product_by_parameters(
         outcome: Outcome::Array("product", Size::Parameters),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -218,6 +222,7 @@ fn gradient_derivative(
         outcome: Outcome::Array("product", Size::Point),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -248,6 +253,7 @@ pub fn jacobian_stage(
         outcome: Outcome::Array("values", Size::Nonzeros(jacobian.name)),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 

@@ -1,5 +1,7 @@
 //! Name, arguments and result of a stage.
 
+use std::collections::HashMap;
+
 use super::expression::Expression;
 use super::statement::Statement;
 
@@ -55,6 +57,9 @@ pub enum Outcome {
     ArrayAndInputs(Vec<(String, Expression)>),
 }
 
+/// Unit and terms of the values with a name, for comments.
+pub type Notes = HashMap<String, String>;
+
 /// Function called with prepared coefficients.
 #[derive(Clone, Debug)]
 pub struct Stage {
@@ -72,4 +77,6 @@ pub struct Stage {
     pub computed: Vec<Statement>,
     /// Statements that write the result.
     pub written: Vec<Statement>,
+    /// Origin of the values.
+    pub notes: Notes,
 }

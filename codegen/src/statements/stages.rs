@@ -83,6 +83,7 @@ pub(super) fn rates_stage(
         outcome: Outcome::Rates,
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -132,6 +133,7 @@ pub fn observables(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
         outcome: Outcome::Observables(values),
         computed: body.take_statements(),
         written: Vec::new(),
+        notes: body.take_notes(),
     };
     let (energy, power) = (ids[ids.len() - 2], ids[ids.len() - 1]);
     let energy_line = "Kinetic plus potential energy, in J.";
@@ -160,6 +162,7 @@ fn number(
         outcome: Outcome::Number(value),
         computed: body.take_statements(),
         written: Vec::new(),
+        notes: body.take_notes(),
     })
 }
 
@@ -207,6 +210,7 @@ pub(super) fn guard_values(
         outcome: Outcome::Array("values", Size::Guards),
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 
@@ -237,6 +241,7 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResul
         outcome: Outcome::MassMatrix,
         computed,
         written: body.take_statements(),
+        notes: body.take_notes(),
     })
 }
 

@@ -81,6 +81,18 @@ pub enum Statement {
 }
 
 impl Statement {
+    /// Returns the name that the statement defines.
+    pub fn defined(&self) -> Option<&str> {
+        match self {
+            Self::Let(name, _)
+            | Self::Zeros(name, _)
+            | Self::Sum { name, .. }
+            | Self::Cholesky { name, .. }
+            | Self::CholeskySolve { name, .. } => Some(name),
+            Self::Flag(_) | Self::Assign(..) | Self::Loop { .. } => None,
+        }
+    }
+
     /// Builds a loop over i with one statement.
     pub fn loop_over_elements(length: usize, statement: Self) -> Self {
         Self::loop_over("i", length, vec![statement])

@@ -24,5 +24,6 @@ mod reports;
 mod size;
 mod solved;
 mod support;
+mod trace;
 mod trees;
 mod weights;

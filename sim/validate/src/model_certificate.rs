@@ -37,7 +37,7 @@ pub fn certify_model(
     outputs: &[Output],
 ) -> Result<Certificate, Error> {
     common_order(model, orders)?;
-    let variant = DerivedVariant::derive_with(model, orders, outputs)?;
+    let variant = DerivedVariant::derive_with_trace(model, orders, outputs)?;
     let emitted = emit(&variant.program, Packaging::Crate);
     let emitted = emitted.map_err(|error| Error::Request(error.to_string()))?;
     certify_source(model, orders, outputs, emitted)

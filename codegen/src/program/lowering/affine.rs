@@ -7,7 +7,8 @@ use super::values::Lowering;
 use crate::mechanics::affine::{AffineEquations, AffineRow};
 use crate::program::affine::{AffineLayout, AffineProgram, AffineRowValues};
 use crate::program::{
-    MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues, ValueId,
+    MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues, Trace,
+    ValueId,
 };
 
 /// Lowers the coefficients of `equations`, which belong to `model`.
@@ -90,6 +91,7 @@ pub fn lower_affine(
             coefficient_values: Vec::new(),
             controllers: Vec::new(),
             outputs: Outputs::default(),
+            trace: Trace::default(),
         },
     }
 }

@@ -16,7 +16,7 @@ use eomgen_model_spec::model::Model;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::outputs::Outputs;
 use crate::mechanics::rows::RowNodes;
-use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, ValueId};
+use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, Trace, ValueId};
 use crate::symbolic::formula::abridged_formula;
 use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
@@ -36,6 +36,16 @@ pub fn lower_with_outputs(
     parameter_values: &[f64],
     outputs: &Outputs<NodeId, RowNodes>,
 ) -> Program {
+    lower_with_values(model, equations, parameter_values, outputs).0
+}
+
+/// Lowers the equations with additional outputs. Also returns the nodes and their values.
+pub(crate) fn lower_with_values(
+    model: &Model,
+    equations: &Equations,
+    parameter_values: &[f64],
+    outputs: &Outputs<NodeId, RowNodes>,
+) -> (Program, Vec<(NodeId, ValueId)>) {
     let mut lowering = Lowering::new(
         &equations.graph,
         &equations.derived_parameters,
@@ -93,7 +103,8 @@ pub fn lower_with_outputs(
     let impacts = equations.impacts.iter();
     let impacts = impacts.map(|impact| lowering.impact(impact)).collect();
     let outputs = lowering.outputs(outputs);
-    Program {
+    let values = lowering.lowered.into_iter().collect();
+    let program = Program {
         name: model.name.clone(),
         specification: model.name.clone(),
         title: model.title.clone(),
@@ -139,7 +150,9 @@ pub fn lower_with_outputs(
         coefficient_values,
         controllers: Vec::new(),
         outputs,
-    }
+        trace: Trace::default(),
+    };
+    (program, values)
 }
 
 /// Returns the roots of each function of a program, the rates first. Shared factors are multiplied in the

@@ -55,7 +55,7 @@ pub(super) struct Lowering<'g> {
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
     known: NodeMap<Computation, ValueId>,
-    lowered: NodeMap<NodeId, ValueId>,
+    pub(super) lowered: NodeMap<NodeId, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
     /// Number of uses of each node by the accelerations, while these are lowered.

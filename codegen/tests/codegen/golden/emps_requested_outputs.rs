@@ -51,7 +51,8 @@ pub fn inlined_rates_in_regime_into<const REGIME: u32, T: Scalar, C: Coefficient
 ) {
     let q_dot = state[1];
     let force = inputs.force;
-    let q_ddot = C::read(coefficients.c_1) * (force - C::read(coefficients.F_v) * q_dot);
+    let q_ddot = C::read(coefficients.c_1_per_M)
+        * (force - C::read(coefficients.F_v) * q_dot);
     for i in 0..1 {
         rates[i] = state[1 + i];
     }
@@ -177,12 +178,13 @@ pub fn inlined_jacobian_vector_product<T: Scalar, C: Coefficient<T>>(
     input_direction: &Inputs<T>,
 ) -> [T; STATES] {
     let s = direction[1];
-    let s_1 = input_direction.force;
+    let s_8q7b6 = input_direction.force;
     let mut product = [T::number(0.0); STATES];
     for i in 0..1 {
         product[i] = direction[1 + i];
     }
-    product[1] = C::read(coefficients.c_1) * (s_1 - C::read(coefficients.F_v) * s);
+    product[1] = C::read(coefficients.c_1_per_M)
+        * (s_8q7b6 - C::read(coefficients.F_v) * s);
     product
 }
 
@@ -214,9 +216,9 @@ pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
     for i in 0..1 {
         product[1 + i] = weights[i];
     }
-    product[1] = product[1] + C::read(coefficients.c_3) * s;
+    product[1] = product[1] + C::read(coefficients.c_minus_F_v_per_M) * s;
     let input_product = Inputs {
-        force: C::read(coefficients.c_1) * s,
+        force: C::read(coefficients.c_1_per_M) * s,
     };
     (product, input_product)
 }
@@ -254,9 +256,9 @@ pub fn inlined_vector_jacobian_product_by_parameters<T: Scalar, C: Coefficient<T
     let force = inputs.force;
     let s = weights[1];
     let mut product = [T::number(0.0); PARAMETERS];
-    product[0] = C::read(coefficients.c_4)
+    product[0] = C::read(coefficients.c_minus_1_per_M_M)
         * ((force - C::read(coefficients.F_v) * q_dot) * s);
-    product[1] = C::read(coefficients.c_5) * (q_dot * s);
+    product[1] = C::read(coefficients.c_minus_1_per_M) * (q_dot * s);
     product
 }
 
@@ -289,7 +291,7 @@ pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
 ) -> [T; RATES_BY_STATE_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_STATE_NONZEROS];
     values[0] = T::number(1.0);
-    values[1] = C::read(coefficients.c_3);
+    values[1] = C::read(coefficients.c_minus_F_v_per_M);
     values
 }
 
@@ -321,7 +323,7 @@ pub fn inlined_rates_by_inputs<T: Scalar, C: Coefficient<T>>(
     coefficients: &Coefficients<C>,
 ) -> [T; RATES_BY_INPUTS_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_INPUTS_NONZEROS];
-    values[0] = C::read(coefficients.c_1);
+    values[0] = C::read(coefficients.c_1_per_M);
     values
 }
 
@@ -357,8 +359,9 @@ pub fn inlined_rates_by_parameters<T: Scalar, C: Coefficient<T>>(
     let q_dot = state[1];
     let force = inputs.force;
     let mut values = [T::number(0.0); RATES_BY_PARAMETERS_NONZEROS];
-    values[0] = C::read(coefficients.c_4) * (force - C::read(coefficients.F_v) * q_dot);
-    values[1] = C::read(coefficients.c_5) * q_dot;
+    values[0] = C::read(coefficients.c_minus_1_per_M_M)
+        * (force - C::read(coefficients.F_v) * q_dot);
+    values[1] = C::read(coefficients.c_minus_1_per_M) * q_dot;
     values
 }
 
@@ -392,11 +395,11 @@ pub fn inlined_observables_by_state<T: Scalar, C: Coefficient<T>>(
     coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_STATE_NONZEROS] {
     let q_dot = state[1];
-    let s_1 = C::read(coefficients.F_v) * q_dot;
+    let s_F_v_q_dot = C::read(coefficients.F_v) * q_dot;
     let force = inputs.force;
     let mut values = [T::number(0.0); OBSERVABLES_BY_STATE_NONZEROS];
     values[0] = C::read(coefficients.M) * q_dot;
-    values[1] = force - s_1 - s_1;
+    values[1] = force - s_F_v_q_dot - s_F_v_q_dot;
     values
 }
 
@@ -463,10 +466,10 @@ pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
     coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_PARAMETERS_NONZEROS] {
     let q_dot = state[1];
-    let s_1 = q_dot * q_dot;
+    let s_q_dot_q_dot = q_dot * q_dot;
     let mut values = [T::number(0.0); OBSERVABLES_BY_PARAMETERS_NONZEROS];
-    values[0] = T::number(0.5) * s_1;
-    values[1] = -s_1;
+    values[0] = T::number(0.5) * s_q_dot_q_dot;
+    values[1] = -s_q_dot_q_dot;
     values
 }
 

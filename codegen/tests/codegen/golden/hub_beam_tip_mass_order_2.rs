@@ -132,7 +132,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=00a7e278d16721315a060c440f6fafb81e6d43af7196f3bc254cffc9b40db45a generator=0.2.0;";
+pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=44e8841b3ed3129ceb6b943500ed228fa3dcbbf62b9c692cc6e2a4c68e071e93 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,65 +227,65 @@ pub struct Coefficients<T = f64> {
     /// `l`
     pub l: T,
     /// `0.3333333333333333*rho*A*l*l*l`
-    pub c_1: T,
+    pub c_yjjuw: T,
     /// `J_t*PHI_D1_AT_END/l`
-    pub c_2: [T; 2],
+    pub c_J_t_PHI_D1_AT_END_per_l: [T; 2],
     /// `rho*A*l*l*INTEGRAL_S1_PHI + l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l`
     pub M_theta_q: [T; 2],
     /// `rho*A*l`
-    pub c_3: T,
+    pub c_rho_A_l: T,
     /// `1/pivot_theta`
-    pub c_4: T,
+    pub c_wcwe9: T,
     /// `c`
     pub c: T,
     /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_5: [T; 2],
-    /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
-    pub c_6: T,
+    pub c_sjz8w: [T; 2],
+    /// `s_M_t_E_I*s_czt1z*s_q456h/s_yt44u` with values of the preparation
+    pub c_3esjz: T,
     /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_7: [T; 2],
-    /// `(M_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (s...`
-    pub c_8: T,
+    pub c_axmtw: [T; 2],
+    /// `s_bp4cn*s_wfuhw` with values of the preparation
+    pub c_4g7wt: T,
     /// `J_t*E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_9: [T; 2],
-    /// `M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_10: T,
+    pub c_y3zfv: [T; 2],
+    /// `s_M_t_J_t*E*I*s_2nsp7*s_q456h/(s_rho_rho_A_A*s_l_l_l*s_l_l_l_l)` with values of the preparation
+    pub c_1rv2k: T,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_11: [T; 2],
-    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_12: [T; 2],
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
-    pub c_13: T,
-    /// `(J_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*(l*sum_i(......`
-    pub c_14: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
-    pub c_15: T,
+    pub c_uug3k: [T; 2],
+    /// `s_q456h*PHI_AT_END/s_uug3k` with values of the preparation
+    pub c_mqx2z: [T; 2],
+    /// `s_mbcr7*s_wfuhw/s_rho_A_l` with values of the preparation
+    pub c_gj36f: T,
+    /// `s_r84p2*s_wcwe9` with values of the preparation
+    pub c_8x3f2: T,
+    /// `M_t*s_czt1z*s_wcwe9` with values of the preparation
+    pub c_rtd1j: T,
     /// `-(M_t*E*I/(rho*A*l*l*l*l))`
-    pub c_16: T,
-    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED...`
-    pub c_17: [T; 2],
+    pub c_3zzzt: T,
+    /// `s_wfuhw*PHI_D1_AT_END/s_uug3k` with values of the preparation
+    pub c_dkurp: [T; 2],
     /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
-    pub c_18: [T; 2],
+    pub c_y2pfu: [T; 2],
     /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_19: [T; 2],
+    pub c_hy49k: [T; 2],
     /// `J_h + 0.3333333333333333*rho*A*l*l*l + J_t + l*l*M_t`
     pub M_theta_theta: T,
     /// `M_t*PHI_AT_END`
-    pub c_20: [T; 2],
+    pub c_M_t_PHI_AT_END: [T; 2],
     /// `PHI_D1_AT_END/l`
-    pub c_21: [T; 2],
+    pub c_PHI_D1_AT_END_per_l: [T; 2],
     /// `1.0/l`
-    pub c_22: T,
+    pub c_1_per_l: T,
     /// `0.5*J_h`
-    pub c_23: T,
+    pub c_ywqgp: T,
     /// `2.0*rho*A*l*l`
-    pub c_24: T,
+    pub c_ffu9y: T,
     /// `0.5*M_t`
-    pub c_25: T,
+    pub c_47a9e: T,
     /// `0.5*J_t`
-    pub c_26: T,
+    pub c_wrnms: T,
     /// `0.5*E*I/(l*l*l)`
-    pub c_27: T,
+    pub c_bsgvc: T,
     /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
@@ -298,204 +298,214 @@ impl<T: Scalar> Coefficients<T> {
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_1 = l * l;
-        let s_2 = l * s_1;
-        let s_3 = T::number(0.3333333333333333) * rho * A * s_2;
+        let s_l_l = l * l;
+        let s_l_l_l = l * s_l_l;
+        let s_yjjuw = T::number(0.3333333333333333) * rho * A * s_l_l_l;
         let M_t = parameters.M_t;
-        let s_4 = s_1 * M_t;
-        let s_5 = rho * A;
-        let s_6 = s_5 * s_1;
-        let s_7 = l * M_t;
-        let mut s_8 = [T::number(0.0); 2];
+        let s_l_l_M_t = s_l_l * M_t;
+        let s_rho_A = rho * A;
+        let s_rho_A_l_l = s_rho_A * s_l_l;
+        let s_l_M_t = l * M_t;
+        let mut s_J_t_PHI_D1_AT_END_per_l = [T::number(0.0); 2];
         for i in 0..2 {
-            s_8[i] = J_t * T::number(PHI_D1_AT_END[i]) / l;
+            s_J_t_PHI_D1_AT_END_per_l[i] = J_t * T::number(PHI_D1_AT_END[i]) / l;
         }
-        let mut s_9 = [T::number(0.0); 2];
+        let mut s_un1qs = [T::number(0.0); 2];
         for i in 0..2 {
-            s_9[i] = s_7 * T::number(PHI_AT_END[i]) + s_8[i];
+            s_un1qs[i] = s_l_M_t * T::number(PHI_AT_END[i])
+                + s_J_t_PHI_D1_AT_END_per_l[i];
         }
         let mut M_theta_q = [T::number(0.0); 2];
         for i in 0..2 {
-            M_theta_q[i] = s_6 * T::number(INTEGRAL_S1_PHI[i]) + s_9[i];
+            M_theta_q[i] = s_rho_A_l_l * T::number(INTEGRAL_S1_PHI[i]) + s_un1qs[i];
         }
-        let s_10 = sum_of_few(
+        let s_v68jd = sum_of_few(
             [(); 2],
             |i| {
                 T::number(INTEGRAL_S1_PHI[i]) * M_theta_q[i]
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_11 = s_5 * l;
-        let s_12 = sum_of_few(
+        let s_rho_A_l = s_rho_A * l;
+        let s_pp8bx = sum_of_few(
             [(); 2],
-            |i| s_9[i] * M_theta_q[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+            |i| s_un1qs[i] * M_theta_q[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
         );
-        let s_13 = sum_of_few(
+        let s_8drh7 = sum_of_few(
             [(); 2],
             |i| {
                 T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_AT_END[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_14 = sum_of_few(
+        let s_y1h1q = sum_of_few(
             [(); 2],
-            |i| T::number(PHI_AT_END[i]) * s_9[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+            |i| {
+                T::number(PHI_AT_END[i]) * s_un1qs[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
-        let s_15 = l * s_13 + s_14 / s_11;
-        let s_16 = sum_of_few(
+        let s_czt1z = l * s_8drh7 + s_y1h1q / s_rho_A_l;
+        let s_mnvqj = sum_of_few(
             [(); 2],
             |i| {
                 T::number(PHI_AT_END[i]) * T::number(PHI_AT_END[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_17 = T::number(1.0) + M_t * s_16 / s_11;
-        let s_18 = pivot_reciprocal(s_17);
-        let s_19 = sum_of_few(
+        let s_tprmu = T::number(1.0) + M_t * s_mnvqj / s_rho_A_l;
+        let s_q456h = pivot_reciprocal(s_tprmu);
+        let s_s3s9t = sum_of_few(
             [(); 2],
             |i| {
                 T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_D1_AT_END[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_20 = l * s_19;
-        let s_21 = sum_of_few(
+        let s_pkwwk = l * s_s3s9t;
+        let s_y1b3a = sum_of_few(
             [(); 2],
-            |i| T::number(PHI_D1_AT_END[i]) * s_9[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+            |i| {
+                T::number(PHI_D1_AT_END[i]) * s_un1qs[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
-        let s_22 = s_21 / s_11;
-        let s_23 = s_5 * s_2;
-        let s_24 = M_t * J_t;
-        let s_25 = sum_of_few(
+        let s_qjhbq = s_y1b3a / s_rho_A_l;
+        let s_pck8d = s_rho_A * s_l_l_l;
+        let s_M_t_J_t = M_t * J_t;
+        let s_2nsp7 = sum_of_few(
             [(); 2],
             |i| {
                 T::number(PHI_AT_END[i]) * T::number(PHI_D1_AT_END[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_26 = J_t * (s_20 + s_22) / s_1 - s_24 * s_25 * s_15 * s_18 / s_23;
-        let s_27 = M_t * s_25;
-        let s_28 = s_27 * s_15 * s_18 / s_11 - s_20 - s_22;
-        let s_29 = sum_of_few(
+        let s_r84p2 = J_t * (s_pkwwk + s_qjhbq) / s_l_l
+            - s_M_t_J_t * s_2nsp7 * s_czt1z * s_q456h / s_pck8d;
+        let s_mbcr7 = M_t * s_2nsp7;
+        let s_bp4cn = s_mbcr7 * s_czt1z * s_q456h / s_rho_A_l - s_pkwwk - s_qjhbq;
+        let s_jgqf9 = sum_of_few(
             [(); 2],
             |i| {
                 T::number(PHI_D1_AT_END[i]) * T::number(PHI_D1_AT_END[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let s_30 = rho * rho * (A * A);
-        let s_31 = s_1 * s_1;
-        let s_32 = T::number(1.0) + J_t * s_29 / s_23
-            - s_24 * (s_25 * s_25) * s_18 / (s_30 * s_31);
-        let s_33 = pivot_reciprocal(s_32);
-        let s_34 = J_h + J_t + s_3 + s_4 + M_t * (s_15 * s_15) * s_18 - l * s_10;
-        let pivot_theta = s_34 - s_12 / s_11 - s_26 * s_28 * s_33;
-        let s_35 = pivot_reciprocal(pivot_theta);
+        let s_rho_rho_A_A = rho * rho * (A * A);
+        let s_l_l_l_l = s_l_l * s_l_l;
+        let s_jafpa = T::number(1.0) + J_t * s_jgqf9 / s_pck8d
+            - s_M_t_J_t * (s_2nsp7 * s_2nsp7) * s_q456h / (s_rho_rho_A_A * s_l_l_l_l);
+        let s_wfuhw = pivot_reciprocal(s_jafpa);
+        let s_prfqb = J_h + J_t + s_yjjuw + s_l_l_M_t
+            + M_t * (s_czt1z * s_czt1z) * s_q456h - l * s_v68jd;
+        let pivot_theta = s_prfqb - s_pp8bx / s_rho_A_l - s_r84p2 * s_bp4cn * s_wfuhw;
+        let s_wcwe9 = pivot_reciprocal(pivot_theta);
         let c = parameters.c;
-        let s_36 = s_5 * s_31;
+        let s_yt44u = s_rho_A * s_l_l_l_l;
         let E = parameters.E;
         let I = parameters.I;
-        let s_37 = E * I;
-        let mut s_38 = [T::number(0.0); 2];
+        let s_E_I = E * I;
+        let mut s_jfg32 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_38[i] = s_36 * T::number(INTEGRAL_PHI_SQUARED[i]);
+            s_jfg32[i] = s_yt44u * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
-        let mut s_39 = [T::number(0.0); 2];
+        let mut s_e1v7w = [T::number(0.0); 2];
         for i in 0..2 {
-            s_39[i] = s_37 * T::number(INTEGRAL_PHI_D2_SQUARED[i]);
+            s_e1v7w[i] = s_E_I * T::number(INTEGRAL_PHI_D2_SQUARED[i]);
         }
-        let mut s_40 = [T::number(0.0); 2];
+        let mut s_sjz8w = [T::number(0.0); 2];
         for i in 0..2 {
-            s_40[i] = s_39[i] * M_theta_q[i] / s_38[i];
+            s_sjz8w[i] = s_e1v7w[i] * M_theta_q[i] / s_jfg32[i];
         }
-        let s_41 = M_t * E * I;
-        let mut s_42 = [T::number(0.0); 2];
+        let s_M_t_E_I = M_t * E * I;
+        let mut s_axmtw = [T::number(0.0); 2];
         for i in 0..2 {
-            s_42[i] = T::number(PHI_AT_END[i]) * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+            s_axmtw[i] = T::number(PHI_AT_END[i]) * T::number(INTEGRAL_PHI_D2_SQUARED[i])
                 / T::number(INTEGRAL_PHI_SQUARED[i]);
         }
-        let s_43 = s_5 * (s_1 * s_31);
-        let s_44 = J_t * E * I;
-        let mut s_45 = [T::number(0.0); 2];
+        let s_khhrf = s_rho_A * (s_l_l * s_l_l_l_l);
+        let s_J_t_E_I = J_t * E * I;
+        let mut s_y3zfv = [T::number(0.0); 2];
         for i in 0..2 {
-            s_45[i] = s_44 * T::number(PHI_D1_AT_END[i])
+            s_y3zfv[i] = s_J_t_E_I * T::number(PHI_D1_AT_END[i])
                 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
-                / (s_43 * T::number(INTEGRAL_PHI_SQUARED[i]));
+                / (s_khhrf * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let mut s_46 = [T::number(0.0); 2];
+        let mut s_uug3k = [T::number(0.0); 2];
         for i in 0..2 {
-            s_46[i] = s_11 * T::number(INTEGRAL_PHI_SQUARED[i]);
+            s_uug3k[i] = s_rho_A_l * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
-        let mut s_47 = [T::number(0.0); 2];
+        let mut s_mqx2z = [T::number(0.0); 2];
         for i in 0..2 {
-            s_47[i] = s_18 * T::number(PHI_AT_END[i]) / s_46[i];
+            s_mqx2z[i] = s_q456h * T::number(PHI_AT_END[i]) / s_uug3k[i];
         }
-        let mut s_48 = [T::number(0.0); 2];
+        let mut s_dkurp = [T::number(0.0); 2];
         for i in 0..2 {
-            s_48[i] = s_33 * T::number(PHI_D1_AT_END[i]) / s_46[i];
+            s_dkurp[i] = s_wfuhw * T::number(PHI_D1_AT_END[i]) / s_uug3k[i];
         }
-        let mut s_49 = [T::number(0.0); 2];
+        let mut s_y2pfu = [T::number(0.0); 2];
         for i in 0..2 {
-            s_49[i] = s_35
+            s_y2pfu[i] = s_wcwe9
                 * (l * T::number(INTEGRAL_S1_PHI[i]) / T::number(INTEGRAL_PHI_SQUARED[i])
-                    + s_9[i] / s_46[i]);
+                    + s_un1qs[i] / s_uug3k[i]);
         }
-        let mut s_50 = [T::number(0.0); 2];
+        let mut s_hy49k = [T::number(0.0); 2];
         for i in 0..2 {
-            s_50[i] = -(s_39[i] / s_38[i]);
+            s_hy49k[i] = -(s_e1v7w[i] / s_jfg32[i]);
         }
-        let M_theta_theta = J_h + s_3 + (J_t + s_4);
-        let mut s_51 = [T::number(0.0); 2];
+        let M_theta_theta = J_h + s_yjjuw + (J_t + s_l_l_M_t);
+        let mut s_M_t_PHI_AT_END = [T::number(0.0); 2];
         for i in 0..2 {
-            s_51[i] = M_t * T::number(PHI_AT_END[i]);
+            s_M_t_PHI_AT_END[i] = M_t * T::number(PHI_AT_END[i]);
         }
-        let mut s_52 = [T::number(0.0); 2];
+        let mut s_PHI_D1_AT_END_per_l = [T::number(0.0); 2];
         for i in 0..2 {
-            s_52[i] = T::number(PHI_D1_AT_END[i]) / l;
+            s_PHI_D1_AT_END_per_l[i] = T::number(PHI_D1_AT_END[i]) / l;
         }
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && T::all_greater(s_46[i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_46[i]);
+            positive_4 = positive_4 && T::all_greater(s_uug3k[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_uug3k[i]);
         }
         Self {
             l: l,
-            c_1: s_3,
-            c_2: s_8,
+            c_yjjuw: s_yjjuw,
+            c_J_t_PHI_D1_AT_END_per_l: s_J_t_PHI_D1_AT_END_per_l,
             M_theta_q: M_theta_q,
-            c_3: s_11,
-            c_4: s_35,
+            c_rho_A_l: s_rho_A_l,
+            c_wcwe9: s_wcwe9,
             c: c,
-            c_5: s_40,
-            c_6: s_41 * s_15 * s_18 / s_36,
-            c_7: s_42,
-            c_8: s_28 * s_33,
-            c_9: s_45,
-            c_10: s_24 * E * I * s_25 * s_18 / (s_30 * (s_2 * s_31)),
-            c_11: s_46,
-            c_12: s_47,
-            c_13: s_27 * s_33 / s_11,
-            c_14: s_26 * s_35,
-            c_15: M_t * s_15 * s_35,
-            c_16: -(s_41 / s_36),
-            c_17: s_48,
-            c_18: s_49,
-            c_19: s_50,
+            c_sjz8w: s_sjz8w,
+            c_3esjz: s_M_t_E_I * s_czt1z * s_q456h / s_yt44u,
+            c_axmtw: s_axmtw,
+            c_4g7wt: s_bp4cn * s_wfuhw,
+            c_y3zfv: s_y3zfv,
+            c_1rv2k: s_M_t_J_t * E * I * s_2nsp7 * s_q456h
+                / (s_rho_rho_A_A * (s_l_l_l * s_l_l_l_l)),
+            c_uug3k: s_uug3k,
+            c_mqx2z: s_mqx2z,
+            c_gj36f: s_mbcr7 * s_wfuhw / s_rho_A_l,
+            c_8x3f2: s_r84p2 * s_wcwe9,
+            c_rtd1j: M_t * s_czt1z * s_wcwe9,
+            c_3zzzt: -(s_M_t_E_I / s_yt44u),
+            c_dkurp: s_dkurp,
+            c_y2pfu: s_y2pfu,
+            c_hy49k: s_hy49k,
             M_theta_theta: M_theta_theta,
-            c_20: s_51,
-            c_21: s_52,
-            c_22: T::number(1.0) / l,
-            c_23: T::number(0.5) * J_h,
-            c_24: T::number(2.0) * rho * A * s_1,
-            c_25: T::number(0.5) * M_t,
-            c_26: T::number(0.5) * J_t,
-            c_27: T::number(0.5) * E * I / s_2,
+            c_M_t_PHI_AT_END: s_M_t_PHI_AT_END,
+            c_PHI_D1_AT_END_per_l: s_PHI_D1_AT_END_per_l,
+            c_1_per_l: T::number(1.0) / l,
+            c_ywqgp: T::number(0.5) * J_h,
+            c_ffu9y: T::number(2.0) * rho * A * s_l_l,
+            c_47a9e: T::number(0.5) * M_t,
+            c_wrnms: T::number(0.5) * J_t,
+            c_bsgvc: T::number(0.5) * E * I / s_l_l_l,
             positive_definite: T::all_greater(pivot_theta, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), pivot_theta)
-                && T::all_greater(s_17, T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_17)
-                && T::all_greater(s_32, T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_32) && positive_4,
+                && T::all_greater(s_tprmu, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_tprmu)
+                && T::all_greater(s_jafpa, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_jafpa) && positive_4,
         }
     }
 }
@@ -505,36 +515,36 @@ impl Coefficients {
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             l: T::number(self.l),
-            c_1: T::number(self.c_1),
-            c_2: converted(&self.c_2),
+            c_yjjuw: T::number(self.c_yjjuw),
+            c_J_t_PHI_D1_AT_END_per_l: converted(&self.c_J_t_PHI_D1_AT_END_per_l),
             M_theta_q: converted(&self.M_theta_q),
-            c_3: T::number(self.c_3),
-            c_4: T::number(self.c_4),
+            c_rho_A_l: T::number(self.c_rho_A_l),
+            c_wcwe9: T::number(self.c_wcwe9),
             c: T::number(self.c),
-            c_5: converted(&self.c_5),
-            c_6: T::number(self.c_6),
-            c_7: converted(&self.c_7),
-            c_8: T::number(self.c_8),
-            c_9: converted(&self.c_9),
-            c_10: T::number(self.c_10),
-            c_11: converted(&self.c_11),
-            c_12: converted(&self.c_12),
-            c_13: T::number(self.c_13),
-            c_14: T::number(self.c_14),
-            c_15: T::number(self.c_15),
-            c_16: T::number(self.c_16),
-            c_17: converted(&self.c_17),
-            c_18: converted(&self.c_18),
-            c_19: converted(&self.c_19),
+            c_sjz8w: converted(&self.c_sjz8w),
+            c_3esjz: T::number(self.c_3esjz),
+            c_axmtw: converted(&self.c_axmtw),
+            c_4g7wt: T::number(self.c_4g7wt),
+            c_y3zfv: converted(&self.c_y3zfv),
+            c_1rv2k: T::number(self.c_1rv2k),
+            c_uug3k: converted(&self.c_uug3k),
+            c_mqx2z: converted(&self.c_mqx2z),
+            c_gj36f: T::number(self.c_gj36f),
+            c_8x3f2: T::number(self.c_8x3f2),
+            c_rtd1j: T::number(self.c_rtd1j),
+            c_3zzzt: T::number(self.c_3zzzt),
+            c_dkurp: converted(&self.c_dkurp),
+            c_y2pfu: converted(&self.c_y2pfu),
+            c_hy49k: converted(&self.c_hy49k),
             M_theta_theta: T::number(self.M_theta_theta),
-            c_20: converted(&self.c_20),
-            c_21: converted(&self.c_21),
-            c_22: T::number(self.c_22),
-            c_23: T::number(self.c_23),
-            c_24: T::number(self.c_24),
-            c_25: T::number(self.c_25),
-            c_26: T::number(self.c_26),
-            c_27: T::number(self.c_27),
+            c_M_t_PHI_AT_END: converted(&self.c_M_t_PHI_AT_END),
+            c_PHI_D1_AT_END_per_l: converted(&self.c_PHI_D1_AT_END_per_l),
+            c_1_per_l: T::number(self.c_1_per_l),
+            c_ywqgp: T::number(self.c_ywqgp),
+            c_ffu9y: T::number(self.c_ffu9y),
+            c_47a9e: T::number(self.c_47a9e),
+            c_wrnms: T::number(self.c_wrnms),
+            c_bsgvc: T::number(self.c_bsgvc),
             positive_definite: self.positive_definite,
         }
     }
@@ -553,23 +563,24 @@ pub fn rates_into<T: Scalar>(
 ) {
     let theta_dot = state[3];
     let u = inputs.u;
-    let s_1 = sum_of_few([(); 2], |i| coefficients.c_5[i] * state[1 + i]);
-    let s_2 = sum_of_few([(); 2], |i| coefficients.c_7[i] * state[1 + i]);
-    let s_3 = sum_of_few([(); 2], |i| coefficients.c_9[i] * state[1 + i]);
-    let s_4 = coefficients.c_10 * s_2 - s_3;
-    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_6 * s_2
-        - coefficients.c_8 * s_4;
-    let theta_ddot = coefficients.c_4 * s_5;
-    let s_6 = s_4 - coefficients.c_14 * s_5;
-    let s_7 = coefficients.c_16 * s_2 - coefficients.c_13 * s_6
-        - coefficients.c_15 * s_5;
+    let s_pj46n = sum_of_few([(); 2], |i| coefficients.c_sjz8w[i] * state[1 + i]);
+    let s_na64g = sum_of_few([(); 2], |i| coefficients.c_axmtw[i] * state[1 + i]);
+    let s_756ys = sum_of_few([(); 2], |i| coefficients.c_y3zfv[i] * state[1 + i]);
+    let s_vnggz = coefficients.c_1rv2k * s_na64g - s_756ys;
+    let s_9a7br = u + s_pj46n - coefficients.c * theta_dot
+        - coefficients.c_3esjz * s_na64g - coefficients.c_4g7wt * s_vnggz;
+    let theta_ddot = coefficients.c_wcwe9 * s_9a7br;
+    let s_hhahr = s_vnggz - coefficients.c_8x3f2 * s_9a7br;
+    let s_tahtg = coefficients.c_3zzzt * s_na64g - coefficients.c_gj36f * s_hhahr
+        - coefficients.c_rtd1j * s_9a7br;
     for i in 0..3 {
         rates[i] = state[3 + i];
     }
     rates[3] = theta_ddot;
     for i in 0..2 {
-        rates[4 + i] = coefficients.c_19[i] * state[1 + i] - coefficients.c_12[i] * s_7
-            - coefficients.c_17[i] * s_6 - coefficients.c_18[i] * s_5;
+        rates[4 + i] = coefficients.c_hy49k[i] * state[1 + i]
+            - coefficients.c_mqx2z[i] * s_tahtg - coefficients.c_dkurp[i] * s_hhahr
+            - coefficients.c_y2pfu[i] * s_9a7br;
     }
 }
 
@@ -603,32 +614,34 @@ pub fn observables<T: Scalar>(
     let theta_dot = state[3];
     let u = inputs.u;
     let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[1 + i]);
-    let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
-    let tip_slope = coefficients.c_22 * s_1;
-    let s_2 = theta_dot * theta_dot;
-    let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
-    let s_4 = sum_of_few(
+    let s_qat53 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
+    let tip_slope = coefficients.c_1_per_l * s_qat53;
+    let s_theta_dot_theta_dot = theta_dot * theta_dot;
+    let s_bz2gj = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_dbu4z = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
-    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_6 = coefficients.l * theta_dot + s_5;
-    let s_7 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_8 = theta_dot + coefficients.c_22 * s_7;
-    let T_tip = coefficients.c_25 * (s_6 * s_6) + coefficients.c_26 * (s_8 * s_8);
-    let s_9 = coefficients.c_23 * s_2
+    let s_kpq4n = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_sjgdr = coefficients.l * theta_dot + s_kpq4n;
+    let s_cz5r3 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_zyd2t = theta_dot + coefficients.c_1_per_l * s_cz5r3;
+    let T_tip = coefficients.c_47a9e * (s_sjgdr * s_sjgdr)
+        + coefficients.c_wrnms * (s_zyd2t * s_zyd2t);
+    let s_6tupp = coefficients.c_ywqgp * s_theta_dot_theta_dot
         + T::number(0.5)
-            * (coefficients.c_1 * s_2 + coefficients.c_24 * (theta_dot * s_3)
-                + coefficients.c_3 * s_4);
-    let s_10 = sum_of_few(
+            * (coefficients.c_yjjuw * s_theta_dot_theta_dot
+                + coefficients.c_ffu9y * (theta_dot * s_bz2gj)
+                + coefficients.c_rho_A_l * s_dbu4z);
+    let s_86a4q = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
-    let V_bending = coefficients.c_27 * s_10;
+    let V_bending = coefficients.c_bsgvc * s_86a4q;
     [
         tip,
         tip_slope,
-        s_9 + T_tip + V_bending,
+        s_6tupp + T_tip + V_bending,
         theta_dot * (u - coefficients.c * theta_dot),
     ]
 }
@@ -642,27 +655,29 @@ pub fn energy<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let theta_dot = state[3];
-    let s_1 = theta_dot * theta_dot;
-    let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
-    let s_3 = sum_of_few(
+    let s_theta_dot_theta_dot = theta_dot * theta_dot;
+    let s_bz2gj = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_dbu4z = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
-    let s_4 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_5 = coefficients.l * theta_dot + s_4;
-    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_7 = theta_dot + coefficients.c_22 * s_6;
-    let T_tip = coefficients.c_25 * (s_5 * s_5) + coefficients.c_26 * (s_7 * s_7);
-    let s_8 = coefficients.c_23 * s_1
+    let s_kpq4n = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_sjgdr = coefficients.l * theta_dot + s_kpq4n;
+    let s_cz5r3 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_zyd2t = theta_dot + coefficients.c_1_per_l * s_cz5r3;
+    let T_tip = coefficients.c_47a9e * (s_sjgdr * s_sjgdr)
+        + coefficients.c_wrnms * (s_zyd2t * s_zyd2t);
+    let s_6tupp = coefficients.c_ywqgp * s_theta_dot_theta_dot
         + T::number(0.5)
-            * (coefficients.c_1 * s_1 + coefficients.c_24 * (theta_dot * s_2)
-                + coefficients.c_3 * s_3);
-    let s_9 = sum_of_few(
+            * (coefficients.c_yjjuw * s_theta_dot_theta_dot
+                + coefficients.c_ffu9y * (theta_dot * s_bz2gj)
+                + coefficients.c_rho_A_l * s_dbu4z);
+    let s_86a4q = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
-    let V_bending = coefficients.c_27 * s_9;
-    s_8 + T_tip + V_bending
+    let V_bending = coefficients.c_bsgvc * s_86a4q;
+    s_6tupp + T_tip + V_bending
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -706,12 +721,13 @@ pub fn mass_matrix<T: Scalar>(
         values[1 + i][0] = values[0][1 + i];
     }
     for i in 0..2 {
-        values[1 + i][1 + i] = values[1 + i][1 + i] + coefficients.c_11[i];
+        values[1 + i][1 + i] = values[1 + i][1 + i] + coefficients.c_uug3k[i];
         for j in 0..2 {
             values[1 + i][1 + j] = values[1 + i][1 + j]
-                + coefficients.c_20[i] * T::number(PHI_AT_END[j]);
+                + coefficients.c_M_t_PHI_AT_END[i] * T::number(PHI_AT_END[j]);
             values[1 + i][1 + j] = values[1 + i][1 + j]
-                + coefficients.c_2[i] * coefficients.c_21[j];
+                + coefficients.c_J_t_PHI_D1_AT_END_per_l[i]
+                    * coefficients.c_PHI_D1_AT_END_per_l[j];
         }
     }
     values

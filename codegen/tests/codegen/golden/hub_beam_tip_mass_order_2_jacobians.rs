@@ -11,30 +11,42 @@ pub fn inlined_jacobian_vector_product<T: Scalar, C: Coefficient<T>>(
     input_direction: &Inputs<T>,
 ) -> [T; STATES] {
     let s = direction[3];
-    let s_1 = input_direction.u;
-    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_55[i]) * direction[1 + i]);
-    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_15[i]) * direction[1 + i]);
-    let s_4 = sum_of_few([(); 2], |i| C::read(coefficients.c_63[i]) * direction[1 + i]);
-    let s_5 = C::read(coefficients.c_18) * s_3 - C::read(coefficients.c_221) * s_4;
-    let s_6 = s_1 + C::read(coefficients.c_90) * s_2 - C::read(coefficients.c) * s
-        - C::read(coefficients.c_14) * s_3;
-    let s_7 = s_6 - C::read(coefficients.c_16) * s_5;
-    let s_8 = s_5 - C::read(coefficients.c_23) * s_7;
-    let s_9 = C::read(coefficients.c_25) * s_3 - C::read(coefficients.c_22) * s_8
-        - C::read(coefficients.c_24) * s_7;
-    let mut s_10 = [T::number(0.0); 2];
+    let s_kvw5j = input_direction.u;
+    let s_h4ktx = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_u2tnq[i]) * direction[1 + i],
+    );
+    let s_kjdf1 = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_axmtw[i]) * direction[1 + i],
+    );
+    let s_frhzy = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_1h1ee[i]) * direction[1 + i],
+    );
+    let s_ug4n7 = C::read(coefficients.c_1rv2k) * s_kjdf1
+        - C::read(coefficients.c_gh9kd) * s_frhzy;
+    let s_99y8y = s_kvw5j + C::read(coefficients.c_ehqt7) * s_h4ktx
+        - C::read(coefficients.c) * s - C::read(coefficients.c_3esjz) * s_kjdf1;
+    let s_m76s9 = s_99y8y - C::read(coefficients.c_4g7wt) * s_ug4n7;
+    let s_1cpyt = s_ug4n7 - C::read(coefficients.c_8x3f2) * s_m76s9;
+    let s_9gzhp = C::read(coefficients.c_3zzzt) * s_kjdf1
+        - C::read(coefficients.c_gj36f) * s_1cpyt
+        - C::read(coefficients.c_rtd1j) * s_m76s9;
+    let mut s_25bvh = [T::number(0.0); 2];
     for i in 0..2 {
-        s_10[i] = C::read(coefficients.c_29[i]) * direction[1 + i]
-            - C::read(coefficients.c_21[i]) * s_9 - C::read(coefficients.c_26[i]) * s_8
-            - C::read(coefficients.c_28[i]) * s_7;
+        s_25bvh[i] = C::read(coefficients.c_hy49k[i]) * direction[1 + i]
+            - C::read(coefficients.c_mqx2z[i]) * s_9gzhp
+            - C::read(coefficients.c_dkurp[i]) * s_1cpyt
+            - C::read(coefficients.c_y2pfu[i]) * s_m76s9;
     }
     let mut product = [T::number(0.0); STATES];
     for i in 0..3 {
         product[i] = direction[3 + i];
     }
-    product[3] = C::read(coefficients.c_12) * s_7;
+    product[3] = C::read(coefficients.c_wcwe9) * s_m76s9;
     for i in 0..2 {
-        product[4 + i] = s_10[i];
+        product[4 + i] = s_25bvh[i];
     }
     product
 }
@@ -49,31 +61,44 @@ pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
     coefficients: &Coefficients<C>,
     weights: &[T; STATES],
 ) -> ([T; STATES], Inputs<T>) {
-    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_27[i]) * weights[4 + i]);
-    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_223[i]) * weights[4 + i]);
-    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_225[i]) * weights[4 + i]);
-    let s_4 = C::read(coefficients.c_226) * s_2 - C::read(coefficients.c_224) * s_3;
+    let s_qqc5z = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_6tcqm[i]) * weights[4 + i],
+    );
+    let s_u18m9 = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_a9wqn[i]) * weights[4 + i],
+    );
+    let s_ksvkz = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.c_amvvt[i]) * weights[4 + i],
+    );
+    let s_de8du = C::read(coefficients.c_6j633) * s_u18m9
+        - C::read(coefficients.c_detg7) * s_ksvkz;
     let s = weights[3];
-    let s_5 = C::read(coefficients.c_222) * s_2 + C::read(coefficients.c_12) * s
-        - C::read(coefficients.c_12) * s_1 - C::read(coefficients.c_23) * s_4;
-    let s_6 = s_4 - C::read(coefficients.c_16) * s_5;
-    let s_7 = C::read(coefficients.c_18) * s_6 + C::read(coefficients.c_228) * s_2
-        - C::read(coefficients.c_14) * s_5;
-    let mut s_8 = [T::number(0.0); 2];
+    let s_294nj = C::read(coefficients.c_su826) * s_u18m9
+        + C::read(coefficients.c_wcwe9) * s - C::read(coefficients.c_wcwe9) * s_qqc5z
+        - C::read(coefficients.c_8x3f2) * s_de8du;
+    let s_3e1ja = s_de8du - C::read(coefficients.c_4g7wt) * s_294nj;
+    let s_3j9gf = C::read(coefficients.c_1rv2k) * s_3e1ja
+        + C::read(coefficients.c_p7buq) * s_u18m9
+        - C::read(coefficients.c_3esjz) * s_294nj;
+    let mut s_sgv1e = [T::number(0.0); 2];
     for i in 0..2 {
-        s_8[i] = C::read(coefficients.c_13[i]) * s_5
-            + C::read(coefficients.c_15[i]) * s_7 - C::read(coefficients.c_17[i]) * s_6
-            - C::read(coefficients.c_19[i]) * weights[4 + i];
+        s_sgv1e[i] = C::read(coefficients.c_sjz8w[i]) * s_294nj
+            + C::read(coefficients.c_axmtw[i]) * s_3j9gf
+            - C::read(coefficients.c_y3zfv[i]) * s_3e1ja
+            - C::read(coefficients.c_ut126[i]) * weights[4 + i];
     }
     let mut product = [T::number(0.0); STATES];
     for i in 0..3 {
         product[3 + i] = weights[i];
     }
-    product[3] = product[3] + C::read(coefficients.c_227) * s_5;
+    product[3] = product[3] + C::read(coefficients.c_mtaz2) * s_294nj;
     for i in 0..2 {
-        product[1 + i] = s_8[i];
+        product[1 + i] = s_sgv1e[i];
     }
-    let input_product = Inputs { u: s_5 };
+    let input_product = Inputs { u: s_294nj };
     (product, input_product)
 }
 
@@ -102,22 +127,22 @@ pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
         values[0 + i] = T::number(1.0);
     }
     for i in 0..2 {
-        values[3 + i] = C::read(coefficients.c_41[i]);
+        values[3 + i] = C::read(coefficients.c_12mdq[i]);
     }
-    values[5] = C::read(coefficients.c_42);
+    values[5] = C::read(coefficients.c_rw8gz);
     for i in 0..2 {
-        values[6 + 3 * i + i] = values[6 + 3 * i + i] + C::read(coefficients.c_29[i]);
+        values[6 + 3 * i + i] = values[6 + 3 * i + i] + C::read(coefficients.c_hy49k[i]);
         for j in 0..2 {
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + C::read(coefficients.c_43[i]) * C::read(coefficients.c_45[j]);
+                + C::read(coefficients.c_a42bd[i]) * C::read(coefficients.c_5n7vp[j]);
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + C::read(coefficients.c_46[i]) * C::read(coefficients.c_44[j]);
+                + C::read(coefficients.c_qcebd[i]) * C::read(coefficients.c_ppdxh[j]);
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + C::read(coefficients.c_47[i]) * C::read(coefficients.c_40[j]);
+                + C::read(coefficients.c_827es[i]) * C::read(coefficients.c_7kqwp[j]);
         }
     }
     for i in 0..2 {
-        values[8 + 3 * i] = C::read(coefficients.c_48[i]);
+        values[8 + 3 * i] = C::read(coefficients.c_kwk8x[i]);
     }
     values
 }
@@ -132,45 +157,48 @@ pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
     coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_PARAMETERS_NONZEROS] {
     let theta_dot = state[3];
-    let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
-    let s_2 = theta_dot * theta_dot;
-    let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
-    let s_4 = theta_dot * s_3;
-    let s_5 = sum_of_few(
+    let s_qat53 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
+    let s_theta_dot_theta_dot = theta_dot * theta_dot;
+    let s_bz2gj = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_3njbg = theta_dot * s_bz2gj;
+    let s_dbu4z = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
-    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_7 = C::read(coefficients.l) * theta_dot + s_6;
-    let s_8 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_9 = theta_dot + C::read(coefficients.c_33) * s_8;
-    let s_10 = sum_of_few(
+    let s_kpq4n = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_sjgdr = C::read(coefficients.l) * theta_dot + s_kpq4n;
+    let s_cz5r3 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_zyd2t = theta_dot + C::read(coefficients.c_1_per_l) * s_cz5r3;
+    let s_86a4q = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
-    let s_11 = T::number(0.5)
-        * (C::read(coefficients.c_70) * s_2 + C::read(coefficients.c_212) * s_4
-            + C::read(coefficients.c_213) * s_5);
-    let s_12 = T::number(0.5)
-        * (C::read(coefficients.c_86) * s_2 + C::read(coefficients.c_214) * s_4
-            + C::read(coefficients.c_215) * s_5);
-    let s_13 = T::number(0.5)
-        * (C::read(coefficients.c_3) * s_2 + C::read(coefficients.c_216) * s_4
-            + C::read(coefficients.c_2) * s_5);
-    let s_14 = s_13
-        + (C::read(coefficients.M_t) * (theta_dot * s_7)
-            - C::read(coefficients.c_217) * (s_8 * s_9))
-        - C::read(coefficients.c_218) * s_10;
+    let s_cpujj = T::number(0.5)
+        * (C::read(coefficients.c_ahg92) * s_theta_dot_theta_dot
+            + C::read(coefficients.c_2_A_l_l) * s_3njbg
+            + C::read(coefficients.c_A_l) * s_dbu4z);
+    let s_gwexg = T::number(0.5)
+        * (C::read(coefficients.c_f8vqv) * s_theta_dot_theta_dot
+            + C::read(coefficients.c_2_rho_l_l) * s_3njbg
+            + C::read(coefficients.c_rho_l) * s_dbu4z);
+    let s_m84ae = T::number(0.5)
+        * (C::read(coefficients.c_rho_A_l_l) * s_theta_dot_theta_dot
+            + C::read(coefficients.c_4_rho_A_l) * s_3njbg
+            + C::read(coefficients.c_rho_A) * s_dbu4z);
+    let s_aswaj = s_m84ae
+        + (C::read(coefficients.M_t) * (theta_dot * s_sjgdr)
+            - C::read(coefficients.c_J_t_per_l_l) * (s_cz5r3 * s_zyd2t))
+        - C::read(coefficients.c_c1qge) * s_86a4q;
     let mut values = [T::number(0.0); OBSERVABLES_BY_PARAMETERS_NONZEROS];
-    values[0] = C::read(coefficients.c_211) * s_1;
-    values[1] = T::number(0.5) * s_2;
-    values[2] = s_11;
-    values[3] = s_12;
-    values[4] = s_14;
-    values[5] = C::read(coefficients.c_219) * s_10;
-    values[6] = C::read(coefficients.c_220) * s_10;
-    values[7] = T::number(0.5) * (s_7 * s_7);
-    values[8] = T::number(0.5) * (s_9 * s_9);
-    values[9] = -s_2;
+    values[0] = C::read(coefficients.c_minus_1_per_l_l) * s_qat53;
+    values[1] = T::number(0.5) * s_theta_dot_theta_dot;
+    values[2] = s_cpujj;
+    values[3] = s_gwexg;
+    values[4] = s_aswaj;
+    values[5] = C::read(coefficients.c_tarj2) * s_86a4q;
+    values[6] = C::read(coefficients.c_htsvy) * s_86a4q;
+    values[7] = T::number(0.5) * (s_sjgdr * s_sjgdr);
+    values[8] = T::number(0.5) * (s_zyd2t * s_zyd2t);
+    values[9] = -s_theta_dot_theta_dot;
     values
 }

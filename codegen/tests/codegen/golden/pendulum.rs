@@ -83,7 +83,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=a7ce66f3dde6a6085a7374b492f997ec734780b6f4ecb661cf23795e65324d61 generator=0.2.0;";
+pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=9e2902f4bdb2bcb9dbb08a4cc1a0d1f083151cdc0b1c51897be116e569f13459 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,15 +150,15 @@ pub struct Coefficients<T = f64> {
     /// `m*a*a + I`
     pub M_theta_theta: T,
     /// `k*1/M_theta_theta`
-    pub c_1: T,
+    pub c_rrnp4: T,
     /// `m*a*g`
-    pub c_2: T,
+    pub c_m_a_g: T,
     /// `m*a*g*1/M_theta_theta`
-    pub c_3: T,
+    pub c_y275w: T,
     /// `0.5*M_theta_theta`
-    pub c_4: T,
+    pub c_wa294: T,
     /// `-k`
-    pub c_5: T,
+    pub c_xp5v9: T,
     /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
@@ -166,21 +166,21 @@ impl<T: Scalar> Coefficients<T> {
     /// Prepares the coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let _ = core::hint::black_box(&IDENTITY);
-        let s_1 = parameters.k;
+        let s_4h5gw = parameters.k;
         let m = parameters.m;
         let a = parameters.a;
         let I = parameters.I;
         let M_theta_theta = m * (a * a) + I;
-        let s_2 = pivot_reciprocal(M_theta_theta);
+        let s_s9xwx = pivot_reciprocal(M_theta_theta);
         let g = parameters.g;
-        let s_3 = m * a * g;
+        let s_m_a_g = m * a * g;
         Self {
             M_theta_theta: M_theta_theta,
-            c_1: s_1 * s_2,
-            c_2: s_3,
-            c_3: s_3 * s_2,
-            c_4: T::number(0.5) * M_theta_theta,
-            c_5: -s_1,
+            c_rrnp4: s_4h5gw * s_s9xwx,
+            c_m_a_g: s_m_a_g,
+            c_y275w: s_m_a_g * s_s9xwx,
+            c_wa294: T::number(0.5) * M_theta_theta,
+            c_xp5v9: -s_4h5gw,
             positive_definite: T::all_greater(M_theta_theta, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_theta_theta),
         }
@@ -192,11 +192,11 @@ impl Coefficients {
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             M_theta_theta: T::number(self.M_theta_theta),
-            c_1: T::number(self.c_1),
-            c_2: T::number(self.c_2),
-            c_3: T::number(self.c_3),
-            c_4: T::number(self.c_4),
-            c_5: T::number(self.c_5),
+            c_rrnp4: T::number(self.c_rrnp4),
+            c_m_a_g: T::number(self.c_m_a_g),
+            c_y275w: T::number(self.c_y275w),
+            c_wa294: T::number(self.c_wa294),
+            c_xp5v9: T::number(self.c_xp5v9),
             positive_definite: self.positive_definite,
         }
     }
@@ -215,7 +215,8 @@ pub fn rates_into<T: Scalar>(
 ) {
     let theta_dot = state[1];
     let theta = state[0];
-    let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
+    let theta_ddot = coefficients.c_y275w * sin(theta)
+        - coefficients.c_rrnp4 * theta_dot;
     for i in 0..1 {
         rates[i] = state[1 + i];
     }
@@ -249,10 +250,10 @@ pub fn observables<T: Scalar>(
 ) -> [T; OBSERVABLES] {
     let theta_dot = state[1];
     let theta = state[0];
-    let s_1 = theta_dot * theta_dot;
-    let T_arm = coefficients.c_4 * s_1;
-    let V_gravity = coefficients.c_2 * cos(theta);
-    [T_arm + V_gravity, coefficients.c_5 * s_1]
+    let s_theta_dot_theta_dot = theta_dot * theta_dot;
+    let T_arm = coefficients.c_wa294 * s_theta_dot_theta_dot;
+    let V_gravity = coefficients.c_m_a_g * cos(theta);
+    [T_arm + V_gravity, coefficients.c_xp5v9 * s_theta_dot_theta_dot]
 }
 
 /// Kinetic plus potential energy, in J.
@@ -265,8 +266,8 @@ pub fn energy<T: Scalar>(
 ) -> T {
     let theta_dot = state[1];
     let theta = state[0];
-    let T_arm = coefficients.c_4 * (theta_dot * theta_dot);
-    let V_gravity = coefficients.c_2 * cos(theta);
+    let T_arm = coefficients.c_wa294 * (theta_dot * theta_dot);
+    let V_gravity = coefficients.c_m_a_g * cos(theta);
     T_arm + V_gravity
 }
 
@@ -279,7 +280,7 @@ pub fn power<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let theta_dot = state[1];
-    coefficients.c_5 * (theta_dot * theta_dot)
+    coefficients.c_xp5v9 * (theta_dot * theta_dot)
 }
 
 /// Switching surfaces: the equations change when one of these changes sign.

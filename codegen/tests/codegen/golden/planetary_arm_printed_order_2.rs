@@ -3,53 +3,56 @@ impl<T: Scalar> Coefficients<T> {
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let _ = core::hint::black_box(&IDENTITY);
         let m = parameters.m;
-        let s_1 = T::number(0.5) * m;
+        let s_79w6g = T::number(0.5) * m;
         let z_s = parameters.z_s;
         let alpha = parameters.alpha;
-        let s_2 = cos(alpha);
-        let r_s = s_1 * z_s * s_2;
+        let s_rrfp8 = cos(alpha);
+        let r_s = s_79w6g * z_s * s_rrfp8;
         let M_s = parameters.M_s;
-        let s_3 = r_s * r_s;
-        let I_s = M_s * s_3;
+        let s_r_s_r_s = r_s * r_s;
+        let I_s = M_s * s_r_s_r_s;
         let a_m = parameters.a_m;
-        let s_4 = s_2 * s_2;
+        let s_z14ky = s_rrfp8 * s_rrfp8;
         let m_p = parameters.m_p;
-        let s_5 = T::number(3.0) * m_p / s_4;
+        let s_hppb7 = T::number(3.0) * m_p / s_z14ky;
         let z_p = parameters.z_p;
-        let r_c = s_1 * (z_s + z_p);
-        let s_6 = r_c * r_c;
-        let s_7 = s_4 * s_6;
+        let r_c = s_79w6g * (z_s + z_p);
+        let s_r_c_r_c = r_c * r_c;
+        let s_dmnvh = s_z14ky * s_r_c_r_c;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_6;
-        let s_8 = I_c / s_7;
+        let I_c = m_c * s_r_c_r_c;
+        let s_f4jtk = I_c / s_dmnvh;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_9 = l * l;
-        let s_10 = l * s_9;
-        let s_11 = T::number(0.3333333333333333) * rho * A * s_10 / s_7;
-        let s_12 = s_2 * r_c;
-        let s_13 = rho * A;
-        let s_14 = s_13 * s_9;
-        let s_15 = T::number(0.5) * rho * A * l;
-        let mut s_16 = [[T::number(0.0); 2]; 2];
+        let s_l_l = l * l;
+        let s_l_l_l = l * s_l_l;
+        let s_1u3rt = T::number(0.3333333333333333) * rho * A * s_l_l_l / s_dmnvh;
+        let s_ctt33 = s_rrfp8 * r_c;
+        let s_rho_A = rho * A;
+        let s_rho_A_l_l = s_rho_A * s_l_l;
+        let s_2z827 = T::number(0.5) * rho * A * l;
+        let mut s_r97tz = [[T::number(0.0); 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
-                s_16[i][j] = s_16[i][j]
-                    + s_15 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
-                s_16[i][j] = s_16[i][j]
-                    + s_15 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
+                s_r97tz[i][j] = s_r97tz[i][j]
+                    + s_2z827 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
+                s_r97tz[i][j] = s_r97tz[i][j]
+                    + s_2z827 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
             }
         }
-        let s_17 = cholesky(&s_16);
+        let s_qmcbf = cholesky(&s_r97tz);
         let mut M_x_c_q = [T::number(0.0); 2];
         for i in 0..2 {
-            M_x_c_q[i] = s_14 * T::number(INTEGRAL_S1_PHI[i]) / s_12;
+            M_x_c_q[i] = s_rho_A_l_l * T::number(INTEGRAL_S1_PHI[i]) / s_ctt33;
         }
-        let s_18 = cholesky_solve(&s_17, &M_x_c_q);
-        let s_19 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * s_18[i]);
-        let pivot_x_c = s_5 + s_8 + s_11 - s_14 * s_19 / s_12;
-        let s_20 = pivot_reciprocal(pivot_x_c);
+        let s_bvudq = cholesky_solve(&s_qmcbf, &M_x_c_q);
+        let s_tdpv7 = sum_of_few(
+            [(); 2],
+            |i| T::number(INTEGRAL_S1_PHI[i]) * s_bvudq[i],
+        );
+        let pivot_x_c = s_hppb7 + s_f4jtk + s_1u3rt - s_rho_A_l_l * s_tdpv7 / s_ctt33;
+        let s_5f1my = pivot_reciprocal(pivot_x_c);
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let c_pr = parameters.c_pr;
@@ -58,82 +61,83 @@ impl<T: Scalar> Coefficients<T> {
         let k_pr = parameters.k_pr;
         let E = parameters.E;
         let I = parameters.I;
-        let s_21 = T::number(0.5) * E * I / s_10;
-        let r_p = s_1 * s_2 * z_p;
-        let s_22 = r_p * r_p;
+        let s_bsgvc = T::number(0.5) * E * I / s_l_l_l;
+        let r_p = s_79w6g * s_rrfp8 * z_p;
+        let s_r_p_r_p = r_p * r_p;
         let M_p = parameters.M_p;
-        let I_p = M_p * s_22;
-        let s_23 = T::number(3.0) * I_p;
+        let I_p = M_p * s_r_p_r_p;
+        let s_3_I_p = T::number(3.0) * I_p;
         let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
-        let mut s_24 = [T::number(0.0); 2];
+        let mut s_3n7zt = [T::number(0.0); 2];
         for i in 0..2 {
-            s_24[i] = s_20 * s_18[i];
+            s_3n7zt[i] = s_5f1my * s_bvudq[i];
         }
-        let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
-        let pivot_x_pr = s_23 / s_22;
+        let M_x_sp_x_sp = I_s / s_r_s_r_s;
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_r_s_r_s;
+        let pivot_x_pr = s_3_I_p / s_r_p_r_p;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_11;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_r_s_r_s + (pivot_x_pr + s_hppb7)
+            + s_f4jtk + s_1u3rt;
         let z_r = parameters.z_r;
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_25 = r_s * i_sH;
+        let s_r_s_i_sH = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && T::all_greater(s_17[i][i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_17[i][i]);
+            positive_4 = positive_4 && T::all_greater(s_qmcbf[i][i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_qmcbf[i][i]);
         }
         Self {
             a_m: a_m,
-            c_1: r_s * a_m / I_s,
-            c_2: s_11,
-            c_3: s_15,
-            c_4: s_17,
+            c_r_s_a_m_per_I_s: r_s * a_m / I_s,
+            c_1u3rt: s_1u3rt,
+            c_2z827: s_2z827,
+            c_qmcbf: s_qmcbf,
             M_x_c_q: M_x_c_q,
-            c_5: s_20,
-            c_6: T::number(2.0) * s_20,
+            c_5f1my: s_5f1my,
+            c_79h79: T::number(2.0) * s_5f1my,
             c_sp: c_sp,
-            c_7: T::number(3.0) * c_sp,
+            c_3_c_sp: T::number(3.0) * c_sp,
             b_sp: b_sp,
             c_pr: c_pr,
-            c_8: T::number(3.0) * c_pr,
+            c_3_c_pr: T::number(3.0) * c_pr,
             b_pr: b_pr,
             k_sp: k_sp,
-            c_9: T::number(3.0) * k_sp,
+            c_3_k_sp: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_10: T::number(3.0) * k_pr,
-            c_11: s_21,
-            c_12: -s_21,
-            c_13: T::number(0.3333333333333333) * s_22 / I_p,
-            c_14: s_23 * s_20 / s_22,
-            c_15: b_m / I_s,
-            c_16: s_3 / I_s,
+            c_3_k_pr: T::number(3.0) * k_pr,
+            c_bsgvc: s_bsgvc,
+            c_fr34v: -s_bsgvc,
+            c_mttba: T::number(0.3333333333333333) * s_r_p_r_p / I_p,
+            c_en65n: s_3_I_p * s_5f1my / s_r_p_r_p,
+            c_b_m_per_I_s: b_m / I_s,
+            c_r_s_r_s_per_I_s: s_r_s_r_s / I_s,
             F_w: F_w,
-            c_17: r_s * F_w / I_s,
+            c_r_s_F_w_per_I_s: r_s * F_w / I_s,
             omega: omega,
-            c_18: s_24,
+            c_3n7zt: s_3n7zt,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_19: T::number(1.0) / r_s,
-            c_20: b_m / r_s,
-            c_21: T::number(2.0) / r_s,
-            c_22: T::number(1.0) / r_p,
-            c_23: T::number(1.0) / s_12,
-            c_24: T::number(1.0) / s_25,
-            c_25: l / s_25,
-            c_26: T::number(0.5) * I_s / s_3,
-            c_27: T::number(1.5) * I_p / s_22,
-            c_28: T::number(1.5) * m_p / s_4,
-            c_29: T::number(0.5) * I_c / s_7,
-            c_30: T::number(2.0) * rho * A * s_9 / s_12,
-            c_31: s_13 * l,
-            c_32: T::number(1.5) * k_sp,
-            c_33: T::number(1.5) * k_pr,
+            c_1_per_r_s: T::number(1.0) / r_s,
+            c_b_m_per_r_s: b_m / r_s,
+            c_2_per_r_s: T::number(2.0) / r_s,
+            c_1_per_r_p: T::number(1.0) / r_p,
+            c_72jmj: T::number(1.0) / s_ctt33,
+            c_1_per_r_s_i_sH: T::number(1.0) / s_r_s_i_sH,
+            c_l_per_r_s_i_sH: l / s_r_s_i_sH,
+            c_tqaqf: T::number(0.5) * I_s / s_r_s_r_s,
+            c_k4tad: T::number(1.5) * I_p / s_r_p_r_p,
+            c_uxvby: T::number(1.5) * m_p / s_z14ky,
+            c_r6kbz: T::number(0.5) * I_c / s_dmnvh,
+            c_y853x: T::number(2.0) * rho * A * s_l_l / s_ctt33,
+            c_rho_A_l: s_rho_A * l,
+            c_x6cxe: T::number(1.5) * k_sp,
+            c_ydxtm: T::number(1.5) * k_pr,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -157,7 +161,7 @@ pub fn rates_into<T: Scalar>(
 ) {
     let x_sp_dot = state[5];
     let x_sp = state[0];
-    let s_1 = coefficients.c_7
+    let s_9a1vw = coefficients.c_3_c_sp
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
@@ -166,42 +170,47 @@ pub fn rates_into<T: Scalar>(
         );
     let x_pr_dot = state[6];
     let x_pr = state[1];
-    let s_2 = coefficients.c_8
+    let s_rt6xq = coefficients.c_3_c_pr
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_3 = coefficients.c_9 * deadzone(x_sp, coefficients.b_sp);
-    let s_4 = coefficients.c_10 * deadzone(x_pr, coefficients.b_pr);
-    let mut s_5 = [T::number(0.0); 2];
+    let s_jbryk = coefficients.c_3_k_sp * deadzone(x_sp, coefficients.b_sp);
+    let s_hfjv2 = coefficients.c_3_k_pr * deadzone(x_pr, coefficients.b_pr);
+    let mut s_quf7q = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_5[i] = s_5[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
+            s_quf7q[i] = s_quf7q[i]
+                + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
         }
     }
-    let mut s_6 = [T::number(0.0); 2];
+    let mut s_vynrj = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_6[i] = s_6[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[k][i]) * state[3 + k];
+            s_vynrj[i] = s_vynrj[i]
+                + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[k][i]) * state[3 + k];
         }
     }
-    let mut s_7 = [T::number(0.0); 2];
+    let mut s_qez5g = [T::number(0.0); 2];
     for i in 0..2 {
-        s_7[i] = coefficients.c_12 * (s_5[i] + s_6[i]);
+        s_qez5g[i] = coefficients.c_fr34v * (s_quf7q[i] + s_vynrj[i]);
     }
-    let s_8 = cholesky_solve(&coefficients.c_4, &s_7);
-    let s_9 = sum_of_few([(); 2], |i| coefficients.M_x_c_q[i] * s_8[i]);
-    let s_10 = s_1 + s_2 + s_3 + s_4 - s_9;
-    let s_11 = s_1 + s_3;
-    let x_pr_ddot = coefficients.c_13 * (s_11 - s_2 - s_4 - coefficients.c_14 * s_10);
+    let s_bdj51 = cholesky_solve(&coefficients.c_qmcbf, &s_qez5g);
+    let s_cf4yw = sum_of_few([(); 2], |i| coefficients.M_x_c_q[i] * s_bdj51[i]);
+    let s_ysw27 = s_9a1vw + s_rt6xq + s_jbryk + s_hfjv2 - s_cf4yw;
+    let s_3tfc6 = s_9a1vw + s_jbryk;
+    let x_pr_ddot = coefficients.c_mttba
+        * (s_3tfc6 - s_rt6xq - s_hfjv2 - coefficients.c_en65n * s_ysw27);
     let x_c_dot = state[7];
-    let s_12 = coefficients.c_1 - coefficients.c_6 * s_10 - x_pr_ddot
-        - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
-        - coefficients.c_16 * s_11;
-    let x_sp_ddot = s_12 + coefficients.c_17 * sin(coefficients.omega * t);
-    let x_c_ddot = coefficients.c_5 * s_10;
+    let s_at6bd = coefficients.c_r_s_a_m_per_I_s - coefficients.c_79h79 * s_ysw27
+        - x_pr_ddot
+        - coefficients.c_b_m_per_I_s * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_r_s_r_s_per_I_s * s_3tfc6;
+    let x_sp_ddot = s_at6bd
+        + coefficients.c_r_s_F_w_per_I_s * sin(coefficients.omega * t);
+    let x_c_ddot = coefficients.c_5f1my * s_ysw27;
     for i in 0..5 {
         rates[i] = state[5 + i];
     }
@@ -209,7 +218,7 @@ pub fn rates_into<T: Scalar>(
     rates[6] = x_pr_ddot;
     rates[7] = x_c_ddot;
     for i in 0..2 {
-        rates[8 + i] = s_8[i] - coefficients.c_18[i] * s_10;
+        rates[8 + i] = s_bdj51[i] - coefficients.c_3n7zt[i] * s_ysw27;
     }
 }
 
@@ -238,10 +247,10 @@ pub fn mass_matrix<T: Scalar>(
     for i in 0..2 {
         for j in 0..2 {
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_3 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
+                + coefficients.c_2z827 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
                     * T::number(1.0);
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_3 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
+                + coefficients.c_2z827 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
                     * T::number(1.0);
         }
     }

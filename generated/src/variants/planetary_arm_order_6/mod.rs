@@ -226,7 +226,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_6 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=0097b3c0dabba5304e4afea2e5d542d3ee0f74a9341419bba21c5f070bf61a0c generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_6 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=a4e88bbc0fef461702f2a13ef352161c8ed4340786357ff6d73733d282150261 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -385,102 +385,102 @@ impl<T: Copy> From<[T; INPUTS]> for Inputs {
 /// Values that depend only on the parameters: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `a_m`
+    /// `a_m` \[N m] forces.motor
     pub a_m: T,
-    /// `r_s*a_m/I_s`
-    pub c_1: T,
-    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_2: T,
-    /// `1/pivot_x_c`
-    pub c_3: T,
-    /// `2.0*1/pivot_x_c`
-    pub c_4: T,
-    /// `c_sp`
+    /// `r_s*a_m/I_s` \[m/s^2] kinetic.sun
+    pub c_r_s_a_m_per_I_s: T,
+    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)` \[kg] kinetic.arm
+    pub c_1u3rt: T,
+    /// `1/pivot_x_c` \[1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_5f1my: T,
+    /// `2.0*1/pivot_x_c` \[1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_79h79: T,
+    /// `c_sp` \[N s/m] forces.damping_sp
     pub c_sp: T,
-    /// `3.0*c_sp`
-    pub c_5: T,
-    /// `b_sp`
+    /// `3.0*c_sp` \[N s/m] forces.damping_sp
+    pub c_3_c_sp: T,
+    /// `b_sp` \[m] potential.mesh_sp, forces.damping_sp, guards.0, guards.1
     pub b_sp: T,
-    /// `c_pr`
+    /// `c_pr` \[N s/m] forces.damping_pr
     pub c_pr: T,
-    /// `3.0*c_pr`
-    pub c_6: T,
-    /// `b_pr`
+    /// `3.0*c_pr` \[N s/m] forces.damping_pr
+    pub c_3_c_pr: T,
+    /// `b_pr` \[m] potential.mesh_pr, forces.damping_pr, guards.2, guards.3
     pub b_pr: T,
-    /// `k_sp`
+    /// `k_sp` \[N/m] potential.mesh_sp
     pub k_sp: T,
-    /// `3.0*k_sp`
-    pub c_7: T,
-    /// `k_pr`
+    /// `3.0*k_sp` \[N/m] potential.mesh_sp
+    pub c_3_k_sp: T,
+    /// `k_pr` \[N/m] potential.mesh_pr
     pub k_pr: T,
-    /// `3.0*k_pr`
-    pub c_8: T,
-    /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_9: [T; 6],
-    /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_10: T,
-    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
-    pub c_11: T,
-    /// `b_m/I_s`
-    pub c_12: T,
-    /// `r_s*r_s/I_s`
-    pub c_13: T,
-    /// `F_w`
+    /// `3.0*k_pr` \[N/m] potential.mesh_pr
+    pub c_3_k_pr: T,
+    /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)` \[N/m] kinetic.arm, potential.bending
+    pub c_us4xw: [T; 6],
+    /// `0.3333333333333333*r_p*r_p/I_p` \[1/kg] kinetic.planets
+    pub c_mttba: T,
+    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)` \[1] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_en65n: T,
+    /// `b_m/I_s` \[1/s] kinetic.sun
+    pub c_b_m_per_I_s: T,
+    /// `r_s*r_s/I_s` \[1/kg] kinetic.sun
+    pub c_r_s_r_s_per_I_s: T,
+    /// `F_w` \[N m] forces.motor
     pub F_w: T,
-    /// `r_s*F_w/I_s`
-    pub c_14: T,
-    /// `omega`
+    /// `r_s*F_w/I_s` \[m/s^2] kinetic.sun
+    pub c_r_s_F_w_per_I_s: T,
+    /// `omega` \[1/s] forces.motor
     pub omega: T,
-    /// `l*1/pivot_x_c*INTEGRAL_S1_PHI/(cos(alpha)*r_c*INTEGRAL_PHI_SQUARED)`
-    pub c_15: [T; 6],
-    /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_16: [T; 6],
-    /// `I_s/(r_s*r_s)`
+    /// `l*1/pivot_x_c*INTEGRAL_S1_PHI/(cos(alpha)*r_c*INTEGRAL_PHI_SQUARED)` \[1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_hxhuh: [T; 6],
+    /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))` \[1/s^2] kinetic.arm, potential.bending
+    pub c_hy49k: [T; 6],
+    /// `I_s/(r_s*r_s)` \[kg] kinetic.sun
     pub M_x_sp_x_sp: T,
-    /// `2.0*I_s/(r_s*r_s)`
+    /// `2.0*I_s/(r_s*r_s)` \[kg] kinetic.sun
     pub M_x_sp_x_c: T,
-    /// `M_x_sp_x_sp + pivot_x_pr`
+    /// `M_x_sp_x_sp + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_pr: T,
-    /// `M_x_sp_x_c + pivot_x_pr`
+    /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
     pub M_x_c_x_c: T,
-    /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
+    /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)` \[kg] kinetic.arm
     pub M_x_c_q: [T; 6],
-    /// `rho*A*l`
-    pub c_17: T,
-    /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_18: [T; 6],
-    /// `1.0/r_s`
-    pub c_19: T,
-    /// `b_m/r_s`
-    pub c_20: T,
-    /// `2.0/r_s`
-    pub c_21: T,
-    /// `1.0/r_p`
-    pub c_22: T,
-    /// `1.0/(cos(alpha)*r_c)`
-    pub c_23: T,
-    /// `1.0/(r_s*i_sH)`
-    pub c_24: T,
-    /// `l/(r_s*i_sH)`
-    pub c_25: T,
-    /// `0.5*I_s/(r_s*r_s)`
-    pub c_26: T,
-    /// `1.5*I_p/(r_p*r_p)`
-    pub c_27: T,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
-    pub c_28: T,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_29: T,
-    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
-    pub c_30: T,
-    /// `1.5*k_sp`
-    pub c_31: T,
-    /// `1.5*k_pr`
-    pub c_32: T,
-    /// `0.5*E*I/(l*l*l)`
-    pub c_33: T,
+    /// `rho*A*l` \[kg] kinetic.arm
+    pub c_rho_A_l: T,
+    /// `rho*A*l*INTEGRAL_PHI_SQUARED` \[kg] kinetic.arm
+    pub c_uug3k: [T; 6],
+    /// `1.0/r_s` \[1/m] kinetic.sun, forces.motor
+    pub c_1_per_r_s: T,
+    /// `b_m/r_s` \[N s] kinetic.sun, forces.motor
+    pub c_b_m_per_r_s: T,
+    /// `2.0/r_s` \[1/m] kinetic.sun, forces.motor
+    pub c_2_per_r_s: T,
+    /// `1.0/r_p` \[1/m] kinetic.planets
+    pub c_1_per_r_p: T,
+    /// `1.0/(cos(alpha)*r_c)` \[1/m] kinetic.carrier, kinetic.arm
+    pub c_72jmj: T,
+    /// `1.0/(r_s*i_sH)` \[1/m] kinetic.sun, forces.motor
+    pub c_1_per_r_s_i_sH: T,
+    /// `l/(r_s*i_sH)` \[1] kinetic.sun, forces.motor
+    pub c_l_per_r_s_i_sH: T,
+    /// `0.5*I_s/(r_s*r_s)` \[kg] kinetic.sun
+    pub c_tqaqf: T,
+    /// `1.5*I_p/(r_p*r_p)` \[kg] kinetic.planets
+    pub c_k4tad: T,
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))` \[kg] kinetic.planets
+    pub c_uxvby: T,
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)` \[kg] kinetic.carrier
+    pub c_r6kbz: T,
+    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)` \[kg] kinetic.arm
+    pub c_y853x: T,
+    /// `1.5*k_sp` \[N/m] potential.mesh_sp
+    pub c_x6cxe: T,
+    /// `1.5*k_pr` \[N/m] potential.mesh_pr
+    pub c_ydxtm: T,
+    /// `0.5*E*I/(l*l*l)` \[N/m] potential.bending
+    pub c_bsgvc: T,
     /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
@@ -489,151 +489,196 @@ impl<T: Scalar> Coefficients<T> {
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let _ = core::hint::black_box(&IDENTITY);
         let m = parameters.m;
-        let s_1 = T::number(0.5) * m;
+        // [m] kinetic.*, forces.motor
+        let s_79w6g = T::number(0.5) * m;
         let z_s = parameters.z_s;
         let alpha = parameters.alpha;
-        let s_2 = cos(alpha);
-        let r_s = s_1 * z_s * s_2;
+        // [1] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_rrfp8 = cos(alpha);
+        // [m] kinetic.sun, forces.motor
+        let r_s = s_79w6g * z_s * s_rrfp8;
         let M_s = parameters.M_s;
-        let s_3 = r_s * r_s;
-        let I_s = M_s * s_3;
+        // [m^2] kinetic.sun, forces.motor
+        let s_r_s_r_s = r_s * r_s;
+        // [kg m^2] kinetic.sun
+        let I_s = M_s * s_r_s_r_s;
         let a_m = parameters.a_m;
-        let s_4 = s_2 * s_2;
+        // [1] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_z14ky = s_rrfp8 * s_rrfp8;
         let m_p = parameters.m_p;
-        let s_5 = T::number(3.0) * m_p / s_4;
+        // [kg] kinetic.planets
+        let s_hppb7 = T::number(3.0) * m_p / s_z14ky;
         let z_p = parameters.z_p;
-        let r_c = s_1 * (z_s + z_p);
-        let s_6 = r_c * r_c;
-        let s_7 = s_4 * s_6;
+        // [m] kinetic.carrier, kinetic.arm
+        let r_c = s_79w6g * (z_s + z_p);
+        // [m^2] kinetic.carrier, kinetic.arm
+        let s_r_c_r_c = r_c * r_c;
+        // [m^2] kinetic.carrier, kinetic.arm
+        let s_dmnvh = s_z14ky * s_r_c_r_c;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_6;
-        let s_8 = I_c / s_7;
+        // [kg m^2] kinetic.carrier
+        let I_c = m_c * s_r_c_r_c;
+        // [kg] kinetic.carrier
+        let s_f4jtk = I_c / s_dmnvh;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_9 = l * l;
-        let s_10 = l * s_9;
-        let s_11 = T::number(0.3333333333333333) * rho * A * s_10 / s_7;
-        let s_12 = rho * A;
-        let s_13 = sum_of_few(
+        // [m^2] kinetic.arm, potential.bending
+        let s_l_l = l * l;
+        // [m^3] kinetic.arm, potential.bending
+        let s_l_l_l = l * s_l_l;
+        // [kg] kinetic.arm
+        let s_1u3rt = T::number(0.3333333333333333) * rho * A * s_l_l_l / s_dmnvh;
+        // [N s^2/m^2] kinetic.arm
+        let s_rho_A = rho * A;
+        // [1] kinetic.arm
+        let s_jcxx4 = sum_of_few(
             [(); 6],
             |i| {
                 T::number(INTEGRAL_S1_PHI[i]) * T::number(INTEGRAL_S1_PHI[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let pivot_x_c = s_5 + s_8 + s_11 - s_12 * s_10 * s_13 / s_7;
-        let s_14 = pivot_reciprocal(pivot_x_c);
+        // [kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let pivot_x_c = s_hppb7 + s_f4jtk + s_1u3rt
+            - s_rho_A * s_l_l_l * s_jcxx4 / s_dmnvh;
+        // [1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_5f1my = pivot_reciprocal(pivot_x_c);
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let c_pr = parameters.c_pr;
         let b_pr = parameters.b_pr;
         let k_sp = parameters.k_sp;
         let k_pr = parameters.k_pr;
-        let s_15 = s_2 * r_c;
-        let s_16 = s_15 * s_9;
+        // [m] kinetic.carrier, kinetic.arm
+        let s_ctt33 = s_rrfp8 * r_c;
+        // [m^3] kinetic.arm
+        let s_65kkw = s_ctt33 * s_l_l;
         let E = parameters.E;
         let I = parameters.I;
-        let s_17 = E * I;
-        let mut s_18 = [T::number(0.0); 6];
+        // [N m^2] potential.bending
+        let s_E_I = E * I;
+        // [N/m] kinetic.arm, potential.bending
+        let mut s_us4xw = [T::number(0.0); 6];
         for i in 0..6 {
-            s_18[i] = s_17 * T::number(INTEGRAL_S1_PHI[i])
+            s_us4xw[i] = s_E_I * T::number(INTEGRAL_S1_PHI[i])
                 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
-                / (s_16 * T::number(INTEGRAL_PHI_SQUARED[i]));
+                / (s_65kkw * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let r_p = s_1 * s_2 * z_p;
-        let s_19 = r_p * r_p;
+        // [m] kinetic.planets
+        let r_p = s_79w6g * s_rrfp8 * z_p;
+        // [m^2] kinetic.planets
+        let s_r_p_r_p = r_p * r_p;
         let M_p = parameters.M_p;
-        let I_p = M_p * s_19;
-        let s_20 = T::number(3.0) * I_p;
+        // [kg m^2] kinetic.planets
+        let I_p = M_p * s_r_p_r_p;
+        // [kg m^2] kinetic.planets
+        let s_3_I_p = T::number(3.0) * I_p;
         let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
-        let s_21 = s_12 * (s_9 * s_9);
-        let s_22 = l * s_14;
-        let mut s_23 = [T::number(0.0); 6];
+        // [kg m^3] kinetic.arm
+        let s_yt44u = s_rho_A * (s_l_l * s_l_l);
+        // [m/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_3j9ve = l * s_5f1my;
+        // [1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let mut s_hxhuh = [T::number(0.0); 6];
         for i in 0..6 {
-            s_23[i] = s_22 * T::number(INTEGRAL_S1_PHI[i])
-                / (s_15 * T::number(INTEGRAL_PHI_SQUARED[i]));
+            s_hxhuh[i] = s_3j9ve * T::number(INTEGRAL_S1_PHI[i])
+                / (s_ctt33 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let mut s_24 = [T::number(0.0); 6];
+        // [1/s^2] kinetic.arm, potential.bending
+        let mut s_hy49k = [T::number(0.0); 6];
         for i in 0..6 {
-            s_24[i] = -(s_17 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
-                / (s_21 * T::number(INTEGRAL_PHI_SQUARED[i])));
+            s_hy49k[i] = -(s_E_I * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_yt44u * T::number(INTEGRAL_PHI_SQUARED[i])));
         }
-        let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
-        let pivot_x_pr = s_20 / s_19;
+        // [kg] kinetic.sun
+        let M_x_sp_x_sp = I_s / s_r_s_r_s;
+        // [kg] kinetic.sun
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_r_s_r_s;
+        // [kg] kinetic.planets
+        let pivot_x_pr = s_3_I_p / s_r_p_r_p;
+        // [kg] kinetic.sun, kinetic.planets
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
+        // [kg] kinetic.sun, kinetic.planets
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_11;
-        let s_25 = s_12 * s_9;
+        // [kg] kinetic.*
+        let M_x_c_x_c = T::number(4.0) * I_s / s_r_s_r_s + (pivot_x_pr + s_hppb7)
+            + s_f4jtk + s_1u3rt;
+        // [kg m] kinetic.arm
+        let s_rho_A_l_l = s_rho_A * s_l_l;
+        // [kg] kinetic.arm
         let mut M_x_c_q = [T::number(0.0); 6];
         for i in 0..6 {
-            M_x_c_q[i] = s_25 * T::number(INTEGRAL_S1_PHI[i]) / s_15;
+            M_x_c_q[i] = s_rho_A_l_l * T::number(INTEGRAL_S1_PHI[i]) / s_ctt33;
         }
-        let s_26 = s_12 * l;
-        let mut s_27 = [T::number(0.0); 6];
+        // [kg] kinetic.arm
+        let s_rho_A_l = s_rho_A * l;
+        // [kg] kinetic.arm
+        let mut s_uug3k = [T::number(0.0); 6];
         for i in 0..6 {
-            s_27[i] = s_26 * T::number(INTEGRAL_PHI_SQUARED[i]);
+            s_uug3k[i] = s_rho_A_l * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
         let z_r = parameters.z_r;
+        // [1] kinetic.sun, forces.motor
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_28 = r_s * i_sH;
+        // [m] kinetic.sun, forces.motor
+        let s_r_s_i_sH = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..6 {
-            positive_4 = positive_4 && T::all_greater(s_27[i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_27[i]);
+            positive_4 = positive_4 && T::all_greater(s_uug3k[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_uug3k[i]);
         }
         Self {
             a_m: a_m,
-            c_1: r_s * a_m / I_s,
-            c_2: s_11,
-            c_3: s_14,
-            c_4: T::number(2.0) * s_14,
+            c_r_s_a_m_per_I_s: r_s * a_m / I_s,
+            c_1u3rt: s_1u3rt,
+            c_5f1my: s_5f1my,
+            c_79h79: T::number(2.0) * s_5f1my,
             c_sp: c_sp,
-            c_5: T::number(3.0) * c_sp,
+            c_3_c_sp: T::number(3.0) * c_sp,
             b_sp: b_sp,
             c_pr: c_pr,
-            c_6: T::number(3.0) * c_pr,
+            c_3_c_pr: T::number(3.0) * c_pr,
             b_pr: b_pr,
             k_sp: k_sp,
-            c_7: T::number(3.0) * k_sp,
+            c_3_k_sp: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_8: T::number(3.0) * k_pr,
-            c_9: s_18,
-            c_10: T::number(0.3333333333333333) * s_19 / I_p,
-            c_11: s_20 * s_14 / s_19,
-            c_12: b_m / I_s,
-            c_13: s_3 / I_s,
+            c_3_k_pr: T::number(3.0) * k_pr,
+            c_us4xw: s_us4xw,
+            c_mttba: T::number(0.3333333333333333) * s_r_p_r_p / I_p,
+            c_en65n: s_3_I_p * s_5f1my / s_r_p_r_p,
+            c_b_m_per_I_s: b_m / I_s,
+            c_r_s_r_s_per_I_s: s_r_s_r_s / I_s,
             F_w: F_w,
-            c_14: r_s * F_w / I_s,
+            c_r_s_F_w_per_I_s: r_s * F_w / I_s,
             omega: omega,
-            c_15: s_23,
-            c_16: s_24,
+            c_hxhuh: s_hxhuh,
+            c_hy49k: s_hy49k,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
             M_x_c_q: M_x_c_q,
-            c_17: s_26,
-            c_18: s_27,
-            c_19: T::number(1.0) / r_s,
-            c_20: b_m / r_s,
-            c_21: T::number(2.0) / r_s,
-            c_22: T::number(1.0) / r_p,
-            c_23: T::number(1.0) / s_15,
-            c_24: T::number(1.0) / s_28,
-            c_25: l / s_28,
-            c_26: T::number(0.5) * I_s / s_3,
-            c_27: T::number(1.5) * I_p / s_19,
-            c_28: T::number(1.5) * m_p / s_4,
-            c_29: T::number(0.5) * I_c / s_7,
-            c_30: T::number(2.0) * rho * A * s_9 / s_15,
-            c_31: T::number(1.5) * k_sp,
-            c_32: T::number(1.5) * k_pr,
-            c_33: T::number(0.5) * E * I / s_10,
+            c_rho_A_l: s_rho_A_l,
+            c_uug3k: s_uug3k,
+            c_1_per_r_s: T::number(1.0) / r_s,
+            c_b_m_per_r_s: b_m / r_s,
+            c_2_per_r_s: T::number(2.0) / r_s,
+            c_1_per_r_p: T::number(1.0) / r_p,
+            c_72jmj: T::number(1.0) / s_ctt33,
+            c_1_per_r_s_i_sH: T::number(1.0) / s_r_s_i_sH,
+            c_l_per_r_s_i_sH: l / s_r_s_i_sH,
+            c_tqaqf: T::number(0.5) * I_s / s_r_s_r_s,
+            c_k4tad: T::number(1.5) * I_p / s_r_p_r_p,
+            c_uxvby: T::number(1.5) * m_p / s_z14ky,
+            c_r6kbz: T::number(0.5) * I_c / s_dmnvh,
+            c_y853x: T::number(2.0) * rho * A * s_l_l / s_ctt33,
+            c_x6cxe: T::number(1.5) * k_sp,
+            c_ydxtm: T::number(1.5) * k_pr,
+            c_bsgvc: T::number(0.5) * E * I / s_l_l_l,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -649,53 +694,53 @@ impl Coefficients {
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             a_m: T::number(self.a_m),
-            c_1: T::number(self.c_1),
-            c_2: T::number(self.c_2),
-            c_3: T::number(self.c_3),
-            c_4: T::number(self.c_4),
+            c_r_s_a_m_per_I_s: T::number(self.c_r_s_a_m_per_I_s),
+            c_1u3rt: T::number(self.c_1u3rt),
+            c_5f1my: T::number(self.c_5f1my),
+            c_79h79: T::number(self.c_79h79),
             c_sp: T::number(self.c_sp),
-            c_5: T::number(self.c_5),
+            c_3_c_sp: T::number(self.c_3_c_sp),
             b_sp: T::number(self.b_sp),
             c_pr: T::number(self.c_pr),
-            c_6: T::number(self.c_6),
+            c_3_c_pr: T::number(self.c_3_c_pr),
             b_pr: T::number(self.b_pr),
             k_sp: T::number(self.k_sp),
-            c_7: T::number(self.c_7),
+            c_3_k_sp: T::number(self.c_3_k_sp),
             k_pr: T::number(self.k_pr),
-            c_8: T::number(self.c_8),
-            c_9: converted(&self.c_9),
-            c_10: T::number(self.c_10),
-            c_11: T::number(self.c_11),
-            c_12: T::number(self.c_12),
-            c_13: T::number(self.c_13),
+            c_3_k_pr: T::number(self.c_3_k_pr),
+            c_us4xw: converted(&self.c_us4xw),
+            c_mttba: T::number(self.c_mttba),
+            c_en65n: T::number(self.c_en65n),
+            c_b_m_per_I_s: T::number(self.c_b_m_per_I_s),
+            c_r_s_r_s_per_I_s: T::number(self.c_r_s_r_s_per_I_s),
             F_w: T::number(self.F_w),
-            c_14: T::number(self.c_14),
+            c_r_s_F_w_per_I_s: T::number(self.c_r_s_F_w_per_I_s),
             omega: T::number(self.omega),
-            c_15: converted(&self.c_15),
-            c_16: converted(&self.c_16),
+            c_hxhuh: converted(&self.c_hxhuh),
+            c_hy49k: converted(&self.c_hy49k),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
             M_x_c_q: converted(&self.M_x_c_q),
-            c_17: T::number(self.c_17),
-            c_18: converted(&self.c_18),
-            c_19: T::number(self.c_19),
-            c_20: T::number(self.c_20),
-            c_21: T::number(self.c_21),
-            c_22: T::number(self.c_22),
-            c_23: T::number(self.c_23),
-            c_24: T::number(self.c_24),
-            c_25: T::number(self.c_25),
-            c_26: T::number(self.c_26),
-            c_27: T::number(self.c_27),
-            c_28: T::number(self.c_28),
-            c_29: T::number(self.c_29),
-            c_30: T::number(self.c_30),
-            c_31: T::number(self.c_31),
-            c_32: T::number(self.c_32),
-            c_33: T::number(self.c_33),
+            c_rho_A_l: T::number(self.c_rho_A_l),
+            c_uug3k: converted(&self.c_uug3k),
+            c_1_per_r_s: T::number(self.c_1_per_r_s),
+            c_b_m_per_r_s: T::number(self.c_b_m_per_r_s),
+            c_2_per_r_s: T::number(self.c_2_per_r_s),
+            c_1_per_r_p: T::number(self.c_1_per_r_p),
+            c_72jmj: T::number(self.c_72jmj),
+            c_1_per_r_s_i_sH: T::number(self.c_1_per_r_s_i_sH),
+            c_l_per_r_s_i_sH: T::number(self.c_l_per_r_s_i_sH),
+            c_tqaqf: T::number(self.c_tqaqf),
+            c_k4tad: T::number(self.c_k4tad),
+            c_uxvby: T::number(self.c_uxvby),
+            c_r6kbz: T::number(self.c_r6kbz),
+            c_y853x: T::number(self.c_y853x),
+            c_x6cxe: T::number(self.c_x6cxe),
+            c_ydxtm: T::number(self.c_ydxtm),
+            c_bsgvc: T::number(self.c_bsgvc),
             positive_definite: self.positive_definite,
         }
     }
@@ -714,7 +759,8 @@ pub fn rates_into<T: Scalar>(
 ) {
     let x_sp_dot = state[9];
     let x_sp = state[0];
-    let s_1 = coefficients.c_5
+    // [N] forces.damping_sp
+    let s_9a1vw = coefficients.c_3_c_sp
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
@@ -723,25 +769,38 @@ pub fn rates_into<T: Scalar>(
         );
     let x_pr_dot = state[10];
     let x_pr = state[1];
-    let s_2 = coefficients.c_6
+    // [N] forces.damping_pr
+    let s_rt6xq = coefficients.c_3_c_pr
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_3 = coefficients.c_7 * deadzone(x_sp, coefficients.b_sp);
-    let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = sum_of_few([(); 6], |i| coefficients.c_9[i] * state[3 + i]);
-    let s_6 = s_1 + s_2 + s_3 + s_4 + s_5;
-    let s_7 = s_1 + s_3;
-    let x_pr_ddot = coefficients.c_10 * (s_7 - s_2 - s_4 - coefficients.c_11 * s_6);
+    // [N] potential.mesh_sp
+    let s_jbryk = coefficients.c_3_k_sp * deadzone(x_sp, coefficients.b_sp);
+    // [N] potential.mesh_pr
+    let s_hfjv2 = coefficients.c_3_k_pr * deadzone(x_pr, coefficients.b_pr);
+    // [N] kinetic.arm, potential.bending
+    let s_jnh3q = sum_of_few([(); 6], |i| coefficients.c_us4xw[i] * state[3 + i]);
+    // [N] kinetic.arm, potential.*, forces.damping_sp, forces.damping_pr
+    let s_7z7df = s_9a1vw + s_rt6xq + s_jbryk + s_hfjv2 + s_jnh3q;
+    // [N] potential.mesh_sp, forces.damping_sp
+    let s_3tfc6 = s_9a1vw + s_jbryk;
+    // [m/s^2] kinetic.planets, kinetic.carrier, kinetic.arm, potential.*, forces.damping_sp, forces.damping_pr
+    let x_pr_ddot = coefficients.c_mttba
+        * (s_3tfc6 - s_rt6xq - s_hfjv2 - coefficients.c_en65n * s_7z7df);
     let x_c_dot = state[11];
-    let s_8 = coefficients.c_1 - coefficients.c_4 * s_6 - x_pr_ddot
-        - coefficients.c_12 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
-        - coefficients.c_13 * s_7;
-    let x_sp_ddot = s_8 + coefficients.c_14 * sin(coefficients.omega * t);
-    let x_c_ddot = coefficients.c_3 * s_6;
+    // [m/s^2] kinetic.*, potential.*, forces.*
+    let s_5me8n = coefficients.c_r_s_a_m_per_I_s - coefficients.c_79h79 * s_7z7df
+        - x_pr_ddot
+        - coefficients.c_b_m_per_I_s * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_r_s_r_s_per_I_s * s_3tfc6;
+    // [m/s^2] kinetic.*, potential.*, forces.*
+    let x_sp_ddot = s_5me8n
+        + coefficients.c_r_s_F_w_per_I_s * sin(coefficients.omega * t);
+    // [m/s^2] kinetic.planets, kinetic.carrier, kinetic.arm, potential.*, forces.damping_sp, forces.damping_pr
+    let x_c_ddot = coefficients.c_5f1my * s_7z7df;
     for k in 0..4 {
         rates[2 * k] = state[9 + 2 * k];
         rates[2 * k + 1] = state[10 + 2 * k];
@@ -751,7 +810,8 @@ pub fn rates_into<T: Scalar>(
     rates[10] = x_pr_ddot;
     rates[11] = x_c_ddot;
     for i in 0..6 {
-        rates[12 + i] = coefficients.c_16[i] * state[3 + i] - coefficients.c_15[i] * s_6;
+        rates[12 + i] = coefficients.c_hy49k[i] * state[3 + i]
+            - coefficients.c_hxhuh[i] * s_7z7df;
     }
 }
 
@@ -791,7 +851,8 @@ pub fn observables<T: Scalar>(
 ) -> [T; OBSERVABLES] {
     let x_sp_dot = state[9];
     let x_sp = state[0];
-    let s_1 = T::select_greater(
+    // [m/s] forces.damping_sp
+    let s_kzaxq = T::select_greater(
         contact(x_sp, coefficients.b_sp),
         T::number(0.0),
         x_sp_dot,
@@ -799,52 +860,83 @@ pub fn observables<T: Scalar>(
     );
     let x_pr_dot = state[10];
     let x_pr = state[1];
-    let s_2 = T::select_greater(
+    // [m/s] forces.damping_pr
+    let s_vt299 = T::select_greater(
         contact(x_pr, coefficients.b_pr),
         T::number(0.0),
         x_pr_dot,
         T::number(0.0),
     );
-    let s_3 = deadzone(x_sp, coefficients.b_sp);
-    let s_4 = deadzone(x_pr, coefficients.b_pr);
+    // [m] potential.mesh_sp
+    let s_kc16t = deadzone(x_sp, coefficients.b_sp);
+    // [m] potential.mesh_pr
+    let s_g2jy4 = deadzone(x_pr, coefficients.b_pr);
     let x_c_dot = state[11];
-    let s_5 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_20 * s_5
+    // [m/s] kinetic.sun, forces.motor
+    let s_zjdaz = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    // [N m] forces.motor
+    let motor = coefficients.a_m - coefficients.c_b_m_per_r_s * s_zjdaz
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_6 = coefficients.c_19 * motor;
-    let s_7 = x_sp + x_pr;
+    // [N] kinetic.sun, forces.motor
+    let s_1_per_r_s_motor = coefficients.c_1_per_r_s * motor;
+    // [m] kinetic.sun, forces.motor
+    let s_x_sp_plus_x_pr = x_sp + x_pr;
     let x_c = state[2];
-    let x_s = s_7 + T::number(2.0) * x_c;
-    let theta_s = coefficients.c_19 * x_s;
+    // [m] kinetic.sun, forces.motor
+    let x_s = s_x_sp_plus_x_pr + T::number(2.0) * x_c;
+    // [1] kinetic.sun, forces.motor
+    let theta_s = coefficients.c_1_per_r_s * x_s;
+    // [m] kinetic.planets
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_22 * x_p;
-    let theta_c = coefficients.c_23 * x_c;
+    // [1] kinetic.planets
+    let theta_p = coefficients.c_1_per_r_p * x_p;
+    // [1] kinetic.carrier, kinetic.arm
+    let theta_c = coefficients.c_72jmj * x_c;
+    // [m] kinetic.sun, forces.motor
     let tip = sum_of_few([(); 6], |i| T::number(PHI_AT_END[i]) * state[3 + i]);
-    let dtheta = coefficients.c_24 * s_7;
-    let s_8 = coefficients.c_25 * s_7;
-    let f_la = tip + s_8;
-    let f_la_signed = tip - s_8;
-    let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
-    let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
-    let s_9 = x_pr_dot + x_c_dot;
-    let s_10 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_27 * (s_9 * s_9) + coefficients.c_28 * s_10;
-    let s_11 = sum_of_few([(); 6], |i| T::number(INTEGRAL_S1_PHI[i]) * state[12 + i]);
-    let s_12 = sum_of_few(
+    // [1] kinetic.sun, forces.motor
+    let dtheta = coefficients.c_1_per_r_s_i_sH * s_x_sp_plus_x_pr;
+    // [m] kinetic.sun, forces.motor
+    let s_ngahc = coefficients.c_l_per_r_s_i_sH * s_x_sp_plus_x_pr;
+    // [m] kinetic.sun, forces.motor
+    let f_la = tip + s_ngahc;
+    // [m] kinetic.sun, forces.motor
+    let f_la_signed = tip - s_ngahc;
+    // [N] potential.mesh_sp, forces.damping_sp
+    let F_sp = coefficients.c_sp * s_kzaxq + coefficients.k_sp * s_kc16t;
+    // [N] potential.mesh_pr, forces.damping_pr
+    let F_pr = coefficients.c_pr * s_vt299 + coefficients.k_pr * s_g2jy4;
+    // [m/s] kinetic.planets
+    let s_x_pr_dot_plus_x_c_dot = x_pr_dot + x_c_dot;
+    // [m^2/s^2] kinetic.planets, kinetic.carrier, kinetic.arm
+    let s_x_c_dot_x_c_dot = x_c_dot * x_c_dot;
+    // [N m] kinetic.planets
+    let T_planets = coefficients.c_k4tad
+        * (s_x_pr_dot_plus_x_c_dot * s_x_pr_dot_plus_x_c_dot)
+        + coefficients.c_uxvby * s_x_c_dot_x_c_dot;
+    // [m/s] kinetic.arm
+    let s_bz2gj = sum_of_few([(); 6], |i| T::number(INTEGRAL_S1_PHI[i]) * state[12 + i]);
+    // [m^2/s^2] kinetic.arm
+    let s_dbu4z = sum_of_few(
         [(); 6],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[12 + i] * state[12 + i]),
     );
-    let s_13 = coefficients.c_26 * (s_5 * s_5) + T_planets + coefficients.c_29 * s_10
+    // [N m] kinetic.*, forces.motor
+    let s_v652f = coefficients.c_tqaqf * (s_zjdaz * s_zjdaz) + T_planets
+        + coefficients.c_r6kbz * s_x_c_dot_x_c_dot
         + T::number(0.5)
-            * (coefficients.c_2 * s_10 + coefficients.c_30 * (x_c_dot * s_11)
-                + coefficients.c_17 * s_12);
-    let s_14 = sum_of_few(
+            * (coefficients.c_1u3rt * s_x_c_dot_x_c_dot
+                + coefficients.c_y853x * (x_c_dot * s_bz2gj)
+                + coefficients.c_rho_A_l * s_dbu4z);
+    // [m^2] potential.bending
+    let s_86a4q = sum_of_few(
         [(); 6],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
-    let s_15 = x_sp_dot * (s_6 - coefficients.c_5 * s_1)
-        + x_pr_dot * (s_6 - coefficients.c_6 * s_2)
-        + coefficients.c_21 * (x_c_dot * motor);
+    // [W] kinetic.sun, forces.*
+    let s_sv6wc = x_sp_dot * (s_1_per_r_s_motor - coefficients.c_3_c_sp * s_kzaxq)
+        + x_pr_dot * (s_1_per_r_s_motor - coefficients.c_3_c_pr * s_vt299)
+        + coefficients.c_2_per_r_s * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -855,10 +947,11 @@ pub fn observables<T: Scalar>(
         f_la_signed,
         F_sp,
         F_pr,
-        s_13
-            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_4 * s_4)
-                + coefficients.c_33 * s_14),
-        s_15,
+        s_v652f
+            + (coefficients.c_x6cxe * (s_kc16t * s_kc16t)
+                + coefficients.c_ydxtm * (s_g2jy4 * s_g2jy4)
+                + coefficients.c_bsgvc * s_86a4q),
+        s_sv6wc,
     ]
 }
 
@@ -874,29 +967,44 @@ pub fn energy<T: Scalar>(
     let x_sp = state[0];
     let x_pr_dot = state[10];
     let x_pr = state[1];
-    let s_1 = deadzone(x_sp, coefficients.b_sp);
-    let s_2 = deadzone(x_pr, coefficients.b_pr);
+    // [m] potential.mesh_sp
+    let s_kc16t = deadzone(x_sp, coefficients.b_sp);
+    // [m] potential.mesh_pr
+    let s_g2jy4 = deadzone(x_pr, coefficients.b_pr);
     let x_c_dot = state[11];
-    let s_3 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
-    let s_4 = x_pr_dot + x_c_dot;
-    let s_5 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_27 * (s_4 * s_4) + coefficients.c_28 * s_5;
-    let s_6 = sum_of_few([(); 6], |i| T::number(INTEGRAL_S1_PHI[i]) * state[12 + i]);
-    let s_7 = sum_of_few(
+    // [m/s] kinetic.sun, forces.motor
+    let s_zjdaz = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    // [m/s] kinetic.planets
+    let s_x_pr_dot_plus_x_c_dot = x_pr_dot + x_c_dot;
+    // [m^2/s^2] kinetic.planets, kinetic.carrier, kinetic.arm
+    let s_x_c_dot_x_c_dot = x_c_dot * x_c_dot;
+    // [N m] kinetic.planets
+    let T_planets = coefficients.c_k4tad
+        * (s_x_pr_dot_plus_x_c_dot * s_x_pr_dot_plus_x_c_dot)
+        + coefficients.c_uxvby * s_x_c_dot_x_c_dot;
+    // [m/s] kinetic.arm
+    let s_bz2gj = sum_of_few([(); 6], |i| T::number(INTEGRAL_S1_PHI[i]) * state[12 + i]);
+    // [m^2/s^2] kinetic.arm
+    let s_dbu4z = sum_of_few(
         [(); 6],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[12 + i] * state[12 + i]),
     );
-    let s_8 = coefficients.c_26 * (s_3 * s_3) + T_planets + coefficients.c_29 * s_5
+    // [N m] kinetic.*, forces.motor
+    let s_v652f = coefficients.c_tqaqf * (s_zjdaz * s_zjdaz) + T_planets
+        + coefficients.c_r6kbz * s_x_c_dot_x_c_dot
         + T::number(0.5)
-            * (coefficients.c_2 * s_5 + coefficients.c_30 * (x_c_dot * s_6)
-                + coefficients.c_17 * s_7);
-    let s_9 = sum_of_few(
+            * (coefficients.c_1u3rt * s_x_c_dot_x_c_dot
+                + coefficients.c_y853x * (x_c_dot * s_bz2gj)
+                + coefficients.c_rho_A_l * s_dbu4z);
+    // [m^2] potential.bending
+    let s_86a4q = sum_of_few(
         [(); 6],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
-    s_8
-        + (coefficients.c_31 * (s_1 * s_1) + coefficients.c_32 * (s_2 * s_2)
-            + coefficients.c_33 * s_9)
+    s_v652f
+        + (coefficients.c_x6cxe * (s_kc16t * s_kc16t)
+            + coefficients.c_ydxtm * (s_g2jy4 * s_g2jy4)
+            + coefficients.c_bsgvc * s_86a4q)
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -912,13 +1020,16 @@ pub fn power<T: Scalar>(
     let x_pr_dot = state[10];
     let x_pr = state[1];
     let x_c_dot = state[11];
+    // [N m] forces.motor
     let motor = coefficients.a_m
-        - coefficients.c_20 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_b_m_per_r_s * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_19 * motor;
-    let s_2 = x_sp_dot
-        * (s_1
-            - coefficients.c_5
+    // [N] kinetic.sun, forces.motor
+    let s_1_per_r_s_motor = coefficients.c_1_per_r_s * motor;
+    // [W] kinetic.sun, forces.*
+    let s_eap7n = x_sp_dot
+        * (s_1_per_r_s_motor
+            - coefficients.c_3_c_sp
                 * T::select_greater(
                     contact(x_sp, coefficients.b_sp),
                     T::number(0.0),
@@ -926,15 +1037,15 @@ pub fn power<T: Scalar>(
                     T::number(0.0),
                 ))
         + x_pr_dot
-            * (s_1
-                - coefficients.c_6
+            * (s_1_per_r_s_motor
+                - coefficients.c_3_c_pr
                     * T::select_greater(
                         contact(x_pr, coefficients.b_pr),
                         T::number(0.0),
                         x_pr_dot,
                         T::number(0.0),
                     ));
-    s_2 + coefficients.c_21 * (x_c_dot * motor)
+    s_eap7n + coefficients.c_2_per_r_s * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change when one of these changes sign.
@@ -983,7 +1094,7 @@ pub fn mass_matrix<T: Scalar>(
         values[3 + i][2] = values[2][3 + i];
     }
     for i in 0..6 {
-        values[3 + i][3 + i] = values[3 + i][3 + i] + coefficients.c_18[i];
+        values[3 + i][3 + i] = values[3 + i][3 + i] + coefficients.c_uug3k[i];
     }
     values
 }

@@ -190,7 +190,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=e86ffc43b1c538030a5a841ec0e3926ee1c4b84981f07d3550297a1f4fc60559 generator=0.2.0;";
+pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=dd58f094c8c0a416af85cc9d6817f321f775d06853dd34043db2628c9b91ea1f generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -349,88 +349,88 @@ impl<T: Copy> From<[T; INPUTS]> for Inputs {
 /// Values that depend only on the parameters: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `a_m`
+    /// `a_m` \[N m] forces.motor
     pub a_m: T,
-    /// `r_s*a_m/I_s`
-    pub c_1: T,
-    /// `1/pivot_x_c`
-    pub c_2: T,
-    /// `2.0*1/pivot_x_c`
-    pub c_3: T,
-    /// `c_sp`
+    /// `r_s*a_m/I_s` \[m/s^2] kinetic.sun
+    pub c_r_s_a_m_per_I_s: T,
+    /// `1/pivot_x_c` \[1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_5f1my: T,
+    /// `2.0*1/pivot_x_c` \[1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_79h79: T,
+    /// `c_sp` \[N s/m] forces.damping_sp
     pub c_sp: T,
-    /// `3.0*c_sp`
-    pub c_4: T,
-    /// `b_sp`
+    /// `3.0*c_sp` \[N s/m] forces.damping_sp
+    pub c_3_c_sp: T,
+    /// `b_sp` \[m] potential.mesh_sp, forces.damping_sp, guards.0, guards.1
     pub b_sp: T,
-    /// `c_pr`
+    /// `c_pr` \[N s/m] forces.damping_pr
     pub c_pr: T,
-    /// `3.0*c_pr`
-    pub c_5: T,
-    /// `b_pr`
+    /// `3.0*c_pr` \[N s/m] forces.damping_pr
+    pub c_3_c_pr: T,
+    /// `b_pr` \[m] potential.mesh_pr, forces.damping_pr, guards.2, guards.3
     pub b_pr: T,
-    /// `k_sp`
+    /// `k_sp` \[N/m] potential.mesh_sp
     pub k_sp: T,
-    /// `3.0*k_sp`
-    pub c_6: T,
-    /// `k_pr`
+    /// `3.0*k_sp` \[N/m] potential.mesh_sp
+    pub c_3_k_sp: T,
+    /// `k_pr` \[N/m] potential.mesh_pr
     pub k_pr: T,
-    /// `3.0*k_pr`
-    pub c_7: T,
-    /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_8: T,
-    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
-    pub c_9: T,
-    /// `b_m/I_s`
-    pub c_10: T,
-    /// `r_s*r_s/I_s`
-    pub c_11: T,
-    /// `F_w`
+    /// `3.0*k_pr` \[N/m] potential.mesh_pr
+    pub c_3_k_pr: T,
+    /// `0.3333333333333333*r_p*r_p/I_p` \[1/kg] kinetic.planets
+    pub c_mttba: T,
+    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)` \[1] kinetic.planets, kinetic.carrier, kinetic.arm
+    pub c_en65n: T,
+    /// `b_m/I_s` \[1/s] kinetic.sun
+    pub c_b_m_per_I_s: T,
+    /// `r_s*r_s/I_s` \[1/kg] kinetic.sun
+    pub c_r_s_r_s_per_I_s: T,
+    /// `F_w` \[N m] forces.motor
     pub F_w: T,
-    /// `r_s*F_w/I_s`
-    pub c_12: T,
-    /// `omega`
+    /// `r_s*F_w/I_s` \[m/s^2] kinetic.sun
+    pub c_r_s_F_w_per_I_s: T,
+    /// `omega` \[1/s] forces.motor
     pub omega: T,
-    /// `I_s/(r_s*r_s)`
+    /// `I_s/(r_s*r_s)` \[kg] kinetic.sun
     pub M_x_sp_x_sp: T,
-    /// `2.0*I_s/(r_s*r_s)`
+    /// `2.0*I_s/(r_s*r_s)` \[kg] kinetic.sun
     pub M_x_sp_x_c: T,
-    /// `M_x_sp_x_sp + pivot_x_pr`
+    /// `M_x_sp_x_sp + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_pr: T,
-    /// `M_x_sp_x_c + pivot_x_pr`
+    /// `M_x_sp_x_c + pivot_x_pr` \[kg] kinetic.sun, kinetic.planets
     pub M_x_pr_x_c: T,
-    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    /// `4.0*I_s/s_r_s_r_s + pivot_x_pr + s_hppb7 + s_f4jtk + s_1u3rt` with values of the preparation \[kg] kinetic.*
     pub M_x_c_x_c: T,
-    /// `1.0/r_s`
-    pub c_13: T,
-    /// `b_m/r_s`
-    pub c_14: T,
-    /// `2.0/r_s`
-    pub c_15: T,
-    /// `1.0/r_p`
-    pub c_16: T,
-    /// `1.0/(cos(alpha)*r_c)`
-    pub c_17: T,
-    /// `1.0/(r_s*i_sH)`
-    pub c_18: T,
-    /// `l/(r_s*i_sH)`
-    pub c_19: T,
-    /// `-(l/(r_s*i_sH))`
-    pub c_20: T,
-    /// `0.5*I_s/(r_s*r_s)`
-    pub c_21: T,
-    /// `1.5*I_p/(r_p*r_p)`
-    pub c_22: T,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
-    pub c_23: T,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_24: T,
-    /// `0.16666666666666666*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_25: T,
-    /// `1.5*k_sp`
-    pub c_26: T,
-    /// `1.5*k_pr`
-    pub c_27: T,
+    /// `1.0/r_s` \[1/m] kinetic.sun, forces.motor
+    pub c_1_per_r_s: T,
+    /// `b_m/r_s` \[N s] kinetic.sun, forces.motor
+    pub c_b_m_per_r_s: T,
+    /// `2.0/r_s` \[1/m] kinetic.sun, forces.motor
+    pub c_2_per_r_s: T,
+    /// `1.0/r_p` \[1/m] kinetic.planets
+    pub c_1_per_r_p: T,
+    /// `1.0/(cos(alpha)*r_c)` \[1/m] kinetic.carrier, kinetic.arm
+    pub c_72jmj: T,
+    /// `1.0/(r_s*i_sH)` \[1/m] kinetic.sun, forces.motor
+    pub c_1_per_r_s_i_sH: T,
+    /// `l/(r_s*i_sH)` \[1] kinetic.sun, forces.motor
+    pub c_l_per_r_s_i_sH: T,
+    /// `-(l/(r_s*i_sH))` \[1] kinetic.sun, forces.motor
+    pub c_minus_l_per_r_s_i_sH: T,
+    /// `0.5*I_s/(r_s*r_s)` \[kg] kinetic.sun
+    pub c_tqaqf: T,
+    /// `1.5*I_p/(r_p*r_p)` \[kg] kinetic.planets
+    pub c_k4tad: T,
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))` \[kg] kinetic.planets
+    pub c_uxvby: T,
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)` \[kg] kinetic.carrier
+    pub c_r6kbz: T,
+    /// `0.16666666666666666*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)` \[kg] kinetic.arm
+    pub c_g3zhz: T,
+    /// `1.5*k_sp` \[N/m] potential.mesh_sp
+    pub c_x6cxe: T,
+    /// `1.5*k_pr` \[N/m] potential.mesh_pr
+    pub c_ydxtm: T,
     /// True if all prepared pivots of the mass matrix are positive and finite. If false, the mass matrix is not positive definite and the rates are invalid.
     pub positive_definite: bool,
 }
@@ -439,98 +439,128 @@ impl<T: Scalar> Coefficients<T> {
     pub fn prepare(parameters: &Parameters<T>) -> Self {
         let _ = core::hint::black_box(&IDENTITY);
         let m = parameters.m;
-        let s_1 = T::number(0.5) * m;
+        // [m] kinetic.*, forces.motor
+        let s_79w6g = T::number(0.5) * m;
         let z_s = parameters.z_s;
         let alpha = parameters.alpha;
-        let s_2 = cos(alpha);
-        let r_s = s_1 * z_s * s_2;
+        // [1] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_rrfp8 = cos(alpha);
+        // [m] kinetic.sun, forces.motor
+        let r_s = s_79w6g * z_s * s_rrfp8;
         let M_s = parameters.M_s;
-        let s_3 = r_s * r_s;
-        let I_s = M_s * s_3;
+        // [m^2] kinetic.sun, forces.motor
+        let s_r_s_r_s = r_s * r_s;
+        // [kg m^2] kinetic.sun
+        let I_s = M_s * s_r_s_r_s;
         let a_m = parameters.a_m;
-        let s_4 = s_2 * s_2;
+        // [1] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_z14ky = s_rrfp8 * s_rrfp8;
         let m_p = parameters.m_p;
-        let s_5 = T::number(3.0) * m_p / s_4;
+        // [kg] kinetic.planets
+        let s_hppb7 = T::number(3.0) * m_p / s_z14ky;
         let z_p = parameters.z_p;
-        let r_c = s_1 * (z_s + z_p);
-        let s_6 = r_c * r_c;
-        let s_7 = s_4 * s_6;
+        // [m] kinetic.carrier, kinetic.arm
+        let r_c = s_79w6g * (z_s + z_p);
+        // [m^2] kinetic.carrier, kinetic.arm
+        let s_r_c_r_c = r_c * r_c;
+        // [m^2] kinetic.carrier, kinetic.arm
+        let s_dmnvh = s_z14ky * s_r_c_r_c;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_6;
-        let s_8 = I_c / s_7;
+        // [kg m^2] kinetic.carrier
+        let I_c = m_c * s_r_c_r_c;
+        // [kg] kinetic.carrier
+        let s_f4jtk = I_c / s_dmnvh;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_9 = l * (l * l);
-        let s_10 = T::number(0.3333333333333333) * rho * A * s_9 / s_7;
-        let pivot_x_c = s_5 + s_8 + s_10;
-        let s_11 = pivot_reciprocal(pivot_x_c);
+        // [m^3] kinetic.arm
+        let s_l_l_l = l * (l * l);
+        // [kg] kinetic.arm
+        let s_1u3rt = T::number(0.3333333333333333) * rho * A * s_l_l_l / s_dmnvh;
+        // [kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let pivot_x_c = s_hppb7 + s_f4jtk + s_1u3rt;
+        // [1/kg] kinetic.planets, kinetic.carrier, kinetic.arm
+        let s_5f1my = pivot_reciprocal(pivot_x_c);
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let c_pr = parameters.c_pr;
         let b_pr = parameters.b_pr;
         let k_sp = parameters.k_sp;
         let k_pr = parameters.k_pr;
-        let r_p = s_1 * s_2 * z_p;
-        let s_12 = r_p * r_p;
+        // [m] kinetic.planets
+        let r_p = s_79w6g * s_rrfp8 * z_p;
+        // [m^2] kinetic.planets
+        let s_r_p_r_p = r_p * r_p;
         let M_p = parameters.M_p;
-        let I_p = M_p * s_12;
-        let s_13 = T::number(3.0) * I_p;
+        // [kg m^2] kinetic.planets
+        let I_p = M_p * s_r_p_r_p;
+        // [kg m^2] kinetic.planets
+        let s_3_I_p = T::number(3.0) * I_p;
         let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
-        let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
-        let pivot_x_pr = s_13 / s_12;
+        // [kg] kinetic.sun
+        let M_x_sp_x_sp = I_s / s_r_s_r_s;
+        // [kg] kinetic.sun
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_r_s_r_s;
+        // [kg] kinetic.planets
+        let pivot_x_pr = s_3_I_p / s_r_p_r_p;
+        // [kg] kinetic.sun, kinetic.planets
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
+        // [kg] kinetic.sun, kinetic.planets
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_10;
+        // [kg] kinetic.*
+        let M_x_c_x_c = T::number(4.0) * I_s / s_r_s_r_s + (pivot_x_pr + s_hppb7)
+            + s_f4jtk + s_1u3rt;
         let z_r = parameters.z_r;
+        // [1] kinetic.sun, forces.motor
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_14 = r_s * i_sH;
-        let s_15 = l / s_14;
+        // [m] kinetic.sun, forces.motor
+        let s_r_s_i_sH = r_s * i_sH;
+        // [1] kinetic.sun, forces.motor
+        let s_l_per_r_s_i_sH = l / s_r_s_i_sH;
         Self {
             a_m: a_m,
-            c_1: r_s * a_m / I_s,
-            c_2: s_11,
-            c_3: T::number(2.0) * s_11,
+            c_r_s_a_m_per_I_s: r_s * a_m / I_s,
+            c_5f1my: s_5f1my,
+            c_79h79: T::number(2.0) * s_5f1my,
             c_sp: c_sp,
-            c_4: T::number(3.0) * c_sp,
+            c_3_c_sp: T::number(3.0) * c_sp,
             b_sp: b_sp,
             c_pr: c_pr,
-            c_5: T::number(3.0) * c_pr,
+            c_3_c_pr: T::number(3.0) * c_pr,
             b_pr: b_pr,
             k_sp: k_sp,
-            c_6: T::number(3.0) * k_sp,
+            c_3_k_sp: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_7: T::number(3.0) * k_pr,
-            c_8: T::number(0.3333333333333333) * s_12 / I_p,
-            c_9: s_13 * s_11 / s_12,
-            c_10: b_m / I_s,
-            c_11: s_3 / I_s,
+            c_3_k_pr: T::number(3.0) * k_pr,
+            c_mttba: T::number(0.3333333333333333) * s_r_p_r_p / I_p,
+            c_en65n: s_3_I_p * s_5f1my / s_r_p_r_p,
+            c_b_m_per_I_s: b_m / I_s,
+            c_r_s_r_s_per_I_s: s_r_s_r_s / I_s,
             F_w: F_w,
-            c_12: r_s * F_w / I_s,
+            c_r_s_F_w_per_I_s: r_s * F_w / I_s,
             omega: omega,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_13: T::number(1.0) / r_s,
-            c_14: b_m / r_s,
-            c_15: T::number(2.0) / r_s,
-            c_16: T::number(1.0) / r_p,
-            c_17: T::number(1.0) / (s_2 * r_c),
-            c_18: T::number(1.0) / s_14,
-            c_19: s_15,
-            c_20: -s_15,
-            c_21: T::number(0.5) * I_s / s_3,
-            c_22: T::number(1.5) * I_p / s_12,
-            c_23: T::number(1.5) * m_p / s_4,
-            c_24: T::number(0.5) * I_c / s_7,
-            c_25: T::number(0.16666666666666666) * rho * A * s_9 / s_7,
-            c_26: T::number(1.5) * k_sp,
-            c_27: T::number(1.5) * k_pr,
+            c_1_per_r_s: T::number(1.0) / r_s,
+            c_b_m_per_r_s: b_m / r_s,
+            c_2_per_r_s: T::number(2.0) / r_s,
+            c_1_per_r_p: T::number(1.0) / r_p,
+            c_72jmj: T::number(1.0) / (s_rrfp8 * r_c),
+            c_1_per_r_s_i_sH: T::number(1.0) / s_r_s_i_sH,
+            c_l_per_r_s_i_sH: s_l_per_r_s_i_sH,
+            c_minus_l_per_r_s_i_sH: -s_l_per_r_s_i_sH,
+            c_tqaqf: T::number(0.5) * I_s / s_r_s_r_s,
+            c_k4tad: T::number(1.5) * I_p / s_r_p_r_p,
+            c_uxvby: T::number(1.5) * m_p / s_z14ky,
+            c_r6kbz: T::number(0.5) * I_c / s_dmnvh,
+            c_g3zhz: T::number(0.16666666666666666) * rho * A * s_l_l_l / s_dmnvh,
+            c_x6cxe: T::number(1.5) * k_sp,
+            c_ydxtm: T::number(1.5) * k_pr,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -546,46 +576,46 @@ impl Coefficients {
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             a_m: T::number(self.a_m),
-            c_1: T::number(self.c_1),
-            c_2: T::number(self.c_2),
-            c_3: T::number(self.c_3),
+            c_r_s_a_m_per_I_s: T::number(self.c_r_s_a_m_per_I_s),
+            c_5f1my: T::number(self.c_5f1my),
+            c_79h79: T::number(self.c_79h79),
             c_sp: T::number(self.c_sp),
-            c_4: T::number(self.c_4),
+            c_3_c_sp: T::number(self.c_3_c_sp),
             b_sp: T::number(self.b_sp),
             c_pr: T::number(self.c_pr),
-            c_5: T::number(self.c_5),
+            c_3_c_pr: T::number(self.c_3_c_pr),
             b_pr: T::number(self.b_pr),
             k_sp: T::number(self.k_sp),
-            c_6: T::number(self.c_6),
+            c_3_k_sp: T::number(self.c_3_k_sp),
             k_pr: T::number(self.k_pr),
-            c_7: T::number(self.c_7),
-            c_8: T::number(self.c_8),
-            c_9: T::number(self.c_9),
-            c_10: T::number(self.c_10),
-            c_11: T::number(self.c_11),
+            c_3_k_pr: T::number(self.c_3_k_pr),
+            c_mttba: T::number(self.c_mttba),
+            c_en65n: T::number(self.c_en65n),
+            c_b_m_per_I_s: T::number(self.c_b_m_per_I_s),
+            c_r_s_r_s_per_I_s: T::number(self.c_r_s_r_s_per_I_s),
             F_w: T::number(self.F_w),
-            c_12: T::number(self.c_12),
+            c_r_s_F_w_per_I_s: T::number(self.c_r_s_F_w_per_I_s),
             omega: T::number(self.omega),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
-            c_13: T::number(self.c_13),
-            c_14: T::number(self.c_14),
-            c_15: T::number(self.c_15),
-            c_16: T::number(self.c_16),
-            c_17: T::number(self.c_17),
-            c_18: T::number(self.c_18),
-            c_19: T::number(self.c_19),
-            c_20: T::number(self.c_20),
-            c_21: T::number(self.c_21),
-            c_22: T::number(self.c_22),
-            c_23: T::number(self.c_23),
-            c_24: T::number(self.c_24),
-            c_25: T::number(self.c_25),
-            c_26: T::number(self.c_26),
-            c_27: T::number(self.c_27),
+            c_1_per_r_s: T::number(self.c_1_per_r_s),
+            c_b_m_per_r_s: T::number(self.c_b_m_per_r_s),
+            c_2_per_r_s: T::number(self.c_2_per_r_s),
+            c_1_per_r_p: T::number(self.c_1_per_r_p),
+            c_72jmj: T::number(self.c_72jmj),
+            c_1_per_r_s_i_sH: T::number(self.c_1_per_r_s_i_sH),
+            c_l_per_r_s_i_sH: T::number(self.c_l_per_r_s_i_sH),
+            c_minus_l_per_r_s_i_sH: T::number(self.c_minus_l_per_r_s_i_sH),
+            c_tqaqf: T::number(self.c_tqaqf),
+            c_k4tad: T::number(self.c_k4tad),
+            c_uxvby: T::number(self.c_uxvby),
+            c_r6kbz: T::number(self.c_r6kbz),
+            c_g3zhz: T::number(self.c_g3zhz),
+            c_x6cxe: T::number(self.c_x6cxe),
+            c_ydxtm: T::number(self.c_ydxtm),
             positive_definite: self.positive_definite,
         }
     }
@@ -604,7 +634,8 @@ pub fn rates_into<T: Scalar>(
 ) {
     let x_sp_dot = state[3];
     let x_sp = state[0];
-    let s_1 = coefficients.c_4
+    // [N] forces.damping_sp
+    let s_9a1vw = coefficients.c_3_c_sp
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
@@ -613,24 +644,36 @@ pub fn rates_into<T: Scalar>(
         );
     let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_2 = coefficients.c_5
+    // [N] forces.damping_pr
+    let s_rt6xq = coefficients.c_3_c_pr
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_3 = coefficients.c_6 * deadzone(x_sp, coefficients.b_sp);
-    let s_4 = coefficients.c_7 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = s_1 + s_2 + s_3 + s_4;
-    let s_6 = s_1 + s_3;
-    let x_pr_ddot = coefficients.c_8 * (s_6 - s_2 - s_4 - coefficients.c_9 * s_5);
+    // [N] potential.mesh_sp
+    let s_jbryk = coefficients.c_3_k_sp * deadzone(x_sp, coefficients.b_sp);
+    // [N] potential.mesh_pr
+    let s_hfjv2 = coefficients.c_3_k_pr * deadzone(x_pr, coefficients.b_pr);
+    // [N] potential.mesh_sp, potential.mesh_pr, forces.damping_sp, forces.damping_pr
+    let s_byz6c = s_9a1vw + s_rt6xq + s_jbryk + s_hfjv2;
+    // [N] potential.mesh_sp, forces.damping_sp
+    let s_3tfc6 = s_9a1vw + s_jbryk;
+    // [m/s^2] kinetic.planets, kinetic.carrier, kinetic.arm, potential.mesh_sp, potential.mesh_pr, forces.damping_sp, forces.damping_pr
+    let x_pr_ddot = coefficients.c_mttba
+        * (s_3tfc6 - s_rt6xq - s_hfjv2 - coefficients.c_en65n * s_byz6c);
     let x_c_dot = state[5];
-    let s_7 = coefficients.c_1 - coefficients.c_3 * s_5 - x_pr_ddot
-        - coefficients.c_10 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
-        - coefficients.c_11 * s_6;
-    let x_sp_ddot = s_7 + coefficients.c_12 * sin(coefficients.omega * t);
-    let x_c_ddot = coefficients.c_2 * s_5;
+    // [m/s^2] kinetic.*, potential.mesh_sp, potential.mesh_pr, forces.*
+    let s_kdtcs = coefficients.c_r_s_a_m_per_I_s - coefficients.c_79h79 * s_byz6c
+        - x_pr_ddot
+        - coefficients.c_b_m_per_I_s * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_r_s_r_s_per_I_s * s_3tfc6;
+    // [m/s^2] kinetic.*, potential.mesh_sp, potential.mesh_pr, forces.*
+    let x_sp_ddot = s_kdtcs
+        + coefficients.c_r_s_F_w_per_I_s * sin(coefficients.omega * t);
+    // [m/s^2] kinetic.planets, kinetic.carrier, kinetic.arm, potential.mesh_sp, potential.mesh_pr, forces.damping_sp, forces.damping_pr
+    let x_c_ddot = coefficients.c_5f1my * s_byz6c;
     for i in 0..3 {
         rates[i] = state[3 + i];
     }
@@ -675,7 +718,8 @@ pub fn observables<T: Scalar>(
 ) -> [T; OBSERVABLES] {
     let x_sp_dot = state[3];
     let x_sp = state[0];
-    let s_1 = T::select_greater(
+    // [m/s] forces.damping_sp
+    let s_kzaxq = T::select_greater(
         contact(x_sp, coefficients.b_sp),
         T::number(0.0),
         x_sp_dot,
@@ -683,40 +727,66 @@ pub fn observables<T: Scalar>(
     );
     let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_2 = T::select_greater(
+    // [m/s] forces.damping_pr
+    let s_vt299 = T::select_greater(
         contact(x_pr, coefficients.b_pr),
         T::number(0.0),
         x_pr_dot,
         T::number(0.0),
     );
-    let s_3 = deadzone(x_sp, coefficients.b_sp);
-    let s_4 = deadzone(x_pr, coefficients.b_pr);
+    // [m] potential.mesh_sp
+    let s_kc16t = deadzone(x_sp, coefficients.b_sp);
+    // [m] potential.mesh_pr
+    let s_g2jy4 = deadzone(x_pr, coefficients.b_pr);
     let x_c_dot = state[5];
-    let s_5 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_14 * s_5
+    // [m/s] kinetic.sun, forces.motor
+    let s_zjdaz = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    // [N m] forces.motor
+    let motor = coefficients.a_m - coefficients.c_b_m_per_r_s * s_zjdaz
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_6 = coefficients.c_13 * motor;
-    let s_7 = x_sp + x_pr;
+    // [N] kinetic.sun, forces.motor
+    let s_1_per_r_s_motor = coefficients.c_1_per_r_s * motor;
+    // [m] kinetic.sun, forces.motor
+    let s_x_sp_plus_x_pr = x_sp + x_pr;
     let x_c = state[2];
-    let x_s = s_7 + T::number(2.0) * x_c;
-    let theta_s = coefficients.c_13 * x_s;
+    // [m] kinetic.sun, forces.motor
+    let x_s = s_x_sp_plus_x_pr + T::number(2.0) * x_c;
+    // [1] kinetic.sun, forces.motor
+    let theta_s = coefficients.c_1_per_r_s * x_s;
+    // [m] kinetic.planets
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_16 * x_p;
-    let theta_c = coefficients.c_17 * x_c;
-    let dtheta = coefficients.c_18 * s_7;
-    let f_la = coefficients.c_19 * s_7;
-    let f_la_signed = coefficients.c_20 * s_7;
-    let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
-    let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
-    let s_8 = x_pr_dot + x_c_dot;
-    let s_9 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_22 * (s_8 * s_8) + coefficients.c_23 * s_9;
-    let s_10 = coefficients.c_21 * (s_5 * s_5) + T_planets + coefficients.c_24 * s_9
-        + coefficients.c_25 * s_9
-        + (coefficients.c_26 * (s_3 * s_3) + coefficients.c_27 * (s_4 * s_4));
-    let s_11 = x_sp_dot * (s_6 - coefficients.c_4 * s_1)
-        + x_pr_dot * (s_6 - coefficients.c_5 * s_2)
-        + coefficients.c_15 * (x_c_dot * motor);
+    // [1] kinetic.planets
+    let theta_p = coefficients.c_1_per_r_p * x_p;
+    // [1] kinetic.carrier, kinetic.arm
+    let theta_c = coefficients.c_72jmj * x_c;
+    // [1] kinetic.sun, forces.motor
+    let dtheta = coefficients.c_1_per_r_s_i_sH * s_x_sp_plus_x_pr;
+    // [m] kinetic.sun, forces.motor
+    let f_la = coefficients.c_l_per_r_s_i_sH * s_x_sp_plus_x_pr;
+    // [m] kinetic.sun, forces.motor
+    let f_la_signed = coefficients.c_minus_l_per_r_s_i_sH * s_x_sp_plus_x_pr;
+    // [N] potential.mesh_sp, forces.damping_sp
+    let F_sp = coefficients.c_sp * s_kzaxq + coefficients.k_sp * s_kc16t;
+    // [N] potential.mesh_pr, forces.damping_pr
+    let F_pr = coefficients.c_pr * s_vt299 + coefficients.k_pr * s_g2jy4;
+    // [m/s] kinetic.planets
+    let s_x_pr_dot_plus_x_c_dot = x_pr_dot + x_c_dot;
+    // [m^2/s^2] kinetic.planets, kinetic.carrier, kinetic.arm
+    let s_x_c_dot_x_c_dot = x_c_dot * x_c_dot;
+    // [N m] kinetic.planets
+    let T_planets = coefficients.c_k4tad
+        * (s_x_pr_dot_plus_x_c_dot * s_x_pr_dot_plus_x_c_dot)
+        + coefficients.c_uxvby * s_x_c_dot_x_c_dot;
+    // [N m] kinetic.*, potential.mesh_sp, potential.mesh_pr, forces.motor
+    let s_vdj5m = coefficients.c_tqaqf * (s_zjdaz * s_zjdaz) + T_planets
+        + coefficients.c_r6kbz * s_x_c_dot_x_c_dot
+        + coefficients.c_g3zhz * s_x_c_dot_x_c_dot
+        + (coefficients.c_x6cxe * (s_kc16t * s_kc16t)
+            + coefficients.c_ydxtm * (s_g2jy4 * s_g2jy4));
+    // [W] kinetic.sun, forces.*
+    let s_sv6wc = x_sp_dot * (s_1_per_r_s_motor - coefficients.c_3_c_sp * s_kzaxq)
+        + x_pr_dot * (s_1_per_r_s_motor - coefficients.c_3_c_pr * s_vt299)
+        + coefficients.c_2_per_r_s * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -727,8 +797,8 @@ pub fn observables<T: Scalar>(
         f_la_signed,
         F_sp,
         F_pr,
-        s_10,
-        s_11,
+        s_vdj5m,
+        s_sv6wc,
     ]
 }
 
@@ -744,17 +814,28 @@ pub fn energy<T: Scalar>(
     let x_sp = state[0];
     let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_1 = deadzone(x_sp, coefficients.b_sp);
-    let s_2 = deadzone(x_pr, coefficients.b_pr);
+    // [m] potential.mesh_sp
+    let s_kc16t = deadzone(x_sp, coefficients.b_sp);
+    // [m] potential.mesh_pr
+    let s_g2jy4 = deadzone(x_pr, coefficients.b_pr);
     let x_c_dot = state[5];
-    let s_3 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
-    let s_4 = x_pr_dot + x_c_dot;
-    let s_5 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_22 * (s_4 * s_4) + coefficients.c_23 * s_5;
-    let s_6 = coefficients.c_21 * (s_3 * s_3) + T_planets + coefficients.c_24 * s_5
-        + coefficients.c_25 * s_5
-        + (coefficients.c_26 * (s_1 * s_1) + coefficients.c_27 * (s_2 * s_2));
-    s_6
+    // [m/s] kinetic.sun, forces.motor
+    let s_zjdaz = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    // [m/s] kinetic.planets
+    let s_x_pr_dot_plus_x_c_dot = x_pr_dot + x_c_dot;
+    // [m^2/s^2] kinetic.planets, kinetic.carrier, kinetic.arm
+    let s_x_c_dot_x_c_dot = x_c_dot * x_c_dot;
+    // [N m] kinetic.planets
+    let T_planets = coefficients.c_k4tad
+        * (s_x_pr_dot_plus_x_c_dot * s_x_pr_dot_plus_x_c_dot)
+        + coefficients.c_uxvby * s_x_c_dot_x_c_dot;
+    // [N m] kinetic.*, potential.mesh_sp, potential.mesh_pr, forces.motor
+    let s_vdj5m = coefficients.c_tqaqf * (s_zjdaz * s_zjdaz) + T_planets
+        + coefficients.c_r6kbz * s_x_c_dot_x_c_dot
+        + coefficients.c_g3zhz * s_x_c_dot_x_c_dot
+        + (coefficients.c_x6cxe * (s_kc16t * s_kc16t)
+            + coefficients.c_ydxtm * (s_g2jy4 * s_g2jy4));
+    s_vdj5m
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -770,13 +851,16 @@ pub fn power<T: Scalar>(
     let x_pr_dot = state[4];
     let x_pr = state[1];
     let x_c_dot = state[5];
+    // [N m] forces.motor
     let motor = coefficients.a_m
-        - coefficients.c_14 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_b_m_per_r_s * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_13 * motor;
-    let s_2 = x_sp_dot
-        * (s_1
-            - coefficients.c_4
+    // [N] kinetic.sun, forces.motor
+    let s_1_per_r_s_motor = coefficients.c_1_per_r_s * motor;
+    // [W] kinetic.sun, forces.*
+    let s_eap7n = x_sp_dot
+        * (s_1_per_r_s_motor
+            - coefficients.c_3_c_sp
                 * T::select_greater(
                     contact(x_sp, coefficients.b_sp),
                     T::number(0.0),
@@ -784,15 +868,15 @@ pub fn power<T: Scalar>(
                     T::number(0.0),
                 ))
         + x_pr_dot
-            * (s_1
-                - coefficients.c_5
+            * (s_1_per_r_s_motor
+                - coefficients.c_3_c_pr
                     * T::select_greater(
                         contact(x_pr, coefficients.b_pr),
                         T::number(0.0),
                         x_pr_dot,
                         T::number(0.0),
                     ));
-    s_2 + coefficients.c_15 * (x_c_dot * motor)
+    s_eap7n + coefficients.c_2_per_r_s * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change when one of these changes sign.

@@ -69,3 +69,22 @@ fn emitted_c_has_no_writable_static_data() {
         }
     }
 }
+
+/// A field `I` compiles if the caller includes `<complex.h>` before the header, and the macro remains.
+#[test]
+fn field_with_the_name_of_a_complex_macro_compiles() {
+    if !has_compilers() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let text = pendulum("rod", "t", "d", "I", "u", "theta");
+    let files = c::emit(&program(&text, 0, &supported_outputs())).expect("emitted");
+    std::fs::write(folder.join("rod.h"), files.header).expect("written");
+    std::fs::write(folder.join("rod.c"), files.source).expect("written");
+    let main = "#include <complex.h>\n#include \"rod.h\"\n\
+                int main(void) {\n    const double complex z = 2.0 * I;\n    return cimag(z) == 2.0 ? 0 : 1;\n}\n";
+    std::fs::write(folder.join("main.c"), main).expect("written");
+    run(compiler(folder).args(["-Wno-pedantic", "main.c", "rod.c", "-lm", "-o", "main"]));
+    run(&mut Command::new(folder.join("main")));
+}

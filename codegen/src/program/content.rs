@@ -1,0 +1,205 @@
+//! Names of values by their content: the same computation has the same name in every file, whatever stands before it.
+
+use super::{Argument, Op, Program, ValueId, Variable};
+
+/// Largest number of characters of a name that spells its formula.
+const MAX_SPELLED_LENGTH: usize = 24;
+/// Largest number of operands of a formula that a name spells.
+const MAX_SPELLED_OPERANDS: usize = 4;
+/// Digits of hashes in names: letters and digits without the similar ones.
+const DIGITS: &[u8; 32] = b"abcdefghjkmnpqrstuvwxyz123456789";
+/// Number of digits of a hash in a name. Names that agree in all of them get more.
+const HASH_LENGTH: usize = 5;
+
+/// Contents of the values of a program. Named operands count by their names, so that a change of a named quantity keeps
+/// the names of the values that use it.
+#[derive(Clone, Debug)]
+pub struct Contents {
+    hashes: Vec<u64>,
+}
+
+impl Contents {
+    /// Computes the hash of each value.
+    pub fn new(program: &Program) -> Self {
+        let mut hashes: Vec<u64> = Vec::with_capacity(program.values.len());
+        let mut named: Vec<u64> = Vec::with_capacity(program.values.len());
+        for value in &program.values {
+            let hash = hash_operation(program, &value.op, &named);
+            hashes.push(hash);
+            named.push(match &value.name {
+                Some(name) => Fnv::new("name").text(name).finish(),
+                None => hash,
+            });
+        }
+        Self { hashes }
+    }
+
+    /// Returns names for a value, best first: its formula if that is short, then hashes of its content with more and more
+    /// digits.
+    pub fn names(&self, program: &Program, id: ValueId) -> impl Iterator<Item = String> {
+        let hash = self.hashes[id.index()];
+        let digit = move |place: usize| DIGITS[(hash >> (5 * place)) as usize % 32] as char;
+        let hashed = (HASH_LENGTH..=12).map(move |count| (0..count).map(digit).collect());
+        spell_formula(program, id).into_iter().chain(hashed)
+    }
+}
+
+/// Hash by Fowler, Noll and Vo, 64 bits, version 1a.
+struct Fnv(u64);
+
+impl Fnv {
+    fn new(kind: &str) -> Self {
+        Self(0xcbf2_9ce4_8422_2325).text(kind)
+    }
+
+    fn number(mut self, number: u64) -> Self {
+        for byte in number.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+        self
+    }
+
+    fn text(mut self, text: &str) -> Self {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+        self.number(text.len() as u64)
+    }
+
+    /// Returns the hash with its bits mixed, because the low bits of products depend on few bits.
+    fn finish(self) -> u64 {
+        let mixed = (self.0 ^ (self.0 >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        mixed ^ (mixed >> 29)
+    }
+}
+
+fn hash_operation(program: &Program, op: &Op, operands: &[u64]) -> u64 {
+    let hash = Fnv::new(kind(op));
+    let hash = match op {
+        Op::Constant(number) => hash.number(number.to_bits()),
+        Op::Call(function, _) => hash.text(function.name()),
+        Op::Apply { transposed, .. } => hash.number(u64::from(*transposed)),
+        Op::Assemble {
+            diagonal,
+            outer,
+            matrices,
+        } => {
+            let shape = hash
+                .number(u64::from(diagonal.is_some()))
+                .number(outer.len() as u64);
+            (matrices.iter()).fold(shape, |hash, part| hash.number(u64::from(part.transposed)))
+        }
+        _ => match leaf_name(program, op) {
+            Some(name) => hash.text(&name),
+            None => hash,
+        },
+    };
+    let all = op.operands().into_iter();
+    all.fold(hash, |hash, id| hash.number(operands[id.index()]))
+        .finish()
+}
+
+fn kind(op: &Op) -> &'static str {
+    match op {
+        Op::Constant(_) => "constant",
+        Op::Table(_) => "table",
+        Op::Parameter(_) => "parameter",
+        Op::Coordinate(_) => "coordinate",
+        Op::Rate(_) => "rate",
+        Op::ModeCoordinates(_) => "modes",
+        Op::ModeRates(_) => "mode rates",
+        Op::State(_) => "state",
+        Op::Input(_) => "input",
+        Op::Time => "time",
+        Op::Argument(Argument::Accelerations, _) => "accelerations",
+        Op::Argument(Argument::Direction, _) => "direction",
+        Op::Argument(Argument::PointDirection, _) => "point direction",
+        Op::Argument(Argument::Weights, _) => "weights",
+        Op::Negate(_) => "negate",
+        Op::Add(..) => "add",
+        Op::Subtract(..) => "subtract",
+        Op::Multiply(..) => "multiply",
+        Op::Divide(..) => "divide",
+        Op::Power(..) => "power",
+        Op::Call(..) => "call",
+        Op::Select { .. } => "select",
+        Op::PivotReciprocal(_) => "pivot reciprocal",
+        Op::Total(_) => "total",
+        Op::Apply { .. } => "apply",
+        Op::Gram { .. } => "gram",
+        Op::GramDiagonal { .. } => "gram diagonal",
+        Op::Assemble { .. } => "assemble",
+        Op::Cholesky(_) => "cholesky",
+        Op::CholeskySolve(..) => "cholesky solve",
+    }
+}
+
+/// Returns the name of a quantity that is given to the program.
+pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
+    let variable = |variable: &Variable| match variable {
+        Variable::Time => "t".to_owned(),
+        Variable::Coordinate(index) => program.coordinates[*index].name.clone(),
+        Variable::Rate(index) => format!("{}_dot", program.coordinates[*index].name),
+        Variable::ModeCoordinates(field) => program.fields[*field].coordinates.clone(),
+        Variable::ModeRates(field) => format!("{}_dot", program.fields[*field].coordinates),
+        Variable::State(index) => program.first_order[*index].name.clone(),
+        Variable::Input(index) => program.inputs[*index].name.clone(),
+        Variable::Parameter(index) => program.parameters[index.index()].quantity.name.clone(),
+    };
+    Some(match op {
+        Op::Table(place) => program.tables[*place].name.clone(),
+        Op::Parameter(place) => program.parameters[*place].quantity.name.clone(),
+        Op::Coordinate(index) => variable(&Variable::Coordinate(*index)),
+        Op::Rate(index) => variable(&Variable::Rate(*index)),
+        Op::ModeCoordinates(field) => variable(&Variable::ModeCoordinates(*field)),
+        Op::ModeRates(field) => variable(&Variable::ModeRates(*field)),
+        Op::State(index) => variable(&Variable::State(*index)),
+        Op::Input(index) => variable(&Variable::Input(*index)),
+        Op::Time => "t".to_owned(),
+        Op::Argument(_, of) => variable(of),
+        _ => return None,
+    })
+}
+
+/// Spells a short formula as a part of a name: `3*k_sp` as `3_k_sp`, `l/r_s` as `l_per_r_s`.
+fn spell_formula(program: &Program, id: ValueId) -> Option<String> {
+    let mut operands = 0;
+    let text = spell(program, id, true, &mut operands)?;
+    let fits = text.len() <= MAX_SPELLED_LENGTH && operands > 1;
+    fits.then_some(text)
+}
+
+fn spell(program: &Program, id: ValueId, root: bool, operands: &mut usize) -> Option<String> {
+    let value = program.value(id);
+    let name = match (&value.name, root) {
+        (Some(name), false) => Some(name.clone()),
+        _ => match &value.op {
+            Op::Constant(number) if *number >= 0.0 && *number < 1e3 && number.fract() == 0.0 => {
+                Some(format!("{number}"))
+            }
+            Op::Argument(..) => None,
+            op => leaf_name(program, op),
+        },
+    };
+    if let Some(name) = name {
+        *operands += 1;
+        return (*operands <= MAX_SPELLED_OPERANDS).then_some(name);
+    }
+    let is_sum = |id: ValueId| {
+        let value = program.value(id);
+        value.name.is_none() && matches!(value.op, Op::Add(..) | Op::Subtract(..) | Op::Negate(_))
+    };
+    let (a, word, b) = match value.op {
+        Op::Multiply(a, b) if !is_sum(a) && !is_sum(b) => (a, "_", b),
+        Op::Divide(a, b) if !is_sum(a) && !is_sum(b) => (a, "_per_", b),
+        Op::Add(a, b) => (a, "_plus_", b),
+        Op::Subtract(a, b) if !is_sum(b) => (a, "_minus_", b),
+        Op::Negate(a) if !is_sum(a) => {
+            return Some(format!("minus_{}", spell(program, a, false, operands)?));
+        }
+        _ => return None,
+    };
+    let a = spell(program, a, false, operands)?;
+    let b = spell(program, b, false, operands)?;
+    Some(format!("{a}{word}{b}"))
+}
