@@ -117,7 +117,8 @@ impl Outputs for DerivedOutputs {
     }
 }
 
-fn dense<N>(jacobian: &Jacobian<N>, nonzeros: &[f64]) -> DMatrix<f64> {
+/// Returns the matrix with these structural nonzeros.
+pub(crate) fn dense<N>(jacobian: &Jacobian<N>, nonzeros: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(jacobian.rows, jacobian.columns);
     for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
         for row in 0..entry.rows {

@@ -2,12 +2,13 @@
 //! parameters, conversions from arrays, preparation with other parameters, and all functions at zeros, in the domain
 //! and at large values, in double and in single precision, bit for bit.
 
-use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
 use eomgen_codegen::statements::{Indices, coefficient_values, indices};
 
 use super::linked_program::{count_differences, format_bits};
 use crate::certificate::Worst;
+use crate::derived_outputs::dense;
 use crate::random::Random;
 use crate::sampler::Sample;
 
@@ -182,7 +183,8 @@ impl<'p> Calls<'p> {
                 format!("positive_definite, call {count}"),
                 definite.to_string(),
             ));
-            for (name, numbers) in results(&mut evaluator, point).into_iter().take(functions) {
+            let all = results(&mut evaluator, point, &|number| precision.round(number));
+            for (name, numbers) in all.into_iter().take(functions) {
                 // The evaluator adds two numbers of a product in double precision.
                 let numbers: Vec<f64> = numbers.iter().map(round).collect();
                 lines.push((format!("{name}, call {count}"), format_bits(&numbers)));
@@ -214,9 +216,14 @@ fn arguments(count: usize) -> Vec<f64> {
     (0..count).map(argument).collect()
 }
 
-/// Returns names and results of all functions with an array as result, in the order of the harnesses.
-fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>)> {
-    let program = evaluator.program();
+/// Returns names and results of all functions, in the order of the harnesses. `round` rounds to the precision of the
+/// evaluator.
+fn results(
+    evaluator: &mut Evaluator,
+    point: Point<'_>,
+    round: &dyn Fn(f64) -> f64,
+) -> Vec<(String, Vec<f64>)> {
+    let program = &evaluator.program().clone();
     let (states, degrees, guards) = (
         program.states(),
         program.degrees_of_freedom(),
@@ -276,7 +283,82 @@ fn results(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<(String, Vec<f64>
     if evaluator.vector_jacobian_product_by_parameters(point, &weights, &mut product) {
         add("vector_jacobian_product_by_parameters", product);
     }
+    let has = |output: Output| program.outputs.kinds.contains(&output);
+    if has(Output::Linearisation) {
+        let rates = all[0].1.clone();
+        let observables = all[1].1.clone();
+        all.push(("linearise, rates".to_owned(), rates));
+        all.push(("linearise, observables".to_owned(), observables));
+        for name in linearised(program) {
+            let found = program.outputs.jacobians.iter().enumerate();
+            let found = found.clone().find(|(_, jacobian)| jacobian.name == name);
+            let Some((place, jacobian)) = found else {
+                continue;
+            };
+            let mut nonzeros = room(jacobian.nonzeros());
+            evaluator.jacobian(place, point, &mut nonzeros);
+            // nalgebra stores columns, C rows.
+            let matrix = dense(jacobian, &nonzeros).transpose();
+            all.push((format!("linearise, {name}"), matrix.as_slice().to_vec()));
+        }
+    }
+    if has(Output::Regimes) {
+        let guards = all[4].1.iter().take(SURFACES_OF_A_REGIME).enumerate();
+        let set = guards.filter(|(_, guard)| **guard > 0.0);
+        let regime: u32 = set.map(|(bit, _)| 1_u32 << bit).sum();
+        all.push(("regime".to_owned(), vec![f64::from(regime)]));
+        let rates = all[0].1.clone();
+        all.push(("rates_in_regime".to_owned(), rates));
+    }
+    if has(Output::Step) {
+        let stepped = step(evaluator, point, round);
+        all.push(("step".to_owned(), stepped));
+    }
     all
+}
+
+/// Step of the harnesses in s, exact in any precision.
+const STEP: f64 = 1.0 / 1024.0;
+
+/// Returns the state after one step of the classical Runge-Kutta method, with every operation rounded.
+fn step(evaluator: &mut Evaluator, point: Point<'_>, round: &dyn Fn(f64) -> f64) -> Vec<f64> {
+    let Point { t, state, inputs } = point;
+    let (half, sixth) = (round(0.5 * STEP), round(STEP / 6.0));
+    let mut slopes: Vec<Vec<f64>> = Vec::new();
+    for (time, length) in [(0.0, 0.0), (half, half), (half, half), (STEP, STEP)] {
+        let moved: Vec<f64> = match slopes.last() {
+            Some(slope) => (state.iter().zip(slope))
+                .map(|(number, slope)| round(number + round(length * slope)))
+                .collect(),
+            None => state.to_vec(),
+        };
+        let mut rates = vec![0.0; state.len()];
+        let at = Point {
+            t: round(t + time),
+            state: &moved,
+            inputs,
+        };
+        evaluator.rates(at, &mut rates);
+        slopes.push(rates.into_iter().map(round).collect());
+    }
+    let next = state.iter().enumerate().map(|(i, number)| {
+        let inner = round(slopes[1][i] + slopes[2][i]);
+        let outer = round(slopes[0][i] + slopes[3][i]);
+        round(number + round(sixth * round(outer + round(2.0 * inner))))
+    });
+    next.collect()
+}
+
+/// Returns the names of the Jacobians in a linearisation that have columns.
+fn linearised(program: &Program) -> Vec<&'static str> {
+    let names = [
+        "rates_by_state",
+        "rates_by_inputs",
+        "observables_by_state",
+        "observables_by_inputs",
+    ];
+    let has_columns = |name: &&str| !name.ends_with("inputs") || !program.inputs.is_empty();
+    names.into_iter().filter(has_columns).collect()
 }
 
 /// Returns the lines of sizes, names, indices, default parameters and conversions from arrays.
@@ -408,6 +490,49 @@ pub fn c_harness(program: &Program, name: &str) -> String {
             parameters.len()
         );
     }
+    let has = |output: Output| outputs.kinds.contains(&output);
+    if has(Output::Linearisation) {
+        calls +=
+            &format!("        static NAME_linearisation about; NAME_linearise({at}, &about);\n");
+        calls += &format!("        show(about.rates, {states});\n");
+        calls += &format!(
+            "        show(about.observables, {});\n",
+            program.observables.len()
+        );
+        for name in linearised(program) {
+            let (matrix, rows) = match name {
+                "rates_by_state" => ("A", states),
+                "rates_by_inputs" => ("B", states),
+                "observables_by_state" => ("C", program.observables.len()),
+                _ => ("D", program.observables.len()),
+            };
+            let columns = match name.ends_with("state") {
+                true => states,
+                false => inputs.len(),
+            };
+            calls += &format!("        show(&about.{matrix}[0][0], {});\n", rows * columns);
+        }
+    }
+    if has(Output::Regimes) {
+        // On a surface, the rates in a regime are those of one side.
+        let unused = match guards {
+            0 => String::new(),
+            _ => format!(
+                "NAME_guards({at}, out); for (int k = 0; k < {guards}; ++k) {{ if (out[k] == 0) {{ is_on_surface = 1; }} }} "
+            ),
+        };
+        calls += &format!(
+            "        {{ int is_on_surface = 0; const uint32_t regime = NAME_regime({at}); {unused}\
+             out[0] = (NAME_real)regime; show(out, 1); \
+             if (is_on_surface) {{ NAME_rates({at}, out); }} else {{ NAME_rates_in_regime({at}, regime, out); }} \
+             show(out, {states}); }}\n"
+        );
+    }
+    if has(Output::Step) {
+        calls += &format!(
+            "        NAME_step(t[0], (NAME_real){STEP:?}, state, &inputs, &coefficients); show(state, {states});\n"
+        );
+    }
     let jacobians = outputs.jacobians.iter().map(|jacobian| jacobian.nonzeros());
     let room = jacobians
         .max()
@@ -460,6 +585,27 @@ pub fn rust_harness(program: &Program, emitted: &str) -> String {
     };
     interface += "    let parameters = model::Parameters::default();\n";
     interface += &show("parameters", parameters().collect());
+    // Types without numbers have no conversion.
+    if !program.parameters.is_empty() {
+        let list = |of: &str, end: &str| -> String {
+            let fields = parameters().map(|field| format!("{of}.{field}{end}"));
+            fields.collect::<Vec<_>>().join(", ")
+        };
+        interface += &format!(
+            "    let single = parameters.cast::<f32>();\n    assert!([{}] == [{}], \"conversion of the parameters\");\n",
+            list("single", ""),
+            list("parameters", " as f32")
+        );
+    }
+    if !program.inputs.is_empty() {
+        let fields: Vec<String> = inputs()
+            .map(|field| format!("zero.{field} == 0.0"))
+            .collect();
+        interface += &format!(
+            "    let zero = model::Inputs::<f64>::default();\n    assert!({}, \"default inputs\");\n",
+            fields.join(" && ")
+        );
+    }
     interface += &format!(
         "    let parameters = model::Parameters::from({});\n",
         numbers(program.parameters.len())
@@ -481,6 +627,18 @@ pub fn rust_harness(program: &Program, emitted: &str) -> String {
             } else {
                 ""
             },
+        )
+        .replace(
+            "/*PROBE*/",
+            if has_coefficients {
+                ".cast::<Probe>()"
+            } else {
+                ""
+            },
+        )
+        .replace(
+            "/*OF PROBE*/",
+            if has_coefficients { "<Probe>" } else { "" },
         )
         .replace("/*OF T*/", if has_coefficients { "<T>" } else { "" })
 }
