@@ -7,6 +7,7 @@ mod build;
 mod comparison;
 mod description;
 mod hashes;
+mod interface;
 mod manifest;
 mod options;
 mod write;
@@ -60,7 +61,7 @@ pub fn run(options: &Options<'_>) -> Result {
         );
         result.insert(variant, built);
     }
-    let root = write::root_module(&family);
+    let root = write::root_files(&family);
     let mut different: BTreeSet<String> = write::different_files(&built, &root, options.out);
     let removed = manifest.files_not_in(&result, &root);
     for path in removed

@@ -4,38 +4,51 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::build::Built;
-use super::description::{Family, RustPackaging};
+use super::description::{Family, Precision, RustPackaging};
 use super::hashes::hash_file;
+use super::interface::{self, CVariant};
 use super::manifest::{self, Manifest};
 use crate::arguments::Target;
 use crate::error::{Error, Result, warn};
 use crate::output::write_file;
 
-/// Returns the file that declares the modules of a family; none without modules.
-pub fn root_module(family: &Family) -> BTreeMap<String, Vec<u8>> {
+/// Returns the files of the whole family: the modules with their trait, and the tables of the C in double precision.
+pub fn root_files(family: &Family) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let is_module = |packaging: RustPackaging| packaging == RustPackaging::Module;
+    let variants = family.variants.iter();
+    let modules = variants.filter(|v| v.has(Target::Rust) && is_module(v.packaging));
     let mut text = format!(
         "//! Variants of the family `{}`, emitted by `eomgen family`. Do not edit: generate again.\n\n\
          #![allow(dead_code)]\n\n",
         family.name
     );
-    let is_module = |packaging: RustPackaging| packaging == RustPackaging::Module;
-    let variants = family
-        .variants
-        .iter()
-        .filter(|v| v.has(Target::Rust) && is_module(v.packaging));
-    let mut count = 0;
-    for variant in variants {
-        count += 1;
+    for variant in modules.clone() {
         text += "#[rustfmt::skip]\n";
         if variant.prefix != variant.name {
             text += &format!("#[path = \"{}/mod.rs\"]\n", variant.name);
         }
         text += &format!("pub mod {};\n", variant.prefix);
     }
-    match count {
-        0 => BTreeMap::new(),
-        _ => BTreeMap::from([("mod.rs".to_owned(), text.into_bytes())]),
+    if modules.clone().next().is_some() {
+        text += &interface::rust(modules.map(|variant| &*variant.prefix));
+        files.insert("mod.rs".to_owned(), text.into_bytes());
     }
+    let mut in_c = Vec::new();
+    for variant in family.variants.iter().filter(|v| v.has(Target::C99)) {
+        let prefixes = variant.c_prefixes().into_iter();
+        let double = prefixes.filter(|(_, precision)| *precision == Precision::Double);
+        in_c.extend(double.map(|(prefix, _)| CVariant {
+            folder: &variant.name,
+            prefix,
+        }));
+    }
+    if !in_c.is_empty() {
+        let [header, source] = interface::c(&family.name, &in_c);
+        files.insert("models.h".to_owned(), header.into_bytes());
+        files.insert("models.c".to_owned(), source.into_bytes());
+    }
+    files
 }
 
 fn files<'f>(
