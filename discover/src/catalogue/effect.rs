@@ -58,6 +58,13 @@ impl Effect {
         self.edits.iter().any(adds)
     }
 
+    /// Returns true if the effect has a memory with a shape, such as the yielding of bristles.
+    pub fn has_memory(&self) -> bool {
+        let adds = |edit: &Change| matches!(edit, Change::State { .. });
+        let has_shape = |parameter: &EffectParameter| parameter.shape.is_some();
+        self.edits.iter().any(adds) && self.parameters.iter().any(has_shape)
+    }
+
     /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
     /// the same.
     pub fn scales_stiffness(&self) -> bool {
