@@ -638,7 +638,7 @@ pub const MAX_INVERSE_DYNAMICS_ERROR: f64 = 1e-9;
 
 /// Maximum number of samples of the reference motion of all training records; half as many of the
 /// test records. A scan of a law takes about a second for these.
-pub const MAX_REFERENCE_SAMPLES: usize = 6000;
+pub const MAX_REFERENCE_SAMPLES: usize = 3000;
 
 /// Steps of an unknown acceleration from sample to sample that a smoother tries, in usual
 /// accelerations; the likeliest is used.
