@@ -54,14 +54,18 @@ impl SearchRound<'_> {
             false => None,
         };
         TestedRound {
-            tested: self.test_pools(&|| scene.as_ref()),
+            tested: self.test_pools(&|| scene.as_ref(), curve.as_ref()),
             curve,
         }
     }
 
     /// Tests candidates, excitation window after excitation window. `scene`: reference motion, if the
     /// records can be followed.
-    fn test_pools<'s>(&self, scene: &dyn Fn() -> Option<&'s Scene<'s>>) -> Vec<TestedPool> {
+    fn test_pools<'s>(
+        &self,
+        scene: &dyn Fn() -> Option<&'s Scene<'s>>,
+        curve: Option<&Curve>,
+    ) -> Vec<TestedPool> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
         let mut has_offsets = false;
@@ -89,7 +93,7 @@ impl SearchRound<'_> {
             tested.insert(number, found);
             seen.push(*window);
             if number == 0 && !is_any(&tested, &|fitted| self.is_enough(fitted)) {
-                scanned = scene().and_then(|scene| self.scan_laws(scene));
+                scanned = scene().and_then(|scene| self.scan_laws(scene, curve));
                 if let Some(laws) = scanned.take_if(|laws| {
                     (laws.fitted_hypotheses.iter()).any(|fitted| self.is_enough(fitted))
                 }) {
@@ -258,7 +262,7 @@ impl SearchRound<'_> {
     }
 
     /// Fits laws with a shape from a scan over decades.
-    fn scan_laws(&self, scene: &Scene<'_>) -> Option<TestedPool> {
+    fn scan_laws(&self, scene: &Scene<'_>, curve: Option<&Curve>) -> Option<TestedPool> {
         let RoundContext {
             problem,
             fit,
@@ -271,7 +275,7 @@ impl SearchRound<'_> {
         let effects = effects.iter().filter(|effect| !effect.scales_stiffness());
         let candidates = list_candidates(model, effects, &sites, &motion);
         let fraction = self.windows()[0].window_fraction();
-        fit_scanned_laws(self.context, scene, &candidates, fraction)
+        fit_scanned_laws(self.context, (scene, curve), &candidates, fraction)
     }
 
     /// Adds pairs, excitation window after excitation window until some are accepted.
@@ -331,9 +335,11 @@ impl SearchRound<'_> {
         };
         // Nothing is simulated if the motion is given.
         let is_given = problem.dataset.gives_motion();
-        // A memory has no response at a single shape: it is scanned.
+        // A memory or a dead zone has no response at a single shape.
         let may_be = |effect: &&Effect| {
-            !(effect.scales_stiffness() || effect.has_memory() || is_given && effect.adds_states())
+            !(effect.scales_stiffness()
+                || effect.is_only_scanned()
+                || is_given && effect.adds_states())
         };
         let effects = self.context.effects.iter().filter(may_be);
         let mut all = list_candidates(model, effects, &sites, &motion);

@@ -14,11 +14,11 @@ use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// Scans the laws with a shape among candidates and fits the best ones from their scanned shapes and
-/// sizes. `fraction`: fraction of each window over which fits begin. `None` if no law promises a
-/// smaller residual.
+/// sizes. `curve`: adequate free function, if there is one. `fraction`: fraction of each window over
+/// which fits begin. `None` if no law promises a smaller residual.
 pub fn fit_scanned_laws(
     context: RoundContext<'_>,
-    scene: &Scene<'_>,
+    (scene, curve): (&Scene<'_>, Option<&Curve>),
     candidates: &[Candidate],
     fraction: f64,
 ) -> Option<TestedPool> {
@@ -36,11 +36,16 @@ pub fn fit_scanned_laws(
     if best > (1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * scan.rms_without {
         return None;
     }
-    let most = thresholds::MAX_SCANNED_RIVAL_RATIO * best;
+    // A law that leaves much more than a free function is not what is missing.
+    let least = curve.map_or(f64::INFINITY, |curve| curve.train_rms.max(curve.test_rms));
+    let most = thresholds::MAX_SCANNED_RIVAL_RATIO * best.min(least);
     let chosen: Vec<ScannedLaw> = (laws.into_iter())
         .filter(|law| law.rms < most.min(scan.rms_without))
         .take(thresholds::MAX_FULL_FITS_PER_ROUND)
         .collect();
+    if chosen.is_empty() {
+        return None;
+    }
     let candidates: Vec<Candidate> = chosen.iter().map(|law| law.candidate.clone()).collect();
     let screening = screen_candidates(problem, fit, &candidates, fraction);
     let pool = CandidatePool::new(context, &candidates, &screening, fraction == 1.0);
