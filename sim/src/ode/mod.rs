@@ -43,6 +43,7 @@ mod point;
 mod radau;
 mod request;
 mod resolution;
+mod root_band;
 mod roots;
 pub mod runge_kutta;
 mod settings;

@@ -5,6 +5,7 @@
 //! switching function, the rates are therefore interpolated between the two edges of that band. This changes no state by
 //! more than the tolerance.
 
+use super::root_band::{Decision, GuardHistory, RootBand};
 use super::system::System;
 use super::watch::WatchedSystem;
 
@@ -14,9 +15,6 @@ const MAX_BANDS: usize = 4;
 /// Largest growth of a difference of rates, between the two distances of [`WatchedSystem::rate_differences`], that counts
 /// as a root: that of the distance to the power 0.9.
 const MAX_ROOT_GROWTH: f64 = 12.0;
-
-/// Fraction to which a switching function falls until its gradient is computed again.
-const APPROACHED: f64 = 0.25;
 
 /// Ratio of the two distances at which rates on both sides are compared.
 const DISTANCE_RATIO: f64 = 16.0;
@@ -44,100 +42,6 @@ impl RateDifference {
 
     fn is_rounding(&self) -> bool {
         self.near <= RATE_ROUNDING * self.size
-    }
-}
-
-/// A switching surface near a state, near which rates grow as a root.
-pub(super) struct RootBand {
-    guard: usize,
-    /// Value of the switching function at the edge of the band.
-    width: f64,
-    /// Change of the state from the surface to the edge of the band.
-    to_edge: Vec<f64>,
-    /// Derivatives of the switching function by the states.
-    gradient: Vec<f64>,
-}
-
-/// The past of a switching function on the way to its surface.
-pub(super) struct GuardHistory {
-    /// Magnitude of the switching function when its gradient was last computed, or a larger one since.
-    reference: f64,
-    /// Decision near the surface; `None` until the motion is near it.
-    decision: Option<Decision>,
-}
-
-/// Decision about the rates near a surface.
-#[derive(Clone, Copy)]
-struct Decision {
-    /// True if they grow as a root.
-    is_root: bool,
-    /// Value of the switching function at the edge of the band.
-    width: f64,
-}
-
-impl GuardHistory {
-    /// Before the first point.
-    pub(super) const fn new() -> Self {
-        Self {
-            reference: f64::INFINITY,
-            decision: None,
-        }
-    }
-
-    /// Takes note of the magnitude of the switching function. Returns true if its gradient is needed: in the band of a
-    /// root, and if the magnitude has fallen to a part.
-    fn follow(&mut self, magnitude: f64) -> bool {
-        if let Some(Decision { is_root, width }) = self.decision {
-            if APPROACHED * magnitude <= width {
-                return is_root;
-            }
-            self.decision = None;
-            self.reference = magnitude;
-        }
-        if magnitude >= APPROACHED * self.reference {
-            self.reference = self.reference.max(magnitude);
-            return false;
-        }
-        self.reference = magnitude;
-        true
-    }
-}
-
-impl RootBand {
-    /// Returns the band in which the errors `allowed` to the states can change the sign of a switching function with this
-    /// gradient; `None` if they do not change it.
-    fn new(guard: usize, gradient: &[f64], allowed: &[f64]) -> Option<Self> {
-        let changes = gradient.iter().zip(allowed);
-        let width: f64 = changes
-            .map(|(slope, allowed)| (slope * allowed).abs())
-            .sum();
-        let steps = gradient.iter().zip(allowed);
-        let steps = steps.map(|(slope, allowed)| match *slope == 0.0 {
-            true => 0.0,
-            false => allowed * slope.signum(),
-        });
-        width.is_normal().then(|| Self {
-            guard,
-            width,
-            to_edge: steps.collect(),
-            gradient: gradient.to_vec(),
-        })
-    }
-
-    /// Returns the position in the band of a point with this value of the switching function: -1 and 1 at its edges, and
-    /// beyond it.
-    fn position(&self, value: f64) -> f64 {
-        (value / self.width).clamp(-1.0, 1.0)
-    }
-
-    /// Returns the states at the two edges of the band, from the position of `y`.
-    fn edges(&self, y: &[f64], position: f64) -> [Vec<f64>; 2] {
-        [-1.0, 1.0].map(|edge| {
-            let moved = y.iter().zip(&self.to_edge);
-            moved
-                .map(|(y, step)| y + step * (edge - position))
-                .collect()
-        })
     }
 }
 
@@ -311,9 +215,4 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             }
         }
     }
-}
-
-/// Returns true if the surface `guard` has one of these bands.
-pub(super) fn has_band(bands: &[RootBand], guard: usize) -> bool {
-    bands.iter().any(|band| band.guard == guard)
 }

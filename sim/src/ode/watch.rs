@@ -7,7 +7,7 @@ use eomgen_codegen::program::evaluator::Enclosure;
 
 use super::events::SurfaceMode;
 use super::point::Point;
-use super::roots::{GuardHistory, RootBand, has_band};
+use super::root_band::{GuardHistory, RootBand, has_band};
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 

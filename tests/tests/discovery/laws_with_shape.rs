@@ -245,7 +245,7 @@ fn stage_record(force: impl Fn(f64) -> f64, seed: u64) -> String {
 #[test]
 fn dahl_friction_that_yields_over_a_tenth_of_a_millimetre_is_found() {
     let records = [
-        stage_record(|t| 4.4 * (6.28 * t).sin() + 4.0 * (2.32 * t + 1.0).sin(), 1),
+        stage_record(|t| 4.4 * (6.3 * t).sin() + 4.0 * (2.32 * t + 1.0).sin(), 1),
         stage_record(|t| 3.0 * (4.4 * t + 0.5).sin() + 1.5 * (11.9 * t).sin(), 2),
     ];
     let found = discover(STAGE, STAGE_RECORDS, records);

@@ -92,14 +92,14 @@ impl DependentSystem {
             }
             let own = &found[step];
             let reciprocal = pivot_reciprocal(graph, own.pivot);
-            for row in first..rest.len() {
+            let size = rest.len();
+            let upper = (first..size).flat_map(|row| (row..size).map(move |column| (row, column)));
+            for (row, column) in upper {
                 let factor = graph.multiply(own.column[row], reciprocal);
-                for column in row..rest.len() {
-                    let product = graph.multiply(factor, own.column[column]);
-                    let entry = graph.combine_flat(&[(1.0, rest[row][column]), (-1.0, product)]);
-                    rest[row][column] = entry;
-                    rest[column][row] = entry;
-                }
+                let product = graph.multiply(factor, own.column[column]);
+                let entry = graph.combine_flat(&[(1.0, rest[row][column]), (-1.0, product)]);
+                rest[row][column] = entry;
+                rest[column][row] = entry;
             }
             if step == 0 && self.has_unit_diagonal {
                 first = 1;
