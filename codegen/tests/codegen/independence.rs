@@ -136,7 +136,7 @@ fn constraints_without_a_solution_or_effect_are_rejected_in_every_unit() {
         // More constraints than coordinates.
         (
             "a = { zero = \"x^2 + y^2 - l^2\" }\nb = { zero = \"x\" }\nc = { zero = \"y\" }\nd = { zero = \"z\" }",
-            "contradicts",
+            "the residual of the constraint `a` stays",
         ),
     ] {
         let text = bead(AWAY, constraints);

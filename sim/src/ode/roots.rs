@@ -110,19 +110,24 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
     }
 
     /// Returns true if the rates are continuous at the surface at `y` and their differences, relative to the errors
-    /// `allowed` to the states, grow as a root from it to the distance `to_edge`.
+    /// `allowed` to the states, grow as a root from it to the distance `to_edge`. A root does so on every scale, in
+    /// contrast to rates that are steep near the surface.
     fn grow_as_root(&self, at: (f64, &[f64]), to_edge: &[f64], allowed: &[f64]) -> bool {
-        let differences = self.rate_differences(at, to_edge);
-        let growing = differences.iter().zip(allowed);
-        let growing = growing.filter(|(difference, _)| !difference.is_rounding());
-        let (near, far) = growing.fold((0.0, 0.0), |(near, far), (difference, allowed)| {
-            (
-                f64::hypot(near, difference.near / allowed),
-                f64::hypot(far, difference.far / allowed),
-            )
-        });
-        let is_root = near > 0.0 && (MIN_GROWTH..=MAX_ROOT_GROWTH).contains(&(far / near));
-        is_root && differences.iter().all(RateDifference::is_continuous)
+        let nearer: Vec<f64> = to_edge.iter().map(|step| step / DISTANCE_RATIO).collect();
+        [to_edge, &nearer].iter().all(|to_edge| {
+            let differences = self.rate_differences(at, to_edge);
+            let growing = differences.iter().zip(allowed);
+            let growing = growing.filter(|(difference, _)| !difference.is_rounding());
+            let (near, far) = growing.fold((0.0, 0.0), |(near, far), (difference, allowed)| {
+                (
+                    f64::hypot(near, difference.near / allowed),
+                    f64::hypot(far, difference.far / allowed),
+                )
+            });
+            near > 0.0
+                && (MIN_GROWTH..=MAX_ROOT_GROWTH).contains(&(far / near))
+                && differences.iter().all(RateDifference::is_continuous)
+        })
     }
 
     /// Returns the differences of the rates on both sides of a surface at `y`, one per state: at the distance
