@@ -53,15 +53,6 @@ impl RemainingGap {
         most > thresholds::MAX_FLOORS_FOR_CERTAINTY || !self.floors.is_finite()
     }
 
-    /// Returns true if a name is uncertain: the gap is large, or several unknowns together leave more
-    /// than a correct model. `unknowns`: number of parameters of all effects.
-    pub(crate) fn is_inconclusive(&self, unknowns: usize) -> bool {
-        let most = self.floors.max(self.training);
-        let is_flexible = unknowns >= thresholds::MIN_UNKNOWNS_OF_SUBSTITUTE
-            && most > thresholds::MAX_FLOORS_OF_SUBSTITUTE;
-        self.is_large() || is_flexible
-    }
-
     /// Returns a note if the missing effect acts in the held-out records only. A search in the
     /// training records cannot find it.
     pub(crate) fn note_missing_in_training(&self) -> Option<String> {

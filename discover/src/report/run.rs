@@ -236,9 +236,7 @@ pub fn discover_until(
         notes.extend(contradicting(&problem, fit, floor.rms, progress));
     }
     stop.check_not_stopped()?;
-    let unknowns = (found.accepted.iter()).map(|effect| effect.unknowns.len());
-    let is_sure = !RemainingGap::from_channels(&gap, ModelStage::Extended)
-        .is_inconclusive(unknowns.sum())
+    let is_sure = !RemainingGap::from_channels(&gap, ModelStage::Extended).is_large()
         && !nuisances.iter().any(Nuisance::is_at_bound);
     let certainty = Certainty {
         is_sure,
@@ -258,7 +256,6 @@ pub fn discover_until(
         steps: list_steps(&found),
         resimulation: resimulate(&problem, best, &extended)?,
         validation: None,
-        curve: found.curve.clone(),
         unfinished: found.unfinished.clone(),
         original: original.to_owned(),
         extended,

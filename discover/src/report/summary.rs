@@ -118,8 +118,7 @@ fn summarise_effects(
         .as_ref()
         .map_or(String::new(), |at| format!(", {at}"));
     let left = after.describe();
-    let unknowns = (discovery.effects.iter()).map(|effect| effect.parameters.len());
-    if after.is_inconclusive(unknowns.sum()) || at_bounds.is_some() {
+    if after.is_large() || at_bounds.is_some() {
         return Summary {
             headline: format!(
                 "The named effects may be substitutes for others: the extended model {closed} and leaves \

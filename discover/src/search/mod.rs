@@ -28,7 +28,6 @@ pub mod rejection;
 pub mod response;
 pub mod responses;
 mod round;
-mod scanned_laws;
 pub mod screening;
 pub mod search_result;
 pub mod selection;
@@ -50,7 +49,7 @@ use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::RoundContext;
 use crate::search::rejected_candidates::note_rejected;
-use crate::search::round::{SearchRound, TestedRound};
+use crate::search::round::SearchRound;
 use crate::search::search_result::{AcceptedEffect, SearchResult, TestGap};
 use crate::search::selection::SelectedHypothesis;
 use crate::search::unconfirmed_hypothesis::find_unconfirmed;
@@ -76,7 +75,6 @@ pub fn search(
         accepted: Vec::new(),
         rejected: Vec::new(),
         unconfirmed: None,
-        curve: None,
         unfinished: None,
     };
     while found.accepted.len() < thresholds::MAX_EFFECTS {
@@ -100,12 +98,7 @@ pub fn search(
             },
             is_first_round: found.accepted.is_empty(),
         };
-        let TestedRound {
-            mut tested, curve, ..
-        } = round.test_candidates();
-        if found.accepted.is_empty() {
-            found.curve = curve;
-        }
+        let mut tested = round.test_candidates();
         let so_far = describe_unfinished(&tested);
         if problem.stop.is_time_over() {
             found.unfinished = Some(so_far);

@@ -2,15 +2,11 @@
 //! a small residual, pairs if the residual is large, and shifted parameters without a declared
 //! uncertainty.
 
-use std::cell::LazyCell;
-
 use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::find_sites;
 use crate::catalogue::usual_motion::UsualMotion;
 use crate::fit::fit_result::Fit;
-use crate::free_function::curves::Curve;
-use crate::free_function::scene::Scene;
 use crate::ids::CandidateId;
 use crate::residual_force::ripple_orders::find_ripple_orders;
 use crate::search::context::RoundContext;
@@ -21,7 +17,6 @@ use crate::search::motion_of_fit::compute_usual_motion;
 use crate::search::pairs::fit_pairs;
 use crate::search::parameter_offsets::list_offsets;
 use crate::search::pool::CandidatePool;
-use crate::search::scanned_laws::{find_adequate_curve, fit_scanned_laws};
 use crate::search::screening::{Screening, screen_candidates};
 use crate::search::single_candidates::fit_singles;
 use crate::search::tested_pool::TestedPool;
@@ -35,41 +30,12 @@ pub struct SearchRound<'l> {
     pub is_first_round: bool,
 }
 
-/// Tested candidates of a round.
-pub struct TestedRound {
-    /// All tested pools.
-    pub tested: Vec<TestedPool>,
-    /// Free function that explains the residual best, in the first round, if one is adequate.
-    pub curve: Option<Curve>,
-}
-
 impl SearchRound<'_> {
-    /// Tests candidates and returns all tested pools. In the first round a free function shows what
-    /// is missing.
-    pub fn test_candidates(&self) -> TestedRound {
-        let RoundContext { problem, fit, .. } = self.context;
-        let scene = LazyCell::new(|| Scene::follow_records(problem, fit));
-        let curve = match self.is_first_round {
-            true => (scene.as_ref()).and_then(|scene| find_adequate_curve(self.context, scene)),
-            false => None,
-        };
-        TestedRound {
-            tested: self.test_pools(&|| scene.as_ref(), curve.as_ref()),
-            curve,
-        }
-    }
-
-    /// Tests candidates, excitation window after excitation window. `scene`: reference motion, if the
-    /// records can be followed.
-    fn test_pools<'s>(
-        &self,
-        scene: &dyn Fn() -> Option<&'s Scene<'s>>,
-        curve: Option<&Curve>,
-    ) -> Vec<TestedPool> {
+    /// Tests candidates and returns all tested pools.
+    pub fn test_candidates(&self) -> Vec<TestedPool> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
         let mut has_offsets = false;
-        let mut scanned: Option<TestedPool> = None;
         for window in self.windows() {
             if *window == ExcitationWindow::BacklashRemoved {
                 // In a model without play every candidate outside of teeth is predicted worse: test
@@ -92,15 +58,6 @@ impl SearchRound<'_> {
             let number = seen.len();
             tested.insert(number, found);
             seen.push(*window);
-            if number == 0 && !is_any(&tested, &|fitted| self.is_enough(fitted)) {
-                scanned = scene().and_then(|scene| self.scan_laws(scene, curve));
-                if let Some(laws) = scanned.take_if(|laws| {
-                    (laws.fitted_hypotheses.iter()).any(|fitted| self.is_enough(fitted))
-                }) {
-                    tested.push(laws);
-                    return tested;
-                }
-            }
             // Near the floor another excitation window is cheap, and a nearly equal candidate may
             // be the answer.
             let is_done = match self.context.is_near_floor() {
@@ -111,7 +68,6 @@ impl SearchRound<'_> {
                 break;
             }
         }
-        tested.splice(seen.len()..seen.len(), scanned);
         // One unknown before two: a number that is off is a rival of the first effect while much is
         // left, and of whatever takes more unknowns, a pair or an effect with a shape.
         let is_simple =
@@ -261,23 +217,6 @@ impl SearchRound<'_> {
         }
     }
 
-    /// Fits laws with a shape from a scan over decades.
-    fn scan_laws(&self, scene: &Scene<'_>, curve: Option<&Curve>) -> Option<TestedPool> {
-        let RoundContext {
-            problem,
-            fit,
-            effects,
-            ..
-        } = self.context;
-        let model = fit.model.specification();
-        let sites = find_sites(model);
-        let motion = compute_usual_motion(problem, fit, &sites);
-        let effects = effects.iter().filter(|effect| !effect.scales_stiffness());
-        let candidates = list_candidates(model, effects, &sites, &motion);
-        let fraction = self.windows()[0].window_fraction();
-        fit_scanned_laws(self.context, (scene, curve), &candidates, fraction)
-    }
-
     /// Adds pairs, excitation window after excitation window until some are accepted.
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
@@ -335,12 +274,8 @@ impl SearchRound<'_> {
         };
         // Nothing is simulated if the motion is given.
         let is_given = problem.dataset.gives_motion();
-        // A memory or a dead zone has no response at a single shape.
-        let may_be = |effect: &&Effect| {
-            !(effect.scales_stiffness()
-                || effect.is_only_scanned()
-                || is_given && effect.adds_states())
-        };
+        let may_be =
+            |effect: &&Effect| !(effect.scales_stiffness() || is_given && effect.adds_states());
         let effects = self.context.effects.iter().filter(may_be);
         let mut all = list_candidates(model, effects, &sites, &motion);
         all.extend(list_prior_candidates(problem, fit));
