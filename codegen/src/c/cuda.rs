@@ -35,7 +35,8 @@ pub fn emit_cuda(program: &Program) -> Result<String, EmitError> {
         .iter()
         .fold(files.header, |text, lines| text.replace(lines, ""));
     for part in [&header, &files.source] {
-        let lines = part.lines().filter(|line| !line.starts_with("#include"));
+        let is_for_hosts = |line: &&str| line.starts_with("#include") || line.contains("_macro(\"");
+        let lines = part.lines().filter(|line| !is_for_hosts(line));
         text += &convert(lines, name);
     }
     text += &fill_template(program, CLOSING);

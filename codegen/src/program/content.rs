@@ -161,7 +161,7 @@ pub(super) fn leaf_name(program: &Program, op: &Op) -> Option<String> {
     })
 }
 
-/// Spells a short formula as a part of a name: `3*k_sp` as `3_k_sp`, `l/r_s` as `l_per_r_s`.
+/// Spells a brief formula as a part of a name: `3*k_sp` as `3_k_sp`, `l/r_s` as `l_per_r_s`.
 fn spell_formula(program: &Program, id: ValueId) -> Option<String> {
     let mut operands = 0;
     let text = spell(program, id, true, &mut operands)?;

@@ -628,17 +628,5 @@ pub fn rust_harness(program: &Program, emitted: &str) -> String {
                 ""
             },
         )
-        .replace(
-            "/*PROBE*/",
-            if has_coefficients {
-                ".cast::<Probe>()"
-            } else {
-                ""
-            },
-        )
-        .replace(
-            "/*OF PROBE*/",
-            if has_coefficients { "<Probe>" } else { "" },
-        )
         .replace("/*OF T*/", if has_coefficients { "<T>" } else { "" })
 }

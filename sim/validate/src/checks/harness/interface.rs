@@ -31,91 +31,6 @@ fn results<T: model::Scalar + Into<f64>>(
     show(model::mass_matrix(t, &state, &inputs, coefficients).as_flattened());
 }
 
-/// Number that compares the slopes of all elementary functions with differences.
-#[derive(Clone, Copy)]
-struct Probe(f64);
-
-impl std::ops::Add for Probe {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-impl std::ops::Sub for Probe {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0)
-    }
-}
-impl std::ops::Mul for Probe {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0)
-    }
-}
-impl std::ops::Div for Probe {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        Self(self.0 / other.0)
-    }
-}
-impl std::ops::Neg for Probe {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
-impl model::Scalar for Probe {
-    fn number(value: f64) -> Self {
-        Self(value)
-    }
-    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
-        if a.0 > b.0 { then } else { otherwise }
-    }
-    fn all_greater(a: Self, b: Self) -> bool {
-        a.0 > b.0
-    }
-    fn function<F: model::Function>(self) -> Self {
-        let value = F::value(self.0);
-        compare_slope(F::slope(self.0, value), self.0, |x| F::value(x));
-        Self(value)
-    }
-    fn function_of_two<F: model::FunctionOfTwo>(self, other: Self) -> Self {
-        let value = F::value(self.0, other.0);
-        let [by_first, by_second] = F::slopes(self.0, other.0, value);
-        compare_slope(by_first, self.0, |x| F::value(x, other.0));
-        compare_slope(by_second, other.0, |y| F::value(self.0, y));
-        Self(value)
-    }
-}
-
-/// Compares a slope with differences, unless they show a corner or a jump.
-fn compare_slope(slope: f64, x: f64, value: impl Fn(f64) -> f64) {
-    const STEP: f64 = 1e-5;
-    let difference = |low: f64, high: f64| (value(high) - value(low)) / (high - low);
-    let (below, above) = (difference(x - STEP, x), difference(x, x + STEP));
-    let between = difference(x - STEP, x + STEP);
-    let allowed = 1e-3 * between.abs() + 1e-6 * value(x).abs() + 1e-6;
-    let is_smooth = (above - below).abs() <= allowed;
-    assert!(
-        !is_smooth || (slope - between).abs() <= allowed,
-        "slope {slope} instead of {between} at {x}"
-    );
-}
-
-/// Computes all functions with slopes.
-fn probe_slopes(numbers: &[f64], coefficients: &model::Coefficients/*OF PROBE*/) {
-    let (given, signals) = numbers.split_at(1 + model::STATES);
-    let t = Probe(given[0]);
-    let state: [Probe; model::STATES] = std::array::from_fn(|i| Probe(given[1 + i]));
-    let signals: [Probe; model::INPUTS] = std::array::from_fn(|i| Probe(signals[i]));
-    let inputs = model::Inputs::from(signals);
-    model::rates(t, &state, &inputs, coefficients);
-    model::observables(t, &state, &inputs, coefficients);
-    model::guards(t, &state, &inputs, coefficients);
-    model::mass_matrix(t, &state, &inputs, coefficients);
-}
-
 fn main() {
     //INTERFACE
     let lines: Vec<Vec<f64>> = (std::io::stdin().lines())
@@ -135,7 +50,6 @@ fn main() {
                 results::<f32>(point, &coefficients/*CAST*/, |x| x as f32);
             } else {
                 results::<f64>(point, &coefficients, |x| x);
-                probe_slopes(point, &coefficients/*PROBE*/);
             }
         }
     }
