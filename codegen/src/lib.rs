@@ -58,7 +58,7 @@
 //! `trace` finds the terms of the specification from which each value comes, for comments in emitted source.
 //! [`vectors`] computes test vectors, which the backends write next to the source.
 //!
-//! [`variant`] derives the program of a model in one call and rejects dependent constraints
+//! [`variant`] derives the program of a model in one call and finds dependent constraints
 //! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
 //! finds terms without a derivative at a point.
 
@@ -77,6 +77,7 @@ pub mod report;
 pub mod rust;
 #[cfg(feature = "derive")]
 pub mod singular_terms;
+pub mod stable_hash;
 #[cfg(feature = "derive")]
 pub mod statements;
 pub mod symbolic;

@@ -84,41 +84,39 @@ inline __device__ int NAME_is_unfused(NAME_real one) {
 #endif
 ";
 
-/// Adds the qualifiers to the lines of C, and removes what belongs to the host: guards of the header, lists of names with
-/// their documentation.
-fn convert<'l>(lines: impl Iterator<Item = &'l str>, name: &str) -> String {
+/// Adds the qualifiers to the lines of C. Removes the first comment, and the lists of names with their documentation.
+fn convert<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
     let mut text = String::new();
-    // Lines of documentation and conditions that wait for what they belong to.
-    let mut waiting = String::new();
-    let mut lines = lines.peekable();
+    let mut documentation = String::new();
     let mut is_first_comment = true;
     while let Some(line) = lines.next() {
-        let ends_list = |line: &str| line.ends_with(';');
         if line.starts_with("/**") {
-            waiting = format!("{line}\n");
-            let mut last = line;
-            while !last.ends_with("*/") {
-                let Some(next) = lines.next() else { break };
-                waiting += &format!("{next}\n");
-                last = next;
-            }
-            if std::mem::take(&mut is_first_comment) {
-                waiting.clear();
+            let comment = take_until(line, &mut lines, "*/");
+            if !std::mem::take(&mut is_first_comment) {
+                documentation = comment;
             }
             continue;
         }
+        let documentation = std::mem::take(&mut documentation);
         if is_list_of_names(line, name) {
-            let mut last = line;
-            while !ends_list(last) {
-                let Some(next) = lines.next() else { break };
-                last = next;
-            }
-            waiting.clear();
-            continue;
+            take_until(line, &mut lines, ";");
+        } else {
+            text += &documentation;
+            text += &qualify(line, name);
+            text.push('\n');
         }
-        text += &std::mem::take(&mut waiting);
-        text += &qualify(line, name);
+    }
+    text
+}
+
+/// Returns `first` and the lines after it up to the first that ends with `end`.
+fn take_until<'l>(first: &str, lines: &mut impl Iterator<Item = &'l str>, end: &str) -> String {
+    let mut text = format!("{first}\n");
+    let mut is_complete = first.ends_with(end);
+    while !is_complete && let Some(line) = lines.next() {
+        text += line;
         text.push('\n');
+        is_complete = line.ends_with(end);
     }
     text
 }

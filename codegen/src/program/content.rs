@@ -1,6 +1,7 @@
-//! Names of values by their content: the same computation has the same name in every file, whatever stands before it.
+//! Names of values by their content: the same computation has the same name in every file, whatever is computed before it.
 
 use super::{Argument, Op, Program, ValueId, Variable};
+use crate::stable_hash::StableHash;
 
 /// Largest number of characters of a name that spells its formula.
 const MAX_SPELLED_LENGTH: usize = 24;
@@ -27,7 +28,7 @@ impl Contents {
             let hash = hash_operation(program, &value.op, &named);
             hashes.push(hash);
             named.push(match &value.name {
-                Some(name) => Fnv::new("name").text(name).finish(),
+                Some(name) => ContentHash::new("name").text(name).finish(),
                 None => hash,
             });
         }
@@ -44,37 +45,32 @@ impl Contents {
     }
 }
 
-/// Hash by Fowler, Noll and Vo, 64 bits, version 1a.
-struct Fnv(u64);
+/// Hash of a content, part by part.
+struct ContentHash(StableHash);
 
-impl Fnv {
+impl ContentHash {
     fn new(kind: &str) -> Self {
-        Self(0xcbf2_9ce4_8422_2325).text(kind)
+        Self(StableHash::new()).text(kind)
     }
 
-    fn number(mut self, number: u64) -> Self {
-        for byte in number.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-        self
+    fn number(self, number: u64) -> Self {
+        Self(self.0.include(&number.to_le_bytes()))
     }
 
-    fn text(mut self, text: &str) -> Self {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-        self.number(text.len() as u64)
+    fn text(self, text: &str) -> Self {
+        Self(self.0.include(text.as_bytes())).number(text.len() as u64)
     }
 
     /// Returns the hash with its bits mixed, because the low bits of products depend on few bits.
     fn finish(self) -> u64 {
-        let mixed = (self.0 ^ (self.0 >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let hash = self.0.value();
+        let mixed = (hash ^ (hash >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         mixed ^ (mixed >> 29)
     }
 }
 
 fn hash_operation(program: &Program, op: &Op, operands: &[u64]) -> u64 {
-    let hash = Fnv::new(kind(op));
+    let hash = ContentHash::new(kind(op));
     let hash = match op {
         Op::Constant(number) => hash.number(number.to_bits()),
         Op::Call(function, _) => hash.text(function.name()),

@@ -11,7 +11,7 @@ use crate::model::CompiledModel;
 /// Rate, 1/s, below which a motion counts as rigid.
 const MAX_HIDDEN_RATE: f64 = 1e-2;
 
-/// Factors by which a parameter is multiplied until its terms are visible beside others.
+/// Factors by which a parameter is multiplied until its terms exceed the rounding of others.
 const LARGE_FACTORS: [f64; 3] = [1e24, 1e60, 1e150];
 
 /// Change of an entry, relative to the entry, that its rounding may falsify.
@@ -61,7 +61,7 @@ impl Instance<'_> {
         Ok(modes)
     }
 
-    /// Returns the name of a parameter whose terms are lost in rounding beside others: a change of it changes
+    /// Returns the name of a parameter whose terms are lost in the rounding of others: a change of it changes
     /// an entry of the state matrix `a` by less than its own terms would.
     fn find_lost_parameter(&self, a: &[f64], point: Point<'_>) -> Result<Option<String>, Error> {
         for name in self.model().parameter_names() {

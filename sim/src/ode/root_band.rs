@@ -3,8 +3,9 @@
 /// Fraction to which a switching function falls until its gradient is computed again.
 const APPROACHED: f64 = 0.25;
 
-/// A switching surface near a state, near which rates grow as a root.
+/// Band around a switching surface near which rates grow as a root.
 pub(super) struct RootBand {
+    /// Index of the switching function.
     pub(super) guard: usize,
     /// Value of the switching function at the edge of the band.
     pub(super) width: f64,

@@ -29,6 +29,7 @@ const RATE_ROUNDING: f64 = 1e-12;
 struct RateDifference {
     /// At the part 1/[`DISTANCE_RATIO`] of the distance.
     near: f64,
+    /// At the whole distance.
     far: f64,
     /// Size of the rate.
     size: f64,

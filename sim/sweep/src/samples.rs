@@ -7,6 +7,7 @@
 
 use std::f64::consts::TAU;
 
+use eomgen_codegen::stable_hash::StableHash;
 use eomgen_elementary::Function;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::uncertainty::{Distribution, Law};
@@ -122,7 +123,8 @@ impl Samples {
     pub fn settings(&self, sample: usize) -> Vec<(&str, f64)> {
         let value = |parameter: &SampledParameter| {
             let mut state = self.seed;
-            for word in [hash_name(parameter.name()), sample as u64] {
+            let name = StableHash::new().include(parameter.name().as_bytes());
+            for word in [name.value(), sample as u64] {
                 state = SplitMix64::seed_from_u64(state ^ word).next_u64();
             }
             parameter.draw(&mut SplitMix64::seed_from_u64(state))
@@ -172,13 +174,6 @@ fn draw_normal(random: &mut SplitMix64) -> f64 {
     // 1 - [0, 1) excludes 0, so its logarithm exists.
     let radius = (-2.0 * Function::Ln.apply(&[1.0 - draw_unit(random)])).sqrt();
     radius * Function::Cos.apply(&[TAU * draw_unit(random)])
-}
-
-/// Returns the hash of a name by Fowler, Noll and Vo, FNV-1a.
-fn hash_name(name: &str) -> u64 {
-    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
 
 #[cfg(test)]

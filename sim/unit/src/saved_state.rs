@@ -1,6 +1,7 @@
 //! Saved states of an instance, also serialised: a mark, the token of the unit, the condition, and a checksum, which
 //! detects truncated or modified data.
 
+use eomgen_codegen::stable_hash::StableHash;
 use eomgen_sim::ode::SurfaceMode;
 
 use crate::refusal::{Outcome, invalid};
@@ -81,7 +82,7 @@ impl Unit {
         for number in scalars.iter().chain(vectors.into_iter().flatten()) {
             bytes.extend(number.to_le_bytes());
         }
-        let sum = compute_checksum(&bytes);
+        let sum = StableHash::new().include(&bytes).value().to_le_bytes();
         bytes.extend(sum);
         bytes
     }
@@ -101,7 +102,7 @@ impl Unit {
         let foreign = || invalid("these bytes are no saved state of this unit");
         let (content, sum) = bytes.split_at(length - CHECKSUM_LENGTH);
         let head = [MARK, token(self.compiled.program()).as_bytes()].concat();
-        let content = match compute_checksum(content) == *sum {
+        let content = match StableHash::new().include(content).value().to_le_bytes() == *sum {
             true => content.strip_prefix(&head[..]).ok_or_else(foreign)?,
             false => return Err(foreign()),
         };
@@ -136,12 +137,4 @@ impl Unit {
         };
         Ok(SavedState { kind, condition })
     }
-}
-
-/// Returns the FNV-1a hash of some bytes (G. Fowler, L. Noll, P. Vo).
-fn compute_checksum(bytes: &[u8]) -> [u8; CHECKSUM_LENGTH] {
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    hash.to_le_bytes()
 }

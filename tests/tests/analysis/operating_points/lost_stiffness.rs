@@ -1,4 +1,4 @@
-//! `modes` beside a stiffness so large that rounding hides the others.
+//! `modes` of models with a stiffness so large that rounding hides the others.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ fn masses(stiff: &str, springs: &str) -> String {
 #[test]
 fn lost_stiffness_is_rejected_with_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Both masses move together on c: 25/2 is lost beside 1e30.
+    // Both masses move together on c: 25/2 is lost in the sum with 1e30.
     for stiff in ["1e20", "1e30", "1e120"] {
         let text = masses(stiff, "1/2*k*(x - y)^2 + 1/2*c*y^2");
         let message = run_rejected(&["modes", &write_model(folder.path(), &text)]);

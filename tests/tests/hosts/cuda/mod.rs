@@ -11,7 +11,7 @@ use eomgen_tests::models::{load, project, shipped_specifications};
 
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/cuda/compile.py");
 
-/// Functions beside those of every variant.
+/// Functions in addition to those of every variant.
 const OUTPUTS: [Output; 5] = [
     Output::BiasForces,
     Output::InverseDynamics,
