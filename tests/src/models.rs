@@ -4,9 +4,10 @@ use eomgen_validate::oracle::Oracle;
 use eomgen_validate::sampler::{Sample, Sampler};
 use std::path::{Path, PathBuf};
 
-use eomgen_codegen::mechanics::equations::{Equations, derive};
+use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::variant::derive_equations;
 use eomgen_model_spec::model::Model;
 
 /// Returns the project's folder.
@@ -57,7 +58,7 @@ pub fn variant(model: &Model, order: usize) -> Variant {
         .parameter_values()
         .expect("the parameters have values");
     let orders = vec![order; model.fields.len()];
-    let equations = derive(model, &orders).expect("the model can be derived");
+    let equations = derive_equations(model, &orders).expect("the model can be derived");
     let evaluator = Evaluator::new(lower(model, &equations, &parameters));
     Variant {
         equations,

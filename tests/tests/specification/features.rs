@@ -83,6 +83,7 @@ features! {
         ball_joint: [0];
         flexible_coupler: [0, 1, 4];
         rolling_disc: [0];
+        redundant_rods: [0];
         bicycle: [0];
         squeezing_mechanism: [0];
         bouncing_ball: [0];
