@@ -14,6 +14,7 @@ use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
 use crate::mechanics::redundancy::Redundancy;
+use crate::mechanics::rows::RowNodes;
 use crate::mechanics::sliding::{SideInputs, add_side_inputs, can_hold_motion};
 use crate::mechanics::translate::{DeriveError, Translator};
 use crate::mechanics::unsolved::translate_impacts;
@@ -74,16 +75,7 @@ impl Variant {
             .parameter_values()
             .map_err(|error| found(error.diagnostic()))?;
         let mut equations = derive_equations(model, orders).map_err(found)?;
-        let outputs = derive_outputs(&mut equations, outputs).map_err(|error| {
-            let message = Diagnostic::error(error.to_string());
-            let terms = model.kinetic.iter().chain(&model.potential);
-            let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
-            let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
-            found(match error.term.and_then(|place| spans.nth(place)) {
-                Some(span) => message.with_span(span, "in this term"),
-                None => message,
-            })
-        })?;
+        let outputs = differentiate(model, &mut equations, outputs)?;
         let (mut program, lowered) = lower_with_values(model, &equations, &values, &outputs);
         program.controllers = lower_controllers(model, &program).map_err(found)?;
         Ok(Self {
@@ -185,9 +177,36 @@ pub fn lower_with_sides(
     model: &Model,
     equations: &Equations,
 ) -> Result<Option<Program>, Diagnostics> {
-    let values = model
-        .parameter_values()
-        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
+    let (equations, sides) = separate_sides(equations);
+    match sides.others.is_empty() && sides.sliding.is_empty() {
+        true => Ok(None),
+        false => lower_separated(model, &equations, sides, Outputs::default()).map(Some),
+    }
+}
+
+/// Derives the program for gradients of trajectories: the sides of switching surfaces are inputs, as in
+/// [`lower_with_sides`], with the rates of guards and the outputs of
+/// [`Output::TrajectoryGradients`].
+///
+/// # Errors
+/// The errors of [`Variant::derive`], and terms that cannot be differentiated.
+pub fn derive_for_gradients(model: &Model, orders: &[usize]) -> Result<Program, Diagnostics> {
+    let equations = derive_equations(model, orders)
+        .map_err(|diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic))?;
+    let (mut equations, sides) = separate_sides(&equations);
+    let inputs = equations.inputs;
+    equations.inputs += sides.others.len() + sides.sliding.len();
+    let outputs = differentiate(
+        model,
+        &mut equations,
+        &[Output::TrajectoryGradients, Output::GuardRates],
+    )?;
+    equations.inputs = inputs;
+    lower_separated(model, &equations, sides, outputs)
+}
+
+/// Returns the equations with the sides of all surfaces as inputs.
+fn separate_sides(equations: &Equations) -> (Equations, SideInputs) {
     let with_sides = |may_hold: bool| {
         let mut equations = equations.clone();
         let inputs = add_side_inputs(&mut equations, may_hold)?;
@@ -195,24 +214,49 @@ pub fn lower_with_sides(
     };
     let found = can_hold_motion(equations).then(|| with_sides(true));
     let found = found.flatten().or_else(|| with_sides(false));
-    let Some((equations, SideInputs { others, sliding })) = found else {
-        return Ok(None);
-    };
+    found.unwrap_or_else(|| (equations.clone(), SideInputs::default()))
+}
+
+fn lower_separated(
+    model: &Model,
+    equations: &Equations,
+    SideInputs { others, sliding }: SideInputs,
+    outputs: Outputs<NodeId, RowNodes>,
+) -> Result<Program, Diagnostics> {
+    let values = model
+        .parameter_values()
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
     let count = others.len() + sliding.len();
-    if count == 0 {
-        return Ok(None);
-    }
     let outputs = Outputs {
         sliding,
         sides: others,
-        ..Outputs::default()
+        ..outputs
     };
-    let mut program = lower_with_outputs(model, &equations, &values, &outputs);
+    let mut program = lower_with_outputs(model, equations, &values, &outputs);
     program.inputs.extend(side_inputs(
         count,
         "0 to 1; between them while the surface holds the motion",
     ));
-    Ok(Some(program))
+    Ok(program)
+}
+
+/// Derives outputs, with the place of a term that cannot be differentiated.
+fn differentiate(
+    model: &Model,
+    equations: &mut Equations,
+    outputs: &[Output],
+) -> Result<Outputs<NodeId, RowNodes>, Diagnostics> {
+    derive_outputs(equations, outputs).map_err(|error| {
+        let message = Diagnostic::error(error.to_string());
+        let terms = model.kinetic.iter().chain(&model.potential);
+        let spans = terms.chain(&model.dissipation).map(|term| term.value.span);
+        let mut spans = spans.chain(model.forces.iter().map(|force| force.value.span));
+        let message = match error.term.and_then(|place| spans.nth(place)) {
+            Some(span) => message.with_span(span, "in this term"),
+            None => message,
+        };
+        Diagnostics::from_one(model.source.clone(), message)
+    })
 }
 
 /// Derives the program of the momenta and the energy at corners of the motion, in which the sides of their

@@ -163,6 +163,19 @@ impl HeldInputs {
         !(self.prescribed.is_empty() && self.functions.is_empty())
     }
 
+    /// Returns true if the input at an index is a function of time.
+    fn is_function(&self, place: usize) -> bool {
+        let mut given = self.functions.iter();
+        given.any(|given| (given.place..given.place + given.count).contains(&place))
+    }
+
+    /// Returns true if the input at an index is held between samples: neither prescribed nor a function of time.
+    pub fn is_held(&self, place: usize) -> bool {
+        let mut prescribed = self.prescribed.iter();
+        !self.is_function(place)
+            && !prescribed.any(|(first, _)| (*first..first + 3).contains(&place))
+    }
+
     /// Returns the inputs at a time (s), in the order of the model.
     pub fn evaluate(&self, t: f64) -> Cow<'_, [f64]> {
         let held = self.last_sample(t);
@@ -199,11 +212,8 @@ impl HeldInputs {
     /// Returns the time (s), the index and the value of the first input that is held at a number
     /// that is not finite between two times (s).
     pub fn first_not_finite(&self, begin: f64, end: f64) -> Option<(f64, usize, f64)> {
-        let is_held = |place: &usize| {
-            let mut given = self.functions.iter();
-            given.all(|given| !(given.place..given.place + given.count).contains(place))
-        };
-        let first = self.times_until(begin).saturating_sub(1);
+        let is_held = |place: &usize| !self.is_function(*place);
+        let first = self.last_sample_index(begin);
         let rows = (first..self.times.len()).take_while(|row| self.times[*row] <= end);
         rows.flat_map(|row| (0..self.count).map(move |place| (row, place)))
             .map(|(row, place)| {
@@ -216,10 +226,15 @@ impl HeldInputs {
             .find(|(_, place, value)| !value.is_finite() && is_held(place))
     }
 
+    /// Returns the index of the last sample at or before a time (s), 0 before the first.
+    pub fn last_sample_index(&self, t: f64) -> usize {
+        self.times_until(t).saturating_sub(1)
+    }
+
     /// Returns the inputs of the last sample at or before a time (s), without prescribed motion
     /// and functions.
     pub fn last_sample(&self, t: f64) -> &[f64] {
-        let row = self.times_until(t).saturating_sub(1);
+        let row = self.last_sample_index(t);
         &self.values[row * self.count..(row + 1) * self.count]
     }
 

@@ -39,6 +39,7 @@ pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
 }
 
 /// Surfaces whose sides are inputs.
+#[derive(Default)]
 pub(crate) struct SideInputs {
     /// Surfaces that cannot hold the motion; their sides come first.
     pub others: Vec<Side>,

@@ -145,6 +145,15 @@ impl Products<ValueId, RowValues> {
         roots.extend(&self.forward_first_order);
         roots
     }
+
+    /// Returns the values of the products with weights.
+    pub(crate) fn reverse_roots(&self) -> Vec<ValueId> {
+        let by_variables = self.reverse.iter().map(|(_, id)| *id);
+        let by_parameters = self.by_parameters.entries.iter();
+        by_variables
+            .chain(by_parameters.map(|entry| entry.value))
+            .collect()
+    }
 }
 
 impl Program {

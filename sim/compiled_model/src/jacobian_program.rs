@@ -27,11 +27,15 @@ impl JacobianProgram {
         orders: &[usize],
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
-        let program = Variant::derive_for_report(model, orders, outputs)?.program;
-        Ok(Self {
+        let variant = Variant::derive_for_report(model, orders, outputs)?;
+        Ok(Self::new(variant.program))
+    }
+
+    pub(crate) fn new(program: Program) -> Self {
+        Self {
             program,
             code: OnceLock::new(),
-        })
+        }
     }
 
     pub(crate) fn machine_code(&self) -> Option<&Arc<dyn MachineCode>> {

@@ -52,7 +52,7 @@ impl Jacobian {
 #[derive(Default)]
 pub(crate) struct JacobianLayout {
     pub(crate) place: usize,
-    rows: usize,
+    pub(crate) rows: usize,
     pub(crate) columns: usize,
     /// Index of each nonzero in the dense row-major matrix.
     pub(crate) dense: Vec<usize>,
@@ -94,17 +94,25 @@ impl JacobianEvaluator {
     /// Writes the dense row-major matrix at a point to `out`, of rows times columns numbers. On a
     /// switching surface the derivatives are one-sided.
     pub fn evaluate(&mut self, of: Jacobian, point: Point<'_>, out: &mut [f64]) {
-        let layout = &mut self.layouts[of as usize];
-        self.evaluator
-            .jacobian(layout.place, point, &mut layout.nonzeros);
-        out.fill(0.0);
-        for (place, value) in layout.dense.iter().zip(&layout.nonzeros) {
-            out[*place] = *value;
-        }
+        self.layouts[of as usize].evaluate(&mut self.evaluator, point, out);
     }
 }
 
 impl JacobianLayout {
+    /// Writes the dense row-major matrix at a point to `out`.
+    pub(crate) fn evaluate(
+        &mut self,
+        evaluator: &mut Evaluator,
+        point: Point<'_>,
+        out: &mut [f64],
+    ) {
+        evaluator.jacobian(self.place, point, &mut self.nonzeros);
+        out.fill(0.0);
+        for (place, value) in self.dense.iter().zip(&self.nonzeros) {
+            out[*place] = *value;
+        }
+    }
+
     pub(crate) fn find(program: &Program, name: &str) -> Option<Self> {
         let jacobians = &program.outputs.jacobians;
         let place = jacobians.iter().position(|known| known.name == name)?;

@@ -67,6 +67,8 @@ mod fixed_steps;
 mod general_motion;
 mod general_run;
 #[cfg(feature = "derive")]
+mod gradients;
+#[cfg(feature = "derive")]
 mod infinite_inputs;
 mod initial_consistency;
 #[cfg(feature = "derive")]
@@ -122,6 +124,8 @@ pub use error::Error;
 pub use event_log::{EventKind, LoggedEvent};
 pub use exported_model::{ExportedCode, ExportedModel};
 pub use exported_motion::ExportedMotion;
+#[cfg(feature = "derive")]
+pub use gradients::{RecordedMotion, SampleWeights, TrajectoryGradient};
 #[cfg(feature = "derive")]
 pub use initial_state::StateRequest;
 #[cfg(feature = "derive")]

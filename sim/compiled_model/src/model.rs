@@ -8,7 +8,7 @@ use eomgen_codegen::mechanics::corners::has_jumping_momenta;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::{Variant, derive_corners, lower_with_sides};
+use eomgen_codegen::variant::{Variant, derive_corners, derive_for_gradients, lower_with_sides};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -76,6 +76,8 @@ pub struct CompiledModel {
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
     differentiated: OnceLock<Result<JacobianProgram, Diagnostics>>,
     tangents: OnceLock<Result<JacobianProgram, Diagnostics>>,
+    /// Program of the gradients of trajectories.
+    gradients: OnceLock<Result<JacobianProgram, Diagnostics>>,
     /// Program whose rates take the sides of surfaces as inputs, and its machine code.
     sided: OnceLock<Result<Option<Program>, Diagnostics>>,
     sided_code: OnceLock<Option<Arc<dyn MachineCode>>>,
@@ -137,6 +139,7 @@ impl CompiledModel {
             piecewise_linear: OnceLock::new(),
             differentiated: OnceLock::new(),
             tangents: OnceLock::new(),
+            gradients: OnceLock::new(),
             corners: OnceLock::new(),
             sided: OnceLock::new(),
             sided_code: OnceLock::new(),
@@ -295,6 +298,14 @@ impl CompiledModel {
             .get_or_init(|| JacobianProgram::derive(self.model(), self.orders(), &ALONG_DIRECTION));
         let made = made.as_ref().map(|made| &made.program);
         made.map_err(|found| found.clone().into())
+    }
+
+    /// Returns the program of the gradients of trajectories.
+    pub(crate) fn gradient_program(&self) -> Result<&JacobianProgram, Error> {
+        let made = self.gradients.get_or_init(|| {
+            derive_for_gradients(self.model(), self.orders()).map(JacobianProgram::new)
+        });
+        made.as_ref().map_err(|found| found.clone().into())
     }
 
     /// Returns the model in which the sides of switching surfaces are inputs, at these values of

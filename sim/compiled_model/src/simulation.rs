@@ -305,7 +305,7 @@ fn propagate(
 const STICKING_EXCLUSION: &str =
     "during sticking, the model does not give the power of the force that holds the motion";
 
-fn new_motion(
+pub(crate) fn new_motion(
     (trajectory, surfaces): (Trajectory, Vec<Surface>),
     request: &Request<'_>,
     solver: Solver,

@@ -8,7 +8,7 @@
 //! `resolution` by samples, for functions without bounds. `location` finds the root on the interior and makes steps that
 //! end at the surface; `passage` applies the event there. `driver` combines these into a
 //! [`Trajectory`], with `limits` and `stiffness`. `simulation` runs it once, or from call to call.
-//! `external_motion` keeps sides and modes for a caller that makes the steps. No step averages over a kink or jump
+//! `external_motion` keeps sides and modes for a caller that makes the steps; `step_adjoint` differentiates a step. No step averages over a kink or jump
 //! of the right-hand side, which would reduce the order of the method.
 //!
 //! # Tolerance
@@ -49,6 +49,7 @@ pub mod runge_kutta;
 mod settings;
 mod simulation;
 mod slopes;
+mod step_adjoint;
 mod stepper;
 mod stiffness;
 mod system;
@@ -62,5 +63,6 @@ pub use external_motion::ExternalMotion;
 pub use names::{Names, Surface, SurfaceKind, UnsupportedSticking};
 pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
 pub use simulation::{Simulation, simulate, simulate_into};
+pub use step_adjoint::RepeatedStep;
 pub use system::{Interior, ObservedStep, System, jacobian_by_differences};
 pub use trajectory::{SolverStatistics, Trajectory};

@@ -47,6 +47,7 @@ pub fn derive_outputs(
         || has(Output::Products)
         || has(Output::TimeDerivatives)
         || has(Output::Tangents)
+        || has(Output::TrajectoryGradients)
         || has(Output::Hessians);
     if differentiated {
         let mut roots = equations.rate_nodes();
@@ -75,7 +76,10 @@ pub fn derive_outputs(
             .jacobians
             .push(by_time(equations, &rows, "rates_by_time"));
     }
-    if has(Output::Products) || has(Output::Hessians) {
+    if has(Output::TrajectoryGradients) {
+        result.jacobians.extend(event_jacobians(equations));
+    }
+    if has(Output::Products) || has(Output::Hessians) || has(Output::TrajectoryGradients) {
         let products = products(equations);
         if has(Output::Hessians) {
             let derivative = gradient_derivative(equations, &products.by_parameters);
@@ -265,7 +269,7 @@ fn derive_weighted_by_parameters(
     match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
         Some(gradient) => single_row_jacobian(graph, NAME, &gradient),
         None => {
-            let sum = JacobianRows::from_node(weighted_sum(graph, weighted));
+            let sum = JacobianRows::from_scalars(&[weighted_sum(graph, weighted)]);
             by_parameters(equations, &sum, NAME)
         }
     }
@@ -328,14 +332,7 @@ fn jacobians(
             &rates,
             ["rates_by_state", "rates_by_inputs", "rates_by_parameters"],
         ),
-        (
-            &observables,
-            [
-                "observables_by_state",
-                "observables_by_inputs",
-                "observables_by_parameters",
-            ],
-        ),
+        (&observables, OBSERVABLES_BY),
     ] {
         if by_state {
             found.push(by_variables(equations, rows, names[0], false));
@@ -346,6 +343,50 @@ fn jacobians(
         if by_all_parameters {
             found.push(by_parameters(equations, rows, names[2]));
         }
+    }
+    found
+}
+
+const OBSERVABLES_BY: [&str; 3] = [
+    "observables_by_state",
+    "observables_by_inputs",
+    "observables_by_parameters",
+];
+
+/// Derives the Jacobians of observables, scalar guards and the rates of these.
+fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
+    let guards = equations.guards.iter().map(|guard| guard.value);
+    let guards: Vec<NodeId> = guards
+        .filter(|value| equations.graph.shape(*value) == Shape::Scalar)
+        .collect();
+    let rates: Vec<NodeId> = guards
+        .iter()
+        .map(|value| guard_rate(equations, *value))
+        .collect();
+    let observables = observable_rows(equations);
+    let mut found = Vec::new();
+    for (rows, [by_state, by_inputs, by_all_parameters]) in [
+        (observables, OBSERVABLES_BY),
+        (
+            JacobianRows::from_scalars(&guards),
+            [
+                "guards_by_state",
+                "guards_by_inputs",
+                "guards_by_parameters",
+            ],
+        ),
+        (
+            JacobianRows::from_scalars(&rates),
+            [
+                "guard_rates_by_state",
+                "guard_rates_by_inputs",
+                "guard_rates_by_parameters",
+            ],
+        ),
+    ] {
+        found.push(by_variables(equations, &rows, by_state, false));
+        found.push(by_variables(equations, &rows, by_inputs, true));
+        found.push(by_parameters(equations, &rows, by_all_parameters));
     }
     found
 }

@@ -29,17 +29,18 @@ struct EquationRow {
 }
 
 impl JacobianRows {
-    pub(crate) fn from_node(node: NodeId) -> Self {
-        let row = EquationRow {
-            first: 0,
+    /// Returns one row for each of these scalars.
+    pub(crate) fn from_scalars(nodes: &[NodeId]) -> Self {
+        let rows = nodes.iter().enumerate().map(|(first, node)| EquationRow {
+            first,
             count: 1,
-            node,
+            node: *node,
             field: None,
-        };
+        });
         Self {
-            count: 1,
+            count: nodes.len(),
             identity: None,
-            rows: vec![row],
+            rows: rows.collect(),
         }
     }
 }
@@ -85,21 +86,8 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
 pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     let energy = equations.graph.add(equations.kinetic, equations.potential);
     let nodes = equations.observables.iter().copied();
-    let rows: Vec<EquationRow> = nodes
-        .chain([energy, equations.power])
-        .enumerate()
-        .map(|(first, node)| EquationRow {
-            first,
-            count: 1,
-            node,
-            field: None,
-        })
-        .collect();
-    JacobianRows {
-        count: rows.len(),
-        identity: None,
-        rows,
-    }
+    let nodes: Vec<NodeId> = nodes.chain([energy, equations.power]).collect();
+    JacobianRows::from_scalars(&nodes)
 }
 
 pub(crate) fn by_variables(

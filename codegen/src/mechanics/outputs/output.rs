@@ -32,6 +32,9 @@ pub enum Output {
     /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
     /// Includes the products.
     Hessians,
+    /// Products and the Jacobians of observables, guards and rates of guards by state, inputs and parameters. It has no
+    /// name for requests: gradients of trajectories evaluate it.
+    TrajectoryGradients,
     /// One step of the classical Runge-Kutta method of order 4.
     Step,
     /// A second version of every function, `inlined_...`, for SIMD lanes. It is compiled together with the
@@ -72,6 +75,7 @@ impl Output {
             Self::TimeDerivatives => "time_derivatives",
             Self::Tangents => "tangents",
             Self::Hessians => "hessians",
+            Self::TrajectoryGradients => "trajectory_gradients",
             Self::Step => "step",
             Self::Lanes => "lanes",
         }

@@ -34,15 +34,13 @@ pub enum Stage {
     Jacobians,
     /// Product of the Jacobian of the rates with a direction.
     ForwardProduct,
-    /// Product of weights with the Jacobian of the rates.
+    /// Products of weights with the Jacobians of the rates by state, inputs and parameters.
     ReverseProduct,
-    /// Product of weights with the Jacobian of the rates by the parameters.
-    ParameterProduct,
 }
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 15] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
@@ -58,7 +56,6 @@ impl Stage {
         Self::Jacobians,
         Self::ForwardProduct,
         Self::ReverseProduct,
-        Self::ParameterProduct,
     ];
 
     /// Returns the values that the stage computes.
@@ -102,8 +99,7 @@ impl Stage {
             | Self::GuardRates
             | Self::Jacobians
             | Self::ForwardProduct
-            | Self::ReverseProduct
-            | Self::ParameterProduct => self.output_roots(program),
+            | Self::ReverseProduct => self.output_roots(program),
         }
     }
 }
@@ -158,12 +154,7 @@ impl Stage {
             }
             Self::GuardRates => outputs.guard_rates.iter().flatten().copied().collect(),
             Self::ForwardProduct => products.flat_map(Products::forward_roots).collect(),
-            Self::ReverseProduct => products
-                .flat_map(|p| p.reverse.iter().map(|(_, id)| *id))
-                .collect(),
-            Self::ParameterProduct => products
-                .flat_map(|p| p.by_parameters.entries.iter().map(|entry| entry.value))
-                .collect(),
+            Self::ReverseProduct => products.flat_map(Products::reverse_roots).collect(),
             _ => {
                 let jacobians = outputs.jacobians.iter();
                 jacobians

@@ -21,7 +21,7 @@ mod step;
 use eomgen_model_spec::ids::FieldId;
 use std::sync::Arc;
 
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Argument, Extent, Op, Program, ValueId, Variable};
 pub use bounds::Stretch;
 use bounds_memory::BoundsMemory;
 pub use code::{MachineCode, Stage};
@@ -42,6 +42,8 @@ pub struct Evaluator {
     places: Places,
     /// Parameter values, each with its index among the independent parameters.
     parameters: Vec<(ValueId, usize)>,
+    /// Values that are numbers of a caller, such as weights.
+    arguments: Vec<(Argument, Variable, ValueId)>,
     guard_count: usize,
     prepare: Vec<ValueId>,
     /// Steps of each stage, in the order of [`Stage::ALL`].
@@ -71,6 +73,11 @@ impl Evaluator {
                 _ => None,
             })
             .collect();
+        let arguments = program.ids().filter_map(|id| match program.value(id).op {
+            Op::Argument(argument, variable) => Some((argument, variable, id)),
+            _ => None,
+        });
+        let arguments = arguments.collect();
         let places = Places::new(&program);
         let guards = program.guards.iter();
         let guard_extents = guards.map(|guard| program.value(guard.value).extent);
@@ -79,6 +86,7 @@ impl Evaluator {
             memory: vec![0.0; places.size()],
             places,
             parameters,
+            arguments,
             prepare,
             stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
             code: None,

@@ -2,7 +2,9 @@
 
 use super::{Evaluator, Point, Stage};
 use crate::program::BlockPlace;
-use crate::program::{Argument, Extent, Jacobian, JacobianBlock, Op, RowValues, ValueId, Variable};
+use crate::program::{
+    Argument, Extent, Jacobian, JacobianBlock, Products, RowValues, ValueId, Variable,
+};
 
 impl Evaluator {
     /// Computes c - f, one number for each degree of freedom.
@@ -101,29 +103,13 @@ impl Evaluator {
         &mut self,
         point: Point<'_>,
         weights: &[f64],
-        (state, inputs): (&mut [f64], &mut [f64]),
+        out: (&mut [f64], &mut [f64]),
     ) -> bool {
-        let Some(products) = self.program.outputs.products.clone() else {
-            return false;
-        };
-        self.set_argument(Argument::Weights, weights, &[]);
-        self.compute(Stage::ReverseProduct, &point);
-        let degrees = self.program.degrees_of_freedom();
-        state.fill(0.0);
-        inputs.fill(0.0);
-        state[degrees..2 * degrees].copy_from_slice(&weights[..degrees]);
-        for (variable, id) in products.reverse {
-            let place = self.program.variable_place(variable);
-            for i in 0..self.count(variable) {
-                let value = self.element(id, i);
-                match variable {
-                    Variable::Input(_) => inputs[place] = value,
-                    Variable::Rate(_) | Variable::ModeRates(_) => state[place + i] += value,
-                    _ => state[place + i] = value,
-                }
-            }
-        }
-        true
+        self.compute_weighted(point, weights);
+        let products = self.program.outputs.products.as_ref();
+        products
+            .map(|products| self.copy_weighted(products, weights, out))
+            .is_some()
     }
 
     /// Computes the product of weights with the Jacobian of the rates by the independent parameters.
@@ -133,16 +119,68 @@ impl Evaluator {
         weights: &[f64],
         out: &mut [f64],
     ) -> bool {
-        let Some(products) = self.program.outputs.products.clone() else {
+        self.compute_weighted(point, weights);
+        let products = self.program.outputs.products.as_ref();
+        products
+            .map(|products| self.copy_weighted_by_parameters(products, out))
+            .is_some()
+    }
+
+    /// Computes the products of weights with the Jacobians of the rates by state, inputs and independent parameters.
+    pub fn weighted_gradient(
+        &mut self,
+        point: Point<'_>,
+        weights: &[f64],
+        (state, inputs, parameters): (&mut [f64], &mut [f64], &mut [f64]),
+    ) -> bool {
+        self.compute_weighted(point, weights);
+        let Some(products) = &self.program.outputs.products else {
             return false;
         };
-        self.set_argument(Argument::Weights, weights, &[]);
-        self.compute(Stage::ParameterProduct, &point);
+        self.copy_weighted(products, weights, (state, inputs));
+        self.copy_weighted_by_parameters(products, parameters);
+        true
+    }
+
+    fn compute_weighted(&mut self, point: Point<'_>, weights: &[f64]) {
+        if self.program.outputs.products.is_some() {
+            self.set_argument(Argument::Weights, weights, &[]);
+            self.compute(Stage::ReverseProduct, &point);
+        }
+    }
+
+    fn copy_weighted(
+        &self,
+        products: &Products<ValueId, RowValues>,
+        weights: &[f64],
+        (state, inputs): (&mut [f64], &mut [f64]),
+    ) {
+        let degrees = self.program.degrees_of_freedom();
+        state.fill(0.0);
+        inputs.fill(0.0);
+        state[degrees..2 * degrees].copy_from_slice(&weights[..degrees]);
+        for (variable, id) in &products.reverse {
+            let place = self.program.variable_place(*variable);
+            for i in 0..self.count(*variable) {
+                let value = self.element(*id, i);
+                match variable {
+                    Variable::Input(_) => inputs[place] = value,
+                    Variable::Rate(_) | Variable::ModeRates(_) => state[place + i] += value,
+                    _ => state[place + i] = value,
+                }
+            }
+        }
+    }
+
+    fn copy_weighted_by_parameters(
+        &self,
+        products: &Products<ValueId, RowValues>,
+        out: &mut [f64],
+    ) {
         out.fill(0.0);
         for entry in &products.by_parameters.entries {
             out[entry.column] = self.element(entry.value, 0);
         }
-        true
     }
 
     fn count(&self, variable: Variable) -> usize {
@@ -156,11 +194,8 @@ impl Evaluator {
 
     /// Copies the numbers of an argument to the places of its values.
     fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
-        for id in self.program.ids() {
-            let Op::Argument(of, variable) = self.program.value(id).op else {
-                continue;
-            };
-            if of != argument {
+        for (of, variable, id) in &self.arguments {
+            if *of != argument {
                 continue;
             }
             let from = match variable {
@@ -168,10 +203,10 @@ impl Evaluator {
                 _ => numbers,
             };
             let (place, start) = (
-                self.program.variable_place(variable),
-                self.places.offset(id),
+                self.program.variable_place(*variable),
+                self.places.offset(*id),
             );
-            let count = self.count(variable);
+            let count = self.count(*variable);
             self.memory[start..start + count].copy_from_slice(&from[place..place + count]);
         }
     }

@@ -6,6 +6,7 @@ mod constrained;
 mod discs;
 mod domain;
 mod external_motion;
+mod gradients;
 mod rows;
 mod seldom;
 mod time_stepping;

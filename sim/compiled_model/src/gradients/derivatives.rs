@@ -1,0 +1,31 @@
+//! Derivatives of a number.
+
+/// Derivatives of a number by a state, the inputs of a program and the independent parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Derivatives {
+    pub state: Vec<f64>,
+    pub inputs: Vec<f64>,
+    pub parameters: Vec<f64>,
+}
+
+impl Derivatives {
+    pub fn zeros(states: usize, inputs: usize, parameters: usize) -> Self {
+        Self {
+            state: vec![0.0; states],
+            inputs: vec![0.0; inputs],
+            parameters: vec![0.0; parameters],
+        }
+    }
+
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        for (sums, parts) in [
+            (&mut self.state, &other.state),
+            (&mut self.inputs, &other.inputs),
+            (&mut self.parameters, &other.parameters),
+        ] {
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                *sum += factor * part;
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Gradients of trajectories by the initial state, the parameters and held inputs, through events.
+//!
+//! `recorder` keeps the steps and events of a motion. `pull_back` follows them backwards (discrete adjoint): it repeats
+//! every step, multiplies by the transposed Jacobians of its stages, and by the transposed saltation matrix at every event
+//! (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, section
+//! 7.3). `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
+//! surfaces that hold the motion. The work does not depend on the number of parameters.
+
+mod derivatives;
+mod mode_evaluator;
+mod pull_back;
+mod recorder;
+mod support;
+
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Method, Settings, Trajectory, simulate_into};
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::motion::{Motion, Solver};
+use crate::motion_model::MotionModel;
+use crate::simulation::{Request, new_motion, with_early_stop};
+
+use recorder::{Recorder, Recording};
+use support::check_support;
+
+/// A motion with its steps and events, for gradients.
+pub struct RecordedMotion<'m> {
+    instance: Instance<'m>,
+    motion: Motion,
+    initial: Vec<f64>,
+    tolerance: f64,
+    recording: Recording,
+}
+
+/// Derivatives of a number L by the states and observables of each sample.
+#[derive(Clone, Debug, Default)]
+pub struct SampleWeights {
+    /// Derivatives by the states, SI: one row for each sample, or no row.
+    pub states: Vec<Vec<f64>>,
+    /// Derivatives by the observables, SI: one row for each sample, or no row.
+    pub observables: Vec<Vec<f64>>,
+}
+
+/// Gradient of a number L of the samples of a motion, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrajectoryGradient {
+    /// By the state at the first sample. `None` if friction holds the motion from there: its speed cannot change then.
+    pub initial_state: Option<Vec<f64>>,
+    /// By the independent parameters, at constant initial state, in the order of
+    /// [`CompiledModel::parameter_names`](crate::CompiledModel::parameter_names).
+    pub parameters: Vec<f64>,
+    /// By the held inputs: one row for each sample of the inputs. Inputs that are prescribed or functions have NaN.
+    pub inputs: Vec<Vec<f64>>,
+}
+
+impl<'m> Instance<'m> {
+    /// Simulates a request with the Runge-Kutta method and records it for gradients. The motion is that of
+    /// [`Instance::simulate_until_stop`].
+    ///
+    /// # Errors
+    /// The errors of a simulation, one that stops early, and models without gradients: constraints, impacts,
+    /// controllers, jumps of the energies, friction along v/norm(v), and switching functions over modes.
+    pub fn record_motion(&self, request: &Request<'_>) -> Result<RecordedMotion<'m>, Error> {
+        if !matches!(request.solver, Solver::Rk | Solver::Auto) {
+            let solver = request.solver;
+            return Err(Error::Request(format!(
+                "gradients follow the steps of the solver rk, not those of {solver}: use --solver rk"
+            )));
+        }
+        check_support(self)?;
+        let settings = Settings {
+            max_step: request.max_step,
+            method: Method::DormandPrince853,
+            ..Settings::with_tolerance(request.tolerance)
+        };
+        settings
+            .check()
+            .map_err(|error| Error::Request(error.to_string()))?;
+        self.check_held_inputs(request.inputs, request.time_span())?;
+        let span = request.time_span();
+        let run = (self as &dyn MotionModel).prepare_general_run(
+            (request.initial, span),
+            request.inputs,
+            &settings,
+        )?;
+        let recorder = Recorder::new(&run.system);
+        let mut trajectory = Trajectory::default();
+        let asked = (request.initial, span, request.times);
+        let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, &mut |_| {});
+        let recording = recorder.finish();
+        let found = (trajectory, run.surfaces.clone());
+        let motion = new_motion(found, request, Solver::Rk, (None, None));
+        let motion = match ended {
+            Ok(()) => motion,
+            Err(error) => {
+                let reached = (span.0, &motion.trajectory.final_state[..]);
+                let stop = run.early_stop(self, &error, reached);
+                with_early_stop(motion, stop)?.into_complete()?
+            }
+        };
+        Ok(RecordedMotion {
+            instance: self.clone(),
+            motion,
+            initial: request.initial.to_vec(),
+            tolerance: request.tolerance,
+            recording,
+        })
+    }
+}
+
+impl RecordedMotion<'_> {
+    /// Returns the motion.
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// Returns the gradient of a number of which `weights` are the derivatives by the samples.
+    ///
+    /// # Errors
+    /// Weights of another shape or that are not finite; a motion that touches a switching surface or crosses several at
+    /// once, where no gradient exists; derivatives that are not finite.
+    pub fn gradient(&self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
+        pull_back::pull_back(self, weights)
+    }
+
+    fn inputs(&self) -> &HeldInputs {
+        &self.motion.inputs
+    }
+}

@@ -1,0 +1,326 @@
+//! Rates, observables and switching functions in a given mode, and products of weights with their Jacobians.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
+use eomgen_sim::ode::SurfaceMode;
+use nalgebra::{DMatrix, DVector};
+
+use super::derivatives::Derivatives;
+use crate::error::Error;
+use crate::jacobians::JacobianLayout;
+
+/// Number of Newton iterations for the sides of surfaces that hold the motion, if forces are not linear in them.
+const MAX_ITERATIONS: usize = 20;
+
+/// Change of a side that counts as rounding.
+const MAX_SETTLED_CHANGE: f64 = 1e-14;
+
+/// Jacobians of one kind of rows by state, inputs and parameters.
+struct RowJacobians {
+    layouts: [JacobianLayout; 3],
+    dense: [Vec<f64>; 3],
+}
+
+impl RowJacobians {
+    fn find(evaluator: &Evaluator, names: [&str; 3]) -> Option<Self> {
+        let program = evaluator.program();
+        let [state, inputs, parameters] = names.map(|name| JacobianLayout::find(program, name));
+        let layouts = [state?, inputs?, parameters?];
+        let dense = [0, 1, 2].map(|by: usize| vec![0.0; layouts[by].rows * layouts[by].columns]);
+        Some(Self { layouts, dense })
+    }
+
+    fn evaluate(&mut self, evaluator: &mut Evaluator, point: Point<'_>) {
+        for (layout, dense) in self.layouts.iter_mut().zip(&mut self.dense) {
+            layout.evaluate(evaluator, point, dense);
+        }
+    }
+
+    /// Adds the product of a factor with a row.
+    fn add_row(&self, row: usize, factor: f64, sum: &mut Derivatives) {
+        let sums = [&mut sum.state, &mut sum.inputs, &mut sum.parameters];
+        for ((layout, dense), sum) in self.layouts.iter().zip(&self.dense).zip(sums) {
+            let row = &dense[row * layout.columns..(row + 1) * layout.columns];
+            for (slot, entry) in sum.iter_mut().zip(row) {
+                *slot += factor * entry;
+            }
+        }
+    }
+}
+
+/// Side of a surface among the inputs of the program.
+struct SideInput {
+    guard: usize,
+    is_odd: bool,
+    /// Side that is fixed; `None` if it follows from the state or holds.
+    fixed: Option<f64>,
+}
+
+/// Evaluator of a model in one mode of its surfaces.
+pub(super) struct ModeEvaluator {
+    evaluator: Evaluator,
+    /// Inputs of the model, then the sides.
+    inputs: Vec<f64>,
+    model_inputs: usize,
+    sides: Vec<SideInput>,
+    /// Index of the first side of a surface that can hold the motion.
+    first_sliding: usize,
+    /// Surfaces that hold the motion, by their index among those that can.
+    held: Vec<usize>,
+    is_linear: bool,
+    sliding: Vec<SlidingValues>,
+    guards: Vec<f64>,
+    observables: RowJacobians,
+    guards_by: RowJacobians,
+    guard_rates_by: RowJacobians,
+    parameters: usize,
+}
+
+impl ModeEvaluator {
+    /// Wraps an evaluator of a program for gradients, prepared at its parameters.
+    ///
+    /// # Errors
+    /// A program without these outputs.
+    pub fn new(evaluator: Evaluator) -> Result<Self, Error> {
+        let find = |names| {
+            RowJacobians::find(&evaluator, names)
+                .ok_or_else(|| Error::Request("the program has no gradients".to_owned()))
+        };
+        let observables = find([
+            "observables_by_state",
+            "observables_by_inputs",
+            "observables_by_parameters",
+        ])?;
+        let guards_by = find([
+            "guards_by_state",
+            "guards_by_inputs",
+            "guards_by_parameters",
+        ])?;
+        let guard_rates_by = find([
+            "guard_rates_by_state",
+            "guard_rates_by_inputs",
+            "guard_rates_by_parameters",
+        ])?;
+        let program = evaluator.program();
+        let outputs = &program.outputs;
+        let others = outputs.sides.iter().map(|side| (side.guard, side.is_odd));
+        let sliding = outputs.sliding.iter();
+        let sides = others.chain(sliding.map(|surface| (surface.guard, surface.is_odd)));
+        let sides = sides.map(|(guard, is_odd)| SideInput {
+            guard,
+            is_odd,
+            fixed: None,
+        });
+        let sides: Vec<SideInput> = sides.collect();
+        Ok(Self {
+            inputs: vec![0.0; program.inputs.len()],
+            model_inputs: program.inputs.len() - sides.len(),
+            first_sliding: outputs.sides.len(),
+            held: Vec::new(),
+            is_linear: outputs.sliding.iter().all(|surface| surface.is_linear),
+            sliding: Vec::new(),
+            guards: vec![0.0; evaluator.guard_count()],
+            parameters: program.parameters.len(),
+            sides,
+            observables,
+            guards_by,
+            guard_rates_by,
+            evaluator,
+        })
+    }
+
+    /// Returns zero derivatives of the sizes of the program.
+    pub fn zeros(&self) -> Derivatives {
+        let states = self.evaluator.program().states();
+        Derivatives::zeros(states, self.inputs.len(), self.parameters)
+    }
+
+    /// Sets the modes of the surfaces, by guards.
+    pub fn set_modes(&mut self, modes: &[SurfaceMode]) {
+        self.held.clear();
+        for (place, side) in self.sides.iter_mut().enumerate() {
+            side.fixed = match modes.get(side.guard) {
+                Some(SurfaceMode::Positive) => Some(1.0),
+                Some(SurfaceMode::Negative) => Some(0.0),
+                Some(SurfaceMode::Held) if place >= self.first_sliding => {
+                    self.held.push(place - self.first_sliding);
+                    Some(0.5)
+                }
+                _ => None,
+            };
+        }
+    }
+
+    /// Fixes the side of a surface, 0 or 1. Returns false if the rates do not depend on it.
+    pub fn set_side(&mut self, guard: usize, value: f64) -> bool {
+        let side = self.sides.iter_mut().find(|side| side.guard == guard);
+        side.map(|side| side.fixed = Some(value)).is_some()
+    }
+
+    /// Sets the inputs at a point, with the sides of the surfaces.
+    fn set_inputs(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) -> Result<(), Error> {
+        self.inputs[..self.model_inputs].copy_from_slice(&inputs[..self.model_inputs]);
+        if self.sides.iter().any(|side| side.fixed.is_none()) {
+            let inputs = &self.inputs;
+            self.evaluator
+                .guards(Point { t, state, inputs }, &mut self.guards);
+        }
+        for (side, slot) in self.sides.iter().zip(&mut self.inputs[self.model_inputs..]) {
+            *slot = side.fixed.unwrap_or_else(|| match self.guards[side.guard] {
+                value if value > 0.0 => 1.0,
+                0.0 if side.is_odd => 0.5,
+                _ => 0.0,
+            });
+        }
+        self.find_holding_sides((t, state))
+    }
+
+    fn find_holding_sides(&mut self, (t, state): (f64, &[f64])) -> Result<(), Error> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
+        let first = self.model_inputs + self.first_sliding;
+        for iteration in 0.. {
+            let inputs = &self.inputs;
+            self.evaluator
+                .sliding(Point { t, state, inputs }, &mut self.sliding);
+            if self.is_linear && iteration == 1 || iteration == MAX_ITERATIONS {
+                break;
+            }
+            let rates = self.held.iter().map(|row| -self.sliding[*row].rate);
+            let rates = DVector::from_iterator(self.held.len(), rates);
+            let change = self.held_matrix().lu().solve(&rates);
+            let change = change.ok_or_else(|| {
+                Error::Request(format!(
+                    "no gradient of the trajectory: at t = {t:?} s, surfaces that hold the motion depend on each other"
+                ))
+            })?;
+            for (row, change) in self.held.iter().zip(&change) {
+                self.inputs[first + row] += change;
+            }
+            if change.amax() <= MAX_SETTLED_CHANGE {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the derivatives of the rates of the functions that hold (rows) by their sides.
+    fn held_matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.held.len(), self.held.len(), |row, column| {
+            self.sliding[self.held[row]].by_sides[self.held[column]]
+        })
+    }
+
+    pub fn write_rates(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        self.evaluator.rates(Point { t, state, inputs }, out);
+        Ok(())
+    }
+
+    /// Writes the products of weights with the Jacobians of the rates.
+    pub fn pull_back_rates(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        weights: &[f64],
+        out: &mut Derivatives,
+    ) -> Result<(), Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        let sums = (
+            &mut out.state[..],
+            &mut out.inputs[..],
+            &mut out.parameters[..],
+        );
+        self.evaluator.weighted_gradient(point, weights, sums);
+        self.follow_holding_sides((t, state), out)
+    }
+
+    /// Adds the products of weights with the Jacobians of the observables.
+    pub fn pull_back_observables(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        weights: &[f64],
+    ) -> Result<Derivatives, Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        self.observables
+            .evaluate(&mut self.evaluator, Point { t, state, inputs });
+        let mut sum = self.zeros();
+        for (row, weight) in weights.iter().enumerate() {
+            if *weight != 0.0 {
+                self.observables.add_row(row, *weight, &mut sum);
+            }
+        }
+        self.follow_holding_sides((t, state), &mut sum)?;
+        Ok(sum)
+    }
+
+    /// Replaces the derivatives by the sides that hold by those of the condition that determines them: the rates of their
+    /// functions are zero.
+    fn follow_holding_sides(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        sum: &mut Derivatives,
+    ) -> Result<(), Error> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
+        let first = self.model_inputs + self.first_sliding;
+        let by_sides = self.held.iter().map(|row| sum.inputs[first + row]);
+        let by_sides = DVector::from_iterator(self.held.len(), by_sides);
+        let multipliers = self.held_matrix().transpose().lu().solve(&by_sides);
+        let multipliers = multipliers.unwrap_or_else(|| DVector::repeat(self.held.len(), f64::NAN));
+        let inputs = &self.inputs;
+        self.guard_rates_by
+            .evaluate(&mut self.evaluator, Point { t, state, inputs });
+        for (row, multiplier) in self.held.iter().zip(&multipliers) {
+            let guard = self.sides[self.first_sliding + row].guard;
+            self.guard_rates_by.add_row(guard, -multiplier, sum);
+        }
+        Ok(())
+    }
+
+    /// Writes the switching functions and their rates.
+    pub fn write_guards(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        (values, rates): (&mut [f64], &mut [f64]),
+    ) -> Result<(), Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.evaluator.guards(point, values);
+        self.evaluator.guard_rates(point, rates);
+        Ok(())
+    }
+
+    /// Returns the derivatives of a switching function.
+    pub fn differentiate_guard(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        guard: usize,
+    ) -> Result<Derivatives, Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        self.guards_by
+            .evaluate(&mut self.evaluator, Point { t, state, inputs });
+        let mut row = self.zeros();
+        self.guards_by.add_row(guard, 1.0, &mut row);
+        Ok(row)
+    }
+
+    pub fn guard_count(&self) -> usize {
+        self.guards.len()
+    }
+}
