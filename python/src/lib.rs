@@ -13,6 +13,7 @@ mod error;
 mod evaluation;
 mod evaluators;
 mod generation;
+mod gradient;
 mod inputs;
 mod interruption;
 mod linearisation;
@@ -41,6 +42,8 @@ mod _native {
     use crate::evaluation::{jacobian, mass_matrix, observables, rates};
     #[pymodule_export]
     use crate::generation::generate;
+    #[pymodule_export]
+    use crate::gradient::RecordedMotion;
     #[pymodule_export]
     use crate::linearisation::{discretise, linearise};
     #[pymodule_export]

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
-    Audit, Error, LoggedEvent, Motion, Overlap, Request, SampledController, Solver, SolverChoice,
-    split_assignments, with_input_functions,
+    Audit, Error, Instance, LoggedEvent, Motion, Overlap, RecordedMotion as Recorded, Request,
+    SampledController, Solver, SolverChoice, split_assignments, with_input_functions,
 };
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 
 use crate::controller::{ControllerEntry, PythonController};
 use crate::error;
+use crate::gradient::RecordedMotion;
 use crate::inputs::{Failures, InputEntry, with_functions};
 use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
@@ -22,7 +23,8 @@ use crate::model::Model;
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
-/// observables, a row for each sample; events; warnings; names and values of the states of controllers.
+/// observables, a row for each sample; events; warnings; names and values of the states of controllers; the motion for
+/// gradients, if requested.
 type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
@@ -34,6 +36,7 @@ type SimulationTuple<'py> = (
     Vec<String>,
     Vec<String>,
     Bound<'py, PyArray2<f64>>,
+    Option<RecordedMotion>,
 );
 
 /// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
@@ -51,7 +54,7 @@ pub type EventTuple = (
 #[pyfunction]
 #[pyo3(signature = (
     model, initial, times, input_times, input_values, functions, expressions, breaks, solver,
-    tolerance, max_step, controller, progress
+    tolerance, max_step, controller, gradients, progress
 ))]
 #[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
 pub fn simulate<'py>(
@@ -68,6 +71,7 @@ pub fn simulate<'py>(
     tolerance: f64,
     max_step: f64,
     controller: Option<ControllerEntry>,
+    gradients: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<SimulationTuple<'py>> {
     let count = model.compiled().model().inputs.len();
@@ -108,11 +112,19 @@ pub fn simulate<'py>(
         told.transpose().map(drop)
     };
     let controller = controller.map(|entry| (entry, failures.clone()));
-    let found = interruptible(py, hear, |line| follow(model, &request, controller, line))?;
+    let found = interruptible(py, hear, |line| match gradients {
+        true => record(model, &request, line),
+        false => follow(model, &request, controller, line),
+    })?;
     if let Some(raised) = failures.take(py) {
         return Err(raised);
     }
-    let (motion, observables, warnings) = found.map_err(error::model)?;
+    let Found {
+        motion,
+        observables,
+        warnings,
+        recorded,
+    } = found.map_err(error::model)?;
     let trajectory = &motion.trajectory;
     let rows = trajectory.times.len();
     let states: Vec<f64> = trajectory.states.concat();
@@ -136,6 +148,7 @@ pub fn simulate<'py>(
         warnings,
         motion.controller_states.names,
         controller_states,
+        recorded.map(RecordedMotion::new),
     ))
 }
 
@@ -170,22 +183,35 @@ pub fn parse_solver(name: &str) -> PyResult<Solver> {
     })
 }
 
-/// Simulates a motion. Returns it with its observables, row by row, and warnings.
-fn follow(
-    model: &Model,
-    request: &Request<'_>,
-    controller: Option<(ControllerEntry, Failures)>,
-    line: &Connection<'_, f64>,
-) -> Result<(Motion, Vec<f64>, Vec<String>), Error> {
-    let instance = model.instance()?;
+/// A motion with its observables, row by row, and warnings.
+struct Found {
+    motion: Motion,
+    observables: Vec<f64>,
+    warnings: Vec<String>,
+    recorded: Option<Recorded<'static>>,
+}
+
+/// Returns the progress of a motion for a connection.
+fn report_progress(line: &Connection<'_, f64>) -> impl FnMut(f64) {
     let mut told = Instant::now();
-    let mut progress = |t: f64| {
+    move |t: f64| {
         line.check();
         if told.elapsed() > REPORT_INTERVAL {
             told = Instant::now();
             line.report(t);
         }
-    };
+    }
+}
+
+/// Simulates a motion.
+fn follow(
+    model: &Model,
+    request: &Request<'_>,
+    controller: Option<(ControllerEntry, Failures)>,
+    line: &Connection<'_, f64>,
+) -> Result<Found, Error> {
+    let instance = model.instance()?;
+    let mut progress = report_progress(line);
     let motion = match controller {
         None => instance.simulate_until_stop(request, &mut progress)?,
         Some((entry, failures)) => {
@@ -198,14 +224,37 @@ fn follow(
             instance.simulate_controlled(request, &mut all, &mut progress)?
         }
     };
+    observe(&instance, motion, request)
+}
+
+/// Simulates a motion and records it for gradients.
+fn record(
+    model: &Model,
+    request: &Request<'_>,
+    line: &Connection<'_, f64>,
+) -> Result<Found, Error> {
+    let instance = model.shared_instance()?;
+    let recorded = instance.record_motion(request, &mut report_progress(line))?;
+    let found = observe(&instance, recorded.motion().clone(), request)?;
+    Ok(Found {
+        recorded: Some(recorded),
+        ..found
+    })
+}
+
+fn observe(instance: &Instance<'_>, motion: Motion, request: &Request<'_>) -> Result<Found, Error> {
     let mut observables = Vec::new();
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
     let overlap = instance.find_first_overlap(&motion, request.tolerance)?;
     let energy = motion.audit.as_ref().and_then(Audit::warning_message);
     let warnings = energy.into_iter();
     let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
-    let warnings = warnings.collect();
-    Ok((motion, observables, warnings))
+    Ok(Found {
+        warnings: warnings.collect(),
+        motion,
+        observables,
+        recorded: None,
+    })
 }
 
 /// Returns the event log of a motion.

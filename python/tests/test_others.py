@@ -8,10 +8,10 @@ import eomgen
 from conftest import PROJECT, SPECIFICATIONS
 
 
-def written(section, **names):
-    """Runs the code of a section of the page with given names. Returns its names."""
+def written(section, block=0, **names):
+    """Runs a block of code of a section of the page with given names. Returns its names."""
     page = (PROJECT / "docs" / "python.md").read_text(encoding="utf-8")
-    text = page.split(f"## {section}\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    text = page.split(f"## {section}\n", 1)[1].split("```python\n")[1 + block].split("```", 1)[0]
     exec(compile(text, f"docs/python.md, {section}", "exec"), names)
     return names
 
@@ -92,3 +92,33 @@ def test_jax_derivatives_match(cart, states):
     weights = np.arange(1.0, 7.0)
     gradient = jax.grad(lambda x: weights @ rates(t, x, u))(x)
     assert np.allclose(gradient, weights @ cart.jacobian(0.0, x, u), rtol=1e-12)
+
+
+def test_gradient_example_runs(pendulum):
+    g = written("Gradients of a motion", m=pendulum)["g"]
+    assert np.isfinite(g.state).all() and set(g.parameters) <= set(pendulum.parameters)
+
+
+def test_jax_differentiates_motion(pendulum):
+    jax = pytest.importorskip("jax")
+    motion = written("Gradients of a motion", 1)["jax_motion"](pendulum, ["m", "a"], "theta", 1.0, 0.1)
+    values = np.array([pendulum.parameters[name] for name in ("m", "a")])
+    found = jax.grad(lambda v: (motion(v) ** 2).sum())(values)
+    for place, step in enumerate(1e-4 * np.eye(2)):
+        difference = ((motion(values + step) ** 2).sum() - (motion(values - step) ** 2).sum()) / 2e-4
+        assert np.isclose(found[place], difference, rtol=1e-4)
+
+
+def test_torch_differentiates_motion(cart):
+    torch = pytest.importorskip("torch")
+    motion = written("Gradients of a motion", 2)["TorchMotion"]
+    samples = torch.linspace(0.1, 0.6, 6, dtype=torch.float64, requires_grad=True)
+
+    def run(u):
+        return (motion.apply(u, cart, cart.inputs[0], cart.states[0], 0.5, 0.1) ** 2).sum()
+
+    run(samples).backward()
+    step = torch.zeros(6, dtype=torch.float64)
+    step[2] = 1e-4
+    difference = (run(samples.detach() + step) - run(samples.detach() - step)) / 2e-4
+    assert np.isclose(float(samples.grad[2]), float(difference), rtol=1e-5)

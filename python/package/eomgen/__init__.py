@@ -15,6 +15,7 @@ from .certificate import Certificate
 from .comparison import Comparison
 from .discovery import Discovery, discover
 from .equilibrium import Equilibrium
+from .gradient import Gradient
 from .linearisation import DiscreteLinearisation, Linearisation
 from .model import Model, SpecificationWarning, load
 from .modes import Mode
@@ -31,6 +32,7 @@ __all__ = [
     "DiscreteLinearisation",
     "Equilibrium",
     "Event",
+    "Gradient",
     "Linearisation",
     "Mode",
     "Model",

@@ -40,6 +40,11 @@ class Simulation:
     def observables(self) -> _Array: ...
     def take_events(self) -> List[Tuple[float, str, str, str, str, List[float]]]: ...
 
+class RecordedMotion:
+    def gradient(
+        self, model: Model, states: _Array, observables: _Array
+    ) -> Tuple[Optional[_Array], List[Tuple[str, float]], _Array]: ...
+
 class Model:
     @staticmethod
     def of_text(name: str, text: str, order: Optional[int]) -> Model: ...
@@ -138,6 +143,7 @@ def simulate(
     controller: Optional[
         Tuple[Callable[..., object], List[int], Tuple[float, float, float]]
     ],
+    gradients: bool,
     progress: Optional[Callable[[float], object]],
 ) -> Tuple[
     str,
@@ -150,6 +156,7 @@ def simulate(
     List[str],
     List[str],
     _Array,
+    Optional[RecordedMotion],
 ]: ...
 def discover(
     model: Model, dataset: str, seed: int, progress: Callable[[str], object]

@@ -377,6 +377,7 @@ class Model:
         offset: float = 0.0,
         delay: float = 0.0,
         controls: Any = None,
+        gradients: bool = False,
         sample: Optional[float] = None,
         initial: Any = None,
     ) -> Trajectory:
@@ -404,6 +405,9 @@ class Model:
         sequence or as one number. They act `delay` (s) later and are held until the next ones act. Default of `controls`:
         all inputs that nothing else drives. Controllers of the specification run too.
 
+        gradients: True to keep the steps for `Trajectory.gradient`, with the solver "rk". Models with constraints, impacts
+        or controllers have no gradients.
+
         progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
         progress line in terminals and notebooks for simulations longer than two seconds.
 
@@ -419,7 +423,7 @@ class Model:
         settings = (solver, tolerance, max_step)
         control = (controller, period, offset, delay, controls)
         driven = (inputs, breaks)
-        return simulate(self, span, settings, self.state(state), driven, control, progress)
+        return simulate(self, span, settings, self.state(state), driven, control, bool(gradients), progress)
 
     def simulation(
         self,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _arguments, _native
 from ._progress import Fraction
+from .gradient import Gradient
 
 if TYPE_CHECKING:
     from .model import Model
@@ -62,6 +63,7 @@ class Trajectory:
         self.solver, self.reason, _, self.t, self.states, self.observables, events = found[:7]
         self.state_names, self.observable_names = names
         self.controller_state_names, self.controller_states = tuple(found[8]), found[9]
+        self._recorded = found[10]
         self._events = events
         self.switches = sum(event[2] != "input" for event in events)
         self._units = units
@@ -89,6 +91,20 @@ class Trajectory:
 
     def __len__(self) -> int:
         return len(self.t)
+
+    def gradient(self, weights: Mapping[str, Any]) -> Gradient:
+        """Returns the gradient of a number L of the samples, through events, by the initial state, the parameters and the
+        inputs. The motion must be simulated with `gradients=True`. One call takes some two to five simulations, for any
+        number of parameters.
+
+        weights: names of states and observables with the derivatives of L by their samples, (n,), as
+        `{"tip": 2 * (r["tip"] - target)}`.
+
+        Raises ValueError if the gradient does not exist: the motion touches a switching surface or crosses several at once.
+        """
+        if self._recorded is None:
+            raise ValueError("this motion has no gradient: call simulate with gradients=True")
+        return Gradient(self._recorded, (self.state_names, self.observable_names), len(self), weights)
 
     def to_pandas(self) -> Any:
         """Returns a pandas DataFrame with a column for each name and the index t (s). Needs the package `pandas`."""
@@ -137,6 +153,7 @@ def simulate(
     initial: Array,
     driven: Tuple[Any, Any],
     control: Tuple[Any, Any, Any, Any, Any],
+    gradients: bool,
     progress: Optional[Callable[[float], object]],
 ) -> Trajectory:
     """Simulates a model over a span (start, until, interval) with settings (solver, tolerance, max_step),
@@ -158,6 +175,8 @@ def simulate(
     given, breaks = driven
     # Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
     keep = control[0] is not None or bool(model._native.controlled_inputs) or solver == "fixed"
+    if gradients and control[0] is not None:
+        raise ValueError("no gradient of the trajectory: a controller drives the motion")
     native, names, given, expressions = prescribe(model, given, keep)
     entry = controller_entry(names, {**given, **dict(expressions)}, model._native.controlled_inputs, control)
     driven_names = [names[place] for place in entry[1]] if entry is not None else []
@@ -178,10 +197,14 @@ def simulate(
             tolerance,
             longest,
             entry,
+            gradients,
             line.tell,
         )
     for warning in found[7]:
         warnings.warn(warning, stacklevel=3)
+    if gradients:
+        columns = {name: np.size(given.get(name, 0.0)) for name in names if not callable(given.get(name))}
+        found = (*found[:10], (found[10], native, names, columns))
     names = (model.states, model.observable_names)
     trajectory = Trajectory(names, model.units, found)
     stopped = found[2]

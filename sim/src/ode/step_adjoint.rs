@@ -78,12 +78,8 @@ impl RepeatedStep {
             let own = &mut self.slopes[stage];
             own.fill(0.0);
             add(own, coefficient(INCREMENTS[END], stage), weights);
-            for later in stage + 1..STAGES {
-                add(
-                    own,
-                    coefficient(INCREMENTS[later], stage),
-                    &self.products[later],
-                );
+            for (terms, product) in INCREMENTS.iter().zip(&self.products).skip(stage + 1) {
+                add(own, coefficient(terms, stage), product);
             }
             let t = self.start + PARTS[stage] * self.length;
             product(t, &self.states[stage], own, &mut self.products[stage])?;

@@ -56,16 +56,20 @@ pub struct TrajectoryGradient {
 
 impl<'m> Instance<'m> {
     /// Simulates a request with the Runge-Kutta method and records it for gradients. The motion is that of
-    /// [`Instance::simulate_until_stop`].
+    /// [`Instance::simulate_until_stop`]. Calls `progress` with the time reached, s.
     ///
     /// # Errors
     /// The errors of a simulation, one that stops early, and models without gradients: constraints, impacts,
     /// controllers, jumps of the energies, friction along v/norm(v), and switching functions over modes.
-    pub fn record_motion(&self, request: &Request<'_>) -> Result<RecordedMotion<'m>, Error> {
+    pub fn record_motion(
+        &self,
+        request: &Request<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<RecordedMotion<'m>, Error> {
         if !matches!(request.solver, Solver::Rk | Solver::Auto) {
             let solver = request.solver;
             return Err(Error::Request(format!(
-                "gradients follow the steps of the solver rk, not those of {solver}: use --solver rk"
+                "gradients follow the steps of the solver rk, not those of {solver}"
             )));
         }
         check_support(self)?;
@@ -87,7 +91,7 @@ impl<'m> Instance<'m> {
         let recorder = Recorder::new(&run.system);
         let mut trajectory = Trajectory::default();
         let asked = (request.initial, span, request.times);
-        let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, &mut |_| {});
+        let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, progress);
         let recording = recorder.finish();
         let found = (trajectory, run.surfaces.clone());
         let motion = new_motion(found, request, Solver::Rk, (None, None));

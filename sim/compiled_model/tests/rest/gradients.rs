@@ -73,7 +73,7 @@ impl Case<'_> {
     fn gradient(&self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
         let recorded = self
             .run
-            .record_motion(&self.request(&self.initial, &self.inputs))?;
+            .record_motion(&self.request(&self.initial, &self.inputs), &mut |_| {})?;
         recorded.gradient(weights)
     }
 }
