@@ -5,7 +5,7 @@ use super::adjoint::{self, pair_weights};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
     JacobianRows, along_direction, by_parameters, by_time, by_variables, observable_rows,
-    rate_rows, single_row_jacobian,
+    rate_rows, single_row_jacobian, stacked_rows,
 };
 use super::matrix_derivatives::holds_moving_diagonal;
 use super::output::Output;
@@ -353,7 +353,8 @@ const OBSERVABLES_BY: [&str; 3] = [
     "observables_by_parameters",
 ];
 
-/// Derives the Jacobians of observables, scalar guards and the rates of these.
+/// Derives the Jacobians of observables, scalar guards and the rates of these, distances of impacts and the jumps of the
+/// rates by impacts without friction, one after the other.
 fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     let guards = equations.guards.iter().map(|guard| guard.value);
     let guards: Vec<NodeId> = guards
@@ -363,6 +364,8 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
         .iter()
         .map(|value| guard_rate(equations, *value))
         .collect();
+    let distances = equations.impacts.iter().map(|impact| impact.distance);
+    let distances: Vec<NodeId> = distances.collect();
     let observables = observable_rows(equations);
     let mut found = Vec::new();
     for (rows, [by_state, by_inputs, by_all_parameters]) in [
@@ -383,10 +386,46 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
                 "guard_rates_by_parameters",
             ],
         ),
+        (
+            JacobianRows::from_scalars(&distances),
+            [
+                "distances_by_state",
+                "distances_by_inputs",
+                "distances_by_parameters",
+            ],
+        ),
     ] {
         found.push(by_variables(equations, &rows, by_state, false));
         found.push(by_variables(equations, &rows, by_inputs, true));
         found.push(by_parameters(equations, &rows, by_all_parameters));
     }
+    let jumps: Vec<RowNodes> = (0..equations.impacts.len())
+        .map(|impact| impact_jump(equations, impact))
+        .collect();
+    let rows = stacked_rows(equations, &jumps);
+    found.push(by_variables(equations, &rows, "jumps_by_state", false));
+    found.push(by_variables(equations, &rows, "jumps_by_inputs", true));
+    found.push(by_parameters(equations, &rows, "jumps_by_parameters"));
+    found.push(by_time(equations, &rows, "jumps_by_time"));
     found
+}
+
+/// Returns the jump of the rates by an impact without friction, after Newton's law.
+fn impact_jump(equations: &mut Equations, place: usize) -> RowNodes {
+    let impact = &equations.impacts[place];
+    let graph = &mut equations.graph;
+    let one = graph.one();
+    let factor = graph.combine(&[(-1.0, one), (-1.0, impact.restitution)]);
+    let change = graph.multiply(factor, impact.rate);
+    let impulse = graph.divide(change, impact.delassus[place]);
+    let mut scale = |nodes: &[NodeId]| -> Vec<NodeId> {
+        nodes
+            .iter()
+            .map(|node| graph.multiply(impulse, *node))
+            .collect()
+    };
+    RowNodes {
+        scalars: scale(&impact.column.scalars),
+        modal: scale(&impact.column.modal),
+    }
 }

@@ -4,6 +4,7 @@
 
 use super::types::{Jacobian, JacobianBlock};
 use crate::mechanics::equations::Equations;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::differentiate::{Direction, Tangent};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
@@ -45,29 +46,41 @@ impl JacobianRows {
     }
 }
 
+/// Returns rows of the degrees of freedom, from the row `first` on.
+fn rows_of_degrees(equations: &Equations, nodes: &RowNodes, first: usize) -> Vec<EquationRow> {
+    let scalars = nodes.scalars.iter().enumerate();
+    let scalars = scalars.map(|(index, node)| EquationRow {
+        first: first + index,
+        count: 1,
+        node: *node,
+        field: None,
+    });
+    let fields = FieldId::first(nodes.modal.len()).zip(&nodes.modal);
+    let modal = fields.map(|(field, node)| EquationRow {
+        first: first + mode_offset(equations, field),
+        count: equations.graph.orders()[field],
+        node: *node,
+        field: Some(field),
+    });
+    scalars.chain(modal).collect()
+}
+
+/// Returns the rows of several lists, each with a row for each degree of freedom.
+pub(super) fn stacked_rows(equations: &Equations, lists: &[RowNodes]) -> JacobianRows {
+    let degrees = degrees_of_freedom(equations);
+    let rows = lists.iter().enumerate();
+    let rows = rows.flat_map(|(index, nodes)| rows_of_degrees(equations, nodes, index * degrees));
+    JacobianRows {
+        count: lists.len() * degrees,
+        identity: None,
+        rows: rows.collect(),
+    }
+}
+
 /// Returns the rates of the state; the rates of coordinates are themselves states.
 pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
-    let accelerations = &equations.accelerations.rows;
-    let mut rows: Vec<EquationRow> = accelerations
-        .scalars
-        .iter()
-        .enumerate()
-        .map(|(index, node)| EquationRow {
-            first: degrees + index,
-            count: 1,
-            node: *node,
-            field: None,
-        })
-        .collect();
-    for (field, node) in FieldId::first(accelerations.modal.len()).zip(&accelerations.modal) {
-        rows.push(EquationRow {
-            first: degrees + mode_offset(equations, field),
-            count: equations.graph.orders()[field],
-            node: *node,
-            field: Some(field),
-        });
-    }
+    let mut rows = rows_of_degrees(equations, &equations.accelerations.rows, degrees);
     let first_order = equations.state_rates.iter().enumerate();
     rows.extend(first_order.map(|(index, node)| EquationRow {
         first: 2 * degrees + index,

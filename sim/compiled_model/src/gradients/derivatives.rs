@@ -16,16 +16,4 @@ impl Derivatives {
             parameters: vec![0.0; parameters],
         }
     }
-
-    pub fn add(&mut self, factor: f64, other: &Self) {
-        for (sums, parts) in [
-            (&mut self.state, &other.state),
-            (&mut self.inputs, &other.inputs),
-            (&mut self.parameters, &other.parameters),
-        ] {
-            for (sum, part) in sums.iter_mut().zip(parts) {
-                *sum += factor * part;
-            }
-        }
-    }
 }

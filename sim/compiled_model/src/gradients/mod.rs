@@ -1,16 +1,18 @@
 //! Gradients of trajectories by the initial state, the parameters and held inputs, through events.
 //!
 //! `recorder` keeps the steps and events of a motion. `pull_back` follows them backwards (discrete adjoint): it repeats
-//! every step, multiplies by the transposed Jacobians of its stages, and by the transposed saltation matrix at every event
-//! (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, section
-//! 7.3). `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
+//! every step and multiplies by the transposed Jacobians of its stages; `events` multiplies by the transposed saltation
+//! matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
+//! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
 //! surfaces that hold the motion. The work does not depend on the number of parameters.
 
 mod derivatives;
+mod events;
 mod mode_evaluator;
 mod pull_back;
 mod recorder;
 mod support;
+mod surfaces;
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, Settings, Trajectory, simulate_into};
@@ -59,8 +61,8 @@ impl<'m> Instance<'m> {
     /// [`Instance::simulate_until_stop`]. Calls `progress` with the time reached, s.
     ///
     /// # Errors
-    /// The errors of a simulation, one that stops early, and models without gradients: constraints, impacts,
-    /// controllers, jumps of the energies, friction along v/norm(v), and switching functions over modes.
+    /// The errors of a simulation, one that stops early, and models without gradients: constraints, controllers,
+    /// friction of contacts, jumps of the energies, friction along v/norm(v), and switching functions over modes.
     pub fn record_motion(
         &self,
         request: &Request<'_>,

@@ -1,6 +1,6 @@
 //! Rates, observables and switching functions in a given mode, and products of weights with their Jacobians.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point, SlidingValues};
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point, SlidingValues};
 use eomgen_sim::ode::SurfaceMode;
 use nalgebra::{DMatrix, DVector};
 
@@ -72,6 +72,10 @@ pub(super) struct ModeEvaluator {
     observables: RowJacobians,
     guards_by: RowJacobians,
     guard_rates_by: RowJacobians,
+    distances_by: RowJacobians,
+    jumps_by: RowJacobians,
+    jumps_by_time: JacobianLayout,
+    impacts: Vec<ImpactValues>,
     parameters: usize,
 }
 
@@ -81,10 +85,8 @@ impl ModeEvaluator {
     /// # Errors
     /// A program without these outputs.
     pub fn new(evaluator: Evaluator) -> Result<Self, Error> {
-        let find = |names| {
-            RowJacobians::find(&evaluator, names)
-                .ok_or_else(|| Error::Request("the program has no gradients".to_owned()))
-        };
+        let missing = || Error::Request("the program has no gradients".to_owned());
+        let find = |names| RowJacobians::find(&evaluator, names).ok_or_else(missing);
         let observables = find([
             "observables_by_state",
             "observables_by_inputs",
@@ -100,7 +102,14 @@ impl ModeEvaluator {
             "guard_rates_by_inputs",
             "guard_rates_by_parameters",
         ])?;
+        let distances_by = find([
+            "distances_by_state",
+            "distances_by_inputs",
+            "distances_by_parameters",
+        ])?;
+        let jumps_by = find(["jumps_by_state", "jumps_by_inputs", "jumps_by_parameters"])?;
         let program = evaluator.program();
+        let jumps_by_time = JacobianLayout::find(program, "jumps_by_time").ok_or_else(missing)?;
         let outputs = &program.outputs;
         let others = outputs.sides.iter().map(|side| (side.guard, side.is_odd));
         let sliding = outputs.sliding.iter();
@@ -124,6 +133,10 @@ impl ModeEvaluator {
             observables,
             guards_by,
             guard_rates_by,
+            distances_by,
+            jumps_by,
+            jumps_by_time,
+            impacts: Vec::new(),
             evaluator,
         })
     }
@@ -289,8 +302,18 @@ impl ModeEvaluator {
         Ok(())
     }
 
-    /// Writes the switching functions and their rates.
-    pub fn write_guards(
+    /// Returns the number of surfaces: of switching functions, then of the distances of impacts.
+    pub fn surface_count(&self) -> usize {
+        self.guards.len() + self.evaluator.program().impacts.len()
+    }
+
+    /// Returns the index of the impact to which a surface belongs.
+    pub fn impact_of(&self, surface: usize) -> Option<usize> {
+        surface.checked_sub(self.guards.len())
+    }
+
+    /// Writes the functions of the surfaces and their rates.
+    pub fn write_surfaces(
         &mut self,
         (t, state): (f64, &[f64]),
         inputs: &[f64],
@@ -299,28 +322,74 @@ impl ModeEvaluator {
         self.set_inputs((t, state), inputs)?;
         let inputs = &self.inputs;
         let point = Point { t, state, inputs };
-        self.evaluator.guards(point, values);
-        self.evaluator.guard_rates(point, rates);
+        let guards = self.guards.len();
+        self.evaluator.guards(point, &mut values[..guards]);
+        self.evaluator.guard_rates(point, &mut rates[..guards]);
+        self.evaluator.impacts(point, &mut self.impacts);
+        for (place, impact) in self.impacts.iter().enumerate() {
+            (values[guards + place], rates[guards + place]) = (impact.distance, impact.rate);
+        }
         Ok(())
     }
 
-    /// Returns the derivatives of a switching function.
-    pub fn differentiate_guard(
+    /// Returns the derivatives of the function of a surface.
+    pub fn differentiate_surface(
         &mut self,
         (t, state): (f64, &[f64]),
         inputs: &[f64],
-        guard: usize,
+        surface: usize,
     ) -> Result<Derivatives, Error> {
         self.set_inputs((t, state), inputs)?;
+        let (rows, row) = match self.impact_of(surface) {
+            Some(impact) => (&mut self.distances_by, impact),
+            None => (&mut self.guards_by, surface),
+        };
         let inputs = &self.inputs;
-        self.guards_by
-            .evaluate(&mut self.evaluator, Point { t, state, inputs });
-        let mut row = self.zeros();
-        self.guards_by.add_row(guard, 1.0, &mut row);
-        Ok(row)
+        rows.evaluate(&mut self.evaluator, Point { t, state, inputs });
+        let program = self.evaluator.program();
+        let mut found = Derivatives::zeros(program.states(), self.inputs.len(), self.parameters);
+        rows.add_row(row, 1.0, &mut found);
+        Ok(found)
     }
 
-    pub fn guard_count(&self) -> usize {
-        self.guards.len()
+    /// Returns the jumps of the rates by each impact alone, one number for each degree of freedom.
+    pub fn impact_jumps(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        self.evaluator
+            .impacts(Point { t, state, inputs }, &mut self.impacts);
+        let impacts = self.impacts.iter().enumerate();
+        let jumps = impacts.map(|(place, impact)| {
+            let impulse = -(1.0 + impact.restitution) * impact.rate / impact.delassus[place];
+            impact.column.iter().map(|rate| rate * impulse).collect()
+        });
+        Ok(jumps.collect())
+    }
+
+    /// Returns the products of weights with the derivatives of the jump by an impact, and with that by time.
+    pub fn pull_back_jump(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        (impact, weights): (usize, &[f64]),
+    ) -> Result<(Derivatives, f64), Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.jumps_by.evaluate(&mut self.evaluator, point);
+        let mut by_time = vec![0.0; self.jumps_by_time.rows];
+        self.jumps_by_time
+            .evaluate(&mut self.evaluator, point, &mut by_time);
+        let mut sum = self.zeros();
+        let first = impact * weights.len();
+        for (row, weight) in weights.iter().enumerate() {
+            self.jumps_by.add_row(first + row, *weight, &mut sum);
+        }
+        let by_time = by_time[first..].iter().zip(weights);
+        Ok((sum, by_time.map(|(entry, weight)| entry * weight).sum()))
     }
 }

@@ -4,20 +4,10 @@ use eomgen_sim::ode::{RepeatedStep, SurfaceMode};
 
 use super::derivatives::Derivatives;
 use super::mode_evaluator::ModeEvaluator;
-use super::recorder::Part;
+use super::recorder::{Part, PartKind};
 use super::{RecordedMotion, SampleWeights, TrajectoryGradient};
 use crate::error::Error;
 use crate::evaluation::prepare_evaluator;
-
-/// Largest jump of a rate over a surface, relative to its largest magnitude over the motion, that counts as none: at a
-/// kink the rates differ only by the change over the location of the event.
-const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
-
-/// Largest relative difference of delays that belong to one surface, written twice.
-const MAX_DELAY_DIFFERENCE_FRACTION: f64 = 1e-6;
-
-/// Distance from a surface, in tolerances of its function, that counts as a contact.
-const MAX_TOUCH_TOLERANCES: f64 = 10.0;
 
 /// Returns the gradient of a number with these derivatives by the samples.
 pub(super) fn pull_back(
@@ -29,9 +19,9 @@ pub(super) fn pull_back(
     way.measure_surfaces()?;
     for place in (0..recorded.recording.parts.len()).rev() {
         let part = &recorded.recording.parts[place];
-        match part.is_event {
-            true => way.follow_event(place)?,
-            false => way.follow_step(place, weights)?,
+        match part.kind {
+            PartKind::Step => way.follow_step(place, weights)?,
+            PartKind::Crossing | PartKind::Jump => way.follow_event(place)?,
         }
         let sums = way.adjoint.iter().chain(&way.parameters);
         if sums.into_iter().any(|number| !number.is_finite()) {
@@ -41,7 +31,7 @@ pub(super) fn pull_back(
     way.finish(weights)
 }
 
-fn no_gradient(t: f64, cause: &str) -> Error {
+pub(super) fn no_gradient(t: f64, cause: &str) -> Error {
     Error::Request(format!(
         "no gradient of the trajectory: at t = {t:?} s, {cause}"
     ))
@@ -73,23 +63,23 @@ fn check_weights(recorded: &RecordedMotion<'_>, weights: &SampleWeights) -> Resu
 }
 
 /// The way back from the end of a motion, and the derivatives so far.
-struct WayBack<'r, 'm> {
-    recorded: &'r RecordedMotion<'m>,
-    evaluator: ModeEvaluator,
+pub(super) struct WayBack<'r, 'm> {
+    pub recorded: &'r RecordedMotion<'m>,
+    pub evaluator: ModeEvaluator,
     step: RepeatedStep,
     /// Derivatives by the state at the present time.
-    adjoint: Vec<f64>,
-    parameters: Vec<f64>,
+    pub adjoint: Vec<f64>,
+    pub parameters: Vec<f64>,
     /// Derivatives by the inputs, one row for each of their samples.
-    inputs: Vec<Vec<f64>>,
+    pub inputs: Vec<Vec<f64>>,
     /// Products of one stage.
     products: Derivatives,
     /// Number of samples before the present time.
     samples: usize,
-    /// Largest magnitudes of the switching functions and of their rates.
-    guard_sizes: Vec<(f64, f64)>,
+    /// Largest magnitudes of the functions of all surfaces, and of their rates.
+    pub surface_sizes: Vec<(f64, f64)>,
     /// Largest magnitudes of the rates.
-    rate_sizes: Vec<f64>,
+    pub rate_sizes: Vec<f64>,
 }
 
 impl<'r, 'm> WayBack<'r, 'm> {
@@ -110,7 +100,7 @@ impl<'r, 'm> WayBack<'r, 'm> {
             parameters: products.parameters.clone(),
             inputs: vec![vec![0.0; model_inputs]; recorded.inputs().times().len()],
             samples: recorded.motion.trajectory.times.len(),
-            guard_sizes: vec![(0.0, 0.0); evaluator.guard_count()],
+            surface_sizes: vec![(0.0, 0.0); evaluator.surface_count()],
             rate_sizes: vec![0.0; recorded.initial.len()],
             products,
             evaluator,
@@ -118,108 +108,12 @@ impl<'r, 'm> WayBack<'r, 'm> {
         })
     }
 
-    fn part(&self, place: usize) -> &'r Part {
+    pub fn part(&self, place: usize) -> &'r Part {
         &self.recorded.recording.parts[place]
     }
 
-    /// Measures rates and switching functions over the motion, and rejects motions that touch a surface.
-    fn measure_surfaces(&mut self) -> Result<(), Error> {
-        let recorded = self.recorded;
-        let count = self.evaluator.guard_count();
-        let (mut values, mut rates) = (vec![0.0; count], vec![0.0; count]);
-        let mut state_rates = vec![0.0; self.rate_sizes.len()];
-        let mut ends = Vec::new();
-        for part in &recorded.recording.parts {
-            self.evaluator.set_modes(&part.modes);
-            for (t, state) in [&part.start, &part.end] {
-                let given = recorded.inputs().evaluate(self.clip(part, *t));
-                let at = (*t, &state[..]);
-                self.evaluator.write_rates(at, &given, &mut state_rates)?;
-                for (size, rate) in self.rate_sizes.iter_mut().zip(&state_rates) {
-                    *size = size.max(rate.abs());
-                }
-                let out = (&mut values[..], &mut rates[..]);
-                self.evaluator.write_guards(at, &given, out)?;
-                for (size, (value, rate)) in
-                    self.guard_sizes.iter_mut().zip(values.iter().zip(&rates))
-                {
-                    *size = (size.0.max(value.abs()), size.1.max(rate.abs()));
-                }
-            }
-            ends.push(values.clone());
-        }
-        let allowed = MAX_TOUCH_TOLERANCES * recorded.tolerance;
-        for (place, values) in ends.iter().enumerate() {
-            let (part, next) = (self.part(place), recorded.recording.parts.get(place + 1));
-            if part.is_event || next.is_some_and(|next| next.is_event) {
-                continue;
-            }
-            for (guard, value) in values.iter().enumerate() {
-                let is_free = matches!(
-                    part.modes[guard],
-                    SurfaceMode::Positive | SurfaceMode::Negative
-                );
-                let is_near = value.abs() <= allowed * self.guard_sizes[guard].0;
-                if is_free && is_near && self.rates_jump(part, guard)? {
-                    return Err(self.touches(part.end.0, guard));
-                }
-            }
-        }
-        self.check_start()
-    }
-
-    /// Rejects motions that start on a surface on which the rates jump, unless it holds them.
-    fn check_start(&mut self) -> Result<(), Error> {
-        let Some(first) = self.recorded.recording.parts.first() else {
-            return Ok(());
-        };
-        for (guard, mode) in first.modes.iter().enumerate() {
-            if *mode == SurfaceMode::Unknown && self.rates_jump(first, guard)? {
-                return Err(self.touches(first.start.0, guard));
-            }
-        }
-        Ok(())
-    }
-
-    fn touches(&self, t: f64, guard: usize) -> Error {
-        let surface = self.formula(guard);
-        no_gradient(
-            t,
-            &format!(
-                "the motion touches the surface `{surface}` = 0, where a neighbouring motion may or may not cross it"
-            ),
-        )
-    }
-
-    fn formula(&self, guard: usize) -> &'r str {
-        let surface = self.recorded.motion.surfaces.get(guard);
-        surface.map_or("", |surface| &surface.formula)
-    }
-
-    /// Returns true if the rates differ on the sides of a surface at the end of a part.
-    fn rates_jump(&mut self, part: &Part, guard: usize) -> Result<bool, Error> {
-        let (t, state) = (part.end.0, &part.end.1[..]);
-        let given = self.recorded.inputs().evaluate(self.clip(part, t));
-        let mut sides = [(); 2].map(|()| vec![0.0; state.len()]);
-        for (side, out) in [0.0, 1.0].into_iter().zip(&mut sides) {
-            self.evaluator.set_modes(&part.modes);
-            if !self.evaluator.set_side(guard, side) {
-                return Ok(false);
-            }
-            self.evaluator.write_rates((t, state), &given, out)?;
-        }
-        let [from, to] = sides;
-        Ok(!self.is_kink(&from, &to))
-    }
-
-    /// Returns true if rates on both sides of a surface are equal up to the change over its location.
-    fn is_kink(&self, from: &[f64], to: &[f64]) -> bool {
-        let mut pairs = from.iter().zip(to).zip(&self.rate_sizes);
-        pairs.all(|((from, to), size)| (to - from).abs() <= MAX_KINK_JUMP_FRACTION * size)
-    }
-
     /// Returns the time (s) of an evaluation during a part: before the next change of the inputs.
-    fn clip(&self, part: &Part, t: f64) -> f64 {
+    pub fn clip(&self, part: &Part, t: f64) -> f64 {
         clip_before(self.recorded.inputs().next_change(part.start.0), t)
     }
 
@@ -316,82 +210,6 @@ impl<'r, 'm> WayBack<'r, 'm> {
         Ok(by_state)
     }
 
-    /// Follows an event backwards, by the transposed saltation matrix.
-    fn follow_event(&mut self, place: usize) -> Result<(), Error> {
-        let recorded = self.recorded;
-        let part = self.part(place);
-        let after = recorded.recording.modes_after(place);
-        let (near, beyond) = (&part.start, &part.end);
-        let given = recorded.inputs().evaluate(self.clip(part, near.0));
-        let count = self.evaluator.guard_count();
-        let (mut values, mut rates) = (vec![0.0; count], vec![0.0; count]);
-        let (mut from, mut to) = (vec![0.0; near.1.len()], vec![0.0; near.1.len()]);
-        self.evaluator.set_modes(after);
-        self.evaluator
-            .write_rates((beyond.0, &beyond.1), &given, &mut to)?;
-        self.evaluator.set_modes(&part.modes);
-        let at = (near.0, &near.1[..]);
-        self.evaluator.write_rates(at, &given, &mut from)?;
-        if self.is_kink(&from, &to) {
-            return Ok(());
-        }
-        self.evaluator
-            .write_guards(at, &given, (&mut values, &mut rates))?;
-        // The jump of the rates, weighted.
-        let jump: f64 = (to.iter().zip(&from).zip(&self.adjoint))
-            .map(|((to, from), weight)| (to - from) * weight)
-            .sum();
-        let mut delay: Option<Derivatives> = None;
-        for guard in 0..count {
-            if part.modes[guard] == after[guard] {
-                continue;
-            }
-            if part.modes[guard] == SurfaceMode::Held {
-                return Err(no_gradient(
-                    near.0,
-                    &format!(
-                        "the rates jump where the surface `{}` = 0 releases the motion",
-                        self.formula(guard)
-                    ),
-                ));
-            }
-            let fastest = self.guard_sizes[guard].1;
-            if rates[guard].abs() <= recorded.tolerance.sqrt() * fastest {
-                return Err(self.touches(near.0, guard));
-            }
-            let mut own = self.evaluator.zeros();
-            let derivative = self.evaluator.differentiate_guard(at, &given, guard)?;
-            own.add(-1.0 / rates[guard], &derivative);
-            match &delay {
-                None => delay = Some(own),
-                Some(first) if are_equal(first, &own) => {}
-                Some(_) => {
-                    return Err(no_gradient(
-                        near.0,
-                        "the motion crosses several switching surfaces at once",
-                    ));
-                }
-            }
-        }
-        let Some(delay) = delay else {
-            return Err(no_gradient(
-                near.0,
-                "the rates jump without a change of a mode",
-            ));
-        };
-        let row = recorded.inputs().last_sample_index(near.0);
-        for (sums, parts) in [
-            (&mut self.adjoint, &delay.state),
-            (&mut self.parameters, &delay.parameters),
-            (&mut self.inputs[row], &delay.inputs),
-        ] {
-            sums.iter_mut()
-                .zip(parts)
-                .for_each(|(sum, part)| *sum -= jump * part);
-        }
-        Ok(())
-    }
-
     /// Adds the samples at the start, and returns the gradient.
     fn finish(mut self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
         let recorded = self.recorded;
@@ -427,20 +245,7 @@ fn clip_before(change: Option<f64>, t: f64) -> f64 {
     }
 }
 
-fn are_equal(first: &Derivatives, second: &Derivatives) -> bool {
-    let pairs = [
-        (&first.state, &second.state),
-        (&first.inputs, &second.inputs),
-        (&first.parameters, &second.parameters),
-    ];
-    pairs.iter().all(|(first, second)| {
-        first.iter().zip(*second).all(|(first, second)| {
-            (first - second).abs() <= MAX_DELAY_DIFFERENCE_FRACTION * first.abs()
-        })
-    })
-}
-
-fn add(sums: &mut [f64], parts: &[f64]) {
+pub(super) fn add(sums: &mut [f64], parts: &[f64]) {
     for (sum, part) in sums.iter_mut().zip(parts) {
         *sum += part;
     }

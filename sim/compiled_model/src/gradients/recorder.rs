@@ -5,6 +5,17 @@ use std::cell::{Cell, RefCell};
 use eomgen_codegen::program::evaluator::Enclosure;
 use eomgen_sim::ode::{ObservedStep, SurfaceMode, System};
 
+/// Kind of a part of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PartKind {
+    /// A step of the solver.
+    Step,
+    /// The way over a surface.
+    Crossing,
+    /// The way over a surface at which the state jumps.
+    Jump,
+}
+
 /// A part of a motion, with the modes of the surfaces during it.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
@@ -13,8 +24,7 @@ pub(super) struct Part {
     pub start: (f64, Vec<f64>),
     /// Time (s) and state at the end.
     pub end: (f64, Vec<f64>),
-    /// True if it leads over a surface, without a step.
-    pub is_event: bool,
+    pub kind: PartKind,
 }
 
 /// Parts of a motion in order of time, and the modes at its end.
@@ -38,7 +48,7 @@ pub(super) struct Recorder<'s> {
     parts: RefCell<Vec<Part>>,
     /// Sides of the surfaces during the present step.
     sides: RefCell<Vec<f64>>,
-    has_event: Cell<bool>,
+    kind: Cell<PartKind>,
     /// Modes before the event.
     earlier_modes: RefCell<Vec<SurfaceMode>>,
 }
@@ -49,7 +59,7 @@ impl<'s> Recorder<'s> {
             system,
             parts: RefCell::default(),
             sides: RefCell::new(vec![0.0; system.guard_count()]),
-            has_event: Cell::new(false),
+            kind: Cell::new(PartKind::Step),
             earlier_modes: RefCell::default(),
         }
     }
@@ -120,8 +130,12 @@ impl System for Recorder<'_> {
 
     fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         self.earlier_modes.replace(self.modes());
-        self.has_event.set(true);
-        self.system.apply_event(before, t, y)
+        let jumps = self.system.apply_event(before, t, y);
+        self.kind.set(match jumps {
+            true => PartKind::Jump,
+            false => PartKind::Crossing,
+        });
+        jumps
     }
 
     fn apply_breakpoint(&self, t: f64, y: &mut [f64]) -> bool {
@@ -156,17 +170,17 @@ impl System for Recorder<'_> {
     }
 
     fn observe_step(&self, step: &mut ObservedStep<'_>) {
-        let is_event = self.has_event.replace(false);
-        let modes = match is_event {
-            true => self.earlier_modes.take(),
-            false => self.modes(),
+        let kind = self.kind.replace(PartKind::Step);
+        let modes = match kind {
+            PartKind::Step => self.modes(),
+            PartKind::Crossing | PartKind::Jump => self.earlier_modes.take(),
         };
         let owned = |(t, y): (f64, &[f64])| (t, y.to_vec());
         self.parts.borrow_mut().push(Part {
             modes,
             start: owned(step.start),
             end: owned(step.end),
-            is_event,
+            kind,
         });
         if self.system.is_observing() {
             self.system.observe_step(step);

@@ -8,8 +8,12 @@ pub(super) fn check_support(instance: &Instance<'_>) -> Result<(), Error> {
     let model = instance.model().model();
     let own = if let Some(constraint) = model.constraints.first() {
         format!("the constraint `{}`", constraint.name)
-    } else if let Some(impact) = model.impacts.first() {
-        format!("the impact `{}`", impact.name)
+    } else if let Some(impact) = model
+        .impacts
+        .iter()
+        .find(|impact| impact.friction.is_some())
+    {
+        format!("friction at the impact `{}`", impact.name)
     } else if let Some(controller) = model.controllers.first() {
         format!("the controller `{}`", controller.name)
     } else if let Some(surface) = instance.model().first_corner() {

@@ -373,8 +373,8 @@ fn motion_that_touches_a_surface_has_no_gradient() {
 fn models_without_gradients_are_rejected_by_name() {
     for (more, name) in [
         (
-            "[impacts]\nfloor = { when = \"x + p\", restitution = \"p/p\" }\n",
-            "the impact `floor`",
+            "[impacts]\nfloor = { when = \"x + 9*p\", restitution = 1, friction = 0.1, slip = \"dot(x)\" }\n",
+            "friction at the impact `floor`",
         ),
         (
             "[constraints]\nrod = { zero = \"x - p\" }\n",
@@ -453,4 +453,77 @@ fn gradient_by_fifty_parameters_costs_less_than_six_simulations() -> Result<(), 
     let ratio = 2.0 + program.operations(&roots) as f64 / rates;
     assert!(ratio < 6.0, "{ratio}");
     Ok(())
+}
+
+/// Pendulum on a cart with a wall that moves and a bumper of the pendulum.
+const BUMPED: &str = r#"
+[model]
+name = "bumped"
+[parameters]
+M = { value = 3, unit = "kg" }
+m = { value = 1.2, unit = "kg" }
+l = { value = 0.6, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+k = { value = 40, unit = "N/m" }
+e = { value = 0.7 }
+d = { value = 0.03, unit = "m" }
+A = { value = 0.01, unit = "m" }
+w = { value = 5, unit = "rad/s" }
+F_c = { value = 1.5, unit = "N" }
+[coordinates]
+x = { unit = "m", initial = 0.1 }
+theta = { unit = "rad", initial = 0.9 }
+[inputs]
+u = { unit = "N" }
+[definitions]
+x_m = "x + l*sin(theta)"
+y_m = "-l*cos(theta)"
+[kinetic]
+cart = "1/2*M*dot(x)^2"
+bob = "1/2*m*(dot(x_m)^2 + dot(y_m)^2)"
+[potential]
+weight = "m*g*y_m"
+spring = "1/2*k*x^2"
+[forces]
+drive = { on = "x", value = "u" }
+friction = { on = "x", value = "-F_c*sign(dot(x))" }
+[impacts]
+wall = { when = "x + d + A*sin(w*t)", restitution = "e" }
+bumper = { when = "theta + 0.2", restitution = "e^2" }
+"#;
+
+#[test]
+fn gradients_through_impacts_equal_differences() -> Result<(), Error> {
+    let inputs = HeldInputs::new(vec![0.0, 0.8], vec![1.0, -2.0], 1);
+    let model = CompiledModel::from_text("bumped.toml", BUMPED, Orders::Declared)?;
+    let run = model.with_declared_parameters()?;
+    let initial = run.initial_state().to_vec();
+    let mut initial_moved = initial.clone();
+    initial_moved[2] = 0.4;
+    let case = Case {
+        initial: initial_moved,
+        inputs: inputs.expect("rows"),
+        times: times(1.5),
+        run,
+    };
+    let motion = case
+        .run
+        .simulate(&case.initial, &case.times, &case.inputs, Solver::Rk)?;
+    assert!(
+        motion.trajectory.jumps.len() > 1,
+        "{:?}",
+        motion.trajectory.jumps
+    );
+    compare_with_differences(&case)
+}
+
+#[test]
+fn contact_that_stays_closed_has_no_gradient() {
+    let floor = "[impacts]\nfloor = { when = \"x + 0.1*p\", restitution = 0.1 }\n";
+    let text = oscillator(0.3, 0.0, 0.7, floor).replace("1/2*k*x^2", "1/2*k*(x + p)^2");
+    let message = rejection(&text, 30.0);
+    assert!(
+        message.contains("the contact `floor` stays closed"),
+        "{message}"
+    );
 }
