@@ -113,11 +113,9 @@ impl WayBack<'_, '_> {
     ) -> Result<Derivatives, Error> {
         let t = part.start.0;
         let mut delay: Option<Derivatives> = None;
-        for surface in 0..self.evaluator.surface_count() {
-            if part.modes[surface] == after[surface] {
-                continue;
-            }
-            if part.modes[surface] == SurfaceMode::Held {
+        let modes = part.modes.iter().zip(after).enumerate();
+        for (surface, (mode, _)) in modes.filter(|(_, (mode, after))| mode != after) {
+            if *mode == SurfaceMode::Held {
                 let cause = format!(
                     "the rates jump when the surface `{}` = 0 releases the motion",
                     self.formula(surface)
