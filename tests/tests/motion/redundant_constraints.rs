@@ -3,6 +3,7 @@
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Orders, Request, Solver};
+use eomgen_tests::certified::{certify, check_model};
 use nalgebra::{DMatrix, DVector};
 
 /// A platform that swings on three parallel rods; the third adds no restriction.
@@ -53,6 +54,10 @@ shaft = "1/2*J*dot(p)^2"
 weight = "m*g*y"
 [constraints]
 "#;
+
+const ALONG: &str = "along = { zero = \"x - l*cos(p)\" }\n";
+const UP: &str = "up = { zero = \"y - l*sin(p)\" }\n";
+const CIRCLE: &str = "circle = { zero = \"(x^2 + y^2 - l^2)/l\" }\n";
 
 /// The bead with the angle of the shaft only.
 const SHAFT: &str = r#"
@@ -258,18 +263,15 @@ fn multipliers_have_least_norm_in_every_unit() {
 
 #[test]
 fn every_order_of_dependent_constraints_moves_through_all_angles() {
-    let along = "along = { zero = \"x - l*cos(p)\" }\n";
-    let up = "up = { zero = \"y - l*sin(p)\" }\n";
-    let circle = "circle = { zero = \"(x^2 + y^2 - l^2)/l\" }\n";
     let shaft = compile(SHAFT);
     let shaft = shaft.with_declared_parameters().unwrap();
     let expected = move_until(&shaft, 2.0, Solver::Rk, 1e-13);
     assert!(expected.trajectory.states[60][0] > 10.0, "several turns");
     for order in [
-        [along, up, circle],
-        [circle, along, up],
-        [up, circle, along],
-        [circle, up, along],
+        [ALONG, UP, CIRCLE],
+        [CIRCLE, ALONG, UP],
+        [UP, CIRCLE, ALONG],
+        [CIRCLE, UP, ALONG],
     ] {
         let model = compile(&format!("{BEAD}{}", order.concat()));
         assert_eq!(model.redundancy_notes().len(), 1);
@@ -380,4 +382,146 @@ fn friction_and_impacts_act_along_doubled_constraint() {
         single.trajectory.events.len()
     );
     assert_same(doubled, single, &all, 1e-9);
+}
+
+#[test]
+fn certificate_accepts_dependent_constraints_and_finds_small_faults() {
+    let spatial_plain = without(SPATIAL, "hinge");
+    let bead = format!("{BEAD}{ALONG}{UP}{CIRCLE}");
+    for (text, faults) in [
+        (
+            CRANKS,
+            [
+                ("0.5*dot(p)^2", "0.50000001*dot(p)^2"),
+                (
+                    "x_r = { zero = \"l*(cos(p)",
+                    "x_r = { zero = \"l*(cos(1.00000001*p)",
+                ),
+            ],
+        ),
+        (
+            SPATIAL,
+            [
+                ("y_a + 2*y_b", "y_a + 2.00000001*y_b"),
+                ("x_b - 2.2*l", "x_b - 2.20000001*l"),
+            ],
+        ),
+        (
+            &spatial_plain,
+            [
+                ("y_a + 2*y_b", "y_a + 2.00000001*y_b"),
+                ("zero = \"z_b\"", "zero = \"z_b + 1e-8*x_b\""),
+            ],
+        ),
+        (
+            &bead,
+            [
+                ("J*dot(p)^2", "1.00000001*J*dot(p)^2"),
+                ("x - l*cos(p)", "x - l*cos(p) + 1e-8*l*p^2"),
+            ],
+        ),
+    ] {
+        let model = check_model(text);
+        let right = certify(&model, &model);
+        let failed: Vec<_> = right.failures().collect();
+        assert!(failed.is_empty(), "{failed:#?}");
+        for (old, new) in faults {
+            let wrong = text.replace(old, new);
+            assert_ne!(wrong, text);
+            let found = certify(&model, &check_model(&wrong));
+            assert!(found.failures().count() > 0, "{new}");
+        }
+    }
+}
+
+/// Two masses on one spring, joined by a constraint that is written twice.
+const PAIR: &str = r#"
+[model]
+name = "pair"
+[parameters]
+m_1 = { value = 1, unit = "kg" }
+m_2 = { value = 2, unit = "kg" }
+k = { value = 30, unit = "N/m" }
+[coordinates]
+x_1 = { unit = "m", initial = 0.1 }
+x_2 = { unit = "m", initial = 0.1 }
+[kinetic]
+masses = "1/2*m_1*dot(x_1)^2 + 1/2*m_2*dot(x_2)^2"
+[potential]
+spring = "1/2*k*x_1^2"
+[constraints]
+joined = { zero = "x_1 - x_2" }
+again = { zero = "3*(x_2 - x_1)" }
+"#;
+
+#[test]
+fn linear_pair_with_doubled_constraint_moves_as_one_mass_and_is_not_propagated_exactly() {
+    let model = compile(PAIR);
+    let run = model.with_declared_parameters().unwrap();
+    for solver in [Solver::Auto, Solver::Rk, Solver::Radau] {
+        let motion = move_until(&run, 2.0, solver, 1e-10);
+        for (t, state) in motion
+            .trajectory
+            .times
+            .iter()
+            .zip(&motion.trajectory.states)
+        {
+            let right = 0.1 * (10.0_f64.sqrt() * t).cos();
+            for x in &state[..2] {
+                assert!((x - right).abs() < 1e-8, "{solver:?} {t}: {x} {right}");
+            }
+        }
+    }
+    let exact = run.simulate(
+        run.initial_state(),
+        &[0.0, 0.1],
+        &run.default_inputs(),
+        Solver::Exact,
+    );
+    let error = exact.expect_err("constraints").to_string();
+    assert!(error.contains("the model has constraints"), "{error}");
+    assert!(error.contains("--solver rk"), "{error}");
+}
+
+#[test]
+fn redundant_constraint_without_derivative_is_refused_with_its_name() {
+    let scaled = PAIR.replace("again = { zero = \"3*", "again = { zero = \"c*");
+    let scaled = |c: f64| {
+        scaled.replace(
+            "k = {",
+            &format!("c = {{ value = {c}, unit = \"1\" }}\nk = {{"),
+        )
+    };
+    let zero = |text: &str| {
+        let found = CompiledModel::from_text("zero.toml", text, Orders::Declared);
+        found.err().expect("an error").to_string()
+    };
+    let square = format!("{PAIR}square = {{ zero = \"(x_1 - x_2)*(x_1 - x_2)*k/F\" }}\n")
+        .replace("k = {", "F = { value = 1, unit = \"N\" }\nk = {");
+    let nothing = format!("{PAIR}nothing = {{ zero = \"0*x_1\" }}\n");
+    for (text, name) in [
+        (scaled(0.0), "again"),
+        (square, "square"),
+        (nothing, "nothing"),
+    ] {
+        let error = zero(&text);
+        assert!(
+            error.contains(&format!("the constraint `{name}` has no effect"))
+                && error.contains("zero.toml:"),
+            "{error}"
+        );
+    }
+    let model = compile(&scaled(3.0));
+    let run = model.with_parameters(&[("c", 0.0)]).unwrap();
+    let found = run.simulate(
+        run.initial_state(),
+        &[0.0, 0.1],
+        &run.default_inputs(),
+        Solver::Auto,
+    );
+    let error = found.expect_err("no effect").to_string();
+    assert!(
+        error.contains("the constraint `again` has no effect"),
+        "{error}"
+    );
 }

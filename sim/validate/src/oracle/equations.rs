@@ -189,7 +189,7 @@ impl Equations {
         }
         let (scale, compliance) = scale_to_unit_diagonal(&self.constraint_compliance()?);
         let inverse = match self.excess {
-            0 => Cholesky::new(compliance)?.inverse(),
+            0 => Cholesky::new(compliance.clone())?.inverse(),
             excess => pseudo_inverse(&compliance, excess)?,
         };
         let (free, sizes) = self.free_accelerations()?;
@@ -197,7 +197,7 @@ impl Equations {
             .constraints
             .iter()
             .map(|row| {
-                let moved = row.gradient.iter().zip(free.iter().zip(&sizes));
+                let moved = row.gradient.iter().zip(free.iter().zip(sizes.iter()));
                 let moved = moved.map(|(entry, (a, size))| {
                     Conditioned::new(-entry.value * a, entry.magnitude * size)
                 });
@@ -209,27 +209,34 @@ impl Equations {
             gaps.map(|(column, gap)| *gap * (scale[row] * inverse[(row, column)] * scale[column]))
                 .sum()
         };
-        Some((0..gaps.len()).map(row).collect())
+        let mut found: Vec<Conditioned> = (0..gaps.len()).map(row).collect();
+        if self.excess > 0 {
+            let condition = compliance.norm() * inverse.norm();
+            add_pseudo_inverse_errors(&mut found, &scale, condition);
+        }
+        Some(found)
     }
 
-    fn free_accelerations(&self) -> Option<(DVector<f64>, Vec<f64>)> {
+    /// Returns the accelerations without constraint forces, with the magnitudes of their terms.
+    fn free_accelerations(&self) -> Option<(DVector<f64>, DVector<f64>)> {
         let (scale, mass) = self.scaled_mass();
-        let factor = Cholesky::new(mass)?;
         let right = self.right_side().component_mul(&scale);
-        let free = factor.solve(&right).component_mul(&scale);
-        let inverse = factor.inverse();
-        let mut terms = DVector::zeros(self.size());
-        for term in &self.terms {
-            terms += &term.magnitudes;
-        }
-        let size = |row: usize| -> f64 {
-            let entry = |column: usize| {
-                (scale[row] * inverse[(row, column)] * scale[column]).abs() * terms[column]
-            };
-            (0..self.size()).map(entry).sum()
-        };
-        let sizes = (0..self.size()).map(size).collect();
-        Some((free, sizes))
+        let free = Cholesky::new(mass)?.solve(&right).component_mul(&scale);
+        let magnitudes = self.acceleration_magnitudes(&self.term_magnitudes())?;
+        Some((free, magnitudes))
+    }
+
+    /// Returns the sums of the magnitudes of all terms in every row.
+    fn term_magnitudes(&self) -> DVector<f64> {
+        let terms = self.terms.iter().map(|term| &term.magnitudes);
+        terms.fold(DVector::zeros(self.size()), |sum, term| sum + term)
+    }
+
+    /// Returns |M^-1| times the magnitudes of forces, which bounds the magnitudes of the accelerations' terms.
+    fn acceleration_magnitudes(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
+        let (scale, mass) = self.scaled_mass();
+        let inverse = Cholesky::new(mass)?.inverse().abs();
+        Some((inverse * forces.component_mul(&scale)).component_mul(&scale))
     }
 
     fn constraint_reactions(&self) -> Vec<Vec<Conditioned>> {
@@ -302,13 +309,17 @@ impl Equations {
 
     /// Returns each row's residual for accelerations, then first-order rates; missing ones are 0.
     pub fn residuals(&self, unknowns: &[f64]) -> Vec<Residual> {
+        self.row_residuals(unknowns, &self.constraint_reactions())
+    }
+
+    fn row_residuals(&self, unknowns: &[f64], reactions: &[Vec<Conditioned>]) -> Vec<Residual> {
         let rates = unknowns.get(self.size()..).unwrap_or_default();
         let rates = rates.iter().copied().chain(std::iter::repeat(0.0));
         let of_states = self.state_rates.iter().zip(rates).map(|(addends, rate)| {
             let addends = addends.iter().map(|addend| *addend * -1.0);
             sum_residual(addends.chain([Conditioned::new(rate, rate.abs())]))
         });
-        let rows = self.degree_residuals(unknowns, &self.constraint_reactions());
+        let rows = self.degree_residuals(unknowns, reactions);
         rows.into_iter().chain(of_states).collect()
     }
 
@@ -318,14 +329,23 @@ impl Equations {
         self.degree_residuals(accelerations, &vec![Vec::new(); self.size()])
     }
 
-    fn constraint_residuals(&self, accelerations: &[f64]) -> Vec<Residual> {
-        let sizes = self
-            .free_accelerations()
-            .map_or_else(Vec::new, |free| free.1);
+    /// Returns the residual of every constraint. The accelerations have the rounding errors of all forces, with those
+    /// of the constraints, even where they cancel.
+    fn constraint_residuals(
+        &self,
+        accelerations: &[f64],
+        reactions: &[Vec<Conditioned>],
+    ) -> Vec<Residual> {
+        let mut forces = self.term_magnitudes();
+        for (force, reactions) in forces.iter_mut().zip(reactions) {
+            *force += reactions.iter().map(|own| own.magnitude).sum::<f64>();
+        }
+        let sizes = self.acceleration_magnitudes(&forces);
+        let sizes = sizes.unwrap_or_else(|| DVector::zeros(self.size()));
         let constraints = self.constraints.iter();
         constraints
             .map(|row| {
-                let sizes = sizes.iter().copied().chain(std::iter::repeat(0.0));
+                let sizes = sizes.iter().copied();
                 let entries = row.gradient.iter().zip(accelerations).zip(sizes);
                 let addends = entries.map(|((entry, a), size)| {
                     Conditioned::new(entry.value * a, entry.magnitude * size.max(a.abs()))
@@ -360,9 +380,10 @@ impl Equations {
         if unknowns.len() != self.unknown_count() {
             return f64::INFINITY;
         }
-        self.residuals(unknowns)
+        let reactions = self.constraint_reactions();
+        self.row_residuals(unknowns, &reactions)
             .iter()
-            .chain(&self.constraint_residuals(unknowns))
+            .chain(&self.constraint_residuals(unknowns, &reactions))
             .map(Residual::relative)
             .fold(0.0, f64::max)
     }
@@ -420,6 +441,22 @@ fn pseudo_inverse(matrix: &DMatrix<f64>, excess: usize) -> Option<DMatrix<f64>> 
         parts.eigenvalues[place] = if count < excess { 0.0 } else { value.recip() };
     }
     Some(parts.recompose())
+}
+
+/// Adds the rounding errors of a pseudo-inverse to the magnitudes of multipliers. They are relative to the length of all
+/// multipliers, divided by `scale`, times the condition number of the matrix (P.-A. Wedin, BIT 13, 1973), so that a
+/// multiplier that vanishes has an error too.
+fn add_pseudo_inverse_errors(
+    multipliers: &mut [Conditioned],
+    scale: &DVector<f64>,
+    condition: f64,
+) {
+    let scaled = multipliers.iter().zip(scale.iter());
+    let squares = scaled.map(|(multiplier, scale)| (multiplier.value / scale).powi(2));
+    let error = condition * squares.sum::<f64>().sqrt();
+    for (multiplier, scale) in multipliers.iter_mut().zip(scale.iter()) {
+        *multiplier = Conditioned::new(multiplier.value, multiplier.magnitude.max(error * scale));
+    }
 }
 
 /// Returns true if the pivots of a scaled matrix are positive with a margin over rounding.
