@@ -3,6 +3,7 @@
 
 pub mod contacts;
 pub mod coverage;
+pub mod gradients;
 pub mod grazing;
 pub mod hosts;
 pub mod mutations;

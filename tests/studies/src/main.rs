@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{contacts, coverage, grazing, hosts, mutations, solvers};
+use eomgen_studies::{contacts, coverage, gradients, grazing, hosts, mutations, solvers};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -25,6 +25,8 @@ enum Study {
     Mutations(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
     Coverage(Sample),
+    /// Gradients of motions against differences
+    Gradients(Sample),
     /// Agreement of all hosts on every shipped machine and on random ones
     Hosts(Sample),
     /// Agreement of the solvers on random machines
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         Study::Contacts(sample) => contacts::run(&sample),
         Study::Mutations(sample) => mutations::run(&sample),
         Study::Coverage(sample) => coverage::run(&sample),
+        Study::Gradients(sample) => gradients::run(&sample),
         Study::Hosts(sample) => hosts::run(&sample),
         Study::Solvers(sample) => solvers::run(&sample),
     };
