@@ -114,6 +114,6 @@ def test_invalid_requests_are_rejected(block):
         r.gradient([1.0])
     with pytest.raises(ValueError, match="solver rk"):
         block.simulate(until=1, solver="radau", inputs={"u": 9.0}, gradients=True)
-    disc = eomgen.load(PROJECT / "examples" / "constrained" / "rolling_disc.toml")
-    with pytest.raises(ValueError, match="constraint"):
-        disc.simulate(until=1, gradients=True)
+    puck = eomgen.load(PROJECT / "tests" / "tests" / "hosts" / "fmi" / "units" / "puck.toml")
+    with pytest.raises(ValueError, match="norm"):
+        puck.simulate(until=1, gradients=True)

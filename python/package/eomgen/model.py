@@ -405,8 +405,8 @@ class Model:
         sequence or as one number. They act `delay` (s) later and are held until the next ones act. Default of `controls`:
         all inputs that nothing else drives. Controllers of the specification run too.
 
-        gradients: True to keep the steps for `Trajectory.gradient`, with the solver "rk". Models with constraints or
-        controllers have no gradients.
+        gradients: True to keep the steps for `Trajectory.gradient`, with the solver "rk". Models with controllers
+        have no gradients.
 
         progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
         progress line in terminals and notebooks for simulations longer than two seconds.

@@ -353,8 +353,8 @@ const OBSERVABLES_BY: [&str; 3] = [
     "observables_by_parameters",
 ];
 
-/// Derives the Jacobians of observables, scalar guards and the rates of these, distances of impacts and the jumps of the
-/// rates by impacts without friction, one after the other.
+/// Derives the Jacobians of observables, scalar guards and the rates of these, distances of impacts, residuals of
+/// constraints and the rates of these, and the jumps of the rates by impacts without friction, one after the other.
 fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     let guards = equations.guards.iter().map(|guard| guard.value);
     let guards: Vec<NodeId> = guards
@@ -366,6 +366,11 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
         .collect();
     let distances = equations.impacts.iter().map(|impact| impact.distance);
     let distances: Vec<NodeId> = distances.collect();
+    let residuals = equations.residuals.clone();
+    let residual_rates: Vec<NodeId> = residuals
+        .iter()
+        .map(|value| guard_rate(equations, *value))
+        .collect();
     let observables = observable_rows(equations);
     let mut found = Vec::new();
     for (rows, [by_state, by_inputs, by_all_parameters]) in [
@@ -392,6 +397,22 @@ fn event_jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
                 "distances_by_state",
                 "distances_by_inputs",
                 "distances_by_parameters",
+            ],
+        ),
+        (
+            JacobianRows::from_scalars(&residuals),
+            [
+                "residuals_by_state",
+                "residuals_by_inputs",
+                "residuals_by_parameters",
+            ],
+        ),
+        (
+            JacobianRows::from_scalars(&residual_rates),
+            [
+                "residual_rates_by_state",
+                "residual_rates_by_inputs",
+                "residual_rates_by_parameters",
             ],
         ),
     ] {

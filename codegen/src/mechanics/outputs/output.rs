@@ -32,7 +32,7 @@ pub enum Output {
     /// Jacobian of the gradient of the weighted rates by time, state, inputs and parameters, for optimisers.
     /// Includes the products.
     Hessians,
-    /// Products and the Jacobians of observables, guards and impacts by state, inputs and parameters. It has no
+    /// Products and the Jacobians of observables, guards, impacts and constraints by state, inputs and parameters. It has no
     /// name for requests: gradients of trajectories evaluate it.
     TrajectoryGradients,
     /// One step of the classical Runge-Kutta method of order 4.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use eomgen_sim::ode::SurfaceMode;
 
 use super::derivatives::Derivatives;
-use super::pull_back::{WayBack, add, no_gradient};
+use super::pull_back::{WayBack, add, add_product, no_gradient};
 use super::recorder::{Part, PartKind};
 use crate::error::Error;
 
@@ -48,7 +48,7 @@ impl WayBack<'_, '_> {
         let mut by_delay = -scalar_product(&self.adjoint, &to);
         let row = recorded.inputs().last_sample_index(near.0);
         if let Some(impact) = impact {
-            let degrees = self.impact_degrees();
+            let degrees = self.rate_places();
             let weights = self.adjoint[degrees.clone()].to_vec();
             let (jump, by_time) = self
                 .evaluator
@@ -64,8 +64,7 @@ impl WayBack<'_, '_> {
             (&mut self.parameters, &delay.parameters),
             (&mut self.inputs[row], &delay.inputs),
         ] {
-            let pairs = sums.iter_mut().zip(parts);
-            pairs.for_each(|(sum, part)| *sum += by_delay * part);
+            add_product(sums, by_delay, parts);
         }
         Ok(())
     }
@@ -75,7 +74,7 @@ impl WayBack<'_, '_> {
     }
 
     /// Returns the places of the rates of the degrees of freedom in the state.
-    fn impact_degrees(&self) -> Range<usize> {
+    pub fn rate_places(&self) -> Range<usize> {
         let degrees = self
             .recorded
             .instance
@@ -87,7 +86,7 @@ impl WayBack<'_, '_> {
 
     /// Returns the impact by which the rates jump.
     fn find_impact(&mut self, part: &Part, given: &[f64]) -> Result<usize, Error> {
-        let degrees = self.impact_degrees();
+        let degrees = self.rate_places();
         let at = (part.start.0, &part.start.1[..]);
         let jumps = self.evaluator.impact_jumps(at, given)?;
         let pairs = part.end.1[degrees.clone()]

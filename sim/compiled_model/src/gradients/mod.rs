@@ -3,7 +3,8 @@
 //! `recorder` keeps the steps and events of a motion. `pull_back` follows them backwards (discrete adjoint): it repeats
 //! every step and multiplies by the transposed Jacobians of its stages; `events` multiplies by the transposed saltation
 //! matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
-//! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
+//! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `start` follows the correction of the
+//! initial state onto the constraints. `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
 //! surfaces that hold the motion. The work does not depend on the number of parameters.
 
 mod derivatives;
@@ -11,6 +12,7 @@ mod events;
 mod mode_evaluator;
 mod pull_back;
 mod recorder;
+mod start;
 mod support;
 mod surfaces;
 
@@ -61,8 +63,9 @@ impl<'m> Instance<'m> {
     /// [`Instance::simulate_until_stop`]. Calls `progress` with the time reached, s.
     ///
     /// # Errors
-    /// The errors of a simulation, one that stops early, and models without gradients: constraints, controllers,
-    /// friction of contacts, jumps of the energies, friction along v/norm(v), and switching functions over modes.
+    /// The errors of a simulation, one that stops early, an initial state that violates the constraints, and models without
+    /// gradients: controllers, friction of contacts, jumps of the energies, friction along v/norm(v), and switching functions
+    /// over modes.
     pub fn record_motion(
         &self,
         request: &Request<'_>,
@@ -90,9 +93,16 @@ impl<'m> Instance<'m> {
             request.inputs,
             &settings,
         )?;
+        if let Some(change) = run.initial_changes.first() {
+            return Err(Error::Request(format!(
+                "no gradient of the trajectory: the initial state does not satisfy the constraints; `{}` = {:?} does, \
+                 instead of {:?}",
+                change.name, change.used, change.requested
+            )));
+        }
         let recorder = Recorder::new(&run.system);
         let mut trajectory = Trajectory::default();
-        let asked = (request.initial, span, request.times);
+        let asked = (&run.initial[..], span, request.times);
         let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, progress);
         let recording = recorder.finish();
         let found = (trajectory, run.surfaces.clone());
@@ -108,7 +118,7 @@ impl<'m> Instance<'m> {
         Ok(RecordedMotion {
             instance: self.clone(),
             motion,
-            initial: request.initial.to_vec(),
+            initial: run.initial.clone(),
             tolerance: request.tolerance,
             recording,
         })

@@ -73,6 +73,8 @@ pub(super) struct ModeEvaluator {
     guards_by: RowJacobians,
     guard_rates_by: RowJacobians,
     distances_by: RowJacobians,
+    residuals_by: RowJacobians,
+    residual_rates_by: RowJacobians,
     jumps_by: RowJacobians,
     jumps_by_time: JacobianLayout,
     impacts: Vec<ImpactValues>,
@@ -107,6 +109,16 @@ impl ModeEvaluator {
             "distances_by_inputs",
             "distances_by_parameters",
         ])?;
+        let residuals_by = find([
+            "residuals_by_state",
+            "residuals_by_inputs",
+            "residuals_by_parameters",
+        ])?;
+        let residual_rates_by = find([
+            "residual_rates_by_state",
+            "residual_rates_by_inputs",
+            "residual_rates_by_parameters",
+        ])?;
         let jumps_by = find(["jumps_by_state", "jumps_by_inputs", "jumps_by_parameters"])?;
         let program = evaluator.program();
         let jumps_by_time = JacobianLayout::find(program, "jumps_by_time").ok_or_else(missing)?;
@@ -134,6 +146,8 @@ impl ModeEvaluator {
             guards_by,
             guard_rates_by,
             distances_by,
+            residuals_by,
+            residual_rates_by,
             jumps_by,
             jumps_by_time,
             impacts: Vec::new(),
@@ -368,6 +382,38 @@ impl ModeEvaluator {
             impact.column.iter().map(|rate| rate * impulse).collect()
         });
         Ok(jumps.collect())
+    }
+
+    /// Returns the derivatives of the residuals of all constraints, and of the rates of these.
+    pub fn differentiate_constraints(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+    ) -> Result<[Vec<Derivatives>; 2], Error> {
+        self.set_inputs((t, state), inputs)?;
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.residuals_by.evaluate(&mut self.evaluator, point);
+        self.residual_rates_by.evaluate(&mut self.evaluator, point);
+        let rows = |jacobians: &RowJacobians| -> Vec<Derivatives> {
+            let rows = (0..jacobians.layouts[0].rows).map(|place| {
+                let mut row = self.zeros();
+                jacobians.add_row(place, 1.0, &mut row);
+                row
+            });
+            rows.collect()
+        };
+        Ok([rows(&self.residuals_by), rows(&self.residual_rates_by)])
+    }
+
+    /// Returns the mass matrix of the degrees of freedom.
+    pub fn mass_matrix(&mut self, (t, state): (f64, &[f64])) -> DMatrix<f64> {
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let mut mass = vec![0.0; degrees * degrees];
+        let inputs = &self.inputs;
+        self.evaluator
+            .mass_matrix(Point { t, state, inputs }, &mut mass);
+        DMatrix::from_row_slice(degrees, degrees, &mass)
     }
 
     /// Returns the products of weights with the derivatives of the jump by an impact, and with that by time.

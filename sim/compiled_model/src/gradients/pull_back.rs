@@ -221,6 +221,7 @@ impl<'r, 'm> WayBack<'r, 'm> {
             let by_state = self.follow_sample(sample, first, &recorded.initial, weights)?;
             add(&mut self.adjoint, &by_state);
         }
+        self.follow_start()?;
         let first = recorded.recording.parts.first();
         let is_held = first.is_some_and(|first| first.modes.contains(&SurfaceMode::Held));
         for row in &mut self.inputs {
@@ -246,7 +247,12 @@ fn clip_before(change: Option<f64>, t: f64) -> f64 {
 }
 
 pub(super) fn add(sums: &mut [f64], parts: &[f64]) {
+    add_product(sums, 1.0, parts);
+}
+
+/// Adds the products of a factor with these parts.
+pub(super) fn add_product(sums: &mut [f64], factor: f64, parts: &[f64]) {
     for (sum, part) in sums.iter_mut().zip(parts) {
-        *sum += part;
+        *sum += factor * part;
     }
 }

@@ -6,9 +6,7 @@ use crate::instance::Instance;
 /// Rejects models with features that gradients do not follow, by their names.
 pub(super) fn check_support(instance: &Instance<'_>) -> Result<(), Error> {
     let model = instance.model().model();
-    let own = if let Some(constraint) = model.constraints.first() {
-        format!("the constraint `{}`", constraint.name)
-    } else if let Some(impact) = model
+    let own = if let Some(impact) = model
         .impacts
         .iter()
         .find(|impact| impact.friction.is_some())

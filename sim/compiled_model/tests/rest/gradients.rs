@@ -377,11 +377,16 @@ fn models_without_gradients_are_rejected_by_name() {
             "friction at the impact `floor`",
         ),
         (
-            "[constraints]\nrod = { zero = \"x - p\" }\n",
-            "the constraint `rod`",
+            "[controllers.c]\nperiod = { value = 1, unit = \"ms\" }\noutputs = { u = \"-x*one\" }\n",
+            "the controller `c`",
         ),
     ] {
-        let message = rejection(&oscillator(0.3, 1.0, 0.7, more), 1.0);
+        let driven = "[coordinates]";
+        let input =
+            "one = { value = 1, unit = \"N/m\" }\n[inputs]\nu = { unit = \"N\" }\n[coordinates]";
+        let text = oscillator(0.3, 1.0, 0.7, more).replace(driven, input);
+        let text = text.replace("-F*above(x - p)", "-F*above(x - p) + u");
+        let message = rejection(&text, 1.0);
         assert!(message.contains(name), "{message}");
     }
 }
@@ -526,4 +531,48 @@ fn contact_that_stays_closed_has_no_gradient() {
         message.contains("the contact `floor` stays closed"),
         "{message}"
     );
+}
+
+/// Two masses on rods in Cartesian coordinates, and a skate on the second that keeps its direction.
+const LINKED: &str = r#"
+[model]
+name = "linked"
+[parameters]
+m = { value = 1.5, unit = "kg" }
+M = { value = 0.8, unit = "kg" }
+l = { value = 1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+J = { value = 0.2, unit = "kg m^2" }
+k = { value = 3, unit = "N m" }
+[coordinates]
+x = { unit = "m", initial = 0.6 }
+y = { unit = "m", initial = -0.8 }
+X = { unit = "m", initial = 1.6 }
+Y = { unit = "m", initial = -0.8 }
+a = { unit = "rad", initial = 0.4 }
+[inputs]
+F = { unit = "N" }
+[kinetic]
+masses = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*M*(dot(X)^2 + dot(Y)^2) + 1/2*J*dot(a)^2"
+[potential]
+weight = "m*g*y + M*g*Y + 1/2*k*a^2"
+[forces]
+drive = { on = "x", value = "F" }
+[constraints]
+upper = { zero = "x^2 + y^2 - l^2" }
+lower = { zero = "(X - x)^2 + (Y - y)^2 - l^2" }
+CONSTRAINTS
+"#;
+
+#[test]
+fn gradients_with_constraints_equal_differences() -> Result<(), Error> {
+    for (more, until) in [
+        ("", 1.0),
+        ("skate = { zero = \"dot(X)*sin(a) - dot(Y)*cos(a)\" }", 0.8),
+        ("twice = { zero = \"3*(x^2 + y^2) - 3*l^2\" }", 0.8),
+    ] {
+        let inputs = HeldInputs::new(vec![0.0, 0.4], vec![2.0, -3.0], 1);
+        compare_text(&LINKED.replace("CONSTRAINTS", more), inputs, until)?;
+    }
+    Ok(())
 }
