@@ -151,7 +151,7 @@ const MAX_RELATIVE_OPERATIONS: usize = 2;
 /// Largest number of coordinates for which the quadratic form is expanded.
 const MAX_COORDINATES: usize = 4;
 
-/// Returns 1/2 q' M q' with sums of angles in the entries of M; `None` for too many coordinates.
+/// Returns 1/2 q' M q' with sums of angles in the entries of M; `None` for too many coordinates or too long entries.
 fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
     if mass.len() > MAX_COORDINATES {
         return None;
@@ -162,7 +162,7 @@ fn quadratic_form(graph: &mut Graph, mass: &[Vec<NodeId>]) -> Option<NodeId> {
     let mut terms = Vec::new();
     for (row, entries) in mass.iter().enumerate() {
         for (column, entry) in entries.iter().enumerate().skip(row) {
-            let other = with_sums_of_angles(graph, *entry);
+            let other = with_sums_of_angles(graph, *entry)?;
             let factor = if row == column { 0.5 } else { 1.0 };
             let product = graph.product(&[(other, 1), (rates[row], 1), (rates[column], 1)]);
             terms.push((factor, product));

@@ -241,7 +241,7 @@ impl Variables {
 fn choose_cheapest_slopes(graph: &mut Graph, slopes: Vec<NodeId>) -> Vec<NodeId> {
     let apart: Vec<NodeId> = slopes
         .iter()
-        .map(|slope| with_sums_of_angles(graph, *slope))
+        .map(|slope| with_sums_of_angles(graph, *slope).unwrap_or(*slope))
         .collect();
     let slopes = factor_if_cheaper(graph, slopes);
     if shared_operations(graph, &apart) < shared_operations(graph, &slopes) {

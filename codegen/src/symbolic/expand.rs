@@ -34,14 +34,33 @@ pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
     changed.then(|| graph.combine_flat(&result))
 }
 
-/// Returns the terms of a product with a sum as a factor, to the first or second power.
-fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
-    let Operation::Product(factors) = graph.operation(id).clone() else {
+/// Returns true if no term is a product that [`expand_once`] expands.
+pub fn is_expanded(graph: &Graph, id: NodeId) -> bool {
+    match graph.operation(id) {
+        Operation::Sum(terms) => {
+            let mut terms = terms.iter();
+            terms.all(|(_, term)| expandable_factor(graph, *term).is_none())
+        }
+        _ => expandable_factor(graph, id).is_none(),
+    }
+}
+
+/// Returns the place of the first sum among the factors of a product, to the first or second power.
+fn expandable_factor(graph: &Graph, id: NodeId) -> Option<usize> {
+    let Operation::Product(factors) = graph.operation(id) else {
         return None;
     };
-    let place = factors.iter().position(|(factor, exponent)| {
+    factors.iter().position(|(factor, exponent)| {
         matches!(exponent, 1 | 2) && matches!(graph.operation(*factor), Operation::Sum(_))
-    })?;
+    })
+}
+
+/// Returns the terms of a product, expanded by one of its sums.
+fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
+    let place = expandable_factor(graph, id)?;
+    let Operation::Product(factors) = graph.operation(id) else {
+        return None;
+    };
     let mut rest = factors.to_vec();
     let (sum, exponent) = rest.remove(place);
     if exponent == 2 {

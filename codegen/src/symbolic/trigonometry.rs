@@ -6,25 +6,28 @@ use std::collections::BTreeMap;
 
 use eomgen_model_spec::model::Function;
 
-use crate::symbolic::expand::expand_once;
+use crate::symbolic::expand::{expand_once, is_expanded};
 use crate::symbolic::factor::collect_terms;
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Largest number of expanded levels.
 const MAX_LEVELS: usize = 12;
 
-/// Expands a node and applies the addition theorems to its terms.
-pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
+/// Expands a node and applies the addition theorems to its terms. Returns `None` if the expansion is too long: terms
+/// that cancel meet only in a complete one.
+pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> Option<NodeId> {
     let mut expanded = node;
-    for _ in 0..MAX_LEVELS {
-        match expand_once(graph, expanded) {
-            Some(next) => expanded = next,
-            None => break,
+    let mut levels = 0;
+    while !is_expanded(graph, expanded) {
+        levels += 1;
+        if levels > MAX_LEVELS {
+            return None;
         }
+        expanded = expand_once(graph, expanded)?;
     }
     let mut terms: BTreeMap<NodeId, f64> = match graph.operation(expanded) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (*term, c.value())).collect(),
-        _ => return node,
+        _ => return Some(node),
     };
     while let Some((first, second, merged)) = merging_pair(graph, &terms) {
         terms.remove(&first);
@@ -34,11 +37,11 @@ pub(crate) fn with_sums_of_angles(graph: &mut Graph, node: NodeId) -> NodeId {
         let sum = graph.combine_flat(&all);
         terms = match graph.operation(sum) {
             Operation::Sum(terms) => terms.iter().map(|(c, term)| (*term, c.value())).collect(),
-            _ => return sum,
+            _ => return Some(sum),
         };
     }
     let terms: Vec<(f64, NodeId)> = terms.iter().map(|(term, c)| (*c, *term)).collect();
-    collect_terms(graph, &terms)
+    Some(collect_terms(graph, &terms))
 }
 
 /// Returns two terms that an addition theorem combines, with the result.
@@ -114,4 +117,50 @@ fn merge_pair(
         (false, _) => other,
     };
     (sign, graph.call(function, &[angle]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eomgen_model_spec::ids::CoordinateId;
+
+    fn coordinates(graph: &mut Graph, count: usize) -> Vec<NodeId> {
+        let places = CoordinateId::first(count);
+        places
+            .map(|place| graph.intern(Operation::Coordinate(place)))
+            .collect()
+    }
+
+    #[test]
+    fn addition_theorem_applies_inside_a_product() {
+        let mut graph = Graph::new(&[], &[]);
+        let [a, b, x] = coordinates(&mut graph, 3)[..] else {
+            panic!("three coordinates");
+        };
+        let [of_cosines, of_sines] = [Function::Cos, Function::Sin].map(|function| {
+            let turns = [a, b].map(|angle| graph.call(function, &[angle]));
+            graph.multiply(turns[0], turns[1])
+        });
+        let sum = graph.add(of_cosines, of_sines);
+        let node = graph.multiply(x, sum);
+        let difference = graph.subtract(a, b);
+        let cosine = graph.call(Function::Cos, &[difference]);
+        let expected = graph.multiply(x, cosine);
+        assert_eq!(with_sums_of_angles(&mut graph, node), Some(expected));
+    }
+
+    #[test]
+    fn product_of_long_sums_is_not_expanded_in_part() {
+        let mut graph = Graph::new(&[], &[]);
+        let all = coordinates(&mut graph, 21);
+        let factors: Vec<(NodeId, i32)> = all
+            .chunks(7)
+            .map(|own| {
+                let terms: Vec<(f64, NodeId)> = own.iter().map(|x| (1.0, *x)).collect();
+                (graph.combine(&terms), 1)
+            })
+            .collect();
+        let node = graph.product(&factors);
+        assert_eq!(with_sums_of_angles(&mut graph, node), None);
+    }
 }
