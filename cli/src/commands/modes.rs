@@ -1,6 +1,7 @@
 //! `eomgen modes`: natural frequencies, damping ratios and mode shapes at a state.
 
 use std::cmp::Ordering;
+use std::collections::HashMap;
 
 use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_compiled_model::CompiledModel;
@@ -108,12 +109,13 @@ fn frequency_in_words(frequency: f64) -> String {
 /// Returns the places of the largest amplitudes of a shape, largest first. Amplitudes in different units
 /// are compared relative to the largest one in their unit; one of each unit is listed.
 fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
-    let in_unit = |unit: &String| {
-        let alike = units.iter().zip(sizes).filter(|(own, _)| *own == unit);
-        alike.fold(0.0, |most: f64, (_, size)| most.max(*size))
-    };
+    let mut most: HashMap<&String, f64> = HashMap::new();
+    for (unit, size) in units.iter().zip(sizes) {
+        let most = most.entry(unit).or_insert(f64::MIN_POSITIVE);
+        *most = most.max(*size);
+    }
     let relative: Vec<(f64, f64)> = (units.iter().zip(sizes))
-        .map(|(unit, size)| (size / in_unit(unit).max(f64::MIN_POSITIVE), *size))
+        .map(|(unit, size)| (size / most[unit], *size))
         .collect();
     let moves = |place: &usize| sizes[*place] >= MIN_AMPLITUDE;
     let mut places: Vec<usize> = (0..relative.len()).filter(moves).collect();
@@ -122,10 +124,7 @@ fn largest(units: &[String], sizes: &[f64]) -> Vec<usize> {
             .partial_cmp(&relative[*a])
             .unwrap_or(Ordering::Equal)
     });
-    let mut kinds: Vec<&String> = units.iter().collect();
-    kinds.sort();
-    kinds.dedup();
-    places.truncate(LISTED.max(kinds.len()));
+    places.truncate(LISTED.max(most.len()));
     places
 }
 
