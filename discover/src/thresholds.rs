@@ -58,8 +58,13 @@ pub const MIN_SIGNIFICANCE: f64 = 5.0;
 /// that repeats by chance.
 pub const MIN_EFFECT_OVER_NOISE: f64 = 1.0;
 
-/// Ratio of the gap to the noise floor below which nothing is left to find.
+/// Ratio of the gap to the noise floor below which nothing is left to find. Short records have a
+/// larger limit, because their residual varies by chance; see [`FALSE_ALARM_QUANTILE`].
 pub const MAX_FLOOR_RATIO_AT_FLOOR: f64 = 1.1;
+
+/// Quantile of the normal distribution for the probability of 1 % that the residual of a correct model
+/// exceeds the limit of its training records; likewise for its test records.
+pub const FALSE_ALARM_QUANTILE: f64 = 2.326;
 
 /// Similarity of two responses above which both candidates are fitted.
 pub const MIN_SIMILARITY_OF_RIVALS: f64 = 0.95;

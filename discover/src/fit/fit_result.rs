@@ -102,9 +102,28 @@ impl Fit {
         model.map_state(&self.model, state)
     }
 
-    /// Returns true if the residual is within the limit of a correct model.
+    /// Returns true if the residual is within the limit of a correct model on training and on test
+    /// records. `floor`: noise floor, in standard deviations.
+    ///
+    /// The squares of a correct model have a chi-squared distribution with as many degrees of freedom
+    /// as the floor has squares. Those of the test records are larger because of the uncertainty of
+    /// the unknowns.
     pub fn is_at_floor(&self, floor: f64) -> bool {
-        self.is_below(thresholds::MAX_FLOOR_RATIO_AT_FLOOR * floor)
+        let freedom = |of: &Residuals| (of.measurement_count * floor.powi(2).min(1.0)).max(1.0);
+        let (train, test) = (freedom(&self.train), freedom(&self.test));
+        let by_unknowns = f64::sqrt(1.0 + self.determined_unknowns() / train);
+        self.train.rms < floor * largest_ratio_by_chance(train)
+            && self.test.rms < floor * by_unknowns * largest_ratio_by_chance(test)
+    }
+
+    /// Returns the number of unknowns that the records determine: of each, the fraction of its prior
+    /// variance that they remove.
+    fn determined_unknowns(&self) -> f64 {
+        let of = |(unknown, sd): (&Unknown, &f64)| {
+            let left = unknown.prior.map_or(0.0, |prior| sd / prior.sd);
+            (1.0 - left * left).clamp(0.0, 1.0)
+        };
+        self.unknowns.iter().zip(&self.sd).map(of).sum()
     }
 
     /// Returns true if the residual RMS is below `rms` standard deviations on training and test
@@ -118,5 +137,46 @@ impl Fit {
     pub fn is_clearly_below(&self, other: &Self) -> bool {
         let better = 1.0 - thresholds::MIN_HELD_OUT_REDUCTION;
         self.train.rms < better * other.train.rms && self.test.rms < better * other.test.rms
+    }
+}
+
+/// Returns the largest residual RMS of a correct model, in noise floors, that is exceeded with the
+/// probability of [`thresholds::FALSE_ALARM_QUANTILE`].
+fn largest_ratio_by_chance(freedom: f64) -> f64 {
+    let quantile = chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
+    (quantile / freedom)
+        .sqrt()
+        .max(thresholds::MAX_FLOOR_RATIO_AT_FLOOR)
+}
+
+/// Returns the quantile of the chi-squared distribution for that of the normal distribution, by the
+/// approximation of Wilson and Hilferty (1931).
+fn chi_squared_quantile(freedom: f64, normal: f64) -> f64 {
+    let variance = 2.0 / (9.0 * freedom);
+    freedom * (1.0 - variance + normal * variance.sqrt()).powi(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{chi_squared_quantile, largest_ratio_by_chance};
+    use crate::thresholds;
+
+    #[test]
+    fn quantile_of_chi_squared_matches_tables() {
+        // 99 % quantiles: 23.209, 76.154 and 1106.969 for 10, 50 and 1000 degrees of freedom.
+        for (freedom, right) in [(10.0, 23.209), (50.0, 76.154), (1000.0, 1106.969)] {
+            let found = chi_squared_quantile(freedom, thresholds::FALSE_ALARM_QUANTILE);
+            assert!((found / right - 1.0).abs() < 5e-3, "{freedom}: {found}");
+        }
+    }
+
+    #[test]
+    fn short_records_have_a_wider_limit() {
+        // sqrt(76.154/50), and the limit of long records.
+        assert!((largest_ratio_by_chance(50.0) - 1.2341).abs() < 1e-3);
+        assert_eq!(
+            largest_ratio_by_chance(1e5),
+            thresholds::MAX_FLOOR_RATIO_AT_FLOOR
+        );
     }
 }

@@ -11,7 +11,7 @@ use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
 use crate::model::problem::EstimationProblem;
 use eomgen_records::record::Record;
-use eomgen_records::windows::Windows;
+use eomgen_records::windows::{Windows, compared_samples};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -25,15 +25,18 @@ pub struct NoiseFloor {
 }
 
 /// Computes the noise floor of a fit. `seed`: seed of the noise.
+///
+/// The squares of the residual are divided by those of the replica's noise, so that the floor does not
+/// depend on the drawn size of the noise.
 pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
     let noise_alone = NoiseFloor {
         channels: problem.noise.clone(),
         rms: 1.0,
     };
-    let Some(records) = replicas(problem, fit, seed) else {
+    let Some(replicas) = replicas(problem, fit, seed) else {
         return noise_alone;
     };
-    let windows = Windows::split_records(&records, problem.dataset.window);
+    let windows = Windows::split_records(&replicas.records, problem.dataset.window);
     let shooting = Shooting::new(problem, &fit.model, &windows, &fit.unknowns, &fit.ranges);
     let theta = fit.train.estimate.theta.clone();
     let Ok(initial_states) = initial_states::estimate_best(problem, &shooting, &theta, &fit.ranges)
@@ -50,14 +53,49 @@ pub fn compute_noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64
     if !residuals.rms.is_finite() {
         return noise_alone;
     }
+    let noise = Windows::split_records(&replicas.noise, problem.dataset.window);
+    let drawn = mean_squares_of_noise(&noise, problem.noise.len());
+    let ratios = residuals.normalised_rms.iter().zip(&drawn);
+    let ratios: Vec<f64> = ratios.map(|(rms, drawn)| rms / drawn.sqrt()).collect();
+    let squares: f64 = ratios.iter().map(|ratio| ratio * ratio).sum();
+    let channels = ratios.iter().zip(&problem.noise);
     NoiseFloor {
-        channels: residuals.channel_rms,
-        rms: residuals.rms.max(f64::MIN_POSITIVE),
+        channels: channels.map(|(ratio, noise)| ratio * noise).collect(),
+        rms: (squares / ratios.len().max(1) as f64)
+            .sqrt()
+            .max(f64::MIN_POSITIVE),
     }
 }
 
+/// Returns the mean square of the noise of each channel at the compared samples; 1 for a channel without
+/// measurements. `noise`: noise in standard deviations.
+fn mean_squares_of_noise(noise: &Windows<'_>, channels: usize) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); channels];
+    for window in &noise.windows {
+        let rows = window.measured.chunks(channels.max(1));
+        let compared = compared_samples(window.times.len());
+        for row in rows.skip(compared.start).take(compared.len()) {
+            for (value, (sum, count)) in row.iter().zip(&mut sums) {
+                if value.is_finite() {
+                    *sum += value * value;
+                    *count += 1.0;
+                }
+            }
+        }
+    }
+    let mean = |(sum, count): &(f64, f64)| if *count > 0.0 { sum / count } else { 1.0 };
+    sums.iter().map(mean).collect()
+}
+
+/// Records that the fitted model would have made, and the noise in them.
+struct Replicas {
+    records: Vec<Record>,
+    /// In standard deviations.
+    noise: Vec<Record>,
+}
+
 /// The training records as the fitted model would have made them.
-fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec<Record>> {
+fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Replicas> {
     let shooting = fit.training_shooting(problem);
     let theta = &fit.train.estimate.theta;
     let sensors = shooting.sensor_values(theta);
@@ -66,7 +104,10 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
         .create_simulation(&shooting.parameter_values(theta))
         .ok()?;
     let mut draw = Normal::new(seed ^ 0x9e37_79b9_7f4a_7c15);
-    let mut replicas = Vec::new();
+    let mut replicas = Replicas {
+        records: Vec::new(),
+        noise: Vec::new(),
+    };
     for record in &problem.dataset.train {
         let first = problem.estimate_first_state(&fit.model, record);
         let times = problem.output_rate.times(&record.times);
@@ -75,15 +116,17 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
             .ok()?;
         let seen = shooting.apply_sensors(&times, &sensors, &outputs.values);
         let count = problem.noise.len();
-        let mut replica = record.clone();
-        for (channel, column) in replica.channels.iter_mut().enumerate() {
-            for (sample, value) in column.iter_mut().enumerate() {
-                if value.is_finite() {
-                    *value = seen[sample * count + channel] + problem.noise[channel] * draw.next();
-                }
+        let (mut replica, mut noise) = (record.clone(), record.clone());
+        let columns = replica.channels.iter_mut().zip(&mut noise.channels);
+        for (channel, (column, noise)) in columns.enumerate() {
+            let values = column.iter_mut().zip(noise).enumerate();
+            for (sample, (value, noise)) in values.filter(|(_, (value, _))| value.is_finite()) {
+                *noise = draw.next();
+                *value = seen[sample * count + channel] + problem.noise[channel] * *noise;
             }
         }
-        replicas.push(replica);
+        replicas.records.push(replica);
+        replicas.noise.push(noise);
     }
     Some(replicas)
 }

@@ -22,6 +22,8 @@ pub struct Residuals {
     pub normalised_rms: Vec<f64>,
     /// RMS of all channels, in standard deviations.
     pub rms: f64,
+    /// Number of measurements, without missing ones.
+    pub measurement_count: f64,
     /// Number of samples over which a residual is correlated.
     pub correlation_samples: f64,
     /// Windows whose simulation failed. The other fields contain the remaining windows only.
@@ -82,6 +84,7 @@ impl Residuals {
                 .collect(),
             normalised_rms: squares.iter().map(|s| s.sqrt()).collect(),
             rms,
+            measurement_count: sums.iter().map(|(_, count)| count).sum(),
             correlation_samples: compute_correlation_samples(&residuals, channels),
             window_residuals: residuals,
             estimate,

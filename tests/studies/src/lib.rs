@@ -1,6 +1,7 @@
 //! Studies of the program on many random machines and records. `.ci/run` runs a fixed sample of
 //! each.
 
+pub mod alarms;
 pub mod contacts;
 pub mod coverage;
 pub mod gradients;

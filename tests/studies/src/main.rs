@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{contacts, coverage, gradients, grazing, hosts, mutations, solvers};
+use eomgen_studies::{alarms, contacts, coverage, gradients, grazing, hosts, mutations, solvers};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -17,6 +17,14 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Study {
+    /// Gaps that `compare` reports for records of correct models, and of models without a friction
+    Alarms {
+        #[command(flatten)]
+        sample: Sample,
+        /// Size of the friction relative to that of about three noise floors
+        #[arg(long, default_value_t = 1.0)]
+        friction: f64,
+    },
     /// Energy and agreement of the solvers for passive machines that graze their stops
     Grazing(Sample),
     /// Stacks of balls and boxes that fall on a floor
@@ -24,7 +32,13 @@ enum Study {
     /// Faults in emitted code, which the checks of `eomgen verify` must notice
     Mutations(Sample),
     /// Coverage of the 90 % intervals of fitted parameters
-    Coverage(Sample),
+    Coverage {
+        #[command(flatten)]
+        sample: Sample,
+        /// Only machines whose name contains this text
+        #[arg(long, default_value = "")]
+        machine: String,
+    },
     /// Gradients of motions against differences
     Gradients(Sample),
     /// Agreement of all hosts on every shipped machine and on random ones
@@ -35,10 +49,11 @@ enum Study {
 
 fn main() -> ExitCode {
     let report = match Options::parse().study {
+        Study::Alarms { sample, friction } => alarms::run(&sample, friction),
         Study::Grazing(sample) => grazing::run(&sample),
         Study::Contacts(sample) => contacts::run(&sample),
         Study::Mutations(sample) => mutations::run(&sample),
-        Study::Coverage(sample) => coverage::run(&sample),
+        Study::Coverage { sample, machine } => coverage::run(&sample, &machine),
         Study::Gradients(sample) => gradients::run(&sample),
         Study::Hosts(sample) => hosts::run(&sample),
         Study::Solvers(sample) => solvers::run(&sample),

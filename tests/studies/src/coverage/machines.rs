@@ -27,7 +27,7 @@ pub struct Channel {
     pub noise: f64,
 }
 
-pub const MACHINES: [Machine; 4] = [
+pub static MACHINES: [Machine; 4] = [
     Machine {
         name: "ball-screw axis with dry friction",
         text: AXIS,

@@ -6,9 +6,9 @@
 //! % of all runs. With fixed true values, an informative prior would change this. The records are
 //! written to files, read as a dataset, and fitted as by `compare`.
 
-mod binomial;
-mod machines;
-mod records;
+pub(crate) mod binomial;
+pub(crate) mod machines;
+pub(crate) mod records;
 
 use std::fmt::Write as _;
 
@@ -38,15 +38,16 @@ const CHANCE: f64 = 1e-3;
 /// Quantile of the normal distribution, in standard errors, for the probability [`CHANCE`].
 const STANDARD_ERRORS: f64 = 3.09;
 
-/// Runs the study and returns its summary.
+/// Runs the study on the machines whose name contains `name`, and returns its summary.
 ///
 /// # Errors
 ///
 /// Returns a report of all failed runs and of values outside the accepted range.
-pub fn run(sample: &Sample) -> Result<String, String> {
+pub fn run(sample: &Sample, name: &str) -> Result<String, String> {
     let mut summary = String::new();
     let mut failures = String::new();
-    for (number, machine) in MACHINES.iter().enumerate() {
+    let machines = MACHINES.iter().enumerate();
+    for (number, machine) in machines.filter(|(_, machine)| machine.name.contains(name)) {
         let deviations = deviations(machine, number, sample)?;
         let (line, failed) = figures(machine, &deviations);
         let _ = writeln!(summary, "{line}");
