@@ -395,6 +395,10 @@ pub const MAX_FINAL_STEPS: usize = 12;
 /// most of the remaining error.
 pub const MAX_STATE_CORRECTIONS: usize = 4;
 
+/// Ratio of the weight of the priors after the final steps to that before, below which the steps are
+/// repeated with the new weight.
+pub const MAX_WEIGHT_DECREASE: f64 = 0.5;
+
 /// Decrease of the cost, as a fraction of one squared standard deviation, below which the final
 /// steps end.
 pub const MIN_FINAL_DECREASE: f64 = 0.01;

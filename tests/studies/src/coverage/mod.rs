@@ -31,6 +31,10 @@ const ACCEPTED: [f64; 2] = [0.85, 0.95];
 /// Maximum accepted bias, in standard deviations.
 const ACCEPTED_BIAS: f64 = 0.15;
 
+/// Maximum accepted deviation, in standard deviations. A normal one exceeds it in one of two million
+/// runs, a fit that ends away from its minimum in many.
+const MAX_DEVIATION: f64 = 5.0;
+
 /// Significance level of failures: probability that a machine with a barely accepted value fails by
 /// chance.
 const CHANCE: f64 = 1e-3;
@@ -111,10 +115,11 @@ fn figures(machine: &Machine, deviations: &[Vec<f64>]) -> (String, Vec<String>) 
         let coverage = held as f64 / count as f64;
         let error = (coverage * (1.0 - coverage) / count as f64).sqrt();
         let bias = of_runs().sum::<f64>() / count as f64;
+        let largest = of_runs().map(f64::abs).fold(0.0, f64::max);
         let bias_error = 1.0 / (count as f64).sqrt();
         let _ = write!(
             line,
-            "\n  {name}: {:.1} +- {:.1} % within the 90 % interval, mean bias {bias:+.2} +- {bias_error:.2} sd",
+            "\n  {name}: {:.1} +- {:.1} % within the 90 % interval, mean bias {bias:+.2} +- {bias_error:.2} sd, largest deviation {largest:.1} sd",
             100.0 * coverage,
             100.0 * error,
         );
@@ -122,6 +127,12 @@ fn figures(machine: &Machine, deviations: &[Vec<f64>]) -> (String, Vec<String>) 
         if at_most(held, count, low) < CHANCE || at_least(held, count, high) < CHANCE {
             failed.push(format!(
                 "{}, `{name}`: the 90 % interval holds the truth in {held} of {count} runs",
+                machine.name
+            ));
+        }
+        if largest > MAX_DEVIATION {
+            failed.push(format!(
+                "{}, `{name}`: a run deviates by {largest:.1} sd",
                 machine.name
             ));
         }
