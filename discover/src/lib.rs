@@ -50,9 +50,11 @@ pub mod model;
 pub mod report;
 pub mod residual_force;
 pub mod search;
+mod threads;
 pub mod thresholds;
 
 pub use model::stop::StopRequest;
 pub use report::origin::Specification;
 pub use report::result::{Comparison, Discovery};
 pub use report::run::{compare, discover, discover_until};
+pub use threads::prepare_threads;

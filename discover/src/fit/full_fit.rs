@@ -86,21 +86,22 @@ pub fn complete_fit(
     // A start that is known from the window before depends on these unknowns: it would keep the estimate in
     // place and make it too certain.
     let mut loose = prior.without_preceding();
-    let mut derivatives = None;
-    while !is_far {
-        loose.whitening = compute_whitening(&all, &train.estimate);
-        let (estimate, at_estimate) = run_final_steps(&all, &mut loose, train.estimate);
-        update_carried_prior(&all, &mut prior, &estimate.theta, &estimate.initial_states);
-        train = Residuals::compute(&all, estimate);
-        derivatives = Some(at_estimate);
-        // The misfit before these steps gave the priors their weight, which is too large after them.
-        let weight = train.variance_inflation();
-        if weight > thresholds::MAX_WEIGHT_DECREASE * all.prior_weight {
-            break;
+    let derivatives = if is_far {
+        compute_derivatives(&all, &train.estimate)
+    } else {
+        loop {
+            loose.whitening = compute_whitening(&all, &train.estimate);
+            let (estimate, derivatives) = run_final_steps(&all, &mut loose, train.estimate);
+            update_carried_prior(&all, &mut prior, &estimate.theta, &estimate.initial_states);
+            train = Residuals::compute(&all, estimate);
+            // The misfit before these steps gave the priors their weight, which is too large after them.
+            let weight = train.variance_inflation();
+            if weight > thresholds::MAX_WEIGHT_DECREASE * all.prior_weight {
+                break derivatives;
+            }
+            all.prior_weight = weight;
         }
-        all.prior_weight = weight;
-    }
-    let derivatives = derivatives.unwrap_or_else(|| compute_derivatives(&all, &train.estimate));
+    };
     let prior_weight = all.prior_weight;
     let estimate = &train.estimate;
     // Tangents through impacts grow without bound, secants of motions that ended in other folds are

@@ -45,6 +45,7 @@ use crate::residual_force::wording::describe_remaining_force;
 use crate::search::context::RoundContext;
 use crate::search::search;
 use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
+use crate::threads::prepare_threads;
 
 /// Receiver of progress lines.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
@@ -67,6 +68,7 @@ pub fn compare(
     seed: u64,
     progress: &Progress<'_>,
 ) -> Result<Comparison, DiscoverError> {
+    prepare_threads();
     let Specification { path, text, order } = specification;
     let text = &add_declared_faults(text, path, &dataset.inputs)?;
     let problem = EstimationProblem::new(dataset, order, path, text);
@@ -135,6 +137,7 @@ pub fn discover_until(
     progress: &Progress<'_>,
     stop: &StopRequest,
 ) -> Result<Discovery, DiscoverError> {
+    prepare_threads();
     let Specification { path, text, order } = specification;
     let without_site = user_effects::check_user_effects(catalogue, path, text)?;
     for note in &without_site {

@@ -48,6 +48,7 @@ enum Study {
 }
 
 fn main() -> ExitCode {
+    eomgen_discover::prepare_threads();
     let report = match Options::parse().study {
         Study::Alarms { sample, friction } => alarms::run(&sample, friction),
         Study::Grazing(sample) => grazing::run(&sample),
