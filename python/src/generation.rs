@@ -36,7 +36,7 @@ pub fn generate(
     let emitted = py.detach(|| -> PyResult<Vec<EmittedFile>> {
         let declared = model.instance().and_then(|run| run.valued_model());
         let declared = declared.map_err(error::model)?;
-        let variant = Variant::derive_with(&declared, model.compiled().orders(), &outputs);
+        let variant = Variant::derive_with_trace(&declared, model.compiled().orders(), &outputs);
         let variant = variant.map_err(|found| error::specification(&found))?;
         emit(&declared, &variant, target, &warn).map_err(emission_error)
     });
