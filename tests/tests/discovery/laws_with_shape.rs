@@ -114,12 +114,12 @@ unit = "V"
 [channels.x]
 column = "x"
 unit = "m"
-noise = 1e-5
+noise = 2e-6
 
 [channels.p]
 column = "p"
 unit = "Pa"
-noise = 2.5e4
+noise = 5e3
 
 [initial]
 state = "rest"
@@ -131,11 +131,11 @@ length = 0.5
 fn axis_record(command: impl Fn(f64) -> f64, seed: u64) -> String {
     let (mut noise, mut state) = (Noise(seed), [0.0; 3]);
     let mut text = "t,u,x,p\n".to_owned();
-    for sample in 0..500 {
+    for sample in 0..300 {
         let t = 2e-3 * f64::from(sample);
         let u = command(t);
         let [x, _, p] = state;
-        let (x, p) = (x + 1e-5 * noise.next(), p + 2.5e4 * noise.next());
+        let (x, p) = (x + 2e-6 * noise.next(), p + 5e3 * noise.next());
         text += &format!("{t:.4},{u:.12e},{x:.10e},{p:.10e}\n");
         let acting = u - u.clamp(-0.22, 0.22);
         step(&mut state, 2e-3, 8, |[_, v, p]| {
