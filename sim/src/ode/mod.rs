@@ -8,8 +8,8 @@
 //! `resolution` by samples, for functions without bounds. `location` finds the root on the interior and makes steps that
 //! end at the surface; `passage` applies the event there. `driver` combines these into a
 //! [`Trajectory`], with `limits` and `stiffness`. `simulation` runs it once, or from call to call.
-//! `external_motion` keeps sides and modes for a caller that makes the steps; `step_adjoint` differentiates a step. No step averages over a kink or jump
-//! of the right-hand side, which would reduce the order of the method.
+//! `external_motion` keeps sides and modes for a caller that makes the steps; `step_adjoint` differentiates a step. No step
+//! averages over a kink or jump of the right-hand side, which would reduce the order of the method.
 //!
 //! # Tolerance
 //!

@@ -1,11 +1,11 @@
-//! The way back over events, by transposed saltation matrices.
+//! The backward pass over events, by transposed saltation matrices.
 
 use std::ops::Range;
 
 use eomgen_sim::ode::SurfaceMode;
 
 use super::derivatives::Derivatives;
-use super::pull_back::{WayBack, add, add_product, no_gradient};
+use super::pull_back::{BackwardPass, add, add_product, no_gradient};
 use super::recorder::{Part, PartKind};
 use crate::error::Error;
 
@@ -15,7 +15,7 @@ const MAX_DELAY_DIFFERENCE_FRACTION: f64 = 1e-6;
 /// Largest relative difference between the jump of a motion and that by one impact.
 const MAX_JUMP_DIFFERENCE_FRACTION: f64 = 1e-6;
 
-impl WayBack<'_, '_> {
+impl BackwardPass<'_, '_> {
     /// Follows an event backwards, by the transposed saltation matrix.
     pub fn follow_event(&mut self, place: usize) -> Result<(), Error> {
         let recorded = self.recorded;
@@ -39,7 +39,7 @@ impl WayBack<'_, '_> {
         }
         let delay = match impact {
             Some(impact) => {
-                let surface = self.evaluator.surface_count() - self.impact_count() + impact;
+                let surface = self.evaluator.surface_of(impact);
                 self.differentiate_delay(part, &given, surface)?
             }
             None => self.find_delay(part, after, &given)?,
@@ -67,10 +67,6 @@ impl WayBack<'_, '_> {
             add_product(sums, by_delay, parts);
         }
         Ok(())
-    }
-
-    fn impact_count(&self) -> usize {
-        self.recorded.instance.model().program().impacts.len()
     }
 
     /// Returns the places of the rates of the degrees of freedom in the state.

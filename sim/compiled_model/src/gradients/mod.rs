@@ -4,8 +4,8 @@
 //! every step and multiplies by the transposed Jacobians of its stages; `events` multiplies by the transposed saltation
 //! matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
 //! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `start` follows the correction of the
-//! initial state onto the constraints. `mode_evaluator` evaluates rates and products in the mode of a step: with sides that are fixed, and those of
-//! surfaces that hold the motion. The work does not depend on the number of parameters.
+//! initial state onto the constraints. `mode_evaluator` evaluates rates and products in the mode of a step: with the sides
+//! of the step, and those of surfaces that hold the motion. The work does not depend on the number of parameters.
 
 mod derivatives;
 mod events;
@@ -134,8 +134,8 @@ impl RecordedMotion<'_> {
     /// Returns the gradient of a number of which `weights` are the derivatives by the samples.
     ///
     /// # Errors
-    /// Weights of another shape or that are not finite; a motion that touches a switching surface or crosses several at
-    /// once, where no gradient exists; derivatives that are not finite.
+    /// Weights of another shape or that are not finite, and derivatives that are not finite. No gradient exists if the
+    /// motion touches a switching surface, crosses several at once, or rests in a contact.
     pub fn gradient(&self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
         pull_back::pull_back(self, weights)
     }

@@ -7,12 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::derivatives::Derivatives;
 use crate::error::Error;
 use crate::jacobians::JacobianLayout;
-
-/// Number of Newton iterations for the sides of surfaces that hold the motion, if forces are not linear in them.
-const MAX_ITERATIONS: usize = 20;
-
-/// Change of a side that counts as rounding.
-const MAX_SETTLED_CHANGE: f64 = 1e-14;
+use crate::sticking::{MAX_SETTLED_CHANGE, MAX_SIDE_ITERATIONS, side_of};
 
 /// Jacobians of one kind of rows by state, inputs and parameters.
 struct RowJacobians {
@@ -192,11 +187,8 @@ impl ModeEvaluator {
                 .guards(Point { t, state, inputs }, &mut self.guards);
         }
         for (side, slot) in self.sides.iter().zip(&mut self.inputs[self.model_inputs..]) {
-            *slot = side.fixed.unwrap_or_else(|| match self.guards[side.guard] {
-                value if value > 0.0 => 1.0,
-                0.0 if side.is_odd => 0.5,
-                _ => 0.0,
-            });
+            let of_state = || side_of(self.guards[side.guard], side.is_odd);
+            *slot = side.fixed.unwrap_or_else(of_state);
         }
         self.find_holding_sides((t, state))
     }
@@ -210,7 +202,7 @@ impl ModeEvaluator {
             let inputs = &self.inputs;
             self.evaluator
                 .sliding(Point { t, state, inputs }, &mut self.sliding);
-            if self.is_linear && iteration == 1 || iteration == MAX_ITERATIONS {
+            if self.is_linear && iteration == 1 || iteration == MAX_SIDE_ITERATIONS {
                 break;
             }
             let rates = self.held.iter().map(|row| -self.sliding[*row].rate);
@@ -321,6 +313,11 @@ impl ModeEvaluator {
         self.guards.len() + self.evaluator.program().impacts.len()
     }
 
+    /// Returns the surface of an impact.
+    pub fn surface_of(&self, impact: usize) -> usize {
+        self.guards.len() + impact
+    }
+
     /// Returns the index of the impact to which a surface belongs.
     pub fn impact_of(&self, surface: usize) -> Option<usize> {
         surface.checked_sub(self.guards.len())
@@ -366,7 +363,7 @@ impl ModeEvaluator {
         Ok(found)
     }
 
-    /// Returns the jumps of the rates by each impact alone, one number for each degree of freedom.
+    /// Returns for each impact the jump of the rates by this impact alone, one number for each degree of freedom.
     pub fn impact_jumps(
         &mut self,
         (t, state): (f64, &[f64]),

@@ -1,4 +1,4 @@
-//! The way back along a recorded motion.
+//! The backward pass along a recorded motion.
 
 use eomgen_sim::ode::{RepeatedStep, SurfaceMode};
 
@@ -15,20 +15,20 @@ pub(super) fn pull_back(
     weights: &SampleWeights,
 ) -> Result<TrajectoryGradient, Error> {
     check_weights(recorded, weights)?;
-    let mut way = WayBack::new(recorded)?;
-    way.measure_surfaces()?;
+    let mut pass = BackwardPass::new(recorded)?;
+    pass.measure_surfaces()?;
     for place in (0..recorded.recording.parts.len()).rev() {
         let part = &recorded.recording.parts[place];
         match part.kind {
-            PartKind::Step => way.follow_step(place, weights)?,
-            PartKind::Crossing | PartKind::Jump => way.follow_event(place)?,
+            PartKind::Step => pass.follow_step(place, weights)?,
+            PartKind::Crossing | PartKind::Jump => pass.follow_event(place)?,
         }
-        let sums = way.adjoint.iter().chain(&way.parameters);
+        let sums = pass.adjoint.iter().chain(&pass.parameters);
         if sums.into_iter().any(|number| !number.is_finite()) {
             return Err(no_gradient(part.start.0, "a derivative is not finite"));
         }
     }
-    way.finish(weights)
+    pass.finish(weights)
 }
 
 pub(super) fn no_gradient(t: f64, cause: &str) -> Error {
@@ -62,8 +62,8 @@ fn check_weights(recorded: &RecordedMotion<'_>, weights: &SampleWeights) -> Resu
     Ok(())
 }
 
-/// The way back from the end of a motion, and the derivatives so far.
-pub(super) struct WayBack<'r, 'm> {
+/// Backward pass from the end of a motion, and the derivatives so far.
+pub(super) struct BackwardPass<'r, 'm> {
     pub recorded: &'r RecordedMotion<'m>,
     pub evaluator: ModeEvaluator,
     step: RepeatedStep,
@@ -82,7 +82,7 @@ pub(super) struct WayBack<'r, 'm> {
     pub rate_sizes: Vec<f64>,
 }
 
-impl<'r, 'm> WayBack<'r, 'm> {
+impl<'r, 'm> BackwardPass<'r, 'm> {
     fn new(recorded: &'r RecordedMotion<'m>) -> Result<Self, Error> {
         let instance = &recorded.instance;
         let program = instance.model().gradient_program()?;

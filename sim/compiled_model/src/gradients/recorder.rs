@@ -10,9 +10,9 @@ use eomgen_sim::ode::{ObservedStep, SurfaceMode, System};
 pub(super) enum PartKind {
     /// A step of the solver.
     Step,
-    /// The way over a surface.
+    /// A crossing of a surface, without a step.
     Crossing,
-    /// The way over a surface at which the state jumps.
+    /// A crossing of a surface at which the state jumps.
     Jump,
 }
 

@@ -1,9 +1,9 @@
-//! The way back over the consistent start of a model with constraints.
+//! The backward pass over the consistent start of a model with constraints.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::derivatives::Derivatives;
-use super::pull_back::{WayBack, add_product, no_gradient};
+use super::pull_back::{BackwardPass, add_product, no_gradient};
 use crate::error::Error;
 
 /// A condition of a consistent state, and the change of the state that corrects it.
@@ -19,7 +19,7 @@ struct Condition {
 /// Singular value, relative to the largest, of conditions that depend on others.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-impl WayBack<'_, '_> {
+impl BackwardPass<'_, '_> {
     /// Replaces the derivatives by the consistent start by those by the given start. A simulation starts at the nearest state
     /// that satisfies the constraints, in the norm of the kinetic energy: the correction is along M^-1 A^T, for coordinates
     /// and for rates.

@@ -2,7 +2,7 @@
 
 use eomgen_sim::ode::SurfaceMode;
 
-use super::pull_back::{WayBack, no_gradient};
+use super::pull_back::{BackwardPass, no_gradient};
 use super::recorder::{Part, PartKind};
 use crate::error::Error;
 
@@ -13,7 +13,7 @@ const MAX_KINK_JUMP_FRACTION: f64 = 1e-9;
 /// Distance from a surface, in tolerances of its function, that counts as a contact.
 const MAX_TOUCH_TOLERANCES: f64 = 10.0;
 
-impl<'r> WayBack<'r, '_> {
+impl<'r> BackwardPass<'r, '_> {
     /// Measures rates and switching functions over the motion, and rejects motions that touch a surface.
     pub fn measure_surfaces(&mut self) -> Result<(), Error> {
         let recorded = self.recorded;

@@ -22,4 +22,5 @@ mod transitions;
 pub(crate) use observed_motion::ObservedMotion;
 pub use observed_motion::StickingMotion;
 pub use sided_model::SidedModel;
+pub(crate) use sided_model::{MAX_SETTLED_CHANGE, MAX_SIDE_ITERATIONS, side_of};
 pub(crate) use surface_states::SurfaceStates;

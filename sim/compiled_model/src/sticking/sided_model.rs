@@ -11,13 +11,13 @@ use eomgen_sim::sliding_modes::{
 use nalgebra::{DMatrix, DVector};
 
 /// Maximum number of Newton iterations if the rates are not linear in the sides.
-const ITERATIONS: usize = 20;
+pub(crate) const MAX_SIDE_ITERATIONS: usize = 20;
 
 /// Number of corrections of a state onto a surface; Newton's method squares the error.
 pub(super) const CORRECTION_COUNT: usize = 2;
 
 /// Largest change of a side that counts as rounding.
-const MAX_SETTLED_CHANGE: f64 = 1e-14;
+pub(crate) const MAX_SETTLED_CHANGE: f64 = 1e-14;
 
 /// Relative change of a state for its effect on a function.
 const RELATIVE_CHANGE: f64 = 1e-6;
@@ -361,7 +361,7 @@ impl SidedModel {
             let next: Vec<f64> = scalars.chain(vectors.copied()).collect();
             let next = DVector::from_vec(next);
             let is_last = self.is_linear || (&next - &s).amax() <= MAX_SETTLED_CHANGE;
-            if is_last || iteration + 1 == ITERATIONS {
+            if is_last || iteration + 1 == MAX_SIDE_ITERATIONS {
                 return is_last.then_some(found);
             }
             s = next;
@@ -434,7 +434,11 @@ impl SidedModel {
     }
 
     fn iterations(&self) -> usize {
-        if self.is_linear { 1 } else { ITERATIONS }
+        if self.is_linear {
+            1
+        } else {
+            MAX_SIDE_ITERATIONS
+        }
     }
 
     fn matrix(&self, surfaces: &[usize]) -> DMatrix<f64> {
@@ -456,7 +460,7 @@ impl SidedModel {
 }
 
 /// Returns the side, 0 to 1, of a surface whose function has this value.
-fn side_of(value: f64, is_odd: bool) -> f64 {
+pub(crate) fn side_of(value: f64, is_odd: bool) -> f64 {
     match value {
         value if value > 0.0 => 1.0,
         0.0 if is_odd => 0.5,

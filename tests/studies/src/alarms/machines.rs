@@ -1,6 +1,6 @@
 //! Machines of the study and the frictions that their models lack.
 
-use crate::coverage::machines::{Channel, MACHINES, Machine};
+use crate::coverage::machines::{Channel, MACHINES, Machine, PENDULUM};
 
 /// Machine with a missing effect.
 pub struct Case {
@@ -140,28 +140,4 @@ springs = "1/2*k_1*y^2 + 1/2*k_2*(z - y)^2"
 dampers = "1/2*d*dot(y)^2 + 1/2*d*(dot(z) - dot(y))^2"
 [forces]
 drive = { on = "y", value = "F" }
-"#;
-
-const PENDULUM: &str = r#"
-[model]
-name = "pendulum"
-[parameters]
-m = { value = 1.2, unit = "kg" }
-l = { value = 0.4, unit = "m" }
-c = { value = 0.05, unit = "N m s" }
-g = { value = 9.81, unit = "m/s^2" }
-[coordinates]
-theta = { unit = "rad" }
-[inputs]
-u = { unit = "N m" }
-[kinetic]
-point = "1/2*m*l^2*dot(theta)^2"
-[potential]
-weight = "-m*g*l*cos(theta)"
-[dissipation]
-bearing = "1/2*c*dot(theta)^2"
-[forces]
-motor = { on = "theta", value = "u" }
-[observables]
-s = { value = "l*sin(theta)", unit = "m" }
 "#;

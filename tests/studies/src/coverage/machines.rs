@@ -142,7 +142,7 @@ motor = { on = "phi", value = "M" }
 friction = { on = "x", value = "-F_c*sign(dot(x))" }
 "#;
 
-const PENDULUM: &str = r#"
+pub const PENDULUM: &str = r#"
 [model]
 name = "pendulum"
 [parameters]
@@ -162,6 +162,8 @@ weight = "-m*g*l*cos(theta)"
 bearing = "1/2*c*dot(theta)^2"
 [forces]
 motor = { on = "theta", value = "u" }
+[observables]
+s = { value = "l*sin(theta)", unit = "m" }
 "#;
 
 const BEAM: &str = r#"
