@@ -27,7 +27,6 @@ impl Simulation {
         inputs: PyReadonlyArray1<'_, f64>,
         settings: (String, f64, f64),
     ) -> PyResult<Self> {
-        model.reject_controllers("a simulation that continues from call to call")?;
         let (solver, tolerance, max_step) = settings;
         let instance = model.shared_instance().map_err(error::model)?;
         let options = SolverOptions {
@@ -89,6 +88,18 @@ impl Simulation {
     fn observables<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.continued.write_observables(&mut self.observables);
         self.observables.to_pyarray(py)
+    }
+
+    /// Names of the states of the controllers.
+    #[getter]
+    fn controller_state_names(&self) -> Vec<String> {
+        self.continued.controller_state_names()
+    }
+
+    /// States of the controllers after the samples so far.
+    #[getter]
+    fn controller_states<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.continued.controller_states().to_pyarray(py)
     }
 
     /// Returns the events since the last call.

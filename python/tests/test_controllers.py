@@ -141,3 +141,66 @@ def test_ctrl_c_interrupts_a_controlled_simulation(interrupt):
     m = eomgen.load(MASS)
     with pytest.raises(KeyboardInterrupt), interrupt(0.5):
         m.simulate(until=1e5, interval=1e3, inputs={"r": 0.0}, controller=pd, period=1e-3)
+
+
+STEP = 'u_step = { value = 0.5, unit = "N" }\n'
+
+QUANTISED = """
+[controllers.pd]
+period = { value = 50, unit = "ms" }
+delay = { value = 120, unit = "ms" }
+states = { last = { unit = "m", next = "error" } }
+outputs = { u = "quantise(k_p*error - k_d*dot(x), u_step)" }
+"""
+
+
+@pytest.mark.parametrize("loop", [LOOP, QUANTISED])
+@pytest.mark.parametrize("solver", ["exact", "rk", "fixed"])
+def test_simulation_that_continues_runs_declared_controllers(loop, solver):
+    m = eomgen.load(MASS.replace("k_d =", STEP + "k_d =") + loop)
+    options = {"solver": solver, "max_step": 0.005}
+    steps = np.arange(201)
+    held = np.where(steps < 70, 1.0, -0.5)
+    right = m.simulate(until=2, interval=0.01, inputs={"r": held}, **options)
+    s = m.simulation(inputs={"r": 1.0}, **options)
+    assert s["last"] == right["last"][0] == 0.7
+    for row, t in enumerate(right.t[1:], start=1):
+        s.advance(t)
+        if row == 70:
+            s.set_inputs({"r": -0.5})
+        assert np.allclose(s.state, right.states[row], rtol=0, atol=1e-8), (row, s.state)
+        assert s["last"] == pytest.approx(right["last"][row], abs=1e-8)
+    assert s.solver == right.solver and list(s.controller_states) == [s["last"]]
+    assert np.ptp(right["x"]) > 0.5
+
+
+def test_driven_inputs_of_a_continued_simulation_are_kept():
+    m = eomgen.load(MASS + LOOP)
+    with pytest.raises(ValueError, match="input u is driven by a controller"):
+        m.simulation(inputs={"u": 1.0})
+    with pytest.raises(ValueError, match="input u is driven by a controller"):
+        m.simulation(inputs=[0.0, 1.0])
+    s = m.simulation(inputs={"r": 1.0})
+    s.advance(0.03)
+    force = s.inputs[1]
+    assert force == pytest.approx(21.0)
+    with pytest.raises(ValueError, match="input u is driven by a controller"):
+        s.set_inputs([2.0, 0.0])
+    s.set_inputs([2.0, force])
+    s.set_state({"x": 0.0})
+    assert list(s.inputs) == [2.0, force] and s["last"] == 0.7
+    s.advance(0.05)
+    assert s["last"] == pytest.approx(2.0 - s["x"])
+
+
+def test_failing_sample_of_a_continued_simulation_is_not_passed():
+    m = eomgen.load(MASS + LOOP.replace("k_p*error", "k_p*sqrt(error)*sqrt(error)"))
+    s = m.simulation(inputs={"r": 1.0})
+    s.set_inputs({"r": -1.0})
+    for _ in range(2):
+        with pytest.raises(eomgen.SimulationError, match="at t = 0.05 s the output `u`"):
+            s.advance(0.2)
+        assert s.t == 0.05 and s["last"] == 0.7
+    s.set_inputs({"r": 1.0})
+    s.advance(0.2)
+    assert s.t == 0.2

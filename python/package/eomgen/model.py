@@ -438,7 +438,7 @@ class Model:
         """Starts a simulation that continues from call to call, for controllers and interactive programs.
 
         start: time, s. state: initial state, as for `simulate`. inputs: (inputs,), or a mapping of names to numbers;
-        missing inputs are 0. The other arguments are those of `simulate`.
+        missing inputs are 0. The other arguments are those of `simulate`. Controllers of the specification run.
 
         Raises SimulationError or ValueError for a state from which the model cannot move.
         """

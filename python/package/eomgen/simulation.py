@@ -27,6 +27,9 @@ class Simulation:
 
     Inputs hold until `set_inputs` changes them. Without a change the solver keeps its steps: many short calls give the
     motion of one long call.
+
+    Controllers of the specification run. The start and each `advance` include the samples at the time reached, so that
+    inputs and states that are set at a sample act after it.
     """
 
     def __init__(
@@ -43,24 +46,29 @@ class Simulation:
         longest = math.inf if max_step is None else float(max_step)
         settings = (solver, _arguments.real("tolerance", tolerance), longest)
         start = _arguments.real("start", start)
-        values = np.zeros(len(model.inputs))
-        self._values = self._with(values, inputs)
-        self._native = _native.Simulation(model._native, start, state, self._values, settings)
+        values = self._with(np.zeros(len(model.inputs)), inputs)
+        self._native = _native.Simulation(model._native, start, state, values, settings)
 
     def _with(self, values: Array, inputs: Any) -> Array:
         names = self._model.inputs
+        driven = self._model._native.controlled_inputs
         if inputs is None:
             return values
         if isinstance(inputs, Mapping):
             _arguments.check_names("input", inputs, names)
             values = values.copy()
             for name, value in inputs.items():
+                if name in driven:
+                    raise ValueError(f"the input {name} is driven by a controller of the specification")
                 values[names.index(name)] = _arguments.real(f"the input {name}", value)
             return values
-        values = _arguments.numbers("the inputs", inputs).reshape(-1)
-        if len(values) != len(names):
-            raise ValueError(f"{len(values)} inputs: expected {len(names)}, for {', '.join(names)}")
-        return values
+        given = _arguments.numbers("the inputs", inputs).reshape(-1)
+        if len(given) != len(names):
+            raise ValueError(f"{len(given)} inputs: expected {len(names)}, for {', '.join(names)}")
+        for name, before, value in zip(names, values, given):
+            if name in driven and value != before:
+                raise ValueError(f"the input {name} is driven by a controller of the specification")
+        return given
 
     @property
     def t(self) -> float:
@@ -83,6 +91,11 @@ class Simulation:
         return self._native.observables()
 
     @property
+    def controller_states(self) -> Array:
+        """States of the controllers of the specification, after the samples at that time."""
+        return self._native.controller_states
+
+    @property
     def solver(self) -> str:
         """Name of the solver in use."""
         return self._native.solver
@@ -92,7 +105,10 @@ class Simulation:
             return float(self.observables[self._model.observable_names.index(name)])
         if name in self._model.states:
             return float(self.state[self._model.states.index(name)])
-        names = self._model.states + self._model.observable_names
+        sampled = tuple(self._native.controller_state_names)
+        if name in sampled:
+            return float(self.controller_states[sampled.index(name)])
+        names = self._model.states + self._model.observable_names + sampled
         raise KeyError(_arguments.unknown("state or observable", name, names))
 
     def advance(self, until: float) -> None:
@@ -104,12 +120,12 @@ class Simulation:
 
     def set_inputs(self, inputs: Any) -> None:
         """Changes inputs from the time reached on: (inputs,), or a mapping of names to numbers; other inputs keep their
-        values."""
-        self._values = self._with(self._values, inputs)
-        self._native.set_inputs(self._values)
+        values. A controller of the specification keeps the inputs that it drives."""
+        self._native.set_inputs(self._with(self.inputs, inputs))
 
     def set_state(self, state: Any) -> None:
-        """Continues from another state: (states,), or a mapping of names to numbers; other states keep their values."""
+        """Continues from another state: (states,), or a mapping of names to numbers; other states keep their values.
+        Controllers keep their states."""
         if isinstance(state, Mapping):
             names = self._model.states
             _arguments.check_names("state", state, names)

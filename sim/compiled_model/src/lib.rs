@@ -115,7 +115,9 @@ mod typical_sizes;
 
 pub use audit::{Audit, Imbalance};
 #[cfg(feature = "derive")]
-pub use controllers::{DeclaredController, Sample, SampledController};
+pub use controllers::{
+    ControlMemory, DeclaredController, NextSample, PendingOutputs, Sample, SampledController,
+};
 pub use driven_model::DrivenModel;
 #[cfg(feature = "derive")]
 pub use equilibrium::{Departure, Equilibrium, EquilibriumRequest, Stability};

@@ -6,6 +6,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, Surface, SurfaceMode, Trajectory};
 use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
 
+use crate::controllers::{ControlLoop, LoopRecord, SampledController};
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
@@ -23,6 +24,9 @@ use crate::stop_reasons::{
 
 /// A simulation that continues from call to call. Inputs may change in between; they are held until the
 /// next change. Without a change the solver keeps its steps, so that many short calls give the same motion as a long one.
+///
+/// The controllers of the specification run. The start and each call include the samples at their last time, so that a
+/// change of an input or of the state at the time of a sample acts after it.
 ///
 /// ```
 /// # use eomgen_compiled_model::{CompiledModel, Orders, SolverOptions};
@@ -64,6 +68,8 @@ pub struct Simulation<'m> {
     initial_changes: Vec<InitialChange>,
     /// Events and jumps since [`Simulation::clear_events`].
     log: Trajectory,
+    /// Controllers that drive inputs; `None` without controllers.
+    pub(crate) controls: Option<ControlLoop<'m>>,
 }
 
 enum Engine {
@@ -77,11 +83,31 @@ enum Engine {
 }
 
 impl<'m> Instance<'m> {
-    /// Starts a simulation at a time (s) and a state (SI).
+    /// Starts a simulation at a time (s) and a state (SI), with the controllers of the specification in their initial
+    /// states.
     ///
     /// # Errors
-    /// An invalid request, no consistent state near the given one, or a solver that does not support the model.
+    /// An invalid request, no consistent state near the given one, a solver that does not support the model, or a
+    /// controller whose first sample fails.
     pub fn start_simulation(
+        &self,
+        start: (f64, &[f64]),
+        inputs: HeldInputs,
+        options: SolverOptions,
+    ) -> Result<Simulation<'m>, Error> {
+        if self.model().model().controllers.is_empty() {
+            return self.start_plant(start, inputs, options);
+        }
+        let declared = self.controllers()?.into_iter();
+        let declared = declared.map(|own| Box::new(own) as Box<dyn SampledController>);
+        let controlled = self.prepare_controlled((start, inputs), options, declared.collect());
+        let mut simulation = controlled?;
+        simulation.advance(start.0)?;
+        Ok(simulation)
+    }
+
+    /// Starts a simulation without controllers.
+    pub(crate) fn start_plant(
         &self,
         (t, state): (f64, &[f64]),
         inputs: HeldInputs,
@@ -131,6 +157,7 @@ impl<'m> Instance<'m> {
             surfaces,
             initial_changes,
             log: Trajectory::default(),
+            controls: None,
         })
     }
 
@@ -179,12 +206,11 @@ impl Simulation<'_> {
         }
     }
 
-    /// Returns the time (s) at which the rates are evaluated: that of the step for [`Solver::Fixed`], else the time
-    /// reached.
-    pub(crate) fn evaluation_time(&self) -> f64 {
+    /// Returns the time of the step of [`Solver::Fixed`], s; `None` for other solvers.
+    pub(crate) fn step_time(&self) -> Option<f64> {
         match &self.engine {
-            Engine::Fixed(steps) => steps.time(),
-            _ => self.time(),
+            Engine::Fixed(steps) => Some(steps.time()),
+            _ => None,
         }
     }
 
@@ -239,7 +265,7 @@ impl Simulation<'_> {
     }
 
     /// Writes the observables at the time reached to `out`. During sticking they use the friction force that holds
-    /// the motion.
+    /// the motion. At a sample they use the inputs after it.
     pub fn write_observables(&mut self, out: &mut [f64]) {
         let t = self.time();
         match &mut self.engine {
@@ -310,19 +336,21 @@ impl Simulation<'_> {
     /// Times that are not finite, not ascending or before the time reached.
     pub fn advance_through(
         &mut self,
+        asked: (f64, &[f64]),
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        self.follow(asked, &mut LoopRecord::new(trajectory), progress)
+    }
+
+    /// Continues like [`Simulation::advance_through`], with the present inputs.
+    pub(crate) fn advance_plant(
+        &mut self,
         (until, samples): (f64, &[f64]),
         trajectory: &mut Trajectory,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
-        let now = self.time();
-        let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
-        let inside = samples.iter().all(|sample| (now..=until).contains(sample));
-        if !(until.is_finite() && until >= now && ascending && inside) {
-            return Err(Error::Request(format!(
-                "a simulation that reached {now:?} s cannot continue to {until:?} s with these samples: times must be \
-                 finite and ascend from the time reached"
-            )));
-        }
+        self.check_times(until, samples)?;
         if let Engine::Fixed(steps) = &mut self.engine {
             let names = || self.instance.model().state_names();
             let stop = steps.advance((until, samples), &self.inputs, trajectory, &names)?;
@@ -343,6 +371,20 @@ impl Simulation<'_> {
                 }
                 (stop, _) => return Ok(Some(stop)),
             }
+        }
+    }
+
+    /// Checks times that a call asks for.
+    pub(crate) fn check_times(&self, until: f64, samples: &[f64]) -> Result<(), Error> {
+        let now = self.time();
+        let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
+        let inside = samples.iter().all(|sample| (now..=until).contains(sample));
+        match until.is_finite() && until >= now && ascending && inside {
+            true => Ok(()),
+            false => Err(Error::Request(format!(
+                "a simulation that reached {now:?} s cannot continue to {until:?} s with these samples: times must be \
+                 finite and ascend from the time reached"
+            ))),
         }
     }
 
@@ -399,10 +441,12 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Changes the inputs from the time reached on. The same inputs again change nothing.
+    /// Changes the inputs from the time reached on. The same inputs again change nothing. An input that a controller
+    /// drives keeps its value.
     ///
     /// # Errors
-    /// Another number of inputs, one that is not finite, and a motion that cannot follow the jump.
+    /// Another number of inputs, one that is not finite, another value of an input that a controller drives, and a
+    /// motion that cannot follow the jump.
     pub fn set_inputs(&mut self, inputs: &[f64]) -> Result<(), Error> {
         let names = &self.instance.model().program().inputs;
         if inputs.len() != names.len() {
@@ -420,6 +464,18 @@ impl Simulation<'_> {
         }
         if self.present_inputs == inputs && !self.inputs.is_time_varying() {
             return Ok(());
+        }
+        if let Some(place) = self.find_driven(inputs) {
+            return Err(Error::Request(format!(
+                "a controller drives the input `{}`: remove the value, or the output of the controller",
+                names[place].name
+            )));
+        }
+        if let Some(controls) = &mut self.controls {
+            let all = controls.give(t, inputs);
+            self.present_inputs = inputs.to_vec();
+            self.inputs = all;
+            return self.follow_input_jump();
         }
         let before = self.inputs.evaluate(t.next_down());
         let rows = [&before[..], inputs].concat();
@@ -468,7 +524,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Continues from another state at the time reached, SI.
+    /// Continues from another state at the time reached, SI. Controllers keep their states.
     ///
     /// # Errors
     /// An invalid state, and one from which the motion cannot continue.

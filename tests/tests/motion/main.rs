@@ -4,6 +4,7 @@ mod chambers;
 mod constraints;
 mod contact_friction;
 mod continued;
+mod continued_controllers;
 mod controller_library;
 mod controllers;
 mod corners;

@@ -4,19 +4,11 @@ use std::collections::VecDeque;
 
 use eomgen_model_spec::control::Schedule;
 
+use super::memory::{NextSample, PendingOutputs};
+
 /// Largest difference of times at one instant, as a fraction of the shortest period: far below any wanted difference,
 /// and above the rounding errors of the times.
 const COINCIDENCE: f64 = 1e-9;
-
-/// Outputs that will act.
-pub struct PendingOutputs {
-    /// Time of the action, s.
-    time: f64,
-    /// Index of the controller.
-    pub controller: usize,
-    /// Values of its inputs.
-    pub values: Vec<f64>,
-}
 
 /// Samples and actions to come.
 pub struct Clock {
@@ -60,6 +52,36 @@ impl Clock {
         schedule.offset + self.next[controller] * schedule.period
     }
 
+    /// Returns the next sample of each controller.
+    pub fn next_samples(&self) -> Vec<NextSample> {
+        let all = self.schedules.iter().zip(&self.next);
+        let sample = |(schedule, number): (&Schedule, &f64)| NextSample {
+            period: schedule.period,
+            offset: schedule.offset,
+            number: *number,
+        };
+        all.map(sample).collect()
+    }
+
+    /// Returns the outputs that will act, in the order of their samples.
+    pub fn pending(&self) -> impl Iterator<Item = &PendingOutputs> {
+        self.pending.iter()
+    }
+
+    /// Continues at a time (s) with these next samples, and with outputs that will act. A controller with other sample
+    /// times has its next sample after this time.
+    pub fn resume(&mut self, t: f64, samples: &[NextSample], pending: &[PendingOutputs]) {
+        let within = self.tolerance(t);
+        for (controller, known) in samples.iter().enumerate() {
+            let Schedule { period, offset, .. } = self.schedules[controller];
+            self.next[controller] = match (period, offset) == (known.period, known.offset) {
+                true => known.number,
+                false => (((t + within - offset) / period).floor() + 1.0).max(0.0),
+            };
+        }
+        self.pending = pending.to_vec().into();
+    }
+
     /// Returns the time (s) of the next sample or action.
     pub fn next_instant(&self) -> Option<f64> {
         let samples = (0..self.schedules.len()).map(|controller| self.sample_time(controller));
@@ -67,19 +89,16 @@ impl Clock {
         samples.chain(actions).reduce(f64::min)
     }
 
-    /// Returns the controllers with a sample at an instant, and moves them to their next samples.
-    pub fn take_samples(&mut self, instant: f64) -> Vec<usize> {
+    /// Returns the controllers with a sample at an instant.
+    pub fn due_samples(&self, instant: f64) -> Vec<usize> {
         let within = self.tolerance(instant);
         let is_due = |controller: &usize| self.sample_time(*controller) <= instant + within;
-        let due: Vec<usize> = (0..self.schedules.len()).filter(is_due).collect();
-        for controller in &due {
-            self.next[*controller] += 1.0;
-        }
-        due
+        (0..self.schedules.len()).filter(is_due).collect()
     }
 
-    /// Adds outputs of a sample at `instant`, which act after the delay of their controller.
-    pub fn add(&mut self, instant: f64, controller: usize, values: Vec<f64>) {
+    /// Moves a controller to its next sample. The outputs of the sample at `instant` act after its delay.
+    pub fn complete_sample(&mut self, instant: f64, controller: usize, values: Vec<f64>) {
+        self.next[controller] += 1.0;
         self.pending.push_back(PendingOutputs {
             time: instant + self.schedules[controller].delay,
             controller,
@@ -118,7 +137,12 @@ mod tests {
         let mut taken = Vec::new();
         while taken.len() < 7 {
             let instant = clock.next_instant().expect("a sample");
-            taken.push(clock.take_samples(instant));
+            let due = clock.due_samples(instant);
+            for controller in &due {
+                clock.complete_sample(instant, *controller, Vec::new());
+            }
+            clock.take_actions(instant);
+            taken.push(due);
         }
         let (both, one) = (vec![0, 1], vec![0]);
         let one_two = [both.clone(), one.clone(), one.clone()];
@@ -130,15 +154,36 @@ mod tests {
     fn outputs_act_after_their_delay() {
         let mut clock = Clock::new(vec![schedule(1.0, 0.25, 1.5)], 0.0);
         assert_eq!(clock.next_instant(), Some(0.25));
-        assert_eq!(clock.take_samples(0.25), [0]);
-        clock.add(0.25, 0, vec![7.0]);
+        assert_eq!(clock.due_samples(0.25), [0]);
+        clock.complete_sample(0.25, 0, vec![7.0]);
         assert_eq!(clock.next_instant(), Some(1.25));
         assert!(clock.take_actions(1.25).is_empty());
-        assert_eq!(clock.take_samples(1.25), [0]);
+        assert_eq!(clock.due_samples(1.25), [0]);
+        clock.complete_sample(1.25, 0, vec![8.0]);
         assert_eq!(clock.next_instant(), Some(1.75));
-        assert!(clock.take_samples(1.75).is_empty());
+        assert!(clock.due_samples(1.75).is_empty());
         let due = clock.take_actions(1.75);
         assert_eq!((due.len(), due[0].values[0]), (1, 7.0));
+    }
+
+    #[test]
+    fn continuation_takes_each_sample_once() {
+        let mut clock = Clock::new(vec![schedule(0.1, 0.0, 0.25)], 0.0);
+        for sample in 0..4 {
+            let instant = clock.next_instant().expect("a sample");
+            clock.complete_sample(instant, 0, vec![f64::from(sample)]);
+            clock.take_actions(instant);
+        }
+        let pending: Vec<_> = clock.pending().cloned().collect();
+        assert_eq!(pending.len(), 3);
+        // Samples at 0.3 s are taken; with a period of 0.15 s, so is that at 0.3 s.
+        for (period, next) in [(0.1, 0.4), (0.15, 0.45), (0.08, 0.32)] {
+            let mut other = Clock::new(vec![schedule(period, 0.0, 0.25)], 0.3);
+            other.resume(0.3, &clock.next_samples(), &pending);
+            let found = other.sample_time(0);
+            assert!((found - next).abs() < 1e-12, "{found}, {next}");
+            assert!(other.pending().eq(&pending));
+        }
     }
 
     #[test]

@@ -35,8 +35,37 @@ pub trait SampledController {
         &[]
     }
 
+    /// Continues with other states, SI; a controller without states ignores them.
+    fn set_states(&mut self, _states: &[f64]) {}
+
     /// Returns the names of the states.
     fn state_names(&self) -> Vec<String> {
         Vec::new()
+    }
+}
+
+impl<C: SampledController + ?Sized> SampledController for &mut C {
+    fn schedule(&self) -> Schedule {
+        (**self).schedule()
+    }
+
+    fn driven_inputs(&self) -> &[usize] {
+        (**self).driven_inputs()
+    }
+
+    fn sample(&mut self, at: &Sample<'_>, outputs: &mut [f64]) -> Result<(), String> {
+        (**self).sample(at, outputs)
+    }
+
+    fn states(&self) -> &[f64] {
+        (**self).states()
+    }
+
+    fn set_states(&mut self, states: &[f64]) {
+        (**self).set_states(states);
+    }
+
+    fn state_names(&self) -> Vec<String> {
+        (**self).state_names()
     }
 }

@@ -94,14 +94,19 @@ impl SampledController for DeclaredController {
         }
         let values = self.controller.next.iter();
         let named = values.zip(&self.controller.states);
-        for (slot, (place, state)) in self.states.iter_mut().zip(named) {
-            *slot = finite(*place, "the state", &state.name)?;
-        }
+        // A sample that fails changes no state.
+        let next = named.map(|(place, state)| finite(*place, "the state", &state.name));
+        let next = next.collect::<Result<Vec<f64>, String>>()?;
+        self.states.copy_from_slice(&next);
         Ok(())
     }
 
     fn states(&self) -> &[f64] {
         &self.states
+    }
+
+    fn set_states(&mut self, states: &[f64]) {
+        self.states.copy_from_slice(states);
     }
 
     fn state_names(&self) -> Vec<String> {

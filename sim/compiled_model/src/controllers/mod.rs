@@ -1,10 +1,16 @@
 //! Sampled controllers: `controller` is their interface, `declared` those of a specification, `clock` the order of samples
-//! and actions, `simulation` the motion with controllers.
+//! and actions, `memory` what a continuation needs, `control_loop` the loop of controllers with a motion, `continued` a simulation with controllers that
+//! continues from call to call, `simulation` a whole one.
 
 mod clock;
+mod continued;
+mod control_loop;
 mod controller;
 mod declared;
+mod memory;
 mod simulation;
 
+pub(crate) use control_loop::{ControlLoop, LoopRecord};
 pub use controller::{Sample, SampledController};
 pub use declared::DeclaredController;
+pub use memory::{ControlMemory, NextSample, PendingOutputs};

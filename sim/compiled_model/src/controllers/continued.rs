@@ -1,0 +1,175 @@
+//! Simulations with controllers that continue from call to call.
+
+use eomgen_model_spec::control::Schedule;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
+
+use super::control_loop::{ControlLoop, LoopRecord, Plant};
+use super::controller::SampledController;
+use super::memory::ControlMemory;
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::motion::{EarlyStop, Solver};
+use crate::resumable::Simulation;
+use crate::solver_options::SolverOptions;
+
+impl<'m> Instance<'m> {
+    /// Prepares a simulation with controllers from a time (s), a state and inputs, before the samples at this time.
+    ///
+    /// # Errors
+    /// Two controllers that drive one input; same as [`Instance::start_simulation`].
+    pub(crate) fn prepare_controlled<'c>(
+        &self,
+        (start, inputs): ((f64, &[f64]), HeldInputs),
+        options: SolverOptions,
+        controllers: Vec<Box<dyn SampledController + 'c>>,
+    ) -> Result<Simulation<'c>, Error>
+    where
+        'm: 'c,
+    {
+        self.check_driven_once(&controllers)?;
+        let options = limit_steps(options, &controllers);
+        let mut simulation: Simulation<'c> = self.start_plant(start, inputs.clone(), options)?;
+        let program = self.model().program();
+        let counts = (program.inputs.len(), program.observables.len());
+        simulation.controls = Some(ControlLoop::new(controllers, inputs, start.0, counts));
+        Ok(simulation)
+    }
+
+    /// Starts a simulation with the controllers of the specification at a time at which their samples are taken, with
+    /// their memory and the present inputs.
+    ///
+    /// # Errors
+    /// A memory of other controllers; same as [`Instance::start_simulation`].
+    pub fn continue_simulation(
+        &self,
+        (t, state): (f64, &[f64]),
+        inputs: HeldInputs,
+        options: SolverOptions,
+        memory: &ControlMemory,
+    ) -> Result<Simulation<'m>, Error> {
+        let declared = self.controllers()?.into_iter();
+        let declared = declared.map(|own| Box::new(own) as Box<dyn SampledController>);
+        let start = ((t, state), inputs);
+        let mut simulation = self.prepare_controlled(start, options, declared.collect())?;
+        if let Some(controls) = &mut simulation.controls {
+            controls.resume(t, memory)?;
+        }
+        Ok(simulation)
+    }
+
+    fn check_driven_once(
+        &self,
+        controllers: &[Box<dyn SampledController + '_>],
+    ) -> Result<(), Error> {
+        let mut driven = Vec::new();
+        for place in controllers.iter().flat_map(|own| own.driven_inputs()) {
+            if driven.contains(place) {
+                let inputs = &self.model().program().inputs;
+                let name = inputs.get(*place).map_or("", |input| &input.name);
+                return Err(Error::Request(format!(
+                    "two controllers drive the input `{name}`: let one controller compute the sum of both"
+                )));
+            }
+            driven.push(*place);
+        }
+        Ok(())
+    }
+}
+
+/// Limits the steps of a solver to the shortest period: longer ones would end between samples, and lose digits there.
+pub(crate) fn limit_steps(
+    options: SolverOptions,
+    controllers: &[Box<dyn SampledController + '_>],
+) -> SolverOptions {
+    let schedules = controllers.iter().map(|own| own.schedule());
+    let periods = schedules.map(|Schedule { period, .. }| period);
+    match options.solver {
+        Solver::Fixed => options,
+        _ => SolverOptions {
+            max_step: periods.fold(options.max_step, f64::min),
+            ..options
+        },
+    }
+}
+
+impl Simulation<'_> {
+    /// Continues to a time (s) with the controllers, and adds the rows to the record. Returns the reason of an early stop.
+    ///
+    /// # Errors
+    /// Times that are not finite, not ascending or before the time reached.
+    pub(crate) fn follow(
+        &mut self,
+        (until, rows): (f64, &[f64]),
+        record: &mut LoopRecord<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        let Some(mut controls) = self.controls.take() else {
+            return self.advance_plant((until, rows), record.trajectory, progress);
+        };
+        let checked = self.check_times(until, rows);
+        let ended = checked.and_then(|()| controls.follow(self, (until, rows), record, progress));
+        self.controls = Some(controls);
+        ended
+    }
+
+    /// Returns the states of the controllers after the samples so far, SI.
+    pub fn controller_states(&self) -> Vec<f64> {
+        let controls = self.controls.as_ref();
+        controls.map_or_else(Vec::new, ControlLoop::states)
+    }
+
+    /// Returns the memory of the controllers, for [`Instance::continue_simulation`]; `None` without controllers.
+    pub fn control_memory(&self) -> Option<ControlMemory> {
+        self.controls.as_ref().map(ControlLoop::memory)
+    }
+
+    /// Returns the names of the states of the controllers.
+    pub fn controller_state_names(&self) -> Vec<String> {
+        let controls = self.controls.as_ref();
+        controls.map_or_else(Vec::new, ControlLoop::state_names)
+    }
+
+    /// Returns the first input that a controller drives, and whose value in `inputs` is not the present one.
+    pub(crate) fn find_driven(&self, inputs: &[f64]) -> Option<usize> {
+        let controls = self.controls.as_ref()?;
+        let mut pairs = self.inputs().iter().zip(inputs).enumerate();
+        let found = pairs.find(|(place, (own, new))| own != new && controls.drives(*place));
+        found.map(|(place, _)| place)
+    }
+}
+
+impl Plant for Simulation<'_> {
+    fn time(&self) -> f64 {
+        Simulation::time(self)
+    }
+
+    fn evaluation_time(&self) -> f64 {
+        self.step_time().unwrap_or_else(|| Simulation::time(self))
+    }
+
+    fn state(&self) -> &[f64] {
+        Simulation::state(self)
+    }
+
+    fn write_observables(&mut self, out: &mut [f64]) {
+        Simulation::write_observables(self, out);
+    }
+
+    fn change_inputs(
+        &mut self,
+        inputs: HeldInputs,
+        trajectory: &mut Trajectory,
+    ) -> Result<(), Error> {
+        Simulation::change_inputs(self, inputs, trajectory)
+    }
+
+    fn go_on(
+        &mut self,
+        asked: (f64, &[f64]),
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        self.advance_plant(asked, trajectory, progress)
+    }
+}

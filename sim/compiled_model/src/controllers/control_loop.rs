@@ -1,0 +1,336 @@
+//! Controllers in a loop with a motion: samples, actions of their outputs, and inputs from outside.
+
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
+
+use super::clock::Clock;
+use super::controller::{Sample, SampledController};
+use super::memory::ControlMemory;
+use crate::error::Error;
+use crate::motion::{EarlyStop, StopCause};
+
+/// Motion whose inputs controllers drive.
+pub(crate) trait Plant {
+    /// Returns the time reached, s.
+    fn time(&self) -> f64;
+
+    /// Returns the time (s) at which the rates are evaluated there.
+    fn evaluation_time(&self) -> f64 {
+        self.time()
+    }
+
+    /// Returns the state at the time reached, SI.
+    fn state(&self) -> &[f64];
+
+    /// Writes the observables at the time reached.
+    fn write_observables(&mut self, out: &mut [f64]);
+
+    /// Changes the inputs from the time reached on. Adds the events of the change to `trajectory`.
+    ///
+    /// # Errors
+    /// A motion that cannot follow the jump.
+    fn change_inputs(
+        &mut self,
+        inputs: HeldInputs,
+        trajectory: &mut Trajectory,
+    ) -> Result<(), Error>;
+
+    /// Continues to a time (s) with the present inputs and the rows (s) up to it. Returns the reason of an early stop.
+    ///
+    /// # Errors
+    /// Times that are not possible.
+    fn go_on(
+        &mut self,
+        asked: (f64, &[f64]),
+        trajectory: &mut Trajectory,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error>;
+}
+
+/// Record of a loop during a call.
+pub(crate) struct LoopRecord<'t> {
+    pub trajectory: &'t mut Trajectory,
+    /// Rows of the trajectory before the call.
+    first: usize,
+    /// States of the controllers at the rows of the call.
+    pub states: Vec<Vec<f64>>,
+    /// Times of changes of the held inputs, s, and all held values from then on.
+    pub changes: Vec<(f64, Vec<f64>)>,
+}
+
+impl<'t> LoopRecord<'t> {
+    pub fn new(trajectory: &'t mut Trajectory) -> Self {
+        Self {
+            first: trajectory.times.len(),
+            trajectory,
+            states: Vec::new(),
+            changes: Vec::new(),
+        }
+    }
+
+    /// Returns the rows of a call that are still to come.
+    fn rest<'r>(&self, rows: &'r [f64]) -> &'r [f64] {
+        &rows[self.trajectory.times.len() - self.first..]
+    }
+
+    fn complete_states(&mut self, controllers: &[Box<dyn SampledController + '_>]) {
+        let rows = self.trajectory.times.len() - self.first;
+        if self.states.len() < rows {
+            self.states.resize(rows, states_of(controllers));
+        }
+    }
+}
+
+fn states_of(controllers: &[Box<dyn SampledController + '_>]) -> Vec<f64> {
+    let states = controllers.iter().map(|controller| controller.states());
+    states.collect::<Vec<_>>().concat()
+}
+
+/// Controllers with their clock and the inputs of a motion.
+pub(crate) struct ControlLoop<'c> {
+    /// Controllers in the order of their states and inputs.
+    controllers: Vec<Box<dyn SampledController + 'c>>,
+    clock: Clock,
+    /// Inputs from outside.
+    given: HeldInputs,
+    /// Held values of all inputs; driven ones are those of the controllers.
+    held: Vec<f64>,
+    /// Inputs in use.
+    current: HeldInputs,
+    /// For each input, true if an output acts on it by now.
+    has_acted: Vec<bool>,
+    observables: Vec<f64>,
+}
+
+impl<'c> ControlLoop<'c> {
+    /// Creates a loop at a time (s), before the samples at this time. No two of the controllers drive one input.
+    pub fn new(
+        controllers: Vec<Box<dyn SampledController + 'c>>,
+        given: HeldInputs,
+        t: f64,
+        (inputs, observables): (usize, usize),
+    ) -> Self {
+        let schedules = controllers.iter().map(|own| own.schedule()).collect();
+        Self {
+            clock: Clock::new(schedules, t),
+            controllers,
+            held: given.last_sample(t).to_vec(),
+            current: given.clone(),
+            given,
+            has_acted: vec![false; inputs],
+            observables: vec![0.0; observables],
+        }
+    }
+
+    /// Follows the motion to a time (s), with the samples and changes at it, and adds the rows to the record. Rows at
+    /// a sample have the values after it. Returns the reason of an early stop.
+    ///
+    /// # Errors
+    /// Times that are not possible for the motion.
+    pub fn follow(
+        &mut self,
+        plant: &mut dyn Plant,
+        (until, rows): (f64, &[f64]),
+        record: &mut LoopRecord<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        while let Some(next) = self.find_next(plant.time(), (until, record.rest(rows))) {
+            let rest = record.rest(rows);
+            let before = &rest[..rest.partition_point(|row| *row < next)];
+            let stop = self.go_on(plant, (next, before), record, progress)?;
+            if let Some(stop) = stop {
+                return Ok(Some(stop));
+            }
+            if let Some(stop) = self.sample(plant, next, record)? {
+                return Ok(Some(stop));
+            }
+            self.push_rows_at(plant, (next, rows), record);
+        }
+        self.push_rows_at(plant, (plant.time(), rows), record);
+        let rest = record.rest(rows);
+        let before = &rest[..rest.partition_point(|row| *row <= until)];
+        self.go_on(plant, (until, before), record, progress)
+    }
+
+    /// Returns the time (s) of the next sample, action or change of an input from `now` to `until`. Samples and actions
+    /// that differ from a row or the end by rounding are there.
+    fn find_next(&self, now: f64, (until, rows): (f64, &[f64])) -> Option<f64> {
+        let within = self.clock.tolerance(now.abs().max(until.abs()));
+        let instant = self.clock.next_instant().map(|instant| {
+            let place = rows.partition_point(|row| *row < instant - within);
+            let near = rows.get(place).copied().into_iter().chain([until]);
+            let mut near = near.filter(|time| (time - instant).abs() <= within);
+            near.next().unwrap_or(instant)
+        });
+        let change = self.given.next_change(now);
+        let next = [instant, change].into_iter().flatten().reduce(f64::min);
+        next.filter(|next| *next <= until).map(|next| next.max(now))
+    }
+
+    fn go_on(
+        &self,
+        plant: &mut dyn Plant,
+        asked: (f64, &[f64]),
+        record: &mut LoopRecord<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        let stop = plant.go_on(asked, record.trajectory, progress)?;
+        record.complete_states(&self.controllers);
+        Ok(stop)
+    }
+
+    /// Adds the rows at the time reached.
+    fn push_rows_at(
+        &self,
+        plant: &dyn Plant,
+        (t, rows): (f64, &[f64]),
+        record: &mut LoopRecord<'_>,
+    ) {
+        for row in record.rest(rows).iter().take_while(|row| **row <= t) {
+            record.trajectory.times.push(*row);
+            record.trajectory.states.push(plant.state().to_vec());
+        }
+        record.complete_states(&self.controllers);
+    }
+
+    /// Samples the controllers that are due at an instant and changes the inputs.
+    fn sample(
+        &mut self,
+        plant: &mut dyn Plant,
+        instant: f64,
+        record: &mut LoopRecord<'_>,
+    ) -> Result<Option<EarlyStop>, Error> {
+        let due = self.clock.due_samples(instant);
+        if !due.is_empty() {
+            plant.write_observables(&mut self.observables);
+        }
+        let inputs = self.current.evaluate(instant).into_owned();
+        for place in due {
+            let at = Sample {
+                t: plant.evaluation_time(),
+                state: plant.state(),
+                inputs: &inputs,
+                observables: &self.observables,
+            };
+            let controller = &mut self.controllers[place];
+            let mut outputs = vec![0.0; controller.driven_inputs().len()];
+            if let Err(reason) = controller.sample(&at, &mut outputs) {
+                return Ok(Some(EarlyStop {
+                    t: Some(instant),
+                    reason: format!("at t = {instant:?} s {reason}"),
+                    cause: StopCause::NotFinite,
+                }));
+            }
+            self.clock.complete_sample(instant, place, outputs);
+        }
+        self.update_inputs(plant, instant, record)
+    }
+
+    /// Applies the outputs that act at an instant, and the changes of other inputs.
+    fn update_inputs(
+        &mut self,
+        plant: &mut dyn Plant,
+        instant: f64,
+        record: &mut LoopRecord<'_>,
+    ) -> Result<Option<EarlyStop>, Error> {
+        let before = self.held.clone();
+        let given = self.given.last_sample(instant);
+        for ((held, value), has_acted) in self.held.iter_mut().zip(given).zip(&self.has_acted) {
+            if !has_acted {
+                *held = *value;
+            }
+        }
+        for action in self.clock.take_actions(instant) {
+            let driven = self.controllers[action.controller].driven_inputs();
+            for (place, value) in driven.iter().zip(action.values) {
+                self.held[*place] = value;
+                self.has_acted[*place] = true;
+            }
+        }
+        if self.held == before {
+            return Ok(None);
+        }
+        record.changes.push((instant, self.held.clone()));
+        self.current = self.given.with_held_step(instant, &before, &self.held);
+        match plant.change_inputs(self.current.clone(), record.trajectory) {
+            Ok(()) => Ok(None),
+            Err(Error::Stopped { t, reason }) => Ok(Some(EarlyStop {
+                t,
+                reason,
+                cause: StopCause::Switching,
+            })),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Changes the inputs from outside at the time reached; returns the inputs of the motion from then on. Those that a
+    /// controller drives keep the values of its outputs.
+    pub fn give(&mut self, t: f64, inputs: &[f64]) -> HeldInputs {
+        let before = self.current.evaluate(t).into_owned();
+        self.given = HeldInputs::constant(inputs.to_vec());
+        let all = self.held.iter_mut().zip(inputs).zip(&self.has_acted);
+        for ((held, value), has_acted) in all {
+            if !has_acted {
+                *held = *value;
+            }
+        }
+        self.current = self.given.with_held_step(t, &before, &self.held);
+        self.current.clone()
+    }
+
+    /// Returns the memory of the controllers.
+    pub fn memory(&self) -> ControlMemory {
+        ControlMemory {
+            states: self.states(),
+            samples: self.clock.next_samples(),
+            has_acted: self.has_acted.clone(),
+            pending: self.clock.pending().cloned().collect(),
+        }
+    }
+
+    /// Continues at a time (s) with a memory.
+    ///
+    /// # Errors
+    /// A memory of another model.
+    pub fn resume(&mut self, t: f64, memory: &ControlMemory) -> Result<(), Error> {
+        let outputs = |controller: usize| {
+            let own = self.controllers.get(controller);
+            own.map(|own| own.driven_inputs().len())
+        };
+        let mut pending = memory.pending.iter();
+        let fits = memory.states.len() == self.states().len()
+            && memory.samples.len() == self.controllers.len()
+            && memory.has_acted.len() == self.has_acted.len()
+            && pending.all(|own| outputs(own.controller) == Some(own.values.len()));
+        if !fits {
+            let message = "a memory of other controllers".to_owned();
+            return Err(Error::Request(message));
+        }
+        let mut rest = &memory.states[..];
+        for controller in &mut self.controllers {
+            let (own, others) = rest.split_at(controller.states().len());
+            controller.set_states(own);
+            rest = others;
+        }
+        self.clock.resume(t, &memory.samples, &memory.pending);
+        self.has_acted.copy_from_slice(&memory.has_acted);
+        Ok(())
+    }
+
+    /// Returns true if a controller drives an input.
+    pub fn drives(&self, input: usize) -> bool {
+        let mut controllers = self.controllers.iter();
+        controllers.any(|own| own.driven_inputs().contains(&input))
+    }
+
+    /// Returns the states of all controllers.
+    pub fn states(&self) -> Vec<f64> {
+        states_of(&self.controllers)
+    }
+
+    /// Returns the names of the states of all controllers.
+    pub fn state_names(&self) -> Vec<String> {
+        let controllers = self.controllers.iter();
+        controllers.flat_map(|own| own.state_names()).collect()
+    }
+}
