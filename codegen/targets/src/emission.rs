@@ -31,6 +31,12 @@ pub fn emit(
             controller.name
         ));
     }
+    if let (Target::Fmu2 | Target::Fmu3, Some(controller)) = (target, model.controllers.first()) {
+        warn(&format!(
+            "note: the unit supports co-simulation only: it samples the controllers of the model (`{}`) in its own steps",
+            controller.name
+        ));
+    }
     match target {
         Target::Rust => {
             let source = rust::emit(program, Packaging::Crate).map_err(EmissionError::request)?;
@@ -57,8 +63,6 @@ pub fn emit(
 }
 
 fn unit(model: &Model, variant: &Variant, version: Version) -> Result<Vec<EmittedFile>> {
-    let controlled = model.reject_controllers("a functional mock-up unit");
-    controlled.map_err(|error| EmissionError::model(&model.source, error))?;
     let orders = variant.equations.graph.orders();
     Ok(vec![fmu::file(model, orders, version)?])
 }

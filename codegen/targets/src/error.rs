@@ -3,8 +3,6 @@
 use std::fmt::Display;
 
 use eomgen_model_spec::diagnostic::Diagnostics;
-use eomgen_model_spec::source::Source;
-use eomgen_model_spec::variant::ModelError;
 use thiserror::Error;
 
 pub type Result<T, E = EmissionError> = std::result::Result<T, E>;
@@ -23,10 +21,5 @@ pub enum EmissionError {
 impl EmissionError {
     pub(crate) fn request(reason: impl Display) -> Self {
         Self::Request(reason.to_string())
-    }
-
-    /// Error of a model with the given values.
-    pub(crate) fn model(source: &Source, error: ModelError) -> Self {
-        Self::Specification(Diagnostics::from_one(source.clone(), error.diagnostic()))
     }
 }

@@ -317,16 +317,19 @@ pub unsafe fn free_saved(component: *mut c_void, saved: *mut *mut c_void, name: 
 /// Writes the number of bytes of a saved state.
 ///
 /// # Safety
-/// Same as [`call`].
+/// Same as [`call`]; `saved` is null or from [`save`].
 pub unsafe fn write_serialised_length(
     component: *mut c_void,
+    saved: *mut c_void,
     size: *mut usize,
     name: &str,
 ) -> c_int {
     // SAFETY: by the contract of this function.
     unsafe {
         call(component, (ANY, name), |unit| {
-            write(size, unit.serialised_length(), "a size")
+            let saved = saved.cast::<SavedState>().as_ref();
+            let content = unit.serialise(saved.ok_or_else(|| null_pointer("a saved state"))?);
+            write(size, content.len(), "a size")
         })
     }
 }

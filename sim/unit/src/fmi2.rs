@@ -250,11 +250,11 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(c: *mut c_void, saved: *mut *mut c_voi
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: *mut c_void,
-    _saved: *mut c_void,
+    saved: *mut c_void,
     size: *mut usize,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { write_serialised_length(c, size, "fmi2SerializedFMUstateSize") }
+    unsafe { write_serialised_length(c, saved, size, "fmi2SerializedFMUstateSize") }
 }
 
 #[unsafe(no_mangle)]

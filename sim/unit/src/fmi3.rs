@@ -359,11 +359,11 @@ pub unsafe extern "C" fn fmi3FreeFMUState(c: *mut c_void, saved: *mut *mut c_voi
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
     c: *mut c_void,
-    _saved: *mut c_void,
+    saved: *mut c_void,
     size: *mut usize,
 ) -> c_int {
     // SAFETY: the importer's pointers, see `boundary`.
-    unsafe { write_serialised_length(c, size, "fmi3SerializedFMUStateSize") }
+    unsafe { write_serialised_length(c, saved, size, "fmi3SerializedFMUStateSize") }
 }
 
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Value references: time, states, rates, inputs, parameters, observables, event indicators.
+//! Value references: time, states, rates, inputs, parameters, observables, event indicators, states of controllers.
 
 use std::ops::Range;
 
@@ -21,6 +21,8 @@ pub enum Variable {
     Observable(usize),
     /// Event indicator.
     Indicator(usize),
+    /// State of a controller.
+    ControllerState(usize),
 }
 
 /// Value references of a unit's variables.
@@ -36,6 +38,8 @@ pub struct Layout {
     pub observables: usize,
     /// Number of event indicators.
     pub indicators: usize,
+    /// Number of states of controllers.
+    pub controller_states: usize,
 }
 
 /// Returns the variable of one kind with an index.
@@ -51,12 +55,13 @@ impl Layout {
             parameters: program.parameters.len(),
             observables: program.observables.len(),
             indicators: surfaces,
+            controller_states: model.model().controller_states().len(),
         }
     }
 
     /// Returns the number of variables.
     pub fn count(&self) -> usize {
-        self.first_indicator() + self.indicators
+        self.first_controller_state() + self.controller_states
     }
 
     fn first_input(&self) -> usize {
@@ -75,10 +80,14 @@ impl Layout {
         self.first_observable() + self.observables
     }
 
+    fn first_controller_state(&self) -> usize {
+        self.first_indicator() + self.indicators
+    }
+
     /// Returns the variable with a value reference; `None` if there is none.
     pub fn find(&self, reference: usize) -> Option<Variable> {
         let rates = 1 + self.states;
-        let kinds: [(Range<usize>, VariableOfKind); 6] = [
+        let kinds: [(Range<usize>, VariableOfKind); 7] = [
             (1..rates, Variable::State),
             (rates..self.first_input(), Variable::Rate),
             (self.first_input()..self.first_parameter(), Variable::Input),
@@ -90,7 +99,14 @@ impl Layout {
                 self.first_observable()..self.first_indicator(),
                 Variable::Observable,
             ),
-            (self.first_indicator()..self.count(), Variable::Indicator),
+            (
+                self.first_indicator()..self.first_controller_state(),
+                Variable::Indicator,
+            ),
+            (
+                self.first_controller_state()..self.count(),
+                Variable::ControllerState,
+            ),
         ];
         if reference == 0 {
             return Some(Variable::Time);

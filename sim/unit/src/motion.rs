@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use eomgen_compiled_model::{Solver, SolverOptions};
+use eomgen_compiled_model::{SampledController, Solver, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ExternalMotion, SurfaceMode};
 
@@ -23,7 +23,10 @@ impl Unit {
                 let found = instance.find_consistent_state(&self.now.state, self.now.t, &inputs)?;
                 self.now.state = found.0;
             }
-            Kind::CoSimulation => self.start_simulation()?,
+            Kind::CoSimulation => {
+                self.now.control = None;
+                self.start_simulation()?;
+            }
         }
         if self.rates()?.iter().any(|rate| !rate.is_finite()) {
             return Err(invalid(
@@ -38,7 +41,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Starts the simulation at the present time and state.
+    /// Starts the simulation at the present time and state; controllers continue with their memory.
     fn start_simulation(&mut self) -> Outcome {
         let options = SolverOptions {
             solver: Solver::Auto,
@@ -48,10 +51,25 @@ impl Unit {
         let inputs = HeldInputs::constant(self.now.inputs.clone());
         let instance = self.instance()?;
         let start = (self.now.t, &self.now.state[..]);
-        let simulation = instance.start_simulation(start, inputs, options)?;
-        self.now.state.copy_from_slice(simulation.state());
+        let simulation = match &self.now.control {
+            Some(memory) => instance.continue_simulation(start, inputs, options, memory)?,
+            None => instance.start_simulation(start, inputs, options)?,
+        };
         self.simulation = Some(Box::new(simulation));
+        self.read_simulation();
         Ok(())
+    }
+
+    /// Reads the point that the simulation reached.
+    fn read_simulation(&mut self) {
+        if let Some(simulation) = &self.simulation {
+            self.now.t = simulation.time();
+            self.now.state.copy_from_slice(simulation.state());
+            self.now.control = simulation.control_memory();
+            if self.now.control.is_some() {
+                self.now.inputs.copy_from_slice(simulation.inputs());
+            }
+        }
     }
 
     /// Has the simulation follow the present inputs.
@@ -60,7 +78,7 @@ impl Unit {
             return self.start_simulation();
         };
         let followed = simulation.set_inputs(&self.now.inputs);
-        self.now.state.copy_from_slice(simulation.state());
+        self.read_simulation();
         Ok(followed?)
     }
 
@@ -91,8 +109,7 @@ impl Unit {
         };
         simulation.clear_events();
         let ended = simulation.advance(end.max(t));
-        self.now.t = simulation.time();
-        self.now.state.copy_from_slice(simulation.state());
+        self.read_simulation();
         Ok(ended?)
     }
 
@@ -130,6 +147,19 @@ impl Unit {
         let motion = self.external()?;
         motion.with_fixed_sides(|system| system.write_observables((t, &state), &mut observables));
         Ok(observables)
+    }
+
+    /// Returns the states of the controllers; before the start, their initial values.
+    pub fn controller_states(&mut self) -> Outcome<Vec<f64>> {
+        if self.is_simulating() {
+            self.update_simulation()?;
+        }
+        if let Some(simulation) = &self.simulation {
+            return Ok(simulation.controller_states());
+        }
+        let controllers = self.instance()?.controllers()?;
+        let states = controllers.iter().map(SampledController::states);
+        Ok(states.collect::<Vec<_>>().concat())
     }
 
     /// Returns the event indicators.

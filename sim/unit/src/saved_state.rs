@@ -1,6 +1,7 @@
-//! Saved states of an instance, also serialised: a mark, the token of the unit, the condition, and a checksum, which
-//! detects truncated or modified data.
+//! Saved states of an instance, also serialised: a mark, the token of the unit, the length of the condition, the condition,
+//! and a checksum, which detects truncated or modified data.
 
+use eomgen_codegen::program::encoding::Encoded;
 use eomgen_codegen::stable_hash::StableHash;
 use eomgen_sim::ode::SurfaceMode;
 
@@ -8,9 +9,10 @@ use crate::refusal::{Outcome, invalid};
 use crate::resources::token;
 use crate::unit::{Condition, Kind, Mode, Unit};
 
-const MARK: &[u8] = b"eomgen 2";
+const MARK: &[u8] = b"eomgen 3";
 
-const CHECKSUM_LENGTH: usize = 8;
+/// Bytes of a length, and of a checksum.
+const NUMBER_LENGTH: usize = 8;
 
 const MODES: [Mode; 6] = [
     Mode::Instantiated,
@@ -64,9 +66,8 @@ impl Unit {
 
     /// Returns the bytes of a saved state.
     pub fn serialise(&self, saved: &SavedState) -> Vec<u8> {
-        let mut bytes = [MARK, token(self.compiled.program()).as_bytes()].concat();
         let now = &saved.condition;
-        bytes.push(u8::from(saved.kind == Kind::CoSimulation));
+        let mut bytes = vec![u8::from(saved.kind == Kind::CoSimulation)];
         bytes.push(now.mode as u8);
         bytes.push(u8::from(now.stop.is_some()));
         let surface_modes = now.surface_modes.iter();
@@ -82,39 +83,60 @@ impl Unit {
         for number in scalars.iter().chain(vectors.into_iter().flatten()) {
             bytes.extend(number.to_le_bytes());
         }
+        now.control.encode(&mut bytes);
+        let length = (bytes.len() as u64).to_le_bytes();
+        let head = [MARK, token(self.compiled.program()).as_bytes(), &length].concat();
+        let mut bytes = [head, bytes].concat();
         let sum = StableHash::new().include(&bytes).value().to_le_bytes();
         bytes.extend(sum);
         bytes
     }
 
-    /// Returns the number of bytes of a saved state.
-    pub fn serialised_length(&mut self) -> usize {
-        let saved = self.save();
-        self.serialise(&saved).len()
-    }
-
     /// Reads a saved state from its bytes; further bytes are ignored.
-    pub fn deserialise(&mut self, bytes: &[u8]) -> Outcome<SavedState> {
-        let length = self.serialised_length();
-        let bytes = bytes.get(..length);
-        let bytes =
-            bytes.ok_or_else(|| invalid("the bytes of a saved state are missing or cut"))?;
+    pub fn deserialise(&self, bytes: &[u8]) -> Outcome<SavedState> {
+        let cut = || invalid("the bytes of a saved state are missing or cut");
         let foreign = || invalid("these bytes are no saved state of this unit");
-        let (content, sum) = bytes.split_at(length - CHECKSUM_LENGTH);
         let head = [MARK, token(self.compiled.program()).as_bytes()].concat();
-        let content = match StableHash::new().include(content).value().to_le_bytes() == *sum {
-            true => content.strip_prefix(&head[..]).ok_or_else(foreign)?,
-            false => return Err(foreign()),
-        };
-        let (flags, rest) = content.split_at(3);
+        let known = bytes.get(..head.len()).ok_or_else(cut)?;
+        if known != head {
+            return Err(foreign());
+        }
+        let begin = head.len() + NUMBER_LENGTH;
+        let length = bytes.get(head.len()..begin).ok_or_else(cut)?;
+        let mut number = [0; NUMBER_LENGTH];
+        number.copy_from_slice(length);
+        let length = usize::try_from(u64::from_le_bytes(number)).ok();
+        let end = length.and_then(|length| begin.checked_add(length));
+        let end = end.ok_or_else(foreign)?;
+        let sum_end = end.checked_add(NUMBER_LENGTH).ok_or_else(foreign)?;
+        let sum = bytes.get(end..sum_end).ok_or_else(cut)?;
+        if StableHash::new()
+            .include(&bytes[..end])
+            .value()
+            .to_le_bytes()
+            != *sum
+        {
+            return Err(foreign());
+        }
+        let content = &bytes[begin..end];
+        let vectors = [
+            self.layout.states,
+            self.layout.inputs,
+            self.layout.inputs,
+            self.layout.parameters,
+        ];
+        let numbers = NUMBER_LENGTH * (3 + vectors.iter().sum::<usize>());
+        let fixed = 3 + self.layout.indicators + numbers;
+        let (fixed, mut control) = content.split_at_checked(fixed).ok_or_else(foreign)?;
+        let (flags, rest) = fixed.split_at(3);
         let (surface_modes, numbers) = rest.split_at(self.layout.indicators);
         let mode = MODES.into_iter().find(|mode| *mode as u8 == flags[1]);
         let surface_modes: Option<Vec<SurfaceMode>> = surface_modes
             .iter()
             .map(|place| SURFACE_MODES.get(usize::from(*place)).copied())
             .collect();
-        let mut numbers = numbers.chunks_exact(8).map(|chunk| {
-            let mut bytes = [0; 8];
+        let mut numbers = numbers.chunks_exact(NUMBER_LENGTH).map(|chunk| {
+            let mut bytes = [0; NUMBER_LENGTH];
             bytes.copy_from_slice(chunk);
             f64::from_le_bytes(bytes)
         });
@@ -130,6 +152,7 @@ impl Unit {
             earlier_inputs: next(self.layout.inputs),
             parameters: next(self.layout.parameters),
             surface_modes: surface_modes.ok_or_else(foreign)?,
+            control: Option::decode(&mut control).ok_or_else(foreign)?,
         };
         let kind = match flags[0] {
             0 => Kind::ModelExchange,

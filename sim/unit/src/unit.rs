@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{
-    CompiledModel, DrivenModel, Error, Instance, JacobianEvaluator, Simulation,
+    CompiledModel, ControlMemory, DrivenModel, Error, Instance, JacobianEvaluator, Simulation,
 };
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ExternalMotion, Surface, SurfaceMode};
@@ -59,6 +59,8 @@ pub struct Condition {
     pub stop: Option<f64>,
     /// Modes of the surfaces with which the motion continues; empty if the state decides.
     pub surface_modes: Vec<SurfaceMode>,
+    /// Memory of the controllers; `None` before the start of the motion and without controllers.
+    pub control: Option<ControlMemory>,
 }
 
 /// Motion of an instance for model exchange.
@@ -94,8 +96,15 @@ impl Unit {
     /// Creates an instance at the values of the specification.
     ///
     /// # Errors
-    /// Invalid values.
+    /// Invalid values, and model exchange of a model with controllers.
     pub fn new(compiled: CompiledModel, kind: Kind) -> Outcome<Self> {
+        let controller = compiled.model().controllers.first();
+        if let (Kind::ModelExchange, Some(controller)) = (kind, controller) {
+            return Err(invalid(format!(
+                "the model has controllers (`{}`), whose samples the unit takes in co-simulation only: use co-simulation",
+                controller.name
+            )));
+        }
         let compiled = Arc::new(compiled);
         let instance = compiled.share_with_parameters(&[])?;
         let surfaces = find_surfaces(&instance)?;
@@ -109,6 +118,7 @@ impl Unit {
             tolerance: DEFAULT_TOLERANCE,
             stop: None,
             surface_modes: Vec::new(),
+            control: None,
         };
         Ok(Self {
             layout: Layout::new(&compiled, surfaces.len()),

@@ -14,6 +14,7 @@ struct Computed {
     rates: Option<Vec<f64>>,
     observables: Option<Vec<f64>>,
     indicators: Option<Vec<f64>>,
+    controller_states: Option<Vec<f64>>,
 }
 
 impl Unit {
@@ -39,6 +40,9 @@ impl Unit {
             Variable::Parameter(place) => program.parameters[place].quantity.name.clone(),
             Variable::Observable(place) => program.observables[place].name.clone(),
             Variable::Indicator(place) => format!("indicator[{}]", place + 1),
+            Variable::ControllerState(place) => self.compiled.model().controller_states()[place]
+                .0
+                .to_owned(),
         }
     }
 
@@ -74,6 +78,9 @@ impl Unit {
             }
             Variable::Indicator(place) => {
                 compute(&mut computed.indicators, || self.indicators())?[place]
+            }
+            Variable::ControllerState(place) => {
+                compute(&mut computed.controller_states, || self.controller_states())?[place]
             }
         })
     }
@@ -113,6 +120,10 @@ impl Unit {
                 BEFORE_START | Mode::Event as u8 | Mode::Continuous as u8
             }
             Variable::State(_) => BEFORE_START,
+            Variable::Input(place) if self.compiled.model().is_controlled(place) => {
+                let why = "a controller of the unit drives this input";
+                return Err(self.refuse_value(variable, value, why));
+            }
             Variable::Input(_) => SETTABLE,
             Variable::Parameter(place) => {
                 let (min, max) = self.bounds(place);

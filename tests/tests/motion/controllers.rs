@@ -482,10 +482,6 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
     for (arguments, what) in [
         (vec!["page", &spec, "--out", &other], "a page"),
         (
-            vec!["generate", &spec, "--target", "fmu2", "--out", &other],
-            "a functional mock-up unit",
-        ),
-        (
             vec!["compare", &spec, "nothing.toml", "--out", &other],
             "a comparison with records",
         ),
@@ -527,6 +523,10 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
         assert!(said.contains(what), "{arguments:?}: {said}");
     }
     for (arguments, note) in [
+        (
+            vec!["generate", &spec, "--target", "fmu2", "--out", &other],
+            "the unit supports co-simulation only",
+        ),
         (
             vec!["generate", &spec, "--target", "casadi", "--out", &other],
             "are not emitted",

@@ -136,6 +136,8 @@ pub fn role(kind: Kind) -> Vec<Attribute> {
         Kind::Input => ("input", "continuous", None),
         Kind::Parameter => ("parameter", "tunable", Some("exact")),
         Kind::Observable => ("output", "continuous", Some("calculated")),
+        Kind::DrivenInput => ("local", "discrete", Some("calculated")),
+        Kind::ControllerState => ("output", "discrete", Some("calculated")),
     };
     let mut attributes = vec![
         ("causality", causality.to_owned()),

@@ -21,7 +21,9 @@ pub fn description(unit: &Unit) -> Result<Vec<u8>> {
     ];
     document(|xml| {
         element(xml, "fmiModelDescription", &root, |xml| {
-            interface(xml, unit, "ModelExchange", &[])?;
+            if !unit.has_controllers {
+                interface(xml, unit, "ModelExchange", &[])?;
+            }
             let steps = ("canHandleVariableCommunicationStepSize", "true".to_owned());
             interface(xml, unit, "CoSimulation", &[steps])?;
             unit_definitions(xml, unit)?;
@@ -65,9 +67,15 @@ fn variables(xml: &mut Xml, unit: &Unit) -> Written {
 
 fn structure(xml: &mut Xml, unit: &Unit) -> Written {
     element(xml, "ModelStructure", &[], |xml| {
-        let is_output = |kind| matches!(kind, Kind::State | Kind::Observable);
+        let is_output =
+            |kind| matches!(kind, Kind::State | Kind::Observable | Kind::ControllerState);
         let is_rate = |kind| matches!(kind, Kind::Rate(_));
-        let is_calculated = |kind| matches!(kind, Kind::Rate(_) | Kind::Observable);
+        let is_calculated = |kind| {
+            matches!(
+                kind,
+                Kind::Rate(_) | Kind::Observable | Kind::ControllerState
+            )
+        };
         listed(xml, unit, "Outputs", is_output)?;
         listed(xml, unit, "Derivatives", is_rate)?;
         listed(xml, unit, "InitialUnknowns", is_calculated)

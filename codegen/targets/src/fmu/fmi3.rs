@@ -19,7 +19,9 @@ pub fn description(unit: &Unit) -> Result<Vec<u8>> {
     ];
     document(|xml| {
         element(xml, "fmiModelDescription", &root, |xml| {
-            interface(xml, unit, "ModelExchange", &[])?;
+            if !unit.has_controllers {
+                interface(xml, unit, "ModelExchange", &[])?;
+            }
             let steps = ("canHandleVariableCommunicationStepSize", "true".to_owned());
             interface(xml, unit, "CoSimulation", &[steps])?;
             unit_definitions(xml, unit)?;
@@ -64,15 +66,21 @@ fn variables(xml: &mut Xml, unit: &Unit) -> Written {
 fn structure(xml: &mut Xml, unit: &Unit) -> Written {
     element(xml, "ModelStructure", &[], |xml| {
         listed(xml, unit, "Output", |kind| {
-            matches!(kind, Kind::State | Kind::Observable)
+            matches!(kind, Kind::State | Kind::Observable | Kind::ControllerState)
         })?;
         listed(xml, unit, "ContinuousStateDerivative", |kind| {
             matches!(kind, Kind::Rate(_))
         })?;
         listed(xml, unit, "InitialUnknown", |kind| {
-            matches!(kind, Kind::Rate(_) | Kind::Observable)
+            matches!(
+                kind,
+                Kind::Rate(_) | Kind::Observable | Kind::ControllerState
+            )
         })?;
-        listed(xml, unit, "EventIndicator", |kind| kind == Kind::Indicator)
+        // Only model exchange uses them.
+        listed(xml, unit, "EventIndicator", |kind| {
+            kind == Kind::Indicator && !unit.has_controllers
+        })
     })
 }
 

@@ -1,5 +1,5 @@
 //! Variables of a unit, in the order of their value references: time, state, rates, inputs, parameters, observables,
-//! event indicators.
+//! event indicators, states of controllers.
 
 use std::collections::HashSet;
 
@@ -23,12 +23,16 @@ pub enum Kind {
     Rate(usize),
     /// Input.
     Input,
+    /// Input that a controller of the unit drives.
+    DrivenInput,
     /// Tunable parameter.
     Parameter,
     /// Observable.
     Observable,
     /// Switching function.
     Indicator,
+    /// State of a controller.
+    ControllerState,
 }
 
 /// Variable; its index is its value reference.
@@ -64,6 +68,8 @@ pub struct Unit {
     pub variables: Vec<Variable>,
     /// Units of measurement.
     pub units: Units,
+    /// True if the unit takes samples, which model exchange does not support.
+    pub has_controllers: bool,
     /// True if the equations depend on time.
     depends_on_time: bool,
 }
@@ -86,9 +92,14 @@ impl Unit {
             (state, compiled.typical_sizes()),
             orders,
         );
-        for (input, value) in model.inputs.iter().zip(compiled.default_inputs()) {
-            let variable = list.add(&input.name, Kind::Input, &input.doc, Some(&input.unit));
-            variable.start = Some(value);
+        let inputs = model.inputs.iter().zip(compiled.default_inputs());
+        for (place, (input, value)) in inputs.enumerate() {
+            let (kind, start) = match model.is_controlled(place) {
+                true => (Kind::DrivenInput, None),
+                false => (Kind::Input, Some(value)),
+            };
+            let variable = list.add(&input.name, kind, &input.doc, Some(&input.unit));
+            variable.start = start;
         }
         for (parameter, own) in model
             .parameters
@@ -116,12 +127,19 @@ impl Unit {
             let doc = format!("Changes sign at events of {}", surface.formula);
             list.add(&name, Kind::Indicator, &doc, None);
         }
+        for controller in &model.controllers {
+            for state in &controller.states {
+                let kind = Kind::ControllerState;
+                list.add(&state.name, kind, &state.doc, Some(&state.unit));
+            }
+        }
         Ok(Self {
             name: program.name.clone(),
             title: program.title.clone(),
             token: token(program),
             variables: list.variables,
             units: list.units,
+            has_controllers: !model.controllers.is_empty(),
             depends_on_time: program.ids().any(|id| program.value(id).op == Op::Time),
         })
     }
@@ -206,7 +224,8 @@ impl List {
     fn free(&self, name: &str, kind: Kind) -> String {
         let group = match kind {
             Kind::Time | Kind::State | Kind::Rate(_) => "state",
-            Kind::Input => "input",
+            Kind::Input | Kind::DrivenInput => "input",
+            Kind::ControllerState => "controller",
             Kind::Parameter => "parameter",
             Kind::Observable => "observable",
             Kind::Indicator => "event",

@@ -163,6 +163,28 @@ fn friction_holds_units_until_inputs_move_them() {
 }
 
 #[test]
+fn units_sample_controllers_like_simulate() {
+    let what = "units with sampled controllers were not simulated";
+    if !is_available("fmpy, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = project().join("tests/tests/hosts/fmi/units/sampled_block.toml");
+    let (text, table) = (spec.to_string_lossy(), folder.path().join("sampled.csv"));
+    let table = table.to_string_lossy();
+    // Steps of 20 ms end at samples and between them; those of 37 ms mostly between.
+    for interval in ["0.02", "0.037"] {
+        let simulate = ["simulate", &text, "--until", "1.48", "--input", "r=0.2"];
+        let rows = ["--interval", interval, "--out", &table];
+        run_accepted(&[&simulate[..], &rows].concat());
+        for target in VERSIONS {
+            let unit = write_unit_of(&spec, None, target, folder.path());
+            run_python("sampled.py", &[&unit.to_string_lossy(), &table, "1e-6"]);
+        }
+    }
+}
+
+#[test]
 fn casadi_differentiates_unit() {
     let what = "CasADi did not import functional mock-up units";
     if !is_available("casadi, numpy", what) {
