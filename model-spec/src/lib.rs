@@ -31,7 +31,7 @@
 //! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`]
 //! run all steps; [`diagnostic`] reports the findings.
 //!
-//! Further modules: [`control`] (sampled controllers), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
+//! Further modules: [`control`] (sampled controllers) and [`schedule`] (their times), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
 //! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
 //! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
 //! [`interval`] (bounds of expressions), [`mod@keys`] and [`sections`] (table of the sections and keys), [`toml_file`], [`mod@table`], [`record`] and
@@ -115,6 +115,7 @@ mod resolve;
 pub mod rigid_tree;
 #[cfg(feature = "read")]
 mod scale;
+pub mod schedule;
 #[cfg(feature = "read")]
 pub mod schema;
 #[rustfmt::skip]

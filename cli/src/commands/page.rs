@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::arguments::Page;
 use crate::document::SCHEMA;
-use crate::error::{Error, Result, print_json};
+use crate::error::{Result, print_json};
 use crate::model::{derive, load, orders};
 use crate::motion::note_moved;
 use crate::operating_point::initial_state;
@@ -15,8 +15,6 @@ use crate::settings::with_settings;
 pub fn run(options: &Page) -> Result {
     let destination = Destination::for_output(&options.out, options.output.json)?;
     let model = with_settings(load(&options.model.spec)?.model, &options.parameters.set)?;
-    let controlled = model.reject_controllers("a page");
-    controlled.map_err(|error| Error::model(&model.source, error))?;
     let orders = orders(&model, options.model.order.text())?;
     let compiled = derive(model, &orders)?;
     let run = compiled.with_declared_parameters()?;

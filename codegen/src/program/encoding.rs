@@ -3,6 +3,7 @@
 //! Numbers of lists are written in groups of seven bits, `f64` numbers as their eight bytes. Texts that only reports
 //! and emitted code show are left out: titles, descriptions and the origin of parameters.
 
+use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::function::Function;
 use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 
@@ -11,8 +12,9 @@ use crate::mechanics::outputs::{
     Corners, Jacobian, JacobianBlock, Outputs, RateRow, Side, SlidingSurface,
 };
 use crate::program::{
-    Argument, Arguments, Extent, MassBlocks, Op, Program, ProgramField, ProgramGuard,
-    ProgramParameter, ProgramTable, Quantity, RowValues, ScaledValue, Value, ValueId, Variable,
+    Argument, Arguments, ControlOp, Extent, MassBlocks, MeasuredSource, Op, Program,
+    ProgramController, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, Quantity,
+    RowValues, ScaledValue, Value, ValueId, Variable,
 };
 
 /// Value that is written as bytes and read back.
@@ -186,6 +188,17 @@ impl<T: Encoded> Encoded for Option<T> {
     }
 }
 
+impl<T: Encoded, const N: usize> Encoded for [T; N] {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        self.iter().for_each(|element| element.encode(bytes));
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let elements = (0..N).map(|_| T::decode(bytes));
+        elements.collect::<Option<Vec<T>>>()?.try_into().ok()
+    }
+}
+
 impl<A: Encoded, B: Encoded> Encoded for (A, B) {
     fn encode(&self, bytes: &mut Vec<u8>) {
         self.0.encode(bytes);
@@ -264,8 +277,13 @@ encode_structures! {
     Program {
         parameters, coordinates, fields, first_order, inputs, observables, tables, values,
         accelerations, first_order_rates, mass, velocity_terms, forces, observable_values, guards,
-        impacts, pivots, outputs;
-        name, specification, title, spec_hash, coefficient_values, controllers, trace
+        impacts, pivots, outputs, controllers;
+        name, specification, title, spec_hash, coefficient_values, trace
+    }
+    ProgramController {
+        name, measured, sources, states, outputs, driven, values, times, initial, next,
+        output_values;
+        doc
     }
 }
 
@@ -312,6 +330,49 @@ encode_enumerations! {
         17 => Deadzone,
         18 => Contact,
         19 => Above,
+    }
+    Elementary {
+        0 => Abs,
+        1 => Sign,
+        2 => Min,
+        3 => Max,
+        4 => Sqrt,
+        5 => Exp,
+        6 => ExpMinusOne,
+        7 => Ln,
+        8 => Sinh,
+        9 => Cosh,
+        10 => Tanh,
+        11 => Sin,
+        12 => Cos,
+        13 => Tan,
+        14 => Asin,
+        15 => Acos,
+        16 => Atan,
+        17 => Atan2,
+        18 => Pow,
+        19 => Quantise,
+    }
+    MeasuredSource {
+        0 => Time,
+        1 => State(place),
+        2 => Input(place),
+        3 => Observable(place),
+    }
+    ControlOp {
+        0 => Constant(value),
+        1 => Parameter(place),
+        2 => Period,
+        3 => Measured(place),
+        4 => State(place),
+        5 => Negate(a),
+        6 => Add(a, b),
+        7 => Subtract(a, b),
+        8 => Multiply(a, b),
+        9 => Divide(a, b),
+        10 => Call(function, arguments),
+        11 => Elementary(function, arguments),
+        12 => Select(parts),
     }
     Op {
         0 => Constant(value),

@@ -12,20 +12,10 @@ pub(crate) use resolve::resolve_controller;
 pub(crate) use units::check_units;
 
 use crate::evaluate::evaluate;
-use crate::model::{Controller, Model, SampleTime, SampledExpression};
+use crate::model::{Controller, Model, SampledExpression};
+pub use crate::schedule::Schedule;
 use crate::unit::Unit;
 use crate::variant::ModelError;
-
-/// Times of a controller at parameter values, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Schedule {
-    /// Time between two samples.
-    pub period: f64,
-    /// Time of the first sample.
-    pub offset: f64,
-    /// Time between a sample and the action of its outputs.
-    pub delay: f64,
-}
 
 impl Controller {
     /// Returns the times at parameter values, SI.
@@ -33,21 +23,26 @@ impl Controller {
     /// # Errors
     /// A period that is not positive, a negative offset or delay, each with its place.
     pub fn schedule(&self, parameters: &[f64]) -> Result<Schedule, ModelError> {
-        let value = |time: &SampleTime, what: &str, is_admissible: fn(f64) -> bool, rule: &str| {
-            let value = time.unit.to_si(evaluate(&time.value, parameters));
-            if value.is_finite() && is_admissible(value) {
-                return Ok(value);
-            }
-            let message = format!("the {what} of the controller `{}` is {value} s", self.name);
-            Err(ModelError::new(message)
-                .help(format!("give {rule}"))
-                .at(time.span))
+        let times = [&self.period, &self.offset, &self.delay];
+        let [period, offset, delay] =
+            times.map(|time| time.unit.to_si(evaluate(&time.value, parameters)));
+        let schedule = Schedule {
+            period,
+            offset,
+            delay,
         };
-        Ok(Schedule {
-            period: value(&self.period, "period", |t| t > 0.0, "a time above 0")?,
-            offset: value(&self.offset, "offset", |t| t >= 0.0, "a time of 0 or more")?,
-            delay: value(&self.delay, "delay", |t| t >= 0.0, "a time of 0 or more")?,
-        })
+        let Some((what, value, rule)) = schedule.find_fault() else {
+            return Ok(schedule);
+        };
+        let message = format!("the {what} of the controller `{}` is {value} s", self.name);
+        let place = match what {
+            "period" => &self.period,
+            "offset" => &self.offset,
+            _ => &self.delay,
+        };
+        Err(ModelError::new(message)
+            .help(format!("give {rule}"))
+            .at(place.span))
     }
 
     /// Returns the initial values of the states at parameter values, SI.

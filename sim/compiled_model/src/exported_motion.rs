@@ -1,15 +1,18 @@
-//! Motions of exported models.
+//! Motions of exported models, with their controllers.
 
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
+use crate::controllers::{ControlLoop, DeclaredController, LoopRecord, Plant, SampledController};
 use crate::error::Error;
 use crate::exported_model::{ExportedCode, ExportedInstance, ExportedModel};
 use crate::general_motion::GeneralMotion;
+use crate::motion::EarlyStop;
 use crate::projection::InitialChange;
 use crate::solver_options::{SolverOptions, general_method};
 
-/// A motion of an exported model that continues from call to call. Parameters and inputs may change in between.
+/// A motion of an exported model that continues from call to call. Parameters and inputs may change in between. The
+/// controllers of the model run; the start and each call include the samples at their last time.
 pub struct ExportedMotion {
     instance: ExportedInstance,
     options: SolverOptions,
@@ -21,6 +24,8 @@ pub struct ExportedMotion {
     state: Vec<f64>,
     event_count: usize,
     step_count: u64,
+    /// Controllers that drive inputs; `None` before the start and without controllers.
+    controls: Option<ControlLoop<'static>>,
 }
 
 impl ExportedMotion {
@@ -34,6 +39,7 @@ impl ExportedMotion {
             state: vec![0.0; program.states()],
             event_count: 0,
             step_count: 0,
+            controls: None,
             options,
             instance: ExportedInstance {
                 parameters: program.default_parameters(),
@@ -57,7 +63,7 @@ impl ExportedMotion {
     /// hold.
     ///
     /// # Errors
-    /// No consistent state near the given one, or rates there that are not finite.
+    /// No consistent state near the given one, rates there that are not finite, or a controller that cannot start.
     pub fn start(
         &mut self,
         (t, state): (f64, &[f64]),
@@ -67,10 +73,11 @@ impl ExportedMotion {
         self.t = t;
         self.state.copy_from_slice(state);
         self.inputs = inputs;
+        self.controls = None;
         self.restart()
     }
 
-    /// Continues with other independent parameters, SI. Surfaces hold or close anew.
+    /// Continues with other independent parameters, SI. Surfaces hold or close anew; controllers keep their states.
     ///
     /// # Errors
     /// Same as [`ExportedMotion::start`].
@@ -81,20 +88,55 @@ impl ExportedMotion {
 
     fn restart(&mut self) -> Result<Vec<InitialChange>, Error> {
         self.motion = None;
-        let settings = self.options.settings(general_method(self.options.solver));
+        let controllers =
+            DeclaredController::all(self.model().program(), &self.instance.parameters)?;
+        let periods = controllers.iter().map(|own| own.schedule().period);
+        let options = SolverOptions {
+            max_step: periods.fold(self.options.max_step, f64::min),
+            ..self.options
+        };
+        let settings = options.settings(general_method(self.options.solver));
         let start = (self.t, &self.state[..]);
         let (motion, changes) =
             GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
         self.state.copy_from_slice(motion.state());
         self.motion = Some(motion);
+        if !controllers.is_empty() {
+            self.restart_controls(controllers)?;
+            self.advance(self.t)?;
+        }
         Ok(changes)
     }
 
+    /// Starts the controllers at the time reached, or continues with their memory.
+    fn restart_controls(&mut self, controllers: Vec<DeclaredController>) -> Result<(), Error> {
+        let program = self.model().program();
+        let counts = (program.inputs.len(), program.observables.len());
+        let controllers = controllers.into_iter();
+        let controllers = controllers.map(|own| Box::new(own) as Box<dyn SampledController>);
+        let inputs = self.inputs.clone();
+        let mut controls = ControlLoop::new(controllers.collect(), inputs, self.t, counts);
+        if let Some(earlier) = &self.controls {
+            controls.resume(self.t, &earlier.memory())?;
+        }
+        self.controls = Some(controls);
+        Ok(())
+    }
+
     /// Changes the inputs from the time reached on. They may jump there if they give the inputs before that time, too.
+    /// Controllers keep the inputs that they drive.
     ///
     /// # Errors
     /// A motion that cannot follow the jump.
     pub fn set_inputs(&mut self, inputs: HeldInputs) -> Result<(), Error> {
+        let inputs = match &mut self.controls {
+            Some(controls) => controls.give(self.t, inputs),
+            None => inputs,
+        };
+        self.follow_inputs(inputs)
+    }
+
+    fn follow_inputs(&mut self, inputs: HeldInputs) -> Result<(), Error> {
         self.inputs = inputs;
         let Some(motion) = &mut self.motion else {
             return Ok(());
@@ -111,6 +153,21 @@ impl ExportedMotion {
     /// # Errors
     /// A motion that has not started, and [`Error::Stopped`] if the solver stops early, at the time that it reached.
     pub fn advance(&mut self, until: f64) -> Result<(), Error> {
+        let stop = match self.controls.take() {
+            None => self.advance_plant(until)?,
+            Some(mut controls) => {
+                let mut trajectory = Trajectory::default();
+                let mut record = LoopRecord::new(&mut trajectory);
+                let ended = controls.follow(self, (until, &[]), &mut record, &mut |_| {});
+                self.controls = Some(controls);
+                ended?
+            }
+        };
+        stop.map_or(Ok(()), |stop| Err(stop.into()))
+    }
+
+    /// Continues to the time `until` (s) with the present inputs. Returns the reason of an early stop.
+    fn advance_plant(&mut self, until: f64) -> Result<Option<EarlyStop>, Error> {
         let Some(motion) = &mut self.motion else {
             return Err(Error::Request("the motion has not started".to_owned()));
         };
@@ -124,12 +181,12 @@ impl ExportedMotion {
             self.t = motion.time();
             self.state.copy_from_slice(motion.state());
             match ended {
-                None => return Ok(()),
+                None => return Ok(None),
                 Some((_, Some((solver, _)))) => {
                     let next = (solver, &self.options);
                     motion.change_solver(&self.instance, &self.inputs, next)?;
                 }
-                Some((stop, None)) => return Err(stop.into()),
+                Some((stop, None)) => return Ok(Some(stop)),
             }
         }
     }
@@ -149,6 +206,12 @@ impl ExportedMotion {
         &self.inputs
     }
 
+    /// Returns true if a controller of the model drives an input.
+    pub fn drives(&self, input: usize) -> bool {
+        let mut controllers = self.model().program().controllers.iter();
+        controllers.any(|own| own.driven.contains(&input))
+    }
+
     /// Returns the number of events since the start.
     pub fn event_count(&self) -> usize {
         self.event_count
@@ -166,5 +229,32 @@ impl ExportedMotion {
             Some(motion) => motion.write_observables(out),
             None => out.fill(f64::NAN),
         }
+    }
+}
+
+impl Plant for ExportedMotion {
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    fn write_observables(&mut self, out: &mut [f64]) {
+        Self::write_observables(self, out);
+    }
+
+    fn change_inputs(&mut self, inputs: HeldInputs, _: &mut Trajectory) -> Result<(), Error> {
+        self.follow_inputs(inputs)
+    }
+
+    fn go_on(
+        &mut self,
+        (until, _): (f64, &[f64]),
+        _: &mut Trajectory,
+        _: &mut dyn FnMut(f64),
+    ) -> Result<Option<EarlyStop>, Error> {
+        self.advance_plant(until)
     }
 }

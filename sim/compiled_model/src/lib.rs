@@ -48,7 +48,6 @@
 
 mod audit;
 mod contacts;
-#[cfg(feature = "derive")]
 mod controllers;
 mod corners;
 #[cfg(feature = "derive")]
@@ -114,7 +113,6 @@ mod stop_reasons;
 mod typical_sizes;
 
 pub use audit::{Audit, Imbalance};
-#[cfg(feature = "derive")]
 pub use controllers::{
     ControlMemory, DeclaredController, NextSample, PendingOutputs, Sample, SampledController,
 };

@@ -106,7 +106,12 @@ impl PageMotion {
         let t = self.motion.time();
         let before = self.motion.inputs().evaluate(t).into_owned();
         let inputs = inputs(&self.driving_signals(), (t, &before));
-        self.inputs = inputs.evaluate(t).into_owned();
+        // A start begins with the values before the first output of a controller.
+        for (place, value) in inputs.evaluate(t).iter().enumerate() {
+            if !self.motion.drives(place) {
+                self.inputs[place] = *value;
+            }
+        }
         self.follow(|motion| motion.set_inputs(inputs))
     }
 

@@ -480,7 +480,6 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
 
     let other = file("other");
     for (arguments, what) in [
-        (vec!["page", &spec, "--out", &other], "a page"),
         (
             vec!["compare", &spec, "nothing.toml", "--out", &other],
             "a comparison with records",

@@ -7,9 +7,12 @@ use crate::error::Result;
 /// Times at which the rates are evaluated, s; a forcing is not zero at all of them.
 const TIMES_S: [f64; 3] = [0.0, 0.37, 1.3];
 
-/// Returns true if the machine stays at the initial state with its default inputs.
+/// Returns true if the machine stays at the initial state with its default inputs. One with controllers may move.
 pub(super) fn is_at_rest(compiled: &CompiledModel, initial: &[f64]) -> Result<bool> {
     let degrees = compiled.program().degrees_of_freedom();
+    if !compiled.model().controllers.is_empty() {
+        return Ok(false);
+    }
     if initial[degrees..2 * degrees]
         .iter()
         .any(|rate| *rate != 0.0)

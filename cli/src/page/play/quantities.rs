@@ -63,8 +63,10 @@ impl<'m> Quantities<'m> {
             .zip(input_ranges)
             .zip(typical)
             .enumerate();
-        // A rate follows from the signal of its input.
-        let inputs = inputs.filter(|(_, ((input, _), _))| input.rate_of.is_none());
+        // A rate follows from the signal of its input, and a controller drives its outputs.
+        let inputs = inputs.filter(|(place, ((input, _), _))| {
+            input.rate_of.is_none() && !model.is_controlled(*place)
+        });
         let inputs = inputs.map(|(place, ((input, range), value))| {
             let (low, high) = range.unwrap_or((-10.0, 10.0));
             let rates = std::iter::successors(input.rate, |rate| model.inputs[*rate].rate);

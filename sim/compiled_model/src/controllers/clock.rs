@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use eomgen_model_spec::control::Schedule;
+use eomgen_model_spec::schedule::Schedule;
 
 use super::memory::{NextSample, PendingOutputs};
 

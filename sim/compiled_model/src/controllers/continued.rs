@@ -1,6 +1,6 @@
 //! Simulations with controllers that continue from call to call.
 
-use eomgen_model_spec::control::Schedule;
+use eomgen_model_spec::schedule::Schedule;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
@@ -27,7 +27,7 @@ impl<'m> Instance<'m> {
     where
         'm: 'c,
     {
-        self.check_driven_once(&controllers)?;
+        self.check_driven_once(&controllers, &inputs)?;
         let options = limit_steps(options, &controllers);
         let mut simulation: Simulation<'c> = self.start_plant(start, inputs.clone(), options)?;
         let program = self.model().program();
@@ -61,12 +61,18 @@ impl<'m> Instance<'m> {
     fn check_driven_once(
         &self,
         controllers: &[Box<dyn SampledController + '_>],
+        given: &HeldInputs,
     ) -> Result<(), Error> {
         let mut driven = Vec::new();
         for place in controllers.iter().flat_map(|own| own.driven_inputs()) {
+            let inputs = &self.model().program().inputs;
+            let name = inputs.get(*place).map_or("", |input| &input.name);
+            if !given.is_held(*place) {
+                return Err(Error::Request(format!(
+                    "a controller drives the input `{name}`: remove its function of time, or the output of the controller"
+                )));
+            }
             if driven.contains(place) {
-                let inputs = &self.model().program().inputs;
-                let name = inputs.get(*place).map_or("", |input| &input.name);
                 return Err(Error::Request(format!(
                     "two controllers drive the input `{name}`: let one controller compute the sum of both"
                 )));

@@ -103,7 +103,8 @@ pub(crate) struct ControlLoop<'c> {
 }
 
 impl<'c> ControlLoop<'c> {
-    /// Creates a loop at a time (s), before the samples at this time. No two of the controllers drive one input.
+    /// Creates a loop at a time (s), before the samples at this time. No two of the controllers drive one input, and none
+    /// drives an input that is a function of time.
     pub fn new(
         controllers: Vec<Box<dyn SampledController + 'c>>,
         given: HeldInputs,
@@ -265,10 +266,11 @@ impl<'c> ControlLoop<'c> {
 
     /// Changes the inputs from outside at the time reached; returns the inputs of the motion from then on. Those that a
     /// controller drives keep the values of its outputs.
-    pub fn give(&mut self, t: f64, inputs: &[f64]) -> HeldInputs {
+    pub fn give(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
         let before = self.current.evaluate(t).into_owned();
-        self.given = HeldInputs::constant(inputs.to_vec());
-        let all = self.held.iter_mut().zip(inputs).zip(&self.has_acted);
+        self.given = inputs;
+        let given = self.given.last_sample(t);
+        let all = self.held.iter_mut().zip(given).zip(&self.has_acted);
         for ((held, value), has_acted) in all {
             if !has_acted {
                 *held = *value;

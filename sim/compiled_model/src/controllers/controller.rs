@@ -1,6 +1,6 @@
 //! Interface of sampled controllers.
 
-pub use eomgen_model_spec::control::Schedule;
+pub use eomgen_model_spec::schedule::Schedule;
 
 /// Values before a sample, SI.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,11 @@
 //! Controllers of a specification at parameter values.
 
-use eomgen_codegen::program::{ControlValues, MeasuredSource, ProgramController};
-use eomgen_model_spec::control::Schedule;
+use eomgen_codegen::program::{ControlValues, MeasuredSource, Program, ProgramController};
+use eomgen_model_spec::schedule::Schedule;
 
 use super::controller::{Sample, SampledController};
 use crate::error::Error;
+#[cfg(feature = "derive")]
 use crate::instance::Instance;
 
 /// Controller of a specification, at the parameter values of an instance.
@@ -21,6 +22,7 @@ pub struct DeclaredController {
     results: Vec<f64>,
 }
 
+#[cfg(feature = "derive")]
 impl Instance<'_> {
     /// Returns the controllers of the specification in their initial states.
     ///
@@ -34,24 +36,49 @@ impl Instance<'_> {
             let checked = checked.and_then(|()| controller.initial_states(self.values()));
             checked.map_err(|error| Error::from_model_error(model, error))?;
         }
-        let controllers = self.model().program().controllers.iter();
-        Ok(controllers.map(|own| self.start_controller(own)).collect())
+        DeclaredController::all(self.model().program(), self.parameters())
+    }
+}
+
+impl DeclaredController {
+    /// Returns the controllers of a program at independent parameters (SI) in their initial states.
+    ///
+    /// # Errors
+    /// Inadmissible times or initial states at these parameters.
+    pub(crate) fn all(program: &Program, parameters: &[f64]) -> Result<Vec<Self>, Error> {
+        let controllers = program.controllers.iter();
+        let started = controllers.map(|controller| Self::start(controller, parameters));
+        started.collect()
     }
 
-    fn start_controller(&self, controller: &ProgramController) -> DeclaredController {
-        let ([period, offset, delay], states) = controller.start(self.parameters());
-        DeclaredController {
+    fn start(controller: &ProgramController, parameters: &[f64]) -> Result<Self, Error> {
+        let ([period, offset, delay], states) = controller.start(parameters);
+        let schedule = Schedule {
+            period,
+            offset,
+            delay,
+        };
+        let name = &controller.name;
+        if let Some((what, value, rule)) = schedule.find_fault() {
+            return Err(Error::Request(format!(
+                "the {what} of the controller `{name}` is {value} s: give {rule}"
+            )));
+        }
+        let mut named = controller.states.iter().zip(&states);
+        if let Some((state, value)) = named.find(|(_, value)| !value.is_finite()) {
+            return Err(Error::Request(format!(
+                "the initial value of `{}` of the controller `{name}` is {value}",
+                state.name
+            )));
+        }
+        Ok(Self {
             controller: controller.clone(),
-            schedule: Schedule {
-                period,
-                offset,
-                delay,
-            },
-            parameters: self.parameters().to_vec(),
+            schedule,
+            parameters: parameters.to_vec(),
             states,
             measured: Vec::new(),
             results: Vec::new(),
-        }
+        })
     }
 }
 

@@ -3,14 +3,16 @@
 //! continues from call to call, `simulation` a whole one.
 
 mod clock;
+#[cfg(feature = "derive")]
 mod continued;
 mod control_loop;
 mod controller;
 mod declared;
 mod memory;
+#[cfg(feature = "derive")]
 mod simulation;
 
-pub(crate) use control_loop::{ControlLoop, LoopRecord};
+pub(crate) use control_loop::{ControlLoop, LoopRecord, Plant};
 pub use controller::{Sample, SampledController};
 pub use declared::DeclaredController;
 pub use memory::{ControlMemory, NextSample, PendingOutputs};

@@ -11,6 +11,7 @@ mod inputs;
 mod legible;
 mod motion;
 mod report;
+mod sampled;
 
 use std::path::{Path, PathBuf};
 

@@ -20,7 +20,7 @@ const REFERENCE_TOLERANCE: f64 = 1e-11;
 const SAMPLES: usize = 20;
 
 /// Moves a page to the times with these signals and other requests.
-fn move_page(spec: &Path, asked: &Value) -> Value {
+pub(super) fn move_page(spec: &Path, asked: &Value) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
         .arg(project().join("tests/tests/hosts/page/motion.mjs"))
@@ -48,7 +48,7 @@ fn constant_signals(run: &Instance<'_>) -> Vec<[f64; 8]> {
     signals.collect()
 }
 
-fn numbers(list: &Value) -> Vec<f64> {
+pub(super) fn numbers(list: &Value) -> Vec<f64> {
     let numbers = list.as_array().expect("a list").iter();
     numbers
         .map(|number| number.as_f64().unwrap_or(f64::NAN))
@@ -108,7 +108,7 @@ fn compare(name: &str, shown: &Value, run: &Instance<'_>, motion: &Motion, toler
 }
 
 /// Compares the page of a specification with `simulate`; returns the number of its events.
-fn compare_page(spec: &Path, until: f64, tolerance: f64) -> usize {
+pub(super) fn compare_page(spec: &Path, until: f64, tolerance: f64) -> usize {
     let name = spec.display().to_string();
     let compiled = CompiledModel::load(spec, Orders::Declared).expect("it loads");
     let run = compiled.with_declared_parameters().expect("it runs");
