@@ -1,4 +1,4 @@
-//! Whole motion with sampled controllers.
+//! Motion with sampled controllers over all times of a request.
 
 use eomgen_sim::ode::Trajectory;
 
