@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use eomgen_discover::{Specification, StopRequest, catalogue, discover_until};
 use eomgen_records::dataset::Dataset;
+use eomgen_records::feedback::open_loop;
 use eomgen_records::read_dataset;
 use serde_json::{Value, json};
 
@@ -83,13 +84,12 @@ fn seconds(limit: f64) -> Result<Duration> {
 /// Reads the specification's text, the truncation order and the dataset.
 fn inputs(task: &Task<'_>) -> Result<(String, Option<usize>, Dataset)> {
     let model = load(task.spec)?.model;
-    let controlled = model.reject_controllers("a comparison with records");
-    controlled.map_err(|error| Error::model(&model.source, error))?;
+    let (model, open_loop) = open_loop(model, task.dataset).map_err(Error::records)?;
     let text = model.source.text.to_string();
     orders(&model, task.order)?;
     let order = task.order.and_then(|order| order.trim().parse().ok());
     let dataset = read_dataset(task.dataset, &model).map_err(Error::records)?;
-    for note in &dataset.notes {
+    for note in open_loop.iter().chain(&dataset.notes) {
         warn(&format!("note: {note}"));
     }
     Ok((text, order, dataset))

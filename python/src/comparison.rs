@@ -21,22 +21,21 @@ pub fn compare(
     seed: u64,
     progress: Py<PyAny>,
 ) -> PyResult<(String, String)> {
-    let text = model.specification()?;
     let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
     interruptible(py, hear, |line| -> PyResult<(String, String)> {
-        let declared = model.compiled().model();
-        model.reject_controllers("a comparison with records")?;
-        let dataset = read_dataset(Path::new(dataset), declared).map_err(error::records)?;
+        let dataset = Path::new(dataset);
+        let (declared, open_loop) = model.open_loop(dataset)?;
+        let dataset = read_dataset(dataset, &declared).map_err(error::records)?;
         let say = |text: &str| {
             line.check();
             line.report(escape_hidden(text).into_owned());
         };
-        for note in &dataset.notes {
+        for note in open_loop.iter().chain(&dataset.notes) {
             say(&format!("note: {note}"));
         }
         let specification = Specification {
             path: &declared.source.path,
-            text: &text,
+            text: &declared.source.text,
             order: model.order(),
         };
         let found = eomgen_discover::compare(specification, &dataset, seed, &say);

@@ -23,10 +23,9 @@ pub fn discover(
     seed: u64,
     progress: Py<PyAny>,
 ) -> PyResult<DiscoveryTuple> {
-    let text = model.specification()?;
     let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
     let found = interruptible(py, hear, |line| {
-        search(model, &text, Path::new(dataset), seed, line)
+        search(model, Path::new(dataset), seed, line)
     })??;
     Ok((
         found.to_json().to_string(),
@@ -42,22 +41,20 @@ pub fn discover(
 
 fn search(
     model: &Model,
-    text: &str,
     dataset: &Path,
     seed: u64,
     line: &Connection<'_, String>,
 ) -> PyResult<Discovery> {
-    let declared = model.compiled().model();
-    model.reject_controllers("a comparison with records")?;
-    let dataset = read_dataset(dataset, declared).map_err(error::records)?;
+    let (declared, open_loop) = model.open_loop(dataset)?;
+    let dataset = read_dataset(dataset, &declared).map_err(error::records)?;
     let say = |text: &str| line.report(escape_hidden(text).into_owned());
-    for note in &dataset.notes {
+    for note in open_loop.iter().chain(&dataset.notes) {
         say(&format!("note: {note}"));
     }
     let effects = catalogue::load_effects(None).map_err(|found| error::specification(&found))?;
     let specification = Specification {
         path: &declared.source.path,
-        text,
+        text: &declared.source.text,
         order: model.order(),
     };
     let found = discover_until(specification, dataset, &effects, seed, &say, line.stop);

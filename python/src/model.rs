@@ -11,9 +11,10 @@ use eomgen_compiled_model::{
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::edit::{Edit, SetParameter, apply};
-use eomgen_model_spec::model::ParameterValue;
+use eomgen_model_spec::model::{Model as Specified, ParameterValue};
 use eomgen_model_spec::source::Source;
 use eomgen_model_spec::suggest;
+use eomgen_records::feedback::open_loop;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -69,14 +70,13 @@ impl Model {
         &self.settings
     }
 
-    /// Rejects a model with controllers for `what`.
-    pub fn reject_controllers(&self, what: &str) -> PyResult<()> {
-        let declared = self.compiled.model();
-        let controlled = declared.reject_controllers(what);
-        controlled.map_err(|found| {
-            let found = Diagnostics::from_one(declared.source.clone(), found.diagnostic());
-            error::specification(&found)
-        })
+    /// Returns the model for a comparison with records, with a note if their columns replace its controllers.
+    pub fn open_loop(&self, dataset: &Path) -> PyResult<(Specified, Option<String>)> {
+        let text = self.specification()?;
+        let source = self.compiled.model().source.with_text(text);
+        let checked = eomgen_model_spec::check(source);
+        let model = checked.map_err(|found| error::specification(&found))?.model;
+        open_loop(model, dataset).map_err(error::records)
     }
 
     /// Returns the compiled model at its parameter values.

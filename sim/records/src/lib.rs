@@ -12,7 +12,7 @@
 //! - a [`dataset`] contains all records; [`checks`] and `coverage` examine it, and [`windows`]
 //!   split it.
 //!
-//! [`inputs`] are read separately for a simulation. [`mod@noise`] is estimated from a single
+//! [`inputs`] are read separately for a simulation. [`feedback`] replaces controllers by their recorded outputs. [`mod@noise`] is estimated from a single
 //! column. A [`proposal`] is a dataset file for a record that has none. A [`refusal`] is an error.
 //! This crate does not simulate or fit anything.
 //!
@@ -59,6 +59,7 @@ mod dataset_reader;
 mod decimation;
 pub mod description;
 pub mod experiment;
+pub mod feedback;
 mod files;
 mod gaps;
 mod given_motion;

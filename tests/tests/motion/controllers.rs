@@ -481,14 +481,6 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
     let other = file("other");
     for (arguments, what) in [
         (
-            vec!["compare", &spec, "nothing.toml", "--out", &other],
-            "a comparison with records",
-        ),
-        (
-            vec!["discover", &spec, "nothing.toml", "--out", &other],
-            "a comparison with records",
-        ),
-        (
             vec![
                 "sweep",
                 &spec,
