@@ -34,7 +34,7 @@
 //!
 //! Data flows one way: [`model`] (compiled model and unknowns), [`fit`] (estimates, uncertainties and
 //! residuals), [`catalogue`] (effects and their sites), [`mod@residual_force`] (equation and form of a
-//! missing force), [`mod@search`] (accepted effects), [`empirical`] (unnamed expressions),
+//! missing force), [`free_function`] (laws and curves along the measured motion), [`mod@search`] (accepted effects), [`empirical`] (unnamed expressions),
 //! [`experiment`] (next experiments), [`report`] (results as documents and pages). [`thresholds`]
 //! contains the limits of decisions, [`error`] the errors, [`ids`] the typed indices.
 
@@ -43,6 +43,7 @@ pub mod empirical;
 pub mod error;
 pub mod experiment;
 pub mod fit;
+pub mod free_function;
 pub mod ids;
 pub mod interval;
 pub mod model;

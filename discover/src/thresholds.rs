@@ -644,3 +644,65 @@ pub const MIN_INVERSE_DYNAMICS_QUOTIENT: f64 = 1e-6;
 /// Maximum relative error of the second derivatives at these inputs: far above rounding in a
 /// regular system, far below the resolution of any sensor.
 pub const MAX_INVERSE_DYNAMICS_ERROR: f64 = 1e-9;
+
+/// Maximum number of samples of the reference motion of all training records; half as many of the
+/// test records. A scan of a law takes about a second for these.
+pub const MAX_REFERENCE_SAMPLES: usize = 3000;
+
+/// Steps of an unknown acceleration from sample to sample that a smoother tries, in usual
+/// accelerations; the likeliest is used.
+pub const ACCELERATION_STEPS: [f64; 3] = [0.02, 0.2, 1.0];
+
+/// Least usual acceleration of a state: it moves the state through this part of its range in a sample.
+pub const MIN_ACCELERATION_IN_RANGES: f64 = 1e-3;
+
+/// Step of difference quotients by a state along a reference motion, in ranges of the state.
+pub const REFERENCE_QUOTIENT_IN_RANGES: f64 = 1e-6;
+
+/// Step of the difference quotient by an added state, relative to the state and its change.
+pub const ADDED_STATE_QUOTIENT: f64 = 1e-4;
+
+/// Length of a segment of a reference motion, in windows. In a longer segment errors of the
+/// reference motion are integrated twice: a friction that yields by 0.1 mm leaves 40 floors over
+/// whole windows of 0.5 s.
+pub const SEGMENT_FRACTION: f64 = 0.2;
+
+/// Minimum number of samples of a segment.
+pub const MIN_SEGMENT_SAMPLES: usize = 12;
+
+/// Decades around its typical size over which a shape is scanned.
+pub const SHAPE_SCAN_DECADES: (f64, f64) = (-3.0, 1.0);
+
+/// Decades around its typical size over which the only size of a law is scanned.
+pub const SIZE_SCAN_DECADES: (f64, f64) = (-6.0, 4.0);
+
+/// Scanned values per decade.
+pub const SCANNED_VALUES_PER_DECADE: f64 = 4.0;
+
+/// Halvings of the ratio of scanned values around the best one.
+pub const SCAN_REFINEMENTS: usize = 4;
+
+/// Number of knots of a curve. It resolves a twentieth of the range, less around zero.
+pub const CURVE_KNOTS: usize = 21;
+
+/// Fraction of the samples beyond the knots of a curve at each end.
+pub const CURVE_TAIL: f64 = 0.002;
+
+/// Penalty of the level of a curve relative to that of its bends: small, but proper.
+pub const CURVE_LEVEL_PENALTY: f64 = 1e-4;
+
+/// Decades of the penalty of a curve, relative to the information of the records.
+pub const CURVE_PENALTY_DECADES: (f64, f64) = (-10.0, 2.0);
+
+/// Correlation of residuals below which further lags do not count.
+pub const MIN_LAG_CORRELATION: f64 = 0.05;
+
+/// Ratio to the smallest residual of scanned laws up to which a law is fitted.
+pub const MAX_SCANNED_RIVAL_RATIO: f64 = 2.0;
+
+/// Maximum ratio of the held-out residual of a curve to its training residual: a wrong pair leaves
+/// 2 to 26 times as much.
+pub const MAX_HELD_OUT_RATIO: f64 = 1.5;
+
+/// Maximum fraction of the residual that an adequate curve leaves.
+pub const MAX_LEFT_BY_CURVE: f64 = 0.3;

@@ -58,6 +58,18 @@ impl Effect {
         self.edits.iter().any(adds)
     }
 
+    /// Returns true if a linearisation at one size or shape does not show the effect, so that only a
+    /// scan finds it: a memory with a shape, such as the yielding of bristles, or a dead zone of an
+    /// input. An effect of the user is always tested.
+    pub fn is_only_scanned(&self) -> bool {
+        let adds_state = |edit: &Change| matches!(edit, Change::State { .. });
+        let has_shape = |parameter: &EffectParameter| parameter.shape.is_some();
+        let has_memory = self.edits.iter().any(adds_state) && self.parameters.iter().any(has_shape);
+        let substitutes = |edit: &Change| matches!(edit, Change::Substitution { .. });
+        let has_dead_zone = self.site_kind == SiteKind::Input && self.edits.iter().all(substitutes);
+        !self.is_user_defined && (has_memory || has_dead_zone)
+    }
+
     /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
     /// the same.
     pub fn scales_stiffness(&self) -> bool {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use crate::experiment::next_experiment::{ClassMember, ExperimentFile, MemberPair, NextExperiment};
+use crate::free_function::curves::Curve;
 use crate::report::experiment::describe_experiment;
 use crate::report::result::{
     ChannelGap, CommonResult, Comparison, Discovery, EffectSite, EstimateWithUnit, FoundEffect,
@@ -67,6 +68,7 @@ impl Discovery {
         document["closure"] = json!({"train": self.closure.train, "test": self.closure.test});
         document["steps"] = self.steps();
         document["validation"] = self.validation();
+        document["curve"] = self.curve.as_ref().map_or(Value::Null, write_curve);
         document["unfinished"] = json!(self.unfinished);
         document
     }
@@ -93,6 +95,19 @@ impl Discovery {
         };
         self.validation.as_ref().map_or(Value::Null, found)
     }
+}
+
+/// Writes a free function, SI.
+fn write_curve(curve: &Curve) -> Value {
+    json!({
+        "equation": curve.equation,
+        "unit": curve.unit,
+        "variable": curve.variable,
+        "variable_unit": curve.variable_unit,
+        "knots": curve.knots,
+        "values": curve.values,
+        "band": curve.band,
+    })
 }
 
 /// Writes the fields common to both documents.

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use maud::Markup;
 
 use crate::experiment::next_experiment::{ExperimentFile, NextExperiment};
+use crate::free_function::curves::Curve;
 use crate::report::origin::Origin;
 use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
@@ -165,6 +166,8 @@ pub struct Discovery {
     pub resimulation: Resimulation,
     /// Result of the validation of the equations, if it was requested.
     pub validation: Option<Validation>,
+    /// Free function that explains the residual of the original model best, if one is adequate.
+    pub curve: Option<Curve>,
     /// State of an unfinished search at its time limit; `None` if the search is complete.
     pub unfinished: Option<String>,
 }

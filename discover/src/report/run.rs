@@ -259,6 +259,7 @@ pub fn discover_until(
         steps: list_steps(&found),
         resimulation: resimulate(&problem, best, &extended)?,
         validation: None,
+        curve: found.curve.clone(),
         unfinished: found.unfinished.clone(),
         original: original.to_owned(),
         extended,

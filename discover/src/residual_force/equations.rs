@@ -82,7 +82,38 @@ pub struct EquationEvaluator {
 impl EquationSet {
     /// Derives the equations of a fitted model; `None` if a force cannot be added to it.
     pub fn derive_from_fit(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
-        let list = equations(fit.model.specification());
+        Self::derive_list(problem, fit, equations(fit.model.specification()))
+    }
+
+    /// Derives the equations of a fitted model and the directions between both ends of each spring,
+    /// in which a force may act as well; `None` if a force cannot be added to it.
+    pub(crate) fn derive_with_springs(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
+        let model = fit.model.specification();
+        let mut list = equations(model);
+        for site in find_sites(model) {
+            let (Some(on), Some(unit)) = (
+                site.arguments.get("on"),
+                site.arguments.get("unit").and_then(|text| read_unit(text)),
+            ) else {
+                continue;
+            };
+            if site.kind == SiteKind::Spring && list.iter().all(|known| known.target != *on) {
+                list.push(Equation {
+                    name: site.name.clone(),
+                    target: on.clone(),
+                    unit,
+                    is_mesh: false,
+                });
+            }
+        }
+        Self::derive_list(problem, fit, list)
+    }
+
+    fn derive_list(
+        problem: &EstimationProblem<'_>,
+        fit: &Fit,
+        list: Vec<Equation>,
+    ) -> Option<Self> {
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
         let mut edits = Vec::new();
         for (number, equation) in list.iter().enumerate() {
@@ -200,13 +231,18 @@ impl EquationEvaluator {
     }
 }
 
-/// Returns the sites at which effects act along one line, and the observables of a flexible body.
-fn equations(model: &Model) -> Vec<Equation> {
-    let unit = |text: &str| match text {
+/// The unit of a position; none for another quantity.
+fn read_unit(text: &str) -> Option<&'static str> {
+    match text {
         "rad" => Some("rad"),
         "m" => Some("m"),
         _ => None,
-    };
+    }
+}
+
+/// Returns the sites at which effects act along one line, and the observables of a flexible body.
+fn equations(model: &Model) -> Vec<Equation> {
+    let unit = read_unit;
     let mut found = Vec::new();
     for site in find_sites(model) {
         let is_mesh = site.kind == SiteKind::Mesh;

@@ -6,7 +6,8 @@
 //! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`hypothesis_fits`];
 //! `shape_restarts`, `single_candidates`, `pair_halves`, `pairs`; [`tested_pool`], [`parameter_offsets`],
 //! [`selection`], `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer_selection`,
-//! `unfinished_round`, [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`].
+//! `unfinished_round`, [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
+//! `scanned_laws`.
 
 pub mod acceptance;
 mod alternatives;
@@ -28,6 +29,7 @@ pub mod rejection;
 pub mod response;
 pub mod responses;
 mod round;
+mod scanned_laws;
 pub mod screening;
 pub mod search_result;
 pub mod selection;
@@ -48,21 +50,41 @@ use crate::search::acceptance::compute_test_statistics;
 use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::RoundContext;
+use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::rejected_candidates::note_rejected;
 use crate::search::round::SearchRound;
-use crate::search::search_result::{AcceptedEffect, SearchResult, TestGap};
-use crate::search::selection::SelectedHypothesis;
+use crate::search::scanned_laws::{ScanResult, scan_records};
+use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult, TestGap};
+use crate::search::selection::{SelectedHypothesis, select_hypothesis};
 use crate::search::unconfirmed_hypothesis::find_unconfirmed;
 use crate::search::unfinished_round::describe_unfinished;
 use crate::thresholds;
 
-/// Searches for the missing effects of a model. `floor`: noise floor, in standard deviations.
-/// `progress`: receiver of progress lines.
+/// Searches for the missing effects of a model: effect after effect and, if a gap remains, among the
+/// laws that only a scan shows. `floor`: noise floor, in standard deviations. `progress`: receiver of
+/// progress lines.
 ///
 /// # Errors
 ///
 /// A motion that cannot be simulated; [`DiscoverError::Stopped`].
 pub fn search(
+    problem: &EstimationProblem<'_>,
+    null: Fit,
+    effects: &[Effect],
+    floor: f64,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Result<SearchResult, DiscoverError> {
+    let mut found = select_forward(problem, null, effects, floor, progress)?;
+    if found.unfinished.is_none() && !found.best_fit().is_at_floor(floor) {
+        scan_laws(problem, &mut found, effects, floor, progress);
+    }
+    problem.stop.remove_time_limit();
+    problem.stop.check_not_stopped()?;
+    Ok(found)
+}
+
+/// Accepts effect after effect, each with the largest explained part of what the others leave.
+fn select_forward(
     problem: &EstimationProblem<'_>,
     null: Fit,
     effects: &[Effect],
@@ -75,6 +97,7 @@ pub fn search(
         accepted: Vec::new(),
         rejected: Vec::new(),
         unconfirmed: None,
+        curve: None,
         unfinished: None,
     };
     while found.accepted.len() < thresholds::MAX_EFFECTS {
@@ -119,9 +142,58 @@ pub fn search(
         accept(&mut found, selected);
         eliminate_backwards(problem, &mut found, progress);
     }
-    problem.stop.remove_time_limit();
-    problem.stop.check_not_stopped()?;
     Ok(found)
+}
+
+/// Scans laws with a shape or a memory. One that reaches the noise floor, also in held-out records,
+/// and leaves clearly less than the answer of the search, replaces it.
+fn scan_laws(
+    problem: &EstimationProblem<'_>,
+    found: &mut SearchResult,
+    effects: &[Effect],
+    floor: f64,
+    progress: &(dyn Fn(&str) + Sync),
+) {
+    let context = RoundContext {
+        problem,
+        fit: &found.null_fit,
+        floor,
+        effects,
+        progress,
+    };
+    let scan = scan_records(context);
+    if problem.stop.is_time_over() {
+        found.unfinished = Some("laws with a shape or a memory were not all scanned".to_owned());
+        return;
+    }
+    let Some(ScanResult { curve, tested }) = scan else {
+        return;
+    };
+    found.curve = curve;
+    let Some(mut tested) = tested else {
+        return;
+    };
+    note_rejected(&mut found.rejected, std::slice::from_ref(&tested));
+    let best = found.best_fit();
+    tested
+        .fitted_hypotheses
+        .retain(|FittedHypothesis { fit, .. }| {
+            fit.is_at_floor(floor) && fit.is_clearly_below(best)
+        });
+    let Some(selected) = select_hypothesis(context, tested) else {
+        return;
+    };
+    for AcceptedEffect { candidate, .. } in found.accepted.drain(..) {
+        progress(&format!("  {} is no longer needed", candidate.label()));
+        found.rejected.push(RejectedCandidate {
+            candidate,
+            reason: "a law that was found by a scan leaves less without it".to_owned(),
+            is_untestable: false,
+            p_value: None,
+        });
+    }
+    (found.extended_fit, found.unconfirmed) = (None, None);
+    accept(found, selected);
 }
 
 /// Takes what is named over, with the candidates that are indistinguishable from it.

@@ -18,9 +18,12 @@ pub fn compute_usual_motion(
     fit: &Fit,
     sites: &[Site],
 ) -> UsualMotion {
-    let moving = sites
-        .iter()
-        .filter(|site| matches!(site.kind, SiteKind::Angle | SiteKind::Spring));
+    let moving = sites.iter().filter(|site| {
+        matches!(
+            site.kind,
+            SiteKind::Axis | SiteKind::Angle | SiteKind::Spring
+        )
+    });
     let expressions: BTreeSet<String> = moving
         .filter_map(|site| site.arguments.get("on").cloned())
         .collect();

@@ -274,8 +274,11 @@ impl SearchRound<'_> {
         };
         // Nothing is simulated if the motion is given.
         let is_given = problem.dataset.gives_motion();
-        let may_be =
-            |effect: &&Effect| !(effect.scales_stiffness() || is_given && effect.adds_states());
+        let may_be = |effect: &&Effect| {
+            !(effect.scales_stiffness()
+                || effect.is_only_scanned()
+                || is_given && effect.adds_states())
+        };
         let effects = self.context.effects.iter().filter(may_be);
         let mut all = list_candidates(model, effects, &sites, &motion);
         all.extend(list_prior_candidates(problem, fit));

@@ -2,6 +2,7 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fit_result::Fit;
+use crate::free_function::curves::Curve;
 use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
 use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
@@ -55,6 +56,9 @@ pub struct SearchResult {
     pub rejected: Vec<RejectedCandidate>,
     /// Hypothesis that explains the training records but not the held-out records.
     pub unconfirmed: Option<UnconfirmedHypothesis>,
+    /// Free function that explains the null model's residual best; `None` if none is
+    /// adequate.
+    pub curve: Option<Curve>,
     /// State of a round that reached the time limit, as a sentence.
     pub unfinished: Option<String>,
 }

@@ -459,6 +459,8 @@ fn effects_on_a_carriage_are_found() {
         hidden("force_offset", "x", &[-2.0]),
         hidden("elastic_restraint", "x", &[30.0]),
         hidden("input_lag", "u", &[60.0]),
+        hidden("input_dead_zone", "u", &[5.0]),
+        hidden("bristle_friction", "x", &[3.0, 1e-4]),
     ] {
         CARRIAGE.assert_found(&hidden);
     }

@@ -13,6 +13,7 @@ mod friction_under_load;
 mod input_faults;
 mod joint_acceptance;
 mod kinds_of_channels;
+mod laws_with_shape;
 mod machines;
 mod measured_current;
 mod motion_that_is_given;

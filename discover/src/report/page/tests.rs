@@ -57,6 +57,7 @@ fn discovery(text: &str) -> Discovery {
         p_values: Some((0.2, 1.0)),
     };
     Discovery {
+        curve: None,
         verdict: Verdict::EffectsFound,
         effects: vec![FoundEffect {
             at: at(),

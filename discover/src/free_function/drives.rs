@@ -1,0 +1,205 @@
+//! Differences between the accelerations of similar models along a reference motion.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::DMatrix;
+
+use crate::free_function::reference_motion::{ReferenceMotion, ReferenceRecord};
+use crate::free_function::segments::Drive;
+use crate::model::estimation_model::EstimationModel;
+use crate::thresholds;
+
+/// A model that is evaluated along a reference motion.
+pub(crate) struct DrivenModel {
+    evaluator: Evaluator,
+    /// For each state of the reference motion its index among those of the model.
+    places: Vec<usize>,
+    /// Indices of the other states, which are of first order.
+    added: Vec<usize>,
+    degrees_of_freedom: usize,
+    /// Accelerations and rates of the first-order states of the reference, at both ends of each
+    /// step: columns `2 step` and `2 step + 1`.
+    accelerations: Vec<DMatrix<f64>>,
+    /// Quantities of the channels at the samples of each record.
+    outputs: Vec<DMatrix<f64>>,
+}
+
+impl DrivenModel {
+    /// Creates the reference's own model at these values of its parameters.
+    pub fn new(model: &EstimationModel, values: &[f64]) -> Self {
+        Self {
+            evaluator: model.create_evaluator(values),
+            places: (0..model.state_count()).collect(),
+            added: Vec::new(),
+            degrees_of_freedom: model.degrees_of_freedom(),
+            accelerations: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+
+    /// Creates a model with the states of the reference's model and further ones of first order;
+    /// `None` if it has other states.
+    pub fn with_added_states(
+        reference: &EstimationModel,
+        model: &EstimationModel,
+        values: &[f64],
+    ) -> Option<Self> {
+        let place = |name: &String| model.states.iter().position(|state| state == name);
+        let places: Option<Vec<usize>> = reference.states.iter().map(place).collect();
+        let places = places?;
+        let degrees = model.degrees_of_freedom();
+        let added: Vec<usize> = (0..model.state_count())
+            .filter(|state| !places.contains(state))
+            .collect();
+        (degrees == reference.degrees_of_freedom()).then(|| Self {
+            evaluator: model.create_evaluator(values),
+            places,
+            added,
+            degrees_of_freedom: degrees,
+            accelerations: Vec::new(),
+            outputs: Vec::new(),
+        })
+    }
+
+    /// Evaluates the accelerations and quantities along the reference motion once for all.
+    pub fn record_motion(mut self, motion: &ReferenceMotion, model: &EstimationModel) -> Self {
+        self.outputs = self.measure_outputs(motion, model);
+        self.accelerations = motion
+            .records
+            .iter()
+            .map(|record| self.accelerate_along(record))
+            .collect();
+        self
+    }
+
+    /// Returns the recorded quantities of the channels.
+    pub fn outputs(&self) -> &[DMatrix<f64>] {
+        &self.outputs
+    }
+
+    /// Returns the quantities of the channels at the samples of each record. `model`: the own
+    /// model, which has the states of the reference.
+    pub fn measure_outputs(
+        &mut self,
+        motion: &ReferenceMotion,
+        model: &EstimationModel,
+    ) -> Vec<DMatrix<f64>> {
+        let mut buffers = model.measured.create_buffers();
+        let records = motion.records.iter().map(|record| {
+            let channels = model.measured.count();
+            let mut found = DMatrix::zeros(record.times.len(), channels);
+            for sample in 0..record.times.len() {
+                let point = Point {
+                    t: record.times[sample],
+                    state: &record.states[sample],
+                    inputs: &record.inputs[sample],
+                };
+                let mut values = Vec::with_capacity(channels);
+                let evaluator = &mut self.evaluator;
+                model
+                    .measured
+                    .append(evaluator, point, &mut buffers, &mut values);
+                for (channel, value) in values.into_iter().enumerate() {
+                    found[(sample, channel)] = value;
+                }
+            }
+            found
+        });
+        records.collect()
+    }
+
+    /// Returns the accelerations and the rates of the reference's first-order states at both ends of
+    /// each step. Added states begin at 0 and follow their own rates.
+    fn accelerate_along(&mut self, record: &ReferenceRecord) -> DMatrix<f64> {
+        let states = self.evaluator.program().states();
+        let first = self.degrees_of_freedom;
+        let slots: Vec<usize> = self.places[first..].to_vec();
+        let mut found = DMatrix::zeros(slots.len(), 2 * record.steps.len());
+        let mut state = vec![0.0; states];
+        let mut rates = vec![0.0; states];
+        for step in 0..record.steps.len() {
+            for is_end in [false, true] {
+                if is_end && !self.added.is_empty() {
+                    self.advance_added(record, step, &mut state, &mut rates);
+                }
+                let point = record.end_point(step, is_end);
+                for (place, value) in self.places.iter().zip(point.state) {
+                    state[*place] = *value;
+                }
+                let own = Point {
+                    state: &state,
+                    ..point
+                };
+                self.evaluator.rates(own, &mut rates);
+                let column = 2 * step + usize::from(is_end);
+                for (row, slot) in slots.iter().enumerate() {
+                    found[(row, column)] = rates[*slot];
+                }
+            }
+        }
+        found
+    }
+
+    /// Moves the added states over a step: each one's rate is linear in it, along the mean of the
+    /// reference motion.
+    fn advance_added(
+        &mut self,
+        record: &ReferenceRecord,
+        step: usize,
+        state: &mut [f64],
+        rates: &mut [f64],
+    ) {
+        let (begin, end) = (record.end_point(step, false), record.end_point(step, true));
+        let length = end.t - begin.t;
+        let pairs = begin.state.iter().zip(end.state);
+        for (place, (a, b)) in self.places.iter().zip(pairs) {
+            state[*place] = 0.5 * (a + b);
+        }
+        let t = 0.5 * (begin.t + end.t);
+        let inputs = begin.inputs;
+        for k in 0..self.added.len() {
+            let place = self.added[k];
+            let old = state[place];
+            self.evaluator.rates(Point { t, state, inputs }, rates);
+            let rate = rates[place];
+            let change = (rate * length).abs().max(old.abs());
+            let change = thresholds::ADDED_STATE_QUOTIENT * change.max(f64::MIN_POSITIVE.sqrt());
+            state[place] = old + change;
+            self.evaluator.rates(Point { t, state, inputs }, rates);
+            let slope = (rates[place] - rate) / change * length;
+            // The mean of exp(slope) over the step.
+            let mean = match slope.abs() < 1e-6 {
+                true => 1.0 + 0.5 * slope,
+                false => slope.exp_m1() / slope,
+            };
+            state[place] = old + mean * rate * length;
+        }
+    }
+}
+
+/// Returns the mean over each step of the accelerations of a moved model minus those of the
+/// reference's model, times a factor.
+pub(crate) fn average_drive(
+    motion: &ReferenceMotion,
+    base: &DrivenModel,
+    moved: &mut DrivenModel,
+    factor: f64,
+) -> Drive {
+    let records = motion.records.iter().zip(&base.accelerations);
+    let drive = records.map(|(record, base)| {
+        let moved = moved.accelerate_along(record);
+        DMatrix::from_fn(moved.nrows(), record.steps.len(), |row, step| {
+            let at = |column: usize| moved[(row, column)] - base[(row, column)];
+            0.5 * factor * (at(2 * step) + at(2 * step + 1))
+        })
+    });
+    drive.collect()
+}
+
+/// Returns true if a drive is finite and not 0.
+pub(crate) fn is_visible(drive: &Drive) -> bool {
+    let mut sum = 0.0;
+    for value in drive.iter().flat_map(|record| record.iter()) {
+        sum += value * value;
+    }
+    sum.is_finite() && sum > 0.0
+}

@@ -1,0 +1,47 @@
+//! Reference motion, linearised model and segments that laws and curves are compared with.
+
+use crate::fit::fit_result::Fit;
+use crate::free_function::drives::DrivenModel;
+use crate::free_function::nuisances::respond_to_unknowns;
+use crate::free_function::reference_motion::ReferenceMotion;
+use crate::free_function::segments::Segments;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
+
+/// Records and model of a fit, linearised along the reference motion.
+pub(crate) struct Scene<'s> {
+    /// Problem of the dataset.
+    pub problem: &'s EstimationProblem<'s>,
+    /// The fit that lacks something.
+    pub fit: &'s Fit,
+    /// The motion that the records show.
+    pub motion: ReferenceMotion,
+    /// Accelerations of the model along it.
+    pub base: DrivenModel,
+    /// Segments with free initial states.
+    pub segments: Segments,
+}
+
+impl<'s> Scene<'s> {
+    /// Follows the records and linearises the model; `None` if the records cannot be followed.
+    pub fn follow_records(problem: &'s EstimationProblem<'s>, fit: &'s Fit) -> Option<Self> {
+        let motion = ReferenceMotion::follow_records(problem, fit)?;
+        let base = DrivenModel::new(&fit.model, &motion.values).record_motion(&motion, &fit.model);
+        let nuisances = respond_to_unknowns(&motion, problem, fit, &base);
+        let length = motion
+            .records
+            .iter()
+            .map(|record| record.times[record.times.len() - 1] - record.times[0])
+            .fold(0.0, f64::max);
+        let window = problem.dataset.window.unwrap_or(length);
+        let length = window * thresholds::SEGMENT_FRACTION;
+        let segments = Segments::split_motion(&motion, fit, &nuisances, length);
+        Some(Self {
+            problem,
+            fit,
+            motion,
+            base,
+            segments,
+        })
+    }
+}

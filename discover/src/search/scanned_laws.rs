@@ -1,0 +1,128 @@
+//! Laws with a shape or a memory that the search does not find, from a scan along the motion that the
+//! records show.
+
+use crate::catalogue::candidate::{Candidate, list_candidates};
+use crate::catalogue::sites::find_sites;
+use crate::free_function::curves::{Curve, fit_curves};
+use crate::free_function::law_scan::{LawScan, ScannedLaw, scan_laws};
+use crate::free_function::scene::Scene;
+use crate::ids::ResponseId;
+use crate::search::context::RoundContext;
+use crate::search::excitation_window::ExcitationWindow;
+use crate::search::hypothesis::Hypothesis;
+use crate::search::hypothesis_fits::{run_full_fits, run_preliminary_fits};
+use crate::search::motion_of_fit::compute_usual_motion;
+use crate::search::pool::CandidatePool;
+use crate::search::screening::screen_candidates;
+use crate::search::tested_pool::TestedPool;
+use crate::thresholds;
+
+/// What a scan shows.
+pub struct ScanResult {
+    /// Free function that explains the residual best, if one is adequate.
+    pub curve: Option<Curve>,
+    /// The best laws with their fits; `None` if none promises a smaller residual.
+    pub tested: Option<TestedPool>,
+}
+
+/// Scans free functions and laws along the motion that the records show, and fits the best laws.
+/// `None` if the records cannot be followed.
+pub fn scan_records(context: RoundContext<'_>) -> Option<ScanResult> {
+    (context.progress)("a gap remains: scanning laws along the motion that the records show");
+    let scene = Scene::follow_records(context.problem, context.fit)?;
+    let curve = find_adequate_curve(context, &scene);
+    Some(ScanResult {
+        tested: fit_scanned_laws(context, &scene, curve.as_ref()),
+        curve,
+    })
+}
+
+/// Fits the best laws of a scan from their scanned shapes and sizes. `curve`: adequate free function,
+/// if there is one.
+fn fit_scanned_laws(
+    context: RoundContext<'_>,
+    scene: &Scene<'_>,
+    curve: Option<&Curve>,
+) -> Option<TestedPool> {
+    let LawScan { laws, rms_without } = scan_laws(scene, &list_laws(context));
+    let best = laws.first()?;
+    (context.progress)(&format!(
+        "scanned {} laws over decades; best: {}, which leaves {:.2} of {rms_without:.2} standard deviations \
+         in short segments",
+        laws.len(),
+        best.candidate.label(),
+        best.rms
+    ));
+    // A law that leaves much more than a free function is not what is missing.
+    let least = curve.map_or(f64::INFINITY, |curve| curve.train_rms.max(curve.test_rms));
+    let most = (thresholds::MAX_SCANNED_RIVAL_RATIO * least.min(best.rms))
+        .min((1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * rms_without);
+    let chosen: Vec<ScannedLaw> = (laws.into_iter())
+        .take_while(|law| law.rms < most)
+        .take(thresholds::MAX_FULL_FITS_PER_ROUND)
+        .collect();
+    if chosen.is_empty() {
+        return None;
+    }
+    let candidates: Vec<Candidate> = chosen.iter().map(|law| law.candidate.clone()).collect();
+    let window = match context.starts_with_whole_windows() {
+        true => ExcitationWindow::Whole,
+        false => ExcitationWindow::Beginnings,
+    };
+    let screening = screen_candidates(
+        context.problem,
+        context.fit,
+        &candidates,
+        window.window_fraction(),
+    );
+    let is_whole = window == ExcitationWindow::Whole;
+    let pool = CandidatePool::new(context, &candidates, &screening, is_whole);
+    let hypotheses = ResponseId::first(screening.responses.len()).map(|response| {
+        let law = &chosen[screening.responses[response].candidate.index()];
+        Hypothesis {
+            responses: vec![response],
+            replaced_parameter: None,
+            predicted_sizes: law.sizes.clone(),
+        }
+    });
+    let preliminaries = run_preliminary_fits(&pool, hypotheses.collect());
+    let fitted_hypotheses = run_full_fits(&pool, preliminaries);
+    Some(TestedPool {
+        candidates,
+        screening,
+        fitted_hypotheses,
+    })
+}
+
+/// Returns the candidates at all sites.
+fn list_laws(context: RoundContext<'_>) -> Vec<Candidate> {
+    let model = context.fit.model.specification();
+    let sites = find_sites(model);
+    let motion = compute_usual_motion(context.problem, context.fit, &sites);
+    let effects = context.effects.iter();
+    let effects = effects.filter(|effect| !effect.scales_stiffness());
+    list_candidates(model, effects, &sites, &motion)
+}
+
+/// Returns the free function with the smallest held-out residual, if it is adequate: it explains most
+/// of the gap, and held-out records keep hardly more than training records.
+fn find_adequate_curve(context: RoundContext<'_>, scene: &Scene<'_>) -> Option<Curve> {
+    let mut curves = fit_curves(scene);
+    let least = curves.iter().map(|curve| curve.test_rms);
+    let least = least.fold(f64::INFINITY, f64::min);
+    // A force on the only coordinate and the input that acts on it are the same.
+    curves.retain(|curve| curve.test_rms <= (1.0 + thresholds::MAX_CLASS_DIFFERENCE) * least);
+    let own = curves.iter().position(|curve| curve.is_own_variable);
+    let best = curves.into_iter().nth(own.unwrap_or(0))?;
+    let (over, of) = (&best.variable, &best.equation);
+    let (train, test) = (best.train_rms, best.test_rms);
+    let alone = scene.segments.alone.rms();
+    (context.progress)(&format!(
+        "best free function: {of} over {over}, which leaves {train:.2} (training) and {test:.2} (test) of \
+         {alone:.2} standard deviations in short segments"
+    ));
+    let is_adequate = best.log_evidence > thresholds::MIN_INFORMATION_GAIN
+        && test <= thresholds::MAX_HELD_OUT_RATIO * train.max(context.floor)
+        && train.max(test) < thresholds::MAX_LEFT_BY_CURVE * alone;
+    is_adequate.then_some(best)
+}

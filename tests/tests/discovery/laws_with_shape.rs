@@ -1,0 +1,254 @@
+//! Laws with a shape or a memory are found from records of the classical Runge-Kutta method, written
+//! here, whose equations contain them.
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// Approximately normal numbers, each a sum of twelve uniform ones.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            sum += (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
+        }
+        sum
+    }
+}
+
+/// Integrates over one sample in short steps; the input is held.
+fn step<const N: usize>(
+    state: &mut [f64; N],
+    length: f64,
+    parts: usize,
+    rates: impl Fn(&[f64; N]) -> [f64; N],
+) {
+    let h = length / parts as f64;
+    for _ in 0..parts {
+        let along = |k: &[f64; N], part: f64| std::array::from_fn(|i| state[i] + part * h * k[i]);
+        let a = rates(state);
+        let b = rates(&along(&a, 0.5));
+        let c = rates(&along(&b, 0.5));
+        let d = rates(&along(&c, 1.0));
+        *state =
+            std::array::from_fn(|i| state[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+}
+
+fn discover(specification: &str, dataset: &str, records: [String; 2]) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    let write = |name: &str, text: &str| std::fs::write(place(name), text).expect("a file");
+    write("machine.toml", specification);
+    write("dataset.toml", dataset);
+    write("train.csv", &records[0]);
+    write("test.csv", &records[1]);
+    let paths = ["machine.toml", "dataset.toml", "found"].map(place);
+    program::run_on_dataset("discover", paths.each_ref())
+}
+
+/// Asserts that one effect is named, with values within a relative tolerance, and closes the gap.
+fn assert_named(found: &Value, effect: &str, on: &str, sizes: &[(&str, f64)], tolerance: f64) {
+    let effects = found["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{found:#}");
+    assert_eq!(effects[0]["effect"], effect, "{found:#}");
+    assert_eq!(effects[0]["on"], on, "{found:#}");
+    assert_eq!(effects[0]["status"], "named", "{found:#}");
+    for (name, value) in sizes {
+        let size = effects[0]["parameters"][name]["value"].as_f64();
+        let size = size.expect("a number");
+        assert!((size / value - 1.0).abs() < tolerance, "{name}: {size}");
+    }
+    let closed = found["closure"]["test"].as_f64().expect("a number");
+    assert!(closed > 0.98, "{closed}");
+}
+
+const AXIS: &str = r#"
+[model]
+name = "hydraulic_axis"
+
+[parameters]
+m = { value = 45, unit = "kg" }
+A = { value = 6e-4, unit = "m^2" }
+E_V = { value = 4e12, unit = "Pa/m^3" }
+K_v = { value = 6e-5, unit = "m^3/(s V)" }
+C_l = { value = 3e-12, unit = "m^3/(s Pa)" }
+b = { value = 600, unit = "N s/m" }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "V" }
+
+[states]
+p = { unit = "Pa", rate = "E_V*(K_v*u - A*dot(x) - C_l*p)" }
+
+[kinetic]
+load = "1/2*m*dot(x)^2"
+
+[dissipation]
+seals = "1/2*b*dot(x)^2"
+
+[forces]
+cylinder = { on = "x", value = "A*p" }
+"#;
+
+const AXIS_RECORDS: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.u]
+column = "u"
+unit = "V"
+
+[channels.x]
+column = "x"
+unit = "m"
+noise = 1e-5
+
+[channels.p]
+column = "p"
+unit = "Pa"
+noise = 2.5e4
+
+[initial]
+state = "rest"
+
+[windows]
+length = 0.5
+"#;
+
+fn axis_record(command: impl Fn(f64) -> f64, seed: u64) -> String {
+    let (mut noise, mut state) = (Noise(seed), [0.0; 3]);
+    let mut text = "t,u,x,p\n".to_owned();
+    for sample in 0..500 {
+        let t = 2e-3 * f64::from(sample);
+        let u = command(t);
+        let [x, _, p] = state;
+        let (x, p) = (x + 1e-5 * noise.next(), p + 2.5e4 * noise.next());
+        text += &format!("{t:.4},{u:.12e},{x:.10e},{p:.10e}\n");
+        let acting = u - u.clamp(-0.22, 0.22);
+        step(&mut state, 2e-3, 8, |[_, v, p]| {
+            let flow = 6e-5 * acting - 6e-4 * v - 3e-12 * p;
+            [*v, (6e-4 * p - 600.0 * v) / 45.0, 4e12 * flow]
+        });
+    }
+    text
+}
+
+#[test]
+fn overlap_of_a_valve_is_found() {
+    let records = [
+        axis_record(|t| 1.2 * (9.0 * t).sin() + 0.8 * (23.0 * t + 1.0).sin(), 1),
+        axis_record(|t| 0.9 * (13.0 * t).cos() + 0.7 * (31.0 * t).sin(), 2),
+    ];
+    let found = discover(AXIS, AXIS_RECORDS, records);
+    assert_named(&found, "input_dead_zone", "u", &[("u_0", 0.22)], 0.01);
+    assert_curve_of_overlap(&found["curve"]);
+}
+
+/// The curve is the part of the command that the valve does not pass on.
+fn assert_curve_of_overlap(curve: &Value) {
+    assert_eq!(curve["variable"], "u", "{curve:#}");
+    assert_eq!(curve["equation"], "u", "{curve:#}");
+    let list = |key: &str| -> Vec<f64> {
+        let list = curve[key].as_array().expect("a list");
+        list.iter().map(|x| x.as_f64().expect("a number")).collect()
+    };
+    let (knots, values) = (list("knots"), list("values"));
+    assert_eq!(knots.len(), list("band").len());
+    for (u, value) in knots.iter().zip(&values) {
+        let right = -u.clamp(-0.22, 0.22);
+        assert!((value - right).abs() < 0.04, "{u}: {value}, {right}");
+    }
+}
+
+const STAGE: &str = r#"
+[model]
+name = "stage"
+
+[parameters]
+m = { value = 2.5, unit = "kg", min = 0 }
+c = { value = 9, unit = "N s/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+force = { unit = "N" }
+
+[kinetic]
+carriage = "1/2*m*dot(x)^2"
+
+[dissipation]
+guides = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "force" }
+"#;
+
+const STAGE_RECORDS: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.force]
+column = "F"
+unit = "N"
+
+[channels.x]
+column = "x"
+unit = "mm"
+noise = 0.02
+
+[initial]
+state = "rest"
+
+[windows]
+length = 0.4
+"#;
+
+fn stage_record(force: impl Fn(f64) -> f64, seed: u64) -> String {
+    let (mut noise, mut state) = (Noise(seed), [0.0; 3]);
+    let mut text = "t,F,x\n".to_owned();
+    for sample in 0..160 {
+        let t = 5e-3 * f64::from(sample);
+        let push = force(t);
+        let x = 1e3 * state[0] + 0.02 * noise.next();
+        text += &format!("{t:.4},{push:.12e},{x:.8e}\n");
+        step(&mut state, 5e-3, 50, |[_, v, z]| {
+            let friction = 1.8 * z / 1.5e-4;
+            [
+                *v,
+                (push - 9.0 * v - friction) / 2.5,
+                v - v.abs() * z / 1.5e-4,
+            ]
+        });
+    }
+    text
+}
+
+#[test]
+fn dahl_friction_that_yields_before_it_slides_is_found() {
+    let records = [
+        stage_record(|t| 3.3 * (7.1 * t).sin() + 2.9 * (2.6 * t + 1.0).sin(), 1),
+        stage_record(|t| 2.4 * (5.2 * t + 0.5).sin() + 1.2 * (11.3 * t).sin(), 2),
+    ];
+    let found = discover(STAGE, STAGE_RECORDS, records);
+    let sizes = [("T_b", 1.8), ("p_b", 1.5e-4)];
+    assert_named(&found, "bristle_friction", "x", &sizes, 0.05);
+}
