@@ -13,6 +13,9 @@ use eomgen_sim::piecewise_linear::ExactError;
 /// Message after a stop on request.
 const STOPPED: &str = "stopped on request";
 
+/// Message after the limit of work.
+const TOO_MUCH_WORK: &str = "the limit on evaluations of the rates is reached";
+
 /// Error between reading a specification and returning a result.
 #[derive(Clone, Debug)]
 pub enum DiscoverError {
@@ -41,6 +44,8 @@ pub enum DiscoverError {
     NotExcited,
     /// Stop was requested.
     Stopped,
+    /// A fit needs more than this number of evaluations of the rates.
+    TooMuchWork(u64),
 }
 
 /// Windows in which the motion of a model cannot be simulated.
@@ -88,6 +93,8 @@ pub enum SimulationError {
     StateNotRecorded,
     /// Stop was requested.
     Stopped,
+    /// The limit of work is exceeded.
+    TooMuchWork,
 }
 
 impl fmt::Display for SimulationError {
@@ -106,6 +113,7 @@ impl fmt::Display for SimulationError {
              of a negative number)",
             ),
             Self::Stopped => f.write_str(STOPPED),
+            Self::TooMuchWork => f.write_str(TOO_MUCH_WORK),
         }
     }
 }
@@ -145,6 +153,10 @@ impl fmt::Display for DiscoverError {
                 f.write_str("the records cannot show it: it does not change the outputs")
             }
             Self::Stopped => f.write_str(STOPPED),
+            Self::TooMuchWork(most) => write!(
+                f,
+                "its fit needs more than {most:.1e} evaluations of the rates, which is the limit for these records"
+            ),
         }
     }
 }

@@ -250,6 +250,11 @@ pub const STEP_TEST_SAMPLES: usize = 100;
 /// control is used.
 pub const MAX_STEP_DOUBLINGS: u32 = 7;
 
+/// Maximum number of steps per sample of the explicit solver with error control before the implicit
+/// one is tried. Bristles that yield within 2 um need 1500 evaluations of the rates per sample with
+/// the explicit one and 18, at five times the cost, with the implicit one.
+pub const MAX_EXPLICIT_STEPS_PER_SAMPLE: u64 = 10;
+
 /// Maximum RMS error of fixed steps in a simulation that is compared, in standard deviations of the
 /// noise.
 pub const MAX_STEP_ERROR: f64 = 0.2;
@@ -700,9 +705,14 @@ pub const MIN_LAG_CORRELATION: f64 = 0.05;
 /// Ratio to the smallest residual of scanned laws up to which a law is fitted.
 pub const MAX_SCANNED_RIVAL_RATIO: f64 = 2.0;
 
+/// Maximum number of evaluations of the rates in the fit of a scanned law, per training sample. The fit
+/// of Dahl friction needs 10,000.
+pub const MAX_FIT_EVALUATIONS_PER_SAMPLE: u64 = 50_000;
+
 /// Maximum ratio of the held-out residual of a curve to its training residual: a wrong pair leaves
 /// 2 to 26 times as much.
 pub const MAX_HELD_OUT_RATIO: f64 = 1.5;
 
-/// Maximum fraction of the residual that an adequate curve leaves.
+/// Maximum fraction of the residual that an adequate curve leaves, and of the gap to the noise floor that
+/// a law leaves along the reference motion. A right law leaves up to 0.06 (a stop).
 pub const MAX_LEFT_BY_CURVE: f64 = 0.3;

@@ -128,6 +128,7 @@ pub fn complete_fit(
         initial_states,
     );
     let test = Residuals::compute(&held_out, test);
+    preliminary.model.work.check()?;
     // A fit worse than noise does not know its unknowns better than its own misfit allows.
     let inflation = train.variance_inflation();
     let numbers = problem.train.measurement_count();
@@ -147,7 +148,7 @@ pub fn complete_fit(
         prior_weight,
         train: train.or_infinite(),
         test: test.or_infinite(),
-        model: preliminary.model,
+        model: preliminary.model.without_work_limit(),
     })
 }
 

@@ -100,6 +100,7 @@ pub fn fit_beginnings(
         );
         (found, true)
     };
+    model.work.check()?;
     // Ranges of states may depend on the result: a more compliant joint moves farther.
     let ranges = problem.compute_state_ranges(&model, &shooting.parameter_values(&found.theta));
     Ok(PreliminaryFit {

@@ -22,6 +22,7 @@ use crate::model::output_times::OutputRate;
 use crate::model::simulation::Simulation;
 use crate::model::stop::StopRequest;
 use crate::model::unknowns::ExpectedSensor;
+use crate::model::work::WorkLimit;
 use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
@@ -53,6 +54,8 @@ pub struct EstimationModel {
     refinement: f64,
     /// Stop request of its simulations.
     pub(crate) stop: StopRequest,
+    /// Work of its simulations, and its limit.
+    pub(crate) work: WorkLimit,
 }
 
 /// Differences between Runge-Kutta steps of one length and of half of it are so many times the error of
@@ -140,8 +143,15 @@ impl EstimationModel {
             sample: 0.0,
             refinement: 1.0,
             stop: StopRequest::default(),
+            work: WorkLimit::default(),
             compiled,
         })
+    }
+
+    /// Removes the limit of work, which is that of one fit.
+    pub(crate) fn without_work_limit(mut self) -> Self {
+        self.work = WorkLimit::default();
+        self
     }
 
     /// Moves a state into the domain of the model.
@@ -308,6 +318,7 @@ impl EstimationModel {
             let of = (&self.measured, self.typical_sizes());
             let mut simulation = Simulation::new(of, evaluator, None, None);
             simulation.stop = self.stop.clone();
+            simulation.work = self.work.clone();
             simulation.use_given_motion(given);
             return Ok(simulation);
         }
@@ -316,6 +327,7 @@ impl EstimationModel {
         let of = (&self.measured, self.typical_sizes());
         let mut simulation = Simulation::new(of, evaluator, linear_outputs, longest_step);
         simulation.stop = self.stop.clone();
+        simulation.work = self.work.clone();
         if self.measured.has_rates() {
             // A model without a derivation with sides is not held either.
             simulation.measure_sticking(self.compiled.sided_model(values).ok().flatten());

@@ -4,7 +4,7 @@
 //! ([`input_faults`]), and the [`problem`] that all fits to one dataset share. [`channel_checks`]
 //! compares columns with the model; [`output_times`] are the times of computed outputs;
 //! `given_motion` contains the inverse dynamics; [`smoothing`] has no delay; [`stop`] ends a search
-//! early.
+//! early, `work` a fit that costs too much.
 
 pub(crate) mod affine_values;
 pub mod channel_checks;
@@ -26,3 +26,4 @@ pub mod specification_texts;
 pub mod stop;
 pub mod unknowns;
 pub mod usual_rates;
+pub(crate) mod work;

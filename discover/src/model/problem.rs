@@ -10,6 +10,7 @@ use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
 use crate::model::output_times::OutputRate;
 use crate::model::stop::StopRequest;
+use crate::model::work::WorkLimit;
 use crate::thresholds;
 use eomgen_records::dataset::{Dataset, StartSource};
 use eomgen_records::record::Record;
@@ -37,6 +38,8 @@ pub struct EstimationProblem<'d> {
     pub stop: StopRequest,
     /// Number of hypotheses tested on the test records.
     pub tested_hypotheses: TestCounter,
+    /// Maximum number of evaluations of the rates in a fit.
+    most_evaluations: u64,
 }
 
 /// Number of hypotheses tested on the test records, over all threads, for the correction of
@@ -86,6 +89,24 @@ impl<'d> EstimationProblem<'d> {
             path: path.to_owned(),
             stop: StopRequest::default(),
             tested_hypotheses: TestCounter::default(),
+            most_evaluations: u64::MAX,
+        }
+    }
+
+    /// Returns the problem with this maximum number of evaluations of the rates in each fit.
+    pub fn limit_evaluations(&self, most: u64) -> Self {
+        Self {
+            dataset: self.dataset,
+            noise: self.noise.clone(),
+            output_rate: self.output_rate,
+            train: self.train.clone(),
+            test: self.test.clone(),
+            order: self.order,
+            path: self.path.clone(),
+            states: self.states.clone(),
+            stop: self.stop.clone(),
+            tested_hypotheses: TestCounter::default(),
+            most_evaluations: most,
         }
     }
 
@@ -104,6 +125,7 @@ impl<'d> EstimationProblem<'d> {
         let channels = &self.dataset.channels;
         let mut model = EstimationModel::derive(text, linear, &self.path, self.order, channels)?;
         model.stop = self.stop.clone();
+        model.work = WorkLimit::new(self.most_evaluations);
         let record = &self.dataset.train[0];
         let first = self.estimate_first_state(&model, record);
         let numbers = self.train.measurement_count();

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_compiled_model::{DrivenModel, SidedModel, StickingMotion};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Settings, simulate};
+use eomgen_sim::ode::{Method, Settings, SolveError, Trajectory, simulate_into};
 use eomgen_sim::piecewise_linear::Propagator;
 
 use crate::error::SimulationError;
@@ -18,6 +18,7 @@ use crate::model::longest_step::LongestStep;
 use crate::model::measured_outputs::{MeasuredOutputs, OutputBuffers};
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::stop::StopRequest;
+use crate::model::work::WorkLimit;
 use crate::thresholds;
 use eomgen_sim::exponential::{
     Directions, DrivingAccelerations, ExponentialIntegrator, Force, MovedParameters, Options,
@@ -48,6 +49,8 @@ pub struct Simulation<'m> {
     most_steps: u64,
     /// Stop request that ends simulations.
     pub(crate) stop: StopRequest,
+    /// Work of simulations, and its limit.
+    pub(crate) work: WorkLimit,
 }
 
 /// Drives of tangent vectors: differences of accelerations.
@@ -121,6 +124,7 @@ impl<'m> Simulation<'m> {
             given: None,
             most_steps: thresholds::MAX_SOLVER_STEPS,
             stop: StopRequest::default(),
+            work: WorkLimit::default(),
         }
     }
 
@@ -204,7 +208,7 @@ impl<'m> Simulation<'m> {
         (by_state, by_parameter): (bool, usize),
         driven: NeighbourDrives<'_>,
     ) -> Option<LinearisedMotion> {
-        self.stop.check_not_stopped().ok()?;
+        self.check_may_simulate().ok()?;
         let linear_outputs = self.linear_outputs.as_ref()?;
         let integrator = self.integrator.as_mut()?;
         let n = initial.len();
@@ -219,6 +223,8 @@ impl<'m> Simulation<'m> {
         );
         let mut found = LinearisedMotion::default();
         let free = if by_state { n } else { 0 };
+        let vectors = free + by_parameter + driven.count;
+        self.work.add((samples.len() * (1 + vectors)) as u64);
         let options = Options {
             force: self.remainder.as_mut().map(|force| force as &mut dyn Force),
             tangents: Some(&mut tangents),
@@ -248,6 +254,17 @@ impl<'m> Simulation<'m> {
         Some(found)
     }
 
+    /// Returns an error after a stop request or beyond the limit of work.
+    fn check_may_simulate(&self) -> Result<(), SimulationError> {
+        if self.stop.is_requested() {
+            return Err(SimulationError::Stopped);
+        }
+        match self.work.is_exceeded() {
+            true => Err(SimulationError::TooMuchWork),
+            false => Ok(()),
+        }
+    }
+
     /// Returns the states at the samples (s, ascending) of a motion that starts at the first
     /// sample.
     ///
@@ -264,9 +281,7 @@ impl<'m> Simulation<'m> {
             return Ok(Vec::new());
         };
         let span = (*begin, *end);
-        if self.stop.is_requested() {
-            return Err(SimulationError::Stopped);
-        }
+        self.check_may_simulate()?;
         if let Some(given) = &self.given {
             let state = |t: &f64| Some(given.state_of_row(inputs.last_sample(*t))?.to_vec());
             let states: Option<Vec<Vec<f64>>> = samples.iter().map(state).collect();
@@ -274,6 +289,7 @@ impl<'m> Simulation<'m> {
         }
         if let Some(integrator) = &mut self.integrator {
             let mut states = Vec::with_capacity(samples.len());
+            self.work.add(samples.len() as u64);
             let options = Options {
                 force: self.remainder.as_mut().map(|force| force as &mut dyn Force),
                 tangents: None,
@@ -286,6 +302,7 @@ impl<'m> Simulation<'m> {
         if let Some(propagator) = &mut self.propagator {
             let trajectory = propagator.simulate(initial, span, samples, inputs, &mut |_| {});
             if let Ok(trajectory) = trajectory {
+                self.work.add(trajectory.statistics.steps);
                 return Ok(trajectory.states);
             }
         }
@@ -293,19 +310,48 @@ impl<'m> Simulation<'m> {
             let states = self.by_runge_kutta(initial, samples, inputs, longest_step);
             return states.ok_or(SimulationError::Diverged);
         }
-        let settings = Settings {
-            max_steps: self.most_steps,
-            max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
-            ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
-        };
-        let driven = DrivenModel::new(&self.evaluator, inputs)
-            .with_typical_sizes(self.typical_sizes)
-            .with_sides(self.sided.take(), settings.tolerance);
-        let found = simulate(&driven, initial, span, samples, &settings, &mut |_| {});
-        self.sided = driven.into_sided_model();
-        found
-            .map(|trajectory| trajectory.states)
-            .map_err(SimulationError::Solver)
+        self.by_error_control(initial, samples, inputs)
+    }
+
+    /// Returns the states at the samples by solvers with error control. If the explicit one needs
+    /// many steps per sample, the implicit one is tried.
+    fn by_error_control(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Vec<Vec<f64>>, SimulationError> {
+        let few = thresholds::MAX_EXPLICIT_STEPS_PER_SAMPLE * samples.len() as u64;
+        for (method, most_steps, is_last) in [
+            (Method::DormandPrince853, few, few >= self.most_steps),
+            (Method::Radau, few, false),
+            (Method::DormandPrince853, self.most_steps, true),
+        ] {
+            let settings = Settings {
+                method,
+                max_steps: most_steps.min(self.most_steps).min(self.work.left()).max(1),
+                max_switch_rate: thresholds::MAX_SWITCHES_PER_SECOND,
+                ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
+            };
+            let driven = DrivenModel::new(&self.evaluator, inputs)
+                .with_typical_sizes(self.typical_sizes)
+                .with_sides(self.sided.take(), settings.tolerance);
+            let mut trajectory = Trajectory::default();
+            let (span, asked) = ((samples[0], samples[samples.len() - 1]), samples);
+            let asked = (initial, span, asked);
+            let ended = simulate_into(&mut trajectory, &driven, asked, &settings, &mut |_| {});
+            self.sided = driven.into_sided_model();
+            self.work.add(trajectory.statistics.evaluations);
+            match ended {
+                Ok(()) => return Ok(trajectory.states),
+                Err(SolveError::TooManySteps { .. }) if !is_last => {}
+                // The implicit method finds no step: the explicit one may.
+                Err(_) if method == Method::Radau => {}
+                Err(error) => return Err(SimulationError::Solver(error)),
+            }
+            self.check_may_simulate()?;
+        }
+        Err(SimulationError::Diverged)
     }
 
     /// The states at the samples by classical Runge-Kutta steps, none of them longer than the longest; none
@@ -325,6 +371,7 @@ impl<'m> Simulation<'m> {
         for pair in samples.windows(2) {
             let steps = longest_step.count_steps(pair[1] - pair[0]);
             let h = (pair[1] - pair[0]) / steps as f64;
+            self.work.add(4 * steps as u64);
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
                 // Half a step on, so that rounding of a sample's time does not decide.
@@ -392,7 +439,7 @@ impl<'m> Simulation<'m> {
         inputs: &HeldInputs,
         steps: &[f64],
     ) -> Option<OutputTangents> {
-        self.stop.check_not_stopped().ok()?;
+        self.check_may_simulate().ok()?;
         let span = (*samples.first()?, *samples.last()?);
         let count = initial.len();
         let unit = |state: usize| {
@@ -405,6 +452,7 @@ impl<'m> Simulation<'m> {
         let found = propagator
             .simulate_with_derivatives(initial, span, samples, inputs, directions)
             .ok()?;
+        self.work.add((samples.len() * (1 + count)) as u64);
         let channels = self.measured.count();
         let mut outputs = Outputs::default();
         let mut derivatives = Vec::with_capacity(samples.len() * count * channels);
@@ -478,5 +526,81 @@ impl<'m> Simulation<'m> {
         let point = Point { t, state, inputs };
         self.evaluator.get_mut().rates(point, &mut rates);
         rates
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::estimation_model::EstimationModel;
+    use crate::model::work::WorkLimit;
+
+    const STAGE: &str = r#"[model]
+name = "stage"
+[parameters]
+p = { value = 1e-6, unit = "m" }
+m = { value = 1, unit = "kg" }
+T = { value = 1, unit = "N" }
+[coordinates]
+x = { unit = "m" }
+[states]
+z = { unit = "m", rate = "dot(x) - abs(dot(x))*z/p" }
+[kinetic]
+carriage = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "2*T - T*z/p" }
+"#;
+
+    fn stage() -> EstimationModel {
+        EstimationModel::derive_equations(STAGE, "stage", None, &[]).expect("a model")
+    }
+
+    fn samples() -> Vec<f64> {
+        (0..=20).map(|k| 5e-3 * f64::from(k)).collect()
+    }
+
+    /// Integrates the stage by classical Runge-Kutta steps of 1 us; returns the position at the end.
+    fn integrate_stage() -> f64 {
+        let rates = |[_, v, z]: [f64; 3]| [v, 2.0 - z / 1e-6, v - v.abs() * z / 1e-6];
+        let h = 1e-6;
+        let mut state = [0.0; 3];
+        for _ in 0..100_000 {
+            let along = |k: [f64; 3], part: f64| [0, 1, 2].map(|i| state[i] + part * h * k[i]);
+            let a = rates(state);
+            let b = rates(along(a, 0.5));
+            let c = rates(along(b, 0.5));
+            let d = rates(along(c, 1.0));
+            state = [0, 1, 2].map(|i| state[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+        }
+        state[0]
+    }
+
+    #[test]
+    fn stiff_bristles_need_few_evaluations() {
+        let model = stage();
+        let mut simulation = model
+            .create_simulation(&model.values)
+            .expect("a simulation");
+        let inputs = HeldInputs::zero(0);
+        let states = simulation.simulate_states(&[0.0; 3], &samples(), &inputs);
+        let end = states.expect("states")[20][0];
+        let right = integrate_stage();
+        assert!((end / right - 1.0).abs() < 1e-5, "{end}, {right}");
+        // The explicit method alone needs 1000 per sample.
+        assert!(model.work.done() < 200 * 20, "{}", model.work.done());
+    }
+
+    #[test]
+    fn simulations_beyond_the_limit_fail() {
+        let mut model = stage();
+        model.work = WorkLimit::new(100);
+        let mut simulation = model
+            .create_simulation(&model.values)
+            .expect("a simulation");
+        let inputs = HeldInputs::zero(0);
+        let mut run = || simulation.simulate_states(&[0.0; 3], &samples(), &inputs);
+        assert!(run().is_err());
+        assert_eq!(run(), Err(SimulationError::TooMuchWork));
+        assert!(model.work.check().is_err());
     }
 }
