@@ -1,7 +1,7 @@
 //! Reference motion, linearised model and segments that laws and curves are compared with.
 
 use crate::fit::fit_result::Fit;
-use crate::free_function::drives::DrivenModel;
+use crate::free_function::drives::{DrivenModel, average_drive, is_visible};
 use crate::free_function::nuisances::respond_to_unknowns;
 use crate::free_function::reference_motion::ReferenceMotion;
 use crate::free_function::segments::Segments;
@@ -43,5 +43,17 @@ impl<'s> Scene<'s> {
             base,
             segments,
         })
+    }
+
+    /// Returns the residual of training and test records in short segments with the accelerations of
+    /// another fit, in standard deviations; `None` if it has further coordinates or the same
+    /// accelerations.
+    pub fn evaluate_fit(&self, fit: &Fit) -> Option<f64> {
+        let shooting = fit.training_shooting(self.problem);
+        let values = shooting.parameter_values(&fit.train.estimate.theta);
+        let mut moved = DrivenModel::with_added_states(&self.fit.model, &fit.model, &values)?;
+        let drive = average_drive(&self.motion, &self.base, &mut moved, 1.0);
+        let left = || self.segments.fit_drives(&self.motion, &[], Some(&drive));
+        is_visible(&drive).then(|| left().rms())
     }
 }

@@ -82,7 +82,9 @@ pub fn fit_preliminary(
     pool: &CandidatePool<'_>,
     hypothesis: &Hypothesis,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let (problem, fit) = (pool.context.problem, pool.context.fit);
+    let fit = pool.context.fit;
+    let limited = (pool.most_evaluations).map(|most| pool.context.problem.limit_evaluations(most));
+    let problem = limited.as_ref().unwrap_or(pool.context.problem);
     problem.stop.check_not_stopped()?;
     let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.size_fractions[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;

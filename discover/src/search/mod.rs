@@ -51,7 +51,7 @@ use crate::search::answer_selection::select_answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::RoundContext;
 use crate::search::hypothesis_fits::FittedHypothesis;
-use crate::search::rejected_candidates::note_rejected;
+use crate::search::rejected_candidates::{note_rejected, note_unfitted};
 use crate::search::round::SearchRound;
 use crate::search::scanned_laws::{ScanResult, scan_records};
 use crate::search::search_result::{AcceptedEffect, RejectedCandidate, SearchResult, TestGap};
@@ -74,23 +74,12 @@ pub fn search(
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<SearchResult, DiscoverError> {
-    let mut found = select_forward(problem, null, effects, floor, progress)?;
-    if found.unfinished.is_none() && !found.best_fit().is_at_floor(floor) {
-        scan_laws(problem, &mut found, effects, floor, progress);
-    }
-    problem.stop.remove_time_limit();
-    problem.stop.check_not_stopped()?;
-    Ok(found)
-}
-
-/// Accepts effect after effect, each with the largest explained part of what the others leave.
-fn select_forward(
-    problem: &EstimationProblem<'_>,
-    null: Fit,
-    effects: &[Effect],
-    floor: f64,
-    progress: &(dyn Fn(&str) + Sync),
-) -> Result<SearchResult, DiscoverError> {
+    let search = Search {
+        problem,
+        floor,
+        effects,
+        progress,
+    };
     let mut found = SearchResult {
         null_fit: null,
         extended_fit: None,
@@ -100,100 +89,148 @@ fn select_forward(
         curve: None,
         unfinished: None,
     };
-    while found.accepted.len() < thresholds::MAX_EFFECTS {
-        let fit = found.extended_fit.as_ref().unwrap_or(&found.null_fit);
-        if fit.is_at_floor(floor) {
-            break;
-        }
-        let (number, most) = (found.accepted.len() + 1, thresholds::MAX_EFFECTS);
-        progress(&format!(
-            "effect {number} of at most {most}: the residual is {:.1} standard deviations, the noise floor \
-             {floor:.1}",
-            fit.rms()
-        ));
-        let round = SearchRound {
-            context: RoundContext {
-                problem,
-                fit,
-                floor,
-                effects,
-                progress,
-            },
-            is_first_round: found.accepted.is_empty(),
-        };
-        let mut tested = round.test_candidates();
-        let so_far = describe_unfinished(&tested);
-        if problem.stop.is_time_over() {
-            found.unfinished = Some(so_far);
-            break;
-        }
-        problem.stop.check_not_stopped()?;
-        note_rejected(&mut found.rejected, &tested);
-        let unconfirmed = find_unconfirmed(&mut tested, fit);
-        let selected = select_answer(&round, tested);
-        if problem.stop.is_time_over() {
-            found.unfinished = Some(so_far);
-            break;
-        }
-        let Some(selected) = selected else {
-            found.unconfirmed = unconfirmed;
-            break;
-        };
-        accept(&mut found, selected);
-        eliminate_backwards(problem, &mut found, progress);
+    let is_scanned = search.select_forward(&mut found)?;
+    if !is_scanned && found.unfinished.is_none() && !found.best_fit().is_at_floor(floor) {
+        search.scan_laws(&mut found);
     }
+    problem.stop.remove_time_limit();
+    problem.stop.check_not_stopped()?;
     Ok(found)
 }
 
-/// Scans laws with a shape or a memory. One that reaches the noise floor, also in held-out records,
-/// and leaves clearly less than the answer of the search, replaces it.
-fn scan_laws(
-    problem: &EstimationProblem<'_>,
-    found: &mut SearchResult,
-    effects: &[Effect],
+/// Search for the missing effects of a model.
+struct Search<'s> {
+    problem: &'s EstimationProblem<'s>,
+    /// Noise floor, in standard deviations.
     floor: f64,
-    progress: &(dyn Fn(&str) + Sync),
-) {
-    let context = RoundContext {
-        problem,
-        fit: &found.null_fit,
-        floor,
-        effects,
-        progress,
-    };
-    let scan = scan_records(context);
-    if problem.stop.is_time_over() {
-        found.unfinished = Some("laws with a shape or a memory were not all scanned".to_owned());
-        return;
+    effects: &'s [Effect],
+    /// Receiver of progress lines.
+    progress: &'s (dyn Fn(&str) + Sync),
+}
+
+impl Search<'_> {
+    fn context<'r>(&'r self, fit: &'r Fit) -> RoundContext<'r> {
+        RoundContext {
+            problem: self.problem,
+            fit,
+            floor: self.floor,
+            effects: self.effects,
+            progress: self.progress,
+        }
     }
-    let Some(ScanResult { curve, tested }) = scan else {
-        return;
-    };
-    found.curve = curve;
-    let Some(mut tested) = tested else {
-        return;
-    };
-    note_rejected(&mut found.rejected, std::slice::from_ref(&tested));
-    let best = found.best_fit();
-    tested
-        .fitted_hypotheses
-        .retain(|FittedHypothesis { fit, .. }| {
-            fit.is_at_floor(floor) && fit.is_clearly_below(best)
-        });
-    let Some(selected) = select_hypothesis(context, tested) else {
-        return;
-    };
-    for AcceptedEffect { candidate, .. } in found.accepted.drain(..) {
-        progress(&format!("  {} is no longer needed", candidate.label()));
-        found.rejected.push(RejectedCandidate {
-            candidate,
-            reason: "a law that was found by a scan leaves less without it".to_owned(),
-            is_untestable: false,
-            p_value: None,
-        });
+
+    /// Accepts effect after effect, each with the largest explained part of what the others leave.
+    /// Returns true if laws were scanned.
+    fn select_forward(&self, found: &mut SearchResult) -> Result<bool, DiscoverError> {
+        let Self {
+            problem,
+            floor,
+            progress,
+            ..
+        } = *self;
+        let mut is_scanned = false;
+        while found.accepted.len() < thresholds::MAX_EFFECTS {
+            let fit = found.best_fit();
+            if fit.is_at_floor(floor) {
+                break;
+            }
+            let (number, most) = (found.accepted.len() + 1, thresholds::MAX_EFFECTS);
+            progress(&format!(
+                "effect {number} of at most {most}: the residual is {:.1} standard deviations, the noise floor \
+                 {floor:.1}",
+                fit.rms()
+            ));
+            let is_first_round = found.accepted.is_empty();
+            let round = SearchRound {
+                context: self.context(fit),
+                is_first_round,
+            };
+            let singles = round.test_single_candidates();
+            // Pairs are many: a law that explains the records alone comes before them.
+            if is_first_round && singles.lacks_effect() && !problem.stop.is_requested() {
+                is_scanned = true;
+                note_rejected(&mut found.rejected, &singles.tested);
+                self.scan_laws(found);
+                if !found.accepted.is_empty() || found.unfinished.is_some() {
+                    break;
+                }
+            }
+            let fit = found.extended_fit.as_ref().unwrap_or(&found.null_fit);
+            let round = SearchRound {
+                context: self.context(fit),
+                is_first_round,
+            };
+            let mut tested = round.test_pairs(singles);
+            let so_far = describe_unfinished(&tested);
+            if problem.stop.is_time_over() {
+                found.unfinished = Some(so_far);
+                break;
+            }
+            problem.stop.check_not_stopped()?;
+            note_rejected(&mut found.rejected, &tested);
+            let unconfirmed = find_unconfirmed(&mut tested, fit);
+            let selected = select_answer(&round, tested);
+            if problem.stop.is_time_over() {
+                found.unfinished = Some(so_far);
+                break;
+            }
+            let Some(selected) = selected else {
+                found.unconfirmed = unconfirmed;
+                break;
+            };
+            accept(found, selected);
+            eliminate_backwards(problem, found, progress);
+        }
+        Ok(is_scanned)
     }
-    (found.extended_fit, found.unconfirmed) = (None, None);
-    accept(found, selected);
+
+    /// Scans laws with a shape or a memory. One that reaches the noise floor, also in held-out records,
+    /// and leaves clearly less than the answer of the search, replaces it.
+    fn scan_laws(&self, found: &mut SearchResult) {
+        let context = self.context(&found.null_fit);
+        let scan = scan_records(context, found.best_fit());
+        if self.problem.stop.is_time_over() {
+            found.unfinished =
+                Some("laws with a shape or a memory were not all scanned".to_owned());
+            return;
+        }
+        let Some(ScanResult {
+            curve,
+            tested,
+            unfitted,
+        }) = scan
+        else {
+            return;
+        };
+        found.curve = curve;
+        if let Some(tested) = &tested {
+            note_rejected(&mut found.rejected, std::slice::from_ref(tested));
+        }
+        note_unfitted(&mut found.rejected, unfitted);
+        let Some(mut tested) = tested else {
+            return;
+        };
+        let best = found.best_fit();
+        tested
+            .fitted_hypotheses
+            .retain(|FittedHypothesis { fit, .. }| {
+                fit.is_at_floor(self.floor) && fit.is_clearly_below(best)
+            });
+        let Some(selected) = select_hypothesis(context, tested) else {
+            return;
+        };
+        for AcceptedEffect { candidate, .. } in found.accepted.drain(..) {
+            (self.progress)(&format!("  {} is no longer needed", candidate.label()));
+            found.rejected.push(RejectedCandidate {
+                candidate,
+                reason: "a law that was found by a scan leaves less without it".to_owned(),
+                is_untestable: false,
+                p_value: None,
+            });
+        }
+        (found.extended_fit, found.unconfirmed) = (None, None);
+        accept(found, selected);
+    }
 }
 
 /// Takes what is named over, with the candidates that are indistinguishable from it.

@@ -21,6 +21,8 @@ pub struct CandidatePool<'r> {
     pub max_preliminary_fits: usize,
     /// Fractions of the predicted sizes from which fits begin; the best is used.
     pub size_fractions: &'r [f64],
+    /// Maximum number of evaluations of the rates in a fit, if there is a limit.
+    pub most_evaluations: Option<u64>,
 }
 
 impl<'r> CandidatePool<'r> {
@@ -38,6 +40,7 @@ impl<'r> CandidatePool<'r> {
             uses_whole_windows: is_whole,
             max_preliminary_fits: thresholds::MAX_PRELIMINARY_FITS,
             size_fractions: &thresholds::INITIAL_SIZE_FRACTIONS,
+            most_evaluations: None,
         }
     }
 

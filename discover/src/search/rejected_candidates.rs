@@ -40,6 +40,21 @@ pub fn note_rejected(rejected: &mut Vec<RejectedCandidate>, round: &[TestedPool]
     }
 }
 
+/// Notes candidates without a fit. A result of a fit is kept, and that the records cannot show one.
+pub fn note_unfitted(rejected: &mut Vec<RejectedCandidate>, unfitted: Vec<RejectedCandidate>) {
+    for new in unfitted {
+        let label = new.candidate.label();
+        let is_same = |known: &RejectedCandidate| known.candidate.label() == label;
+        let is_kept = |known: &RejectedCandidate| {
+            is_same(known) && (known.p_value.is_some() || known.is_untestable)
+        };
+        if !rejected.iter().any(is_kept) {
+            rejected.retain(|known| !is_same(known));
+            rejected.push(new);
+        }
+    }
+}
+
 /// Why each candidate of a pool was not taken; what is taken in the end is in it, too.
 fn reasons(tested: &TestedPool) -> Vec<(&Candidate, Reason)> {
     let screening = &tested.screening;

@@ -30,9 +30,26 @@ pub struct SearchRound<'l> {
     pub is_first_round: bool,
 }
 
+/// Tests of a round before pairs.
+pub struct RoundTests {
+    /// Tested pools: one for each excitation window, and the parameters that are not declared uncertain.
+    pub tested: Vec<TestedPool>,
+    seen: Vec<ExcitationWindow>,
+    has_offsets: bool,
+    /// True if an accepted hypothesis leaves too little for pairs.
+    is_explained: bool,
+}
+
+impl RoundTests {
+    /// Returns true if pairs follow and no single candidate is accepted.
+    pub fn lacks_effect(&self) -> bool {
+        !self.is_explained && !is_any(&self.tested, &|fitted| fitted.verdict.is_ok())
+    }
+}
+
 impl SearchRound<'_> {
-    /// Tests candidates and returns all tested pools.
-    pub fn test_candidates(&self) -> Vec<TestedPool> {
+    /// Tests single candidates.
+    pub fn test_single_candidates(&self) -> RoundTests {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
         let mut has_offsets = false;
@@ -82,7 +99,23 @@ impl SearchRound<'_> {
                 let mut fitted = offsets.fitted_hypotheses.iter();
                 fitted.any(|fitted| self.is_near_floor(fitted))
             });
-        if !is_explained_by_offset && !is_any(&tested, &is_explained) {
+        RoundTests {
+            is_explained: is_explained_by_offset || is_any(&tested, &is_explained),
+            tested,
+            seen,
+            has_offsets,
+        }
+    }
+
+    /// Tests pairs if no single candidate explains the records, and returns all tested pools.
+    pub fn test_pairs(&self, singles: RoundTests) -> Vec<TestedPool> {
+        let RoundTests {
+            mut tested,
+            seen,
+            mut has_offsets,
+            is_explained,
+        } = singles;
+        if !is_explained {
             self.add_pairs(&seen, &mut tested);
         }
         let is_accepted = |fitted: &FittedHypothesis| fitted.verdict.is_ok();

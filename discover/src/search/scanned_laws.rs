@@ -3,8 +3,9 @@
 
 use crate::catalogue::candidate::{Candidate, list_candidates};
 use crate::catalogue::sites::find_sites;
+use crate::fit::fit_result::Fit;
 use crate::free_function::curves::{Curve, fit_curves};
-use crate::free_function::law_scan::{LawScan, ScannedLaw, scan_laws};
+use crate::free_function::law_scan::{ScannedLaw, scan_laws};
 use crate::free_function::scene::Scene;
 use crate::ids::ResponseId;
 use crate::search::context::RoundContext;
@@ -14,6 +15,7 @@ use crate::search::hypothesis_fits::{run_full_fits, run_preliminary_fits};
 use crate::search::motion_of_fit::compute_usual_motion;
 use crate::search::pool::CandidatePool;
 use crate::search::screening::screen_candidates;
+use crate::search::search_result::RejectedCandidate;
 use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
@@ -23,48 +25,78 @@ pub struct ScanResult {
     pub curve: Option<Curve>,
     /// The best laws with their fits; `None` if none promises a smaller residual.
     pub tested: Option<TestedPool>,
+    /// Laws without a fit.
+    pub unfitted: Vec<RejectedCandidate>,
 }
 
 /// Scans free functions and laws along the motion that the records show, and fits the best laws.
-/// `None` if the records cannot be followed.
-pub fn scan_records(context: RoundContext<'_>) -> Option<ScanResult> {
+/// `answer`: fit with the accepted effects. `None` if the records cannot be followed.
+pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResult> {
     (context.progress)("a gap remains: scanning laws along the motion that the records show");
     let scene = Scene::follow_records(context.problem, context.fit)?;
     let curve = find_adequate_curve(context, &scene);
+    let scan = scan_laws(&scene, &list_laws(context));
+    let Some(best) = scan.laws.first() else {
+        return Some(ScanResult {
+            curve,
+            tested: None,
+            unfitted: Vec::new(),
+        });
+    };
+    (context.progress)(&format!(
+        "scanned {} laws over decades; best: {}, which leaves {:.2} of {:.2} standard deviations in short \
+         segments",
+        scan.laws.len(),
+        best.candidate.label(),
+        best.rms,
+        scan.rms_without
+    ));
+    // A law that leaves as much as the accepted effects does not replace them. One that leaves much
+    // of the gap, or much more than a free function, is not what is missing.
+    let by_answer = scene.evaluate_fit(answer).unwrap_or(scan.rms_without);
+    let by_curve = curve
+        .as_ref()
+        .map_or(f64::INFINITY, |curve| curve.train_rms.max(curve.test_rms));
+    let gap = (scan.rms_without - context.floor).max(0.0);
+    let most = (thresholds::MAX_SCANNED_RIVAL_RATIO * by_curve.min(best.rms))
+        .min((1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * by_answer.min(scan.rms_without))
+        .min(context.floor + thresholds::MAX_LEFT_BY_CURVE * gap);
+    let mut laws = scan.laws;
+    let count = laws.iter().take_while(|law| law.rms < most).count();
+    let others = laws.split_off(count.min(thresholds::MAX_FULL_FITS_PER_ROUND));
+    let mut unfitted: Vec<RejectedCandidate> = others
+        .into_iter()
+        .map(|law| {
+            let reason = format!(
+                "along the motion that the records show it leaves {:.2} standard deviations in short segments, \
+                 the accepted effects {by_answer:.2}",
+                law.rms
+            );
+            reject_unfitted(law.candidate, reason)
+        })
+        .collect();
+    if laws.is_empty() {
+        (context.progress)(&format!(
+            "no law leaves little, and clearly less than the accepted effects, {by_answer:.2} standard deviations"
+        ));
+        return Some(ScanResult {
+            curve,
+            tested: None,
+            unfitted,
+        });
+    }
+    let tested = fit_scanned_laws(context, laws);
+    unfitted.extend(list_failed(context, &tested));
     Some(ScanResult {
-        tested: fit_scanned_laws(context, &scene, curve.as_ref()),
         curve,
+        tested: Some(tested),
+        unfitted,
     })
 }
 
-/// Fits the best laws of a scan from their scanned shapes and sizes. `curve`: adequate free function,
-/// if there is one.
-fn fit_scanned_laws(
-    context: RoundContext<'_>,
-    scene: &Scene<'_>,
-    curve: Option<&Curve>,
-) -> Option<TestedPool> {
-    let LawScan { laws, rms_without } = scan_laws(scene, &list_laws(context));
-    let best = laws.first()?;
-    (context.progress)(&format!(
-        "scanned {} laws over decades; best: {}, which leaves {:.2} of {rms_without:.2} standard deviations \
-         in short segments",
-        laws.len(),
-        best.candidate.label(),
-        best.rms
-    ));
-    // A law that leaves much more than a free function is not what is missing.
-    let least = curve.map_or(f64::INFINITY, |curve| curve.train_rms.max(curve.test_rms));
-    let most = (thresholds::MAX_SCANNED_RIVAL_RATIO * least.min(best.rms))
-        .min((1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * rms_without);
-    let chosen: Vec<ScannedLaw> = (laws.into_iter())
-        .take_while(|law| law.rms < most)
-        .take(thresholds::MAX_FULL_FITS_PER_ROUND)
-        .collect();
-    if chosen.is_empty() {
-        return None;
-    }
-    let candidates: Vec<Candidate> = chosen.iter().map(|law| law.candidate.clone()).collect();
+/// Fits laws of a scan from their scanned shapes and sizes.
+fn fit_scanned_laws(context: RoundContext<'_>, laws: Vec<ScannedLaw>) -> TestedPool {
+    let candidates: Vec<Candidate> = laws.iter().map(|law| law.candidate.clone()).collect();
     let window = match context.starts_with_whole_windows() {
         true => ExcitationWindow::Whole,
         false => ExcitationWindow::Beginnings,
@@ -76,9 +108,12 @@ fn fit_scanned_laws(
         window.window_fraction(),
     );
     let is_whole = window == ExcitationWindow::Whole;
-    let pool = CandidatePool::new(context, &candidates, &screening, is_whole);
+    let pool = CandidatePool {
+        most_evaluations: Some(limit_evaluations(context)),
+        ..CandidatePool::new(context, &candidates, &screening, is_whole)
+    };
     let hypotheses = ResponseId::first(screening.responses.len()).map(|response| {
-        let law = &chosen[screening.responses[response].candidate.index()];
+        let law = &laws[screening.responses[response].candidate.index()];
         Hypothesis {
             responses: vec![response],
             replaced_parameter: None,
@@ -87,11 +122,43 @@ fn fit_scanned_laws(
     });
     let preliminaries = run_preliminary_fits(&pool, hypotheses.collect());
     let fitted_hypotheses = run_full_fits(&pool, preliminaries);
-    Some(TestedPool {
+    TestedPool {
         candidates,
         screening,
         fitted_hypotheses,
-    })
+    }
+}
+
+/// Returns the maximum number of evaluations of the rates in the fit of a law.
+fn limit_evaluations(context: RoundContext<'_>) -> u64 {
+    let records = context.problem.dataset.train.iter();
+    let samples: usize = records.map(|record| record.times.len()).sum();
+    thresholds::MAX_FIT_EVALUATIONS_PER_SAMPLE * samples as u64
+}
+
+/// Returns the screened laws whose fit failed.
+fn list_failed(context: RoundContext<'_>, tested: &TestedPool) -> Vec<RejectedCandidate> {
+    let responses = ResponseId::first(tested.screening.responses.len());
+    let failed = responses.filter(|response| {
+        let mut fitted = tested.fitted_hypotheses.iter();
+        !fitted.any(|fitted| fitted.responses.contains(response))
+    });
+    let most = limit_evaluations(context) as f64;
+    let reject = |response: ResponseId| {
+        let candidate = tested.screening.responses[response].candidate;
+        let reason = format!("no fit succeeds within {most:.1e} evaluations of the rates");
+        reject_unfitted(tested.candidates[candidate].clone(), reason)
+    };
+    failed.map(reject).collect()
+}
+
+fn reject_unfitted(candidate: Candidate, reason: String) -> RejectedCandidate {
+    RejectedCandidate {
+        candidate,
+        reason,
+        is_untestable: false,
+        p_value: None,
+    }
 }
 
 /// Returns the candidates at all sites.

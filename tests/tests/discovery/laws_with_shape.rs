@@ -222,7 +222,13 @@ state = "rest"
 length = 0.4
 "#;
 
-fn stage_record(force: impl Fn(f64) -> f64, seed: u64) -> String {
+/// `friction`: force as a function of the rate and of the deflection of bristles that yield within
+/// 0.15 mm.
+fn stage_record(
+    force: impl Fn(f64) -> f64,
+    friction: impl Fn(f64, f64) -> f64,
+    seed: u64,
+) -> String {
     let (mut noise, mut state) = (Noise(seed), [0.0; 3]);
     let mut text = "t,F,x\n".to_owned();
     for sample in 0..160 {
@@ -231,10 +237,9 @@ fn stage_record(force: impl Fn(f64) -> f64, seed: u64) -> String {
         let x = 1e3 * state[0] + 0.02 * noise.next();
         text += &format!("{t:.4},{push:.12e},{x:.8e}\n");
         step(&mut state, 5e-3, 50, |[_, v, z]| {
-            let friction = 1.8 * z / 1.5e-4;
             [
                 *v,
-                (push - 9.0 * v - friction) / 2.5,
+                (push - 9.0 * v - friction(*v, *z)) / 2.5,
                 v - v.abs() * z / 1.5e-4,
             ]
         });
@@ -242,13 +247,36 @@ fn stage_record(force: impl Fn(f64) -> f64, seed: u64) -> String {
     text
 }
 
+fn stage_records(friction: impl Fn(f64, f64) -> f64) -> [String; 2] {
+    let train = |t: f64| 3.3 * (7.1 * t).sin() + 2.9 * (2.6 * t + 1.0).sin();
+    let test = |t: f64| 2.4 * (5.2 * t + 0.5).sin() + 1.2 * (11.3 * t).sin();
+    [
+        stage_record(train, &friction, 1),
+        stage_record(test, &friction, 2),
+    ]
+}
+
 #[test]
 fn dahl_friction_that_yields_before_it_slides_is_found() {
-    let records = [
-        stage_record(|t| 3.3 * (7.1 * t).sin() + 2.9 * (2.6 * t + 1.0).sin(), 1),
-        stage_record(|t| 2.4 * (5.2 * t + 0.5).sin() + 1.2 * (11.3 * t).sin(), 2),
-    ];
+    let records = stage_records(|_, z| 1.8 * z / 1.5e-4);
     let found = discover(STAGE, STAGE_RECORDS, records);
     let sizes = [("T_b", 1.8), ("p_b", 1.5e-4)];
     assert_named(&found, "bristle_friction", "x", &sizes, 0.05);
+}
+
+/// Bristles with a short yield explain a friction without memory as well as Coulomb friction does.
+#[test]
+fn bristles_are_not_fitted_to_friction_without_memory() {
+    let records = stage_records(|v, _| 1.8 * v / v.hypot(5e-3));
+    let found = discover(STAGE, STAGE_RECORDS, records);
+    assert_eq!(
+        found["effects"][0]["effect"], "coulomb_friction",
+        "{found:#}"
+    );
+    assert_eq!(found["effects"][0]["on"], "x", "{found:#}");
+    let rejected = found["rejected"].as_array().expect("a list");
+    let bristles = rejected.iter().find(|r| r["effect"] == "bristle_friction");
+    let reason = bristles.expect("scanned bristles")["reason"].as_str();
+    let reason = reason.expect("a text");
+    assert!(reason.contains("in short segments"), "{reason}");
 }
