@@ -71,9 +71,7 @@ impl Variant {
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
         let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
-        let values = model
-            .parameter_values()
-            .map_err(|error| found(error.diagnostic()))?;
+        let values = parameter_values(model)?;
         let mut equations = derive_equations(model, orders).map_err(found)?;
         let outputs = differentiate(model, &mut equations, outputs)?;
         let (mut program, lowered) = lower_with_values(model, &equations, &values, &outputs);
@@ -184,16 +182,29 @@ pub fn lower_with_sides(
     }
 }
 
-/// Derives the program for gradients of trajectories: the sides of switching surfaces are inputs, as in
+/// Lowers `equations` of a model with outputs in addition to the rates.
+///
+/// # Errors
+/// Parameter values that are not admissible, and terms that cannot be differentiated.
+pub fn lower_with_derivatives(
+    model: &Model,
+    equations: &Equations,
+    outputs: &[Output],
+) -> Result<Program, Diagnostics> {
+    let values = parameter_values(model)?;
+    let mut equations = equations.clone();
+    let outputs = differentiate(model, &mut equations, outputs)?;
+    Ok(lower_with_outputs(model, &equations, &values, &outputs))
+}
+
+/// Lowers `equations` of a model for gradients of trajectories: the sides of switching surfaces are inputs, as in
 /// [`lower_with_sides`], with the rates of guards and the outputs of
 /// [`Output::TrajectoryGradients`].
 ///
 /// # Errors
-/// The errors of [`Variant::derive`], and terms that cannot be differentiated.
-pub fn derive_for_gradients(model: &Model, orders: &[usize]) -> Result<Program, Diagnostics> {
-    let equations = derive_equations(model, orders)
-        .map_err(|diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic))?;
-    let (mut equations, sides) = separate_sides(&equations);
+/// Parameter values that are not admissible, and terms that cannot be differentiated.
+pub fn lower_for_gradients(model: &Model, equations: &Equations) -> Result<Program, Diagnostics> {
+    let (mut equations, sides) = separate_sides(equations);
     let inputs = equations.inputs;
     equations.inputs += sides.others.len() + sides.sliding.len();
     let outputs = differentiate(
@@ -223,9 +234,7 @@ fn lower_separated(
     SideInputs { others, sliding }: SideInputs,
     outputs: Outputs<NodeId, RowNodes>,
 ) -> Result<Program, Diagnostics> {
-    let values = model
-        .parameter_values()
-        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))?;
+    let values = parameter_values(model)?;
     let count = others.len() + sliding.len();
     let outputs = Outputs {
         sliding,
@@ -259,21 +268,22 @@ fn differentiate(
     })
 }
 
-/// Derives the program of the momenta and the energy at corners of the motion, in which the sides of their
-/// surfaces are additional inputs, after those of the model; see [`corners`](crate::mechanics::corners). It does not
-/// depend on the redundancy of constraints. Returns None if no momenta can jump.
+/// Lowers the momenta and the energy of `equations` at corners of the motion. The sides of the surfaces are
+/// additional inputs, after those of the model; see [`corners`](crate::mechanics::corners). Returns None if no
+/// momenta can jump.
 ///
 /// # Errors
-/// Expressions that cannot be derived.
-pub fn derive_corners(model: &Model, orders: &[usize]) -> Result<Option<Program>, Diagnostics> {
-    let found = |diagnostic| Diagnostics::from_one(model.source.clone(), diagnostic);
-    let values = model
-        .parameter_values()
-        .map_err(|error| found(error.diagnostic()))?;
-    let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-    if !has_jumping_momenta(&equations) {
+/// Parameter values that are not admissible.
+pub fn lower_corners(
+    model: &Model,
+    orders: &[usize],
+    equations: &Equations,
+) -> Result<Option<Program>, Diagnostics> {
+    if !has_jumping_momenta(equations) {
         return Ok(None);
     }
+    let values = parameter_values(model)?;
+    let mut equations = equations.clone();
     let sides = equations.corners.len();
     let outputs = Outputs {
         corners: Some(add_corner_sides(model, orders, &mut equations)),
@@ -285,6 +295,13 @@ pub fn derive_corners(model: &Model, orders: &[usize]) -> Result<Option<Program>
         "1 where the function of the surface is positive, else 0",
     ));
     Ok(Some(program))
+}
+
+/// Returns the values of all parameters, SI.
+fn parameter_values(model: &Model) -> Result<Vec<f64>, Diagnostics> {
+    model
+        .parameter_values()
+        .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()))
 }
 
 fn side_inputs(count: usize, doc: &str) -> impl Iterator<Item = Quantity> {

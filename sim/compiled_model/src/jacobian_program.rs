@@ -1,11 +1,12 @@
-//! The program of a model with its Jacobians, derived once at the first use.
+//! The program of a model with its Jacobians, lowered once at the first use.
 
 use std::sync::{Arc, OnceLock};
 
+use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::MachineCode;
-use eomgen_codegen::variant::Variant;
+use eomgen_codegen::variant::lower_with_derivatives;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
@@ -22,13 +23,12 @@ pub(crate) struct JacobianProgram {
 }
 
 impl JacobianProgram {
-    pub(crate) fn derive(
+    pub(crate) fn lower(
         model: &Model,
-        orders: &[usize],
+        equations: &Equations,
         outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
-        let variant = Variant::derive_for_report(model, orders, outputs)?;
-        Ok(Self::new(variant.program))
+        lower_with_derivatives(model, equations, outputs).map(Self::new)
     }
 
     pub(crate) fn new(program: Program) -> Self {

@@ -4,11 +4,10 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use eomgen_codegen::independence::constraint_program::constraint_program;
-use eomgen_codegen::mechanics::corners::has_jumping_momenta;
 use eomgen_codegen::mechanics::equations::Equations;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
-use eomgen_codegen::variant::{Variant, derive_corners, derive_for_gradients, lower_with_sides};
+use eomgen_codegen::variant::{Variant, lower_corners, lower_for_gradients, lower_with_sides};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
@@ -287,7 +286,7 @@ impl CompiledModel {
     pub(crate) fn jacobian_program(&self) -> Result<&JacobianProgram, Error> {
         let made = self
             .differentiated
-            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders(), &ENTRY_BY_ENTRY));
+            .get_or_init(|| JacobianProgram::lower(&self.model, &self.equations, &ENTRY_BY_ENTRY));
         made.as_ref().map_err(|found| found.clone().into())
     }
 
@@ -295,7 +294,7 @@ impl CompiledModel {
     pub(crate) fn tangent_program(&self) -> Result<&Program, Error> {
         let made = self
             .tangents
-            .get_or_init(|| JacobianProgram::derive(self.model(), self.orders(), &ALONG_DIRECTION));
+            .get_or_init(|| JacobianProgram::lower(&self.model, &self.equations, &ALONG_DIRECTION));
         let made = made.as_ref().map(|made| &made.program);
         made.map_err(|found| found.clone().into())
     }
@@ -303,7 +302,7 @@ impl CompiledModel {
     /// Returns the program of the gradients of trajectories.
     pub(crate) fn gradient_program(&self) -> Result<&JacobianProgram, Error> {
         let made = self.gradients.get_or_init(|| {
-            derive_for_gradients(self.model(), self.orders()).map(JacobianProgram::new)
+            lower_for_gradients(&self.model, &self.equations).map(JacobianProgram::new)
         });
         made.as_ref().map_err(|found| found.clone().into())
     }
@@ -350,12 +349,9 @@ impl CompiledModel {
     }
 
     pub(crate) fn corner_program(&self) -> Result<Option<&Program>, Error> {
-        let made = self.corners.get_or_init(|| {
-            if !has_jumping_momenta(&self.equations) {
-                return Ok(None);
-            }
-            derive_corners(&self.model, &self.orders)
-        });
+        let made = self
+            .corners
+            .get_or_init(|| lower_corners(&self.model, &self.orders, &self.equations));
         let made = made.as_ref().map_err(|found| Error::from(found.clone()))?;
         Ok(made.as_ref())
     }
@@ -375,7 +371,7 @@ impl CompiledModel {
     pub fn piecewise_linear(&self) -> Result<&PiecewiseLinear, &ExactError> {
         let made = self
             .piecewise_linear
-            .get_or_init(|| PiecewiseLinear::derive(&self.model, &self.orders));
+            .get_or_init(|| PiecewiseLinear::from_equations(&self.model, &self.equations));
         made.as_ref()
     }
 }

@@ -1,7 +1,7 @@
 //! Piecewise-linear models, derived once for all parameter values.
 
 use eomgen_codegen::mechanics::affine::derive_affine;
-use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::mechanics::equations::{Equations, derive};
 use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineProgram};
 use eomgen_codegen::program::lowering::lower_affine;
@@ -27,8 +27,15 @@ impl PiecewiseLinear {
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
-        // The node in the way is named while its graph is still there.
-        match linearity(&equations) {
+        Self::from_equations(model, &equations)
+    }
+
+    /// Derives the coefficients of a model from its equations of motion.
+    ///
+    /// # Errors
+    /// As [`PiecewiseLinear::derive`].
+    pub fn from_equations(model: &Model, equations: &Equations) -> Result<Self, ExactError> {
+        match linearity(equations) {
             Linearity::Linear | Linearity::PiecewiseLinear => {}
             Linearity::Constrained => return Err(ExactError::Constrained),
             Linearity::Impacts => return Err(ExactError::Impacts),
@@ -41,7 +48,7 @@ impl PiecewiseLinear {
                 return Err(ExactError::NotLinear { formula });
             }
         }
-        let affine = derive_affine(equations).map_err(|_| ExactError::NotLinear {
+        let affine = derive_affine(equations.clone()).map_err(|_| ExactError::NotLinear {
             formula: "a switching function over modes".to_owned(),
         })?;
         let values = model

@@ -447,7 +447,7 @@ fn gradient_by_fifty_parameters_costs_less_than_six_simulations() -> Result<(), 
     );
     let model = CompiledModel::from_text("chain.toml", &text, Orders::Declared)?;
     assert!(model.parameter_names().len() > 50);
-    let program = eomgen_codegen::variant::derive_for_gradients(model.model(), model.orders())?;
+    let program = eomgen_codegen::variant::lower_for_gradients(model.model(), model.equations())?;
     let products = program.outputs.products.as_ref().expect("products");
     let by_variables = products.reverse.iter().map(|(_, id)| *id);
     let by_parameters = products.by_parameters.entries.iter();

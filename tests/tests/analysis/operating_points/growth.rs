@@ -86,6 +86,22 @@ fn hinged_bodies(count: usize, axes: &[char]) -> String {
         + &section("bodies", count, &body)
 }
 
+/// Returns a body on a vector that rotations move, each the square of the one before.
+fn doubled_rotations(count: usize) -> String {
+    let square = |k: usize| match k {
+        0 => "R0 = \"rotation_x(a)*rotation_z(b)\"".to_owned(),
+        _ => format!("R{k} = \"R{0}*R{0}\"", k - 1),
+    };
+    "[model]\nname = \"doubled\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+     l = { value = 1, unit = \"m\" }\n[coordinates]\na = { unit = \"rad\" }\nb = { unit = \"rad\" }\n"
+        .to_owned()
+        + &section("definitions", count + 1, &square)
+        + &format!(
+            "r = \"R{count}*[l, 0, l]\"\n[kinetic]\nT = \"1/2*m*dot(dot(r), dot(r)) + \
+             1/2*m*l^2*(dot(a)^2 + dot(b)^2)\"\n"
+        )
+}
+
 fn strings_with_impacts(count: usize) -> String {
     let field = |k: usize| {
         format!(
@@ -191,6 +207,11 @@ fn check_of_fields_with_impacts_grows_linearly() {
 #[test]
 fn check_of_hinged_bodies_grows_linearly() {
     assert_growth("check", 25, |count| hinged_bodies(count, &SPATIAL));
+}
+
+#[test]
+fn check_of_doubled_rotations_grows_linearly() {
+    assert_growth("check", 8, doubled_rotations);
 }
 
 #[test]
