@@ -35,6 +35,18 @@ impl ConstraintRows {
 
     /// Returns the rows of A, each entry divided by the square root of its coordinate's inertia.
     pub fn rows(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
+        let inertia = self.diagonal(point);
+        let mut rows = self.derivatives(point);
+        for row in &mut rows {
+            for (entry, inertia) in row.iter_mut().zip(&inertia) {
+                *entry /= inertia.sqrt();
+            }
+        }
+        rows
+    }
+
+    /// Returns the rows of A in SI units.
+    pub fn derivatives(&mut self, point: Point<'_>) -> Vec<Vec<f64>> {
         let degrees = self.degrees_of_freedom();
         let mut rows = vec![vec![0.0; degrees]; self.residuals.len()];
         let Some(jacobian) = self.evaluator.program().outputs.jacobians.first().cloned() else {
@@ -42,11 +54,9 @@ impl ConstraintRows {
         };
         let mut nonzeros = vec![0.0; jacobian.nonzeros()];
         self.evaluator.jacobian(0, point, &mut nonzeros);
-        let inertia = self.diagonal(point);
         for (entry, place) in jacobian.entries.iter().zip(jacobian.places()) {
             for column in 0..entry.columns {
-                let degree = entry.column + column;
-                rows[entry.row][degree] = nonzeros[place.start + column] / inertia[degree].sqrt();
+                rows[entry.row][entry.column + column] = nonzeros[place.start + column];
             }
         }
         rows
@@ -54,21 +64,25 @@ impl ConstraintRows {
 
     /// Returns the sum of |A_kj| s_j of each row k for sizes s of the coordinates, SI.
     pub fn weighted_lengths(&mut self, point: Point<'_>, sizes: &[f64]) -> Vec<f64> {
-        let inertia = self.diagonal(point);
         let weighted = |row: Vec<f64>| {
-            let entries = row.iter().zip(&inertia).zip(sizes);
-            entries
-                .map(|((entry, inertia), size)| entry.abs() * inertia.sqrt() * size)
-                .sum()
+            let entries = row.iter().zip(sizes);
+            entries.map(|(entry, size)| entry.abs() * size).sum()
         };
-        self.rows(point).into_iter().map(weighted).collect()
+        self.derivatives(point).into_iter().map(weighted).collect()
+    }
+
+    /// Returns the mass matrix, row by row, SI.
+    pub fn mass_matrix(&mut self, point: Point<'_>) -> Vec<f64> {
+        let degrees = self.degrees_of_freedom();
+        let mut mass = vec![0.0; degrees * degrees];
+        self.evaluator.mass_matrix(point, &mut mass);
+        mass
     }
 
     /// Returns the diagonal of the mass matrix, with 1 for a coordinate without inertia.
     pub(super) fn diagonal(&mut self, point: Point<'_>) -> Vec<f64> {
         let degrees = self.degrees_of_freedom();
-        let mut mass = vec![0.0; degrees * degrees];
-        self.evaluator.mass_matrix(point, &mut mass);
+        let mass = self.mass_matrix(point);
         let diagonal = (0..degrees).map(|place| mass[place * degrees + place]);
         diagonal.map(positive_or_one).collect()
     }

@@ -92,7 +92,9 @@ impl Simulation {
             t,
             y: state.to_vec(),
         };
-        let record = WatchedSystem::new(system, (t, state)).pause();
+        let watched = WatchedSystem::new(system, (t, state));
+        watched.leave_surfaces(t, state, FIRST_STEP * length);
+        let record = watched.pause();
         let sizes = system.typical_sizes();
         let start = (&point, FIRST_STEP * length, &sizes[..]);
         let run: Box<dyn Continue> = match settings.method {

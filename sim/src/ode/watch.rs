@@ -2,6 +2,7 @@
 //! that are not finite.
 
 use std::cell::{Cell, RefCell};
+use std::cmp::Ordering;
 
 use eomgen_codegen::program::evaluator::Enclosure;
 
@@ -279,6 +280,39 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             }
             last[index] = guard.signum();
             *side = guard.signum();
+        }
+    }
+
+    /// Sets the sides of surfaces on which the motion starts and which it leaves in one direction, whichever of their sides
+    /// applies. `step` (s) is short. Otherwise the rates at the start are those on the surface, not those of the motion.
+    pub fn leave_surfaces(&self, t: f64, y: &[f64], step: f64) {
+        let guards = self.evaluate_guards(t, y);
+        let starting = guards.iter().enumerate().filter(|(guard, value)| {
+            **value == 0.0
+                && self.side(*guard) == 0.0
+                && !self.system.is_distance(*guard)
+                && !self.system.is_singular(*guard)
+        });
+        let (mut rates, mut beside) = (vec![0.0; y.len()], y.to_vec());
+        for (guard, _) in starting {
+            let directions = [1.0, -1.0].map(|side| {
+                self.record.regime.borrow_mut()[guard] = side;
+                self.fix_sides(true);
+                self.count_rates(t, y, &mut rates);
+                for (entry, (value, rate)) in beside.iter_mut().zip(y.iter().zip(&rates)) {
+                    *entry = value + step * rate;
+                }
+                let there = self.evaluate_guards(t + step, &beside)[guard];
+                there.partial_cmp(&0.0)
+            });
+            let side = match directions {
+                [Some(Ordering::Greater), Some(Ordering::Greater)] => 1.0,
+                [Some(Ordering::Less), Some(Ordering::Less)] => -1.0,
+                _ => 0.0,
+            };
+            self.record.regime.borrow_mut()[guard] = side;
+            self.record.last_sides.borrow_mut()[guard] = side;
+            self.fix_sides(true);
         }
     }
 

@@ -3,6 +3,7 @@
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_SIZE_FRACTION};
 
 use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
+use super::work::Refinement;
 use super::{Audit, Energies, EnergyAndPower, Imbalance};
 
 /// Factor on the energy change of an error at the tolerance in every entry of the state, for a
@@ -17,6 +18,10 @@ const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
 /// Maximum number of panels of a quadrature with interpolated states.
 const MAX_PANELS: usize = 4096;
+
+/// Maximum number of panels of a quadrature that also halves panels whose energy changes without work. A transient of a
+/// millionth of the step takes 30.
+const MAX_BALANCED_PANELS: usize = 512;
 
 /// Maximum number of panels of a quadrature whose states need a step each.
 const MAX_RESOLVED_PANELS: usize = 16;
@@ -151,13 +156,18 @@ impl Auditor {
         (factor, mut allowed): (f64, f64),
     ) -> (f64, f64) {
         let (mut work, mut tolerance) = (f64::NAN, f64::NAN);
-        for (interior, panels) in [
-            (Interior::Interpolated, MAX_PANELS),
-            (Interior::Recomputed, MAX_RESOLVED_PANELS),
+        for (interior, most_panels, balances_panels) in [
+            (Interior::Interpolated, MAX_PANELS, false),
+            (Interior::Interpolated, MAX_BALANCED_PANELS, true),
+            (Interior::Recomputed, MAX_RESOLVED_PANELS, false),
         ] {
+            let refinement = Refinement {
+                interior,
+                most_panels,
+                balances_panels,
+            };
             let uncertainty;
-            (work, uncertainty) =
-                self.integrate_work(step, energies, ends, (interior, panels, allowed));
+            (work, uncertainty) = self.integrate_work(step, energies, ends, (refinement, allowed));
             tolerance = allowed + uncertainty;
             if (change - work).abs() <= tolerance {
                 return (work, tolerance);

@@ -84,6 +84,24 @@ fn energy_change_without_work_is_a_fault() {
 }
 
 #[test]
+fn work_of_a_transient_in_a_long_step_is_found() {
+    // A force of one microsecond at 0.03 s, which no node of the first quadratures meets.
+    let rise = |t: f64| 1.0 - (-(t - 0.03).max(0.0) / 1e-6).exp();
+    let mut pushed = |t: f64, state: &[f64]| EnergyAndPower {
+        energy: oscillator(t, state).energy + rise(t),
+        power: (1.0 - rise(t)) / 1e-6 * f64::from(t > 0.03),
+    };
+    let audit = audited(|_| {}, &mut pushed);
+    assert_eq!(audit.fault_count, 0);
+    assert!((audit.work - 1.0).abs() < 1e-6, "{}", audit.work);
+    let mut idle = |t: f64, state: &[f64]| EnergyAndPower {
+        power: 0.0,
+        ..pushed(t, state)
+    };
+    assert_eq!(audited(|_| {}, &mut idle).fault_count, 1);
+}
+
+#[test]
 fn only_energy_gain_at_impact_is_a_fault() {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     auditor.audit_impact(1.0, (&[0.0, -1.0], &[0.0, 0.5]), 0.0, &mut oscillator);

@@ -45,36 +45,43 @@ impl Auditor {
         step: &mut ObservedStep<'_>,
         energies: &mut Energies<'_>,
         (first, last): (EnergyAndPower, EnergyAndPower),
-        (interior, most_panels, allowed): (Interior, usize, f64),
+        (refinement, allowed): (Refinement, f64),
     ) -> (f64, f64) {
         let (begin, length) = (step.start.0, step.end.0 - step.start.0);
-        let mut gauss = |(from, width): (f64, f64)| {
-            let mut sum = 0.0;
-            for (node, weight) in GAUSS_NODES_AND_WEIGHTS {
-                let t = begin + length * (from + width * node);
-                let state = (step.state_inside)(t, interior)?;
-                self.audit.evaluations += 1;
-                sum += weight * width * length * energies(t, &state).power;
-            }
-            Some(sum)
+        let mut inside = |place: f64| {
+            let t = begin + length * place;
+            let state = (step.state_inside)(t, refinement.interior)?;
+            self.audit.evaluations += 1;
+            Some(energies(t, &state))
         };
-        let Some(whole) = gauss((0.0, 1.0)) else {
+        let Some(whole) = integrate_panel(&mut inside, (0.0, 1.0), length) else {
             let spread = (last.power - first.power).abs();
             let mean = 0.5 * (first.power + last.power);
             return (mean * length, 0.5 * spread * length);
         };
+        let most_error = MAX_QUADRATURE_ERROR_FRACTION * allowed;
         let (mut work, mut panels) = (0.0, 1);
         let mut open = vec![((0.0, 1.0), whole)];
         while let Some(((from, width), whole)) = open.pop() {
             let half = 0.5 * width;
             let halves = [(from, half), (from + half, half)];
-            let [Some(left), Some(right)] = halves.map(&mut gauss) else {
+            let [Some(left), Some(right)] =
+                halves.map(|panel| integrate_panel(&mut inside, panel, length))
+            else {
                 work += whole;
                 continue;
             };
-            let error = (left + right - whole).abs();
             panels += 1;
-            if error <= MAX_QUADRATURE_ERROR_FRACTION * allowed * width || panels >= most_panels {
+            let is_accurate = (left + right - whole).abs() <= most_error * width
+                && (!refinement.balances_panels || {
+                    let ends = [from, from + width].map(&mut inside);
+                    let [Some(before), Some(after)] = ends else {
+                        work += left + right;
+                        continue;
+                    };
+                    (after.energy - before.energy - left - right).abs() <= most_error
+                });
+            if is_accurate || panels >= refinement.most_panels {
                 work += left + right;
             } else {
                 open.extend([(halves[0], left), (halves[1], right)]);
@@ -82,4 +89,29 @@ impl Auditor {
         }
         (work, 0.0)
     }
+}
+
+/// Refinement of a quadrature over a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refinement {
+    /// Origin of the states inside the step.
+    pub interior: Interior,
+    /// Maximum number of panels.
+    pub most_panels: usize,
+    /// True if panels whose energy changes without work are halved too. A transient that is shorter than the distances
+    /// of the nodes is found only thus.
+    pub balances_panels: bool,
+}
+
+/// Integrates the power over a part of a step of this length (s); `None` if a state is unknown.
+fn integrate_panel(
+    inside: &mut dyn FnMut(f64) -> Option<EnergyAndPower>,
+    (from, width): (f64, f64),
+    length: f64,
+) -> Option<f64> {
+    let mut sum = 0.0;
+    for (node, weight) in GAUSS_NODES_AND_WEIGHTS {
+        sum += weight * width * length * inside(from + width * node)?.power;
+    }
+    Some(sum)
 }

@@ -1,5 +1,6 @@
 //! Linearised equations at one point of a search, scaled so that units do not matter.
 
+use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_analysis::qr_iteration;
 use nalgebra::{DMatrix, DVector};
 
@@ -15,12 +16,15 @@ const MAX_SLOPE_CHANGE_FRACTION: f64 = 0.5;
 pub(super) struct LinearisedEquations {
     pub accelerations: DVector<f64>,
     pub matrix: DMatrix<f64>,
+    /// Constraints at this point, if there are any.
+    pub constraints: Option<LinearisedConstraints>,
     /// Largest magnitude of each acceleration or of its terms up to now.
     pub sizes: DVector<f64>,
 }
 
 impl LinearisedEquations {
-    /// Computes the smallest change of the unknowns that minimises the linearised accelerations.
+    /// Computes the smallest change of the unknowns that minimises the linearised accelerations and
+    /// satisfies the linearised constraints.
     /// Each unknown is scaled by its natural scale or, without one, by its effect on the
     /// accelerations.
     pub fn solve_step(&self, scales: &[Option<f64>]) -> DVector<f64> {
@@ -34,10 +38,10 @@ impl LinearisedEquations {
             relative(row, column) * units[column]
         });
         let wanted = -self.accelerations.component_div(&rows);
-        let step = qr_iteration::svd(&scaled).and_then(|decomposed| {
-            let least = MIN_SINGULAR_VALUE_FRACTION * decomposed.singular_values.amax();
-            decomposed.solve(&wanted, least).ok()
-        });
+        let step = match &self.constraints {
+            None => solve(&scaled, &wanted),
+            Some(constraints) => constraints.solve((scaled, wanted), (&rows, &units)),
+        };
         let step = step.unwrap_or_else(|| DVector::zeros(self.matrix.ncols()));
         step.component_mul(&units)
     }
@@ -51,12 +55,23 @@ impl LinearisedEquations {
         (&there - &here).norm() <= MAX_SLOPE_CHANGE_FRACTION * here.norm().max(there.norm())
     }
 
-    /// Returns the sum of the squares of the accelerations relative to these sizes.
-    pub fn squared_norm(&self, sizes: &DVector<f64>) -> f64 {
-        let parts = self.accelerations.iter().zip(sizes);
-        parts
-            .map(|(value, size)| (value / nonzero_or_one(*size)).powi(2))
-            .sum()
+    /// Returns the squared norm of accelerations, relative to the sizes of these equations. With constraints it is that of
+    /// the kinetic energy, which does not depend on the direction of the coordinates.
+    pub fn squared_norm(&self, accelerations: &DVector<f64>) -> f64 {
+        let relative = |row: usize| accelerations[row] / nonzero_or_one(self.sizes[row]);
+        let squares = |rows: std::ops::Range<usize>| rows.map(relative).map(|own| own * own).sum();
+        let Some(constraints) = &self.constraints else {
+            return squares(0..accelerations.len());
+        };
+        let degrees = constraints.mass.nrows();
+        let mechanical = accelerations.rows(0, degrees);
+        let energy = mechanical.dot(&(&constraints.mass * mechanical));
+        let sizes = self.sizes.rows(0, degrees);
+        let size = sizes
+            .component_mul(&sizes)
+            .dot(&constraints.mass.diagonal());
+        let others: f64 = squares(degrees..accelerations.len());
+        energy / nonzero_or_one(size) + others
     }
 
     /// Returns true if all accelerations are below this fraction of their sizes.
@@ -99,6 +114,60 @@ impl LinearisedEquations {
             }
         })
     }
+}
+
+/// Holonomic constraints at a point of a search.
+pub(super) struct LinearisedConstraints {
+    /// Derivatives of the constraints by the unknowns.
+    pub by_unknowns: DMatrix<f64>,
+    /// Mass matrix.
+    pub mass: DMatrix<f64>,
+    /// Independent displacements of the coordinates that satisfy the linearised constraints, as columns.
+    pub displacements: DMatrix<f64>,
+}
+
+impl LinearisedConstraints {
+    /// Solves the equations, whose rows are relative to `sizes`, for the change of the unknowns relative to `units` that
+    /// satisfies the linearised constraints. The accelerations count along the displacements only: across them the
+    /// constraints determine them.
+    fn solve(
+        &self,
+        (matrix, wanted): (DMatrix<f64>, DVector<f64>),
+        (sizes, units): (&DVector<f64>, &DVector<f64>),
+    ) -> Option<DVector<f64>> {
+        let columns = units.len();
+        let held = DMatrix::from_fn(self.by_unknowns.nrows(), columns, |row, column| {
+            self.by_unknowns[(row, column)] * units[column]
+        });
+        let allowed = AllowedMotions::new(&row_by_row(&held), columns).ok()?;
+        if allowed.count() == 0 {
+            return None;
+        }
+        let (degrees, independent) = self.displacements.shape();
+        let mut along = self.displacements.transpose() * &self.mass;
+        for mut row in along.row_iter_mut() {
+            for (entry, size) in row.iter_mut().zip(sizes.iter()) {
+                *entry *= size;
+            }
+            let size = nonzero_or_one(row.iter().map(|entry| entry.abs()).sum());
+            row /= size;
+        }
+        let others = sizes.len() - degrees;
+        let mut rows = DMatrix::zeros(independent + others, sizes.len());
+        rows.view_mut((0, 0), (independent, degrees))
+            .copy_from(&along);
+        rows.view_mut((independent, degrees), (others, others))
+            .fill_with_identity();
+        let basis = allowed.basis();
+        Some(basis * solve(&(&rows * matrix * basis), &(&rows * wanted))?)
+    }
+}
+
+/// Returns the smallest solution of least squares.
+fn solve(matrix: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<DVector<f64>> {
+    let decomposed = qr_iteration::svd(matrix)?;
+    let least = MIN_SINGULAR_VALUE_FRACTION * decomposed.singular_values.amax();
+    decomposed.solve(wanted, least).ok()
 }
 
 fn nonzero_or_one(size: f64) -> f64 {

@@ -5,6 +5,7 @@
 //! which any constant speed is possible. The search keeps the given speeds; if it finds no
 //! equilibrium with them, the speeds become unknowns as well.
 
+mod constraints;
 mod linear;
 mod search;
 mod stability;

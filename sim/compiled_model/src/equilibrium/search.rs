@@ -3,7 +3,8 @@
 //! A step is shortened until the linearised equations are accurate along it (P. Deuflhard, *Newton
 //! Methods for Nonlinear Problems*, 3.2). The search thus follows the path from its start and does
 //! not jump to another equilibrium. No coordinate moves by more than a fraction of its natural
-//! scale, or out of its declared range.
+//! scale, or out of its declared range. Steps are tangential to the holonomic constraints, and each
+//! point is moved onto them, so that the path is that of independent coordinates.
 
 use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
@@ -13,6 +14,7 @@ use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 use crate::state_space::StateSpaceEvaluator;
 
+use super::constraints::HolonomicConstraints;
 use super::linear::LinearisedEquations;
 
 /// Maximum number of steps; near an equilibrium ten are enough.
@@ -52,6 +54,7 @@ pub(super) struct Search<'i, 'm> {
     instance: &'i Instance<'m>,
     evaluator: Evaluator,
     state_space: StateSpaceEvaluator<'i, 'm>,
+    constraints: Option<HolonomicConstraints>,
     directions: Vec<Vec<f64>>,
     unknowns: Vec<Unknown>,
     /// Natural scales of the unknowns, if known.
@@ -83,6 +86,7 @@ impl<'i, 'm> Search<'i, 'm> {
         Ok(Self {
             evaluator: instance.interpreter()?,
             state_space: instance.state_space_evaluator()?,
+            constraints: HolonomicConstraints::new(instance, &unknowns),
             instance,
             directions: directions.to_vec(),
             scales: unknowns.iter().map(scale).collect(),
@@ -93,6 +97,9 @@ impl<'i, 'm> Search<'i, 'm> {
 
     /// Moves `at` to an equilibrium and returns the remaining accelerations.
     pub fn run(&mut self, at: &mut OperatingPoint) -> Result<Vec<f64>, Error> {
+        if !self.project(at) {
+            return Err(unsatisfied_constraints_error());
+        }
         let mut here = self.linearise(at)?;
         let mut nudges = 0;
         for _ in 0..MAX_STEPS {
@@ -135,17 +142,20 @@ impl<'i, 'm> Search<'i, 'm> {
             false => MAX_HALVINGS,
         };
         let longest = self.step_fraction(step);
-        let before = here.squared_norm(&here.sizes);
+        let before = here.squared_norm(&here.accelerations);
         let mut bent = None;
         for halving in 0..halvings {
             if halving >= MAX_STRAIGHT_HALVINGS && bent.is_some() {
                 break;
             }
-            let (trial, way) = self.move_point(at, &(step * (longest * 0.5_f64.powi(halving))));
+            let change = step * (longest * 0.5_f64.powi(halving));
+            let Some((trial, way)) = self.move_point(at, &change) else {
+                continue;
+            };
             let Some(there) = self.try_linearised(&trial) else {
                 continue;
             };
-            if there.squared_norm(&here.sizes) >= before {
+            if here.squared_norm(&there.accelerations) >= before {
                 continue;
             }
             if here.is_straight_to(&there, &way) {
@@ -181,7 +191,7 @@ impl<'i, 'm> Search<'i, 'm> {
                 _ => 0.0,
             }
         });
-        let (trial, way) = self.move_point(at, &change);
+        let (trial, way) = self.move_point(at, &change)?;
         let there = self.try_linearised(&trial)?;
         (way.amax() > 0.0).then_some((trial, there))
     }
@@ -236,18 +246,31 @@ impl<'i, 'm> Search<'i, 'm> {
             let terms = of_states.chain(of_inputs).chain(of_scales);
             terms.fold(accelerations[row].abs(), f64::max)
         });
+        let constraints = match &mut self.constraints {
+            Some(constraints) => Some(constraints.linearise(at)?),
+            None => None,
+        };
         Some(LinearisedEquations {
             accelerations,
             matrix,
+            constraints,
             sizes,
         })
     }
 
+    /// Moves a point onto the constraints; returns false if that fails.
+    fn project(&mut self, at: &mut OperatingPoint) -> bool {
+        let constraints = self.constraints.as_mut();
+        constraints.is_none_or(|constraints| constraints.project(at))
+    }
+
+    /// Returns a point moved by a change of the unknowns, inside their ranges and on the constraints, and the change of the
+    /// unknowns. `None` if no such point is near.
     fn move_point(
-        &self,
+        &mut self,
         at: &OperatingPoint,
         change: &DVector<f64>,
-    ) -> (OperatingPoint, DVector<f64>) {
+    ) -> Option<(OperatingPoint, DVector<f64>)> {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));
         for (place, unknown) in self.unknowns.iter().enumerate() {
@@ -272,7 +295,22 @@ impl<'i, 'm> Search<'i, 'm> {
             way[place] = there - *value;
             *value = there;
         }
-        (moved, way)
+        if self.constraints.is_none() {
+            return Some((moved, way));
+        }
+        if !self.project(&mut moved) {
+            return None;
+        }
+        for (place, unknown) in self.unknowns.iter().enumerate() {
+            if let Unknown::Setting(Setting::State(state)) = *unknown {
+                let value = moved.state[state];
+                if self.ranges[place].is_some_and(|(low, high)| !(low..=high).contains(&value)) {
+                    return None;
+                }
+                way[place] = value - at.state[state];
+            }
+        }
+        Some((moved, way))
     }
 
     /// Returns true if a rate depends on time at a point.
@@ -326,5 +364,14 @@ impl<'i, 'm> Search<'i, 'm> {
             at.state.get(place).copied().unwrap_or(0.0)
         );
         Error::Stopped { t: None, reason }
+    }
+}
+
+fn unsatisfied_constraints_error() -> Error {
+    let reason = "no state near the start satisfies the constraints at the fixed values: start nearer to a solution \
+                  (--state), or fix other values (--fix)";
+    Error::Stopped {
+        t: None,
+        reason: reason.to_owned(),
     }
 }

@@ -209,3 +209,85 @@ fn governor_at_steady_speed_is_equilibrium() {
     slipping.state[3] = 0.1;
     assert!(!run.is_equilibrium(&slipping).expect("an answer"));
 }
+
+/// A pendulum in Cartesian coordinates on a rod, with a spring.
+const ROD: &str = r#"
+[model]
+name = "rod"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.3, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+k = { value = 0, unit = "N/m" }
+start = { value = 90, unit = "deg" }
+[coordinates]
+x = { unit = "m", initial = "l*sin(start)" }
+y = { unit = "m", initial = "-l*cos(start)" }
+[kinetic]
+all = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+spring = "1/2*k*(x - 0.1*l)^2"
+[constraints]
+rod = { zero = "x^2 + y^2 - l^2" }
+"#;
+
+/// The same in the angle from the vertical.
+const ANGLE: &str = r#"
+[model]
+name = "angle"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.3, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+k = { value = 0, unit = "N/m" }
+start = { value = 90, unit = "deg" }
+[coordinates]
+theta = { unit = "rad", initial = "start" }
+[kinetic]
+all = "1/2*m*l^2*dot(theta)^2"
+[potential]
+weight = "-m*g*l*cos(theta)"
+spring = "1/2*k*(l*sin(theta) - 0.1*l)^2"
+"#;
+
+#[test]
+fn equilibria_on_a_constraint_are_those_of_an_independent_coordinate() {
+    for stiffness in ["0", "200"] {
+        for start in ["5", "30", "45", "60", "90", "100", "135", "170", "-80"] {
+            let [rod, angle] = [ROD, ANGLE].map(|text| {
+                let text = text
+                    .replace(
+                        "value = 0, unit = \"N/m\"",
+                        &format!("value = {stiffness}, unit = \"N/m\""),
+                    )
+                    .replace("value = 90", &format!("value = {start}"));
+                let model = compiled(&text);
+                let run = model.with_declared_parameters().expect("an instance");
+                from(&run, &[]).expect("an equilibrium").point.state
+            });
+            let found = rod[0].atan2(-rod[1]);
+            let difference = (found - angle[0]).rem_euclid(std::f64::consts::TAU);
+            assert!(
+                difference.min(std::f64::consts::TAU - difference) < 1e-8,
+                "{stiffness} N/m, {start} deg: {found}, {}",
+                angle[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn fixed_values_off_the_constraints_are_refused() {
+    let model = compiled(ROD);
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = run.find_equilibrium(EquilibriumRequest {
+        start_values: &[],
+        fixed_values: &[("x", 0.4)],
+    });
+    let said = found.expect_err("no such point").to_string();
+    assert!(
+        said.contains("satisfies the constraints at the fixed values"),
+        "{said}"
+    );
+}

@@ -1,0 +1,138 @@
+//! Holonomic constraints of a search: the search stays on them.
+
+use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
+use eomgen_analysis::qr_iteration;
+use eomgen_codegen::independence::rows::ConstraintRows;
+use nalgebra::{DMatrix, DVector};
+
+use crate::instance::Instance;
+use crate::operating_point::{OperatingPoint, Setting};
+
+use super::linear::LinearisedConstraints;
+use super::search::Unknown;
+
+/// Maximum number of corrections of a point.
+const MAX_CORRECTIONS: usize = 20;
+
+/// Correction, relative to the size of its unknown, after which Newton's method leaves rounding.
+const LAST_CORRECTION_FRACTION: f64 = 1e-9;
+
+/// Singular values below this fraction of the largest count as 0.
+const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-9;
+
+/// Holonomic constraints and their derivatives by the unknowns of a search.
+pub(super) struct HolonomicConstraints {
+    rows: ConstraintRows,
+    /// Indices of the constraints.
+    places: Vec<usize>,
+    /// State of each unknown; `None` for unknowns that the constraints do not contain.
+    columns: Vec<Option<usize>>,
+    /// Typical size of each unknown, SI.
+    sizes: Vec<f64>,
+    /// Typical size of each coordinate and mode, SI.
+    coordinate_sizes: Vec<f64>,
+}
+
+impl HolonomicConstraints {
+    /// Returns the constraints of a model by these unknowns; `None` if there are none.
+    pub fn new(instance: &Instance<'_>, unknowns: &[Unknown]) -> Option<Self> {
+        let rows = instance.constraint_rows()?;
+        let constraints = instance.model().model().constraints.iter().enumerate();
+        let places: Vec<usize> = constraints
+            .filter(|(_, constraint)| !constraint.is_nonholonomic)
+            .map(|(place, _)| place)
+            .collect();
+        let degrees = rows.degrees_of_freedom();
+        let columns: Vec<Option<usize>> = unknowns
+            .iter()
+            .map(|unknown| match unknown {
+                Unknown::Setting(Setting::State(place)) if *place < degrees => Some(*place),
+                _ => None,
+            })
+            .collect();
+        let typical = instance.model().typical_sizes();
+        let size = |place: &Option<usize>| place.map_or(1.0, |own| typical[own]);
+        let sizes = columns.iter().map(size).collect();
+        (!places.is_empty()).then(|| Self {
+            rows,
+            places,
+            columns,
+            sizes,
+            coordinate_sizes: typical[..degrees].to_vec(),
+        })
+    }
+
+    /// Returns the constraints at a point, or `None` if a number is not finite.
+    pub fn linearise(&mut self, at: &OperatingPoint) -> Option<LinearisedConstraints> {
+        let degrees = self.rows.degrees_of_freedom();
+        let all = self.rows.derivatives(at.point());
+        let by_coordinates = DMatrix::from_fn(self.places.len(), degrees, |row, column| {
+            all[self.places[row]][column] * self.coordinate_sizes[column]
+        });
+        let allowed = AllowedMotions::new(&row_by_row(&by_coordinates), degrees).ok()?;
+        let mut displacements = allowed.basis().clone();
+        for (mut row, size) in displacements.row_iter_mut().zip(&self.coordinate_sizes) {
+            row *= *size;
+        }
+        Some(LinearisedConstraints {
+            by_unknowns: self.derivatives(at),
+            mass: DMatrix::from_row_slice(degrees, degrees, &self.rows.mass_matrix(at.point())),
+            displacements,
+        })
+    }
+
+    /// Returns the derivatives of the constraints by the unknowns at a point, SI.
+    fn derivatives(&mut self, at: &OperatingPoint) -> DMatrix<f64> {
+        let all = self.rows.derivatives(at.point());
+        DMatrix::from_fn(self.places.len(), self.columns.len(), |row, column| {
+            self.columns[column].map_or(0.0, |place| all[self.places[row]][place])
+        })
+    }
+
+    /// Moves a point onto the constraints by the smallest changes of the unknowns relative to their typical sizes.
+    /// Returns false if that fails.
+    pub fn project(&mut self, at: &mut OperatingPoint) -> bool {
+        for _ in 0..MAX_CORRECTIONS {
+            let residuals = self.rows.residuals(at.point());
+            let mut matrix = self.derivatives(at);
+            let mut wanted = DVector::zeros(self.places.len());
+            for (row, place) in self.places.iter().enumerate() {
+                for (column, size) in self.sizes.iter().enumerate() {
+                    matrix[(row, column)] *= size;
+                }
+                let largest = matrix.row(row).amax();
+                let largest = if largest > 0.0 { largest } else { 1.0 };
+                matrix.row_mut(row).scale_mut(1.0 / largest);
+                wanted[row] = -residuals[*place] / largest;
+            }
+            if !matrix
+                .iter()
+                .chain(wanted.iter())
+                .all(|entry| entry.is_finite())
+            {
+                return false;
+            }
+            let change = qr_iteration::svd(&matrix).and_then(|decomposed| {
+                let least = MIN_SINGULAR_VALUE_FRACTION * decomposed.singular_values.amax();
+                decomposed.solve(&wanted, least).ok()
+            });
+            let Some(change) = change else {
+                return false;
+            };
+            let mut relative: f64 = 0.0;
+            let unknowns = self.columns.iter().zip(&self.sizes).zip(change.iter());
+            for ((place, size), part) in unknowns {
+                if let Some(place) = place {
+                    let value = &mut at.state[*place];
+                    *value += part * size;
+                    relative = relative.max(part.abs() * size / value.abs().max(*size));
+                }
+            }
+            if relative <= LAST_CORRECTION_FRACTION {
+                // Fixed coordinates can make the constraints unsolvable.
+                return (&matrix * &change - &wanted).amax() <= LAST_CORRECTION_FRACTION;
+            }
+        }
+        false
+    }
+}
