@@ -28,12 +28,8 @@ impl LinearisedEquations {
     /// Each unknown is scaled by its natural scale or, without one, by its effect on the
     /// accelerations.
     pub fn solve_step(&self, scales: &[Option<f64>]) -> DVector<f64> {
-        let rows = self.sizes.map(nonzero_or_one);
+        let (rows, units) = self.find_scales(scales);
         let relative = |row: usize, column: usize| self.matrix[(row, column)] / rows[row];
-        let units = DVector::from_fn(self.matrix.ncols(), |column, _| {
-            let effects = (0..self.matrix.nrows()).map(|row| relative(row, column).abs());
-            scales[column].unwrap_or_else(|| 1.0 / nonzero_or_one(effects.fold(0.0, f64::max)))
-        });
         let scaled = DMatrix::from_fn(self.matrix.nrows(), self.matrix.ncols(), |row, column| {
             relative(row, column) * units[column]
         });
@@ -44,6 +40,40 @@ impl LinearisedEquations {
         };
         let step = step.unwrap_or_else(|| DVector::zeros(self.matrix.ncols()));
         step.component_mul(&units)
+    }
+
+    /// Returns the scales of rows and unknowns. Sizes of rows give units of unknowns by their effect; these units give the
+    /// sizes of rows in which all terms are 0, for example that of an actuator at rest.
+    fn find_scales(&self, scales: &[Option<f64>]) -> (DVector<f64>, DVector<f64>) {
+        let (count, columns) = self.matrix.shape();
+        let entry = |row: usize, column: usize| self.matrix[(row, column)].abs();
+        let positive = |size: f64| (size > 0.0).then_some(size);
+        let mut rows: Vec<Option<f64>> = self.sizes.iter().map(|size| positive(*size)).collect();
+        let mut units = scales.to_vec();
+        loop {
+            let known = rows.iter().chain(&units).flatten().count();
+            for column in 0..columns {
+                if units[column].is_none() {
+                    let effects =
+                        (0..count).filter_map(|row| Some(entry(row, column) / rows[row]?));
+                    units[column] =
+                        positive(effects.fold(0.0, f64::max)).map(|effect| 1.0 / effect);
+                }
+            }
+            for row in 0..count {
+                if rows[row].is_none() {
+                    let terms = (0..columns).filter_map(|own| Some(entry(row, own) * units[own]?));
+                    rows[row] = positive(terms.fold(0.0, f64::max));
+                }
+            }
+            if rows.iter().chain(&units).flatten().count() == known {
+                break;
+            }
+        }
+        let known_or_one = |sizes: Vec<Option<f64>>| {
+            DVector::from_iterator(sizes.len(), sizes.iter().map(|size| size.unwrap_or(1.0)))
+        };
+        (known_or_one(rows), known_or_one(units))
     }
 
     /// Returns true if the slope of the accelerations along `way` is nearly the same at another

@@ -12,6 +12,11 @@ mod stability;
 #[cfg(test)]
 mod tests;
 
+use std::cell::RefCell;
+
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::System;
+
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
@@ -25,6 +30,9 @@ const MAX_ZERO_RATE_FRACTION: f64 = 1e-6;
 
 /// Largest difference of equal speeds, relative to the largest speed of the same unit.
 const MAX_SPEED_DIFFERENCE_FRACTION: f64 = 1e-9;
+
+/// Relative tolerance of the states at which friction holds a machine.
+const HELD_TOLERANCE: f64 = 1e-9;
 
 /// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +86,8 @@ impl Instance<'_> {
     ///
     /// # Errors
     /// An unknown name, a nonzero rate of a coordinate that is not cyclic, a start outside a
-    /// declared range, and [`Error::Stopped`] if no equilibrium is found.
+    /// declared range, and [`Error::Stopped`] if no equilibrium is found. If friction holds the machine at the start
+    /// and forces balance at no state near it, the start is the equilibrium.
     pub fn find_equilibrium(&self, request: EquilibriumRequest<'_>) -> Result<Equilibrium, Error> {
         let given = [request.start_values, request.fixed_values].concat();
         let mut at = self.operating_point(&given)?;
@@ -101,6 +110,10 @@ impl Instance<'_> {
         let first = search.run(&mut at);
         let residual = match first {
             Ok(residual) => residual,
+            Err(_) if request.fixed_values.is_empty() && holding.is_held_at_rest(&start)? => {
+                at = start;
+                vec![0.0; at.state.len() - self.degrees()]
+            }
             Err(error) => {
                 // No equilibrium at these speeds: search for the speeds too.
                 let directions = holding.find_cyclic_directions(&start)?;
@@ -149,6 +162,9 @@ impl Instance<'_> {
         }
         let mut search = Search::new(&holding, &[], self.find_unknowns(at, &[])?)?;
         let names = self.model().state_names();
+        if found.moving_rates.is_empty() && holding.is_held_at_rest(at)? {
+            return Ok(found);
+        }
         for row in search.linearise(at)?.rows_above(MAX_ZERO_RATE_FRACTION) {
             let name = names[self.degrees() + row].clone();
             match row < self.degrees() {
@@ -157,6 +173,22 @@ impl Instance<'_> {
             }
         }
         Ok(found)
+    }
+
+    /// Returns true if friction holds the machine at rest and no state changes.
+    fn is_held_at_rest(&self, at: &OperatingPoint) -> Result<bool, Error> {
+        if !self.is_at_rest(at) || self.holding_model()?.is_none() {
+            return Ok(false);
+        }
+        let evaluator = RefCell::new(self.interpreter()?);
+        let inputs = HeldInputs::constant(at.inputs.clone());
+        let system = self.driven_model(&evaluator, inputs, HELD_TOLERANCE)?;
+        let mut rates = vec![0.0; at.state.len()];
+        let mut guards = vec![0.0; system.guard_count()];
+        // The first evaluation decides which surfaces hold.
+        system.guards(at.t, &at.state, &mut guards);
+        system.rates(at.t, &at.state, &mut rates);
+        Ok(rates.iter().all(|rate| *rate == 0.0))
     }
 
     fn nonzero_rate_names(&self, at: &OperatingPoint) -> Vec<String> {

@@ -33,7 +33,8 @@ const MAX_FINAL_HALVINGS: i32 = 2;
 /// Longest step, relative to a coordinate's natural scale.
 const MAX_STEP_FRACTION: f64 = 0.25;
 
-/// Displacement from a point at which no step helps, relative to a coordinate's natural scale.
+/// Displacement from a point at which no step helps, relative to a coordinate's natural scale or, without one, its
+/// typical size.
 const NUDGE_FRACTION: f64 = 1.0 / 1024.0;
 
 const MAX_NUDGES: usize = 3;
@@ -183,13 +184,13 @@ impl<'i, 'm> Search<'i, 'm> {
         at: &OperatingPoint,
         here: &LinearisedEquations,
     ) -> Option<(OperatingPoint, LinearisedEquations)> {
-        let change = DVector::from_fn(self.unknowns.len(), |place, _| {
-            match (self.unknowns[place], self.scales[place]) {
-                (Unknown::Setting(Setting::State(state)), Some(scale)) => {
-                    NUDGE_FRACTION * scale * here.acceleration_sign(state)
-                }
-                _ => 0.0,
+        let typical = self.instance.model().typical_sizes();
+        let change = DVector::from_fn(self.unknowns.len(), |place, _| match self.unknowns[place] {
+            Unknown::Setting(Setting::State(state)) => {
+                let size = self.scales[place].unwrap_or(typical[state]);
+                NUDGE_FRACTION * size * here.acceleration_sign(state)
             }
+            _ => 0.0,
         });
         let (trial, way) = self.move_point(at, &change)?;
         let there = self.try_linearised(&trial)?;

@@ -291,3 +291,71 @@ fn fixed_values_off_the_constraints_are_refused() {
         "{said}"
     );
 }
+
+/// A slide on a table with dry friction, which an actuator with a lag pushes.
+const SLIDE: &str = r#"
+[model]
+name = "slide"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 0, unit = "N/m" }
+level = { value = 3, unit = "N" }
+tau = { value = 5, unit = "ms" }
+[coordinates]
+x = { unit = "m", initial = 0.05 }
+theta = { unit = "rad", initial = 0.3 }
+[inputs]
+u = { unit = "N" }
+T = { unit = "N m" }
+[states]
+z = { unit = "N", rate = "(u - z)/tau", initial = 2 }
+[kinetic]
+slide = "1/2*m*dot(x)^2 + 1/2*J*dot(theta)^2"
+[potential]
+spring = "1/2*k*x^2 - w*cos(theta)"
+[forces]
+push = { on = "x", value = "z - level*sign(dot(x))" }
+motor = { on = "theta", value = "T" }
+"#;
+
+fn slide() -> String {
+    SLIDE.replace(
+        "[coordinates]",
+        "J = { value = 0.1, unit = \"kg m^2\" }\nw = { value = 1, unit = \"N m\" }\n[coordinates]",
+    )
+}
+
+#[test]
+fn input_behind_an_actuator_lag_holds_a_fixed_coordinate() {
+    let model =
+        compiled(&slide().replace("value = 0, unit = \"N/m\"", "value = 40, unit = \"N/m\""));
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = fixed(&run, &[("x", 0.1)]).expect("an equilibrium").point;
+    assert!((found.inputs[0] - 4.0).abs() < 1e-9, "{found:?}");
+    assert!((found.state[4] - 4.0).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn machine_that_friction_holds_is_at_an_equilibrium() {
+    let text = slide().replace(
+        "theta = { unit = \"rad\", initial = 0.3 }",
+        "theta = { unit = \"rad\" }",
+    );
+    let model = compiled(&text);
+    let run = model.with_declared_parameters().expect("an instance");
+    for (force, is_held) in [(2.0, true), (3.5, false)] {
+        let start = run
+            .operating_point(&[("u", force), ("z", force)])
+            .expect("a point");
+        assert_eq!(
+            run.is_equilibrium(&start).expect("an answer"),
+            is_held,
+            "{force} N"
+        );
+        let found = from(&run, &[("u", force), ("z", force)]);
+        assert_eq!(found.is_ok(), is_held, "{force} N: {found:?}");
+        if let Ok(found) = found {
+            assert_eq!(found.point.state[..1], [0.05]);
+        }
+    }
+}
