@@ -34,6 +34,9 @@ const MAX_SPEED_DIFFERENCE_FRACTION: f64 = 1e-9;
 /// Relative tolerance of the states at which friction holds a machine.
 const HELD_TOLERANCE: f64 = 1e-9;
 
+/// Number of roundings of the forces at rest within which a rate is 0, as in the solvers.
+const MAX_RATE_ROUNDINGS: f64 = 10.0;
+
 /// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
@@ -188,7 +191,10 @@ impl Instance<'_> {
         // The first evaluation decides which surfaces hold.
         system.guards(at.t, &at.state, &mut guards);
         system.rates(at.t, &at.state, &mut rates);
-        Ok(rates.iter().all(|rate| *rate == 0.0))
+        let mut roundings = vec![0.0; at.state.len()];
+        system.add_rate_roundings(&mut roundings);
+        let mut pairs = rates.iter().zip(roundings);
+        Ok(pairs.all(|(rate, rounding)| rate.abs() <= MAX_RATE_ROUNDINGS * rounding))
     }
 
     fn nonzero_rate_names(&self, at: &OperatingPoint) -> Vec<String> {
