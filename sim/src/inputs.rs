@@ -29,6 +29,10 @@ impl PartialEq for GivenInputs {
     }
 }
 
+/// Distances from a time, relative to it, between which the change of a function shows a jump.
+const NEAR_JUMP_DISTANCE: f64 = 1e-13;
+const FAR_JUMP_DISTANCE: f64 = 1e-9;
+
 /// Inputs of a motion. Each is constant between samples, prescribed (a spline through its samples,
 /// with its rates) or a function of time. Before the first sample the first value applies, after
 /// the last sample the last.
@@ -226,6 +230,25 @@ impl HeldInputs {
             .find(|(_, place, value)| !value.is_finite() && is_held(place))
     }
 
+    /// Returns the index of an input whose function jumps near a time (s), which is not among the jump times: its change
+    /// across that time hardly depends on the distance.
+    pub fn find_unknown_jump(&self, t: f64) -> Option<usize> {
+        let size = t.abs().max(f64::MIN_POSITIVE);
+        let is_near = |known: &f64| (known - t).abs() <= FAR_JUMP_DISTANCE * size;
+        if self.jump_times.iter().any(is_near) {
+            return None;
+        }
+        let values = |distance: f64| {
+            let [before, after] = [-1.0, 1.0].map(|sign| self.evaluate(t + sign * distance * size));
+            (before.into_owned(), after.into_owned())
+        };
+        let [near, far] = [NEAR_JUMP_DISTANCE, FAR_JUMP_DISTANCE].map(values);
+        (0..self.count).find(|place| {
+            let [near, far] = [&near, &far].map(|ends| (ends.1[*place] - ends.0[*place]).abs());
+            self.is_function(*place) && near > 0.0 && near > 0.5 * far
+        })
+    }
+
     /// Returns the index of the last sample at or before a time (s), 0 before the first.
     pub fn last_sample_index(&self, t: f64) -> usize {
         self.times_until(t).saturating_sub(1)
@@ -357,6 +380,17 @@ mod tests {
         let held = held.with_jump_times(vec![1.0, 3.0, 7.0]);
         assert_eq!(*held.evaluate(3.0), [1.0]);
         assert_eq!(*held.evaluate(3.0_f64.next_down()), [0.0]);
+    }
+
+    #[test]
+    fn jump_of_a_function_is_found_unless_it_is_known() {
+        let held = HeldInputs::zero(2).with_function(1, 1, std::sync::Arc::new(LateStep));
+        assert_eq!(held.find_unknown_jump(3.0), Some(1));
+        assert_eq!(held.find_unknown_jump(2.9), None);
+        let known = held.with_jump_times(vec![3.0]);
+        assert_eq!(known.find_unknown_jump(3.0), None);
+        let ramp = HeldInputs::zero(1).with_function(0, 1, std::sync::Arc::new(Ramp));
+        assert_eq!(ramp.find_unknown_jump(0.25), None);
     }
 
     #[test]

@@ -159,6 +159,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         watch.find_end((t, state), &rates, self.inputs.borrow())
     }
 
+    /// Returns the message for an input whose function jumps near a time (s) at which no step is accurate.
+    pub(crate) fn jump_message(&self, t: f64) -> Option<String> {
+        let place = self.inputs.borrow().find_unknown_jump(t)?;
+        let name = self.evaluator().program().inputs.get(place)?.name.clone();
+        Some(format!(
+            "the function of the input `{name}` jumps near t = {t:?} s: give its jumps (`breaks` in Python), so that steps \
+             end there, or write a step as above(t - t0)"
+        ))
+    }
+
     /// Returns cause and cure if the motion stopped because bodies overlap at an impact.
     pub(crate) fn overlap_message(&self) -> Option<String> {
         self.contacts.as_ref()?.borrow().overlap()

@@ -97,8 +97,11 @@ impl GeneralRun {
         let infinite = may_be
             .then(|| model.find_infinite_function((begin, ended_at)))
             .flatten();
-        let reason = if let Some(infinite) = infinite {
-            infinite
+        let jump = matches!(error, SolveError::StepTooSmall { .. })
+            .then(|| self.system.jump_message(ended_at))
+            .flatten();
+        let reason = if let Some(message) = infinite.or(jump) {
+            message
         } else if let Some(overlap) = self.system.overlap_message() {
             format!("at t = {ended_at:?} s {overlap}")
         } else if let Some(corner) = self.system.corner_message() {

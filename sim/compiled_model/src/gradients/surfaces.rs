@@ -71,8 +71,19 @@ impl<'r> BackwardPass<'r, '_> {
         let Some(first) = self.recorded.recording.parts.first() else {
             return Ok(());
         };
+        let count = self.evaluator.surface_count();
+        let (mut values, mut rates) = (vec![0.0; count], vec![0.0; count]);
+        let (t, state) = &first.start;
+        let given = self.recorded.inputs().evaluate(*t);
+        self.evaluator
+            .write_surfaces((*t, state), &given, (&mut values, &mut rates))?;
         for (surface, mode) in first.modes.iter().enumerate() {
-            if *mode == SurfaceMode::Unknown && self.state_jumps(first, surface)? {
+            let is_on = match mode {
+                SurfaceMode::Unknown => true,
+                SurfaceMode::Positive | SurfaceMode::Negative => values[surface] == 0.0,
+                _ => false,
+            };
+            if is_on && self.state_jumps(first, surface)? {
                 return Err(self.touches(first.start.0, surface));
             }
         }

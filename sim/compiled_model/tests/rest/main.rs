@@ -9,6 +9,7 @@ mod external_motion;
 mod gradients;
 mod rows;
 mod seldom;
+mod surface_at_start;
 mod time_stepping;
 
 use std::path::Path;
