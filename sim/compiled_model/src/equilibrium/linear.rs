@@ -45,25 +45,26 @@ impl LinearisedEquations {
     /// Returns the scales of rows and unknowns. Sizes of rows give units of unknowns by their effect; these units give the
     /// sizes of rows in which all terms are 0, for example that of an actuator at rest.
     fn find_scales(&self, scales: &[Option<f64>]) -> (DVector<f64>, DVector<f64>) {
-        let (count, columns) = self.matrix.shape();
         let entry = |row: usize, column: usize| self.matrix[(row, column)].abs();
         let positive = |size: f64| (size > 0.0).then_some(size);
         let mut rows: Vec<Option<f64>> = self.sizes.iter().map(|size| positive(*size)).collect();
         let mut units = scales.to_vec();
         loop {
             let known = rows.iter().chain(&units).flatten().count();
-            for column in 0..columns {
-                if units[column].is_none() {
+            for (column, unit) in units.iter_mut().enumerate() {
+                if unit.is_none() {
+                    let effects = rows.iter().enumerate();
                     let effects =
-                        (0..count).filter_map(|row| Some(entry(row, column) / rows[row]?));
-                    units[column] =
-                        positive(effects.fold(0.0, f64::max)).map(|effect| 1.0 / effect);
+                        effects.filter_map(|(row, size)| Some(entry(row, column) / (*size)?));
+                    *unit = positive(effects.fold(0.0, f64::max)).map(|effect| 1.0 / effect);
                 }
             }
-            for row in 0..count {
-                if rows[row].is_none() {
-                    let terms = (0..columns).filter_map(|own| Some(entry(row, own) * units[own]?));
-                    rows[row] = positive(terms.fold(0.0, f64::max));
+            for (row, size) in rows.iter_mut().enumerate() {
+                if size.is_none() {
+                    let terms = units.iter().enumerate();
+                    let terms =
+                        terms.filter_map(|(column, unit)| Some(entry(row, column) * (*unit)?));
+                    *size = positive(terms.fold(0.0, f64::max));
                 }
             }
             if rows.iter().chain(&units).flatten().count() == known {
