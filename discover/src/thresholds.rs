@@ -706,8 +706,8 @@ pub const MIN_LAG_CORRELATION: f64 = 0.05;
 pub const MAX_SCANNED_RIVAL_RATIO: f64 = 2.0;
 
 /// Maximum number of evaluations of the rates in the fit of a scanned law, per training sample. The fit
-/// of Dahl friction needs 10,000.
-pub const MAX_FIT_EVALUATIONS_PER_SAMPLE: u64 = 50_000;
+/// of Dahl friction needs 10,000, and 50,000 to 200,000 on a record without noise.
+pub const MAX_FIT_EVALUATIONS_PER_SAMPLE: u64 = 200_000;
 
 /// Maximum ratio of the held-out residual of a curve to its training residual: a wrong pair leaves
 /// 2 to 26 times as much.

@@ -171,13 +171,19 @@ fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let order = |a: &&usize, b: &&usize| profile.values[**a].total_cmp(&profile.values[**b]);
     let (low, high) = (known.iter().min_by(order), known.iter().max_by(order));
     match (low, high) {
-        (Some(low), Some(high)) if low != high && force.best_equation == force.equation => format!(
-            "it changes with the {of}, from {} at {} to {} at {}",
-            in_unit(profile.values[*low], equation.force_unit()),
-            in_unit(profile.arguments[*low], unit),
-            in_unit(profile.values[*high], equation.force_unit()),
-            in_unit(profile.arguments[*high], unit)
-        ),
+        // Bins at rest have the same argument.
+        (Some(low), Some(high))
+            if profile.arguments[*low] != profile.arguments[*high]
+                && force.best_equation == force.equation =>
+        {
+            format!(
+                "it changes with the {of}, from {} at {} to {} at {}",
+                in_unit(profile.values[*low], equation.force_unit()),
+                in_unit(profile.arguments[*low], unit),
+                in_unit(profile.values[*high], equation.force_unit()),
+                in_unit(profile.arguments[*high], unit)
+            )
+        }
         _ => format!("it changes with the {of}"),
     }
 }

@@ -14,13 +14,6 @@ const MAX_HIDDEN_RATE: f64 = 1e-2;
 /// Factors by which a parameter is multiplied until its terms exceed the rounding of others.
 const LARGE_FACTORS: [f64; 5] = [1e24, 1e60, 1e150, 1e220, 1e290];
 
-/// Number of roundings of its terms above which the stiffness along a rigid motion is not rounding.
-const MAX_STIFFNESS_ROUNDINGS: f64 = 8.0;
-
-/// Part of a change of a parameter that the stiffness along a motion has if terms with this parameter make it. Terms that
-/// cancel leave rounding.
-const MIN_STIFFNESS_FRACTION: f64 = 0.1;
-
 /// Change of an entry, relative to the entry, that its rounding may falsify.
 const MAX_SMALL_FRACTION: f64 = 1e-12;
 
@@ -60,47 +53,12 @@ impl Instance<'_> {
             && (f64::EPSILON * largest).sqrt() > MAX_HIDDEN_RATE
             && let Some(name) = self.find_lost_parameter(&found.a, point)?
         {
-            return Err(hidden_parameter_error(&name));
-        }
-        for mode in modes.iter().filter(|mode| mode.frequency() == 0.0) {
-            if let Some(name) = self.find_acting_parameter((&found.a, degrees), mode, point) {
-                return Err(hidden_parameter_error(&name));
-            }
+            return Err(Error::Request(format!(
+                "a motion has the frequency 0 because the term with `{name}` is below the rounding of a stiffness \
+                 beside it: make the stiff part rigid, or reduce its stiffness"
+            )));
         }
         Ok(modes)
-    }
-
-    /// Returns the name of a parameter that gives a rigid motion a stiffness above rounding, but below that of eigenvalues.
-    fn find_acting_parameter(
-        &self,
-        (a, degrees): (&[f64], usize),
-        mode: &NaturalMode,
-        point: Point<'_>,
-    ) -> Option<String> {
-        let states = point.state.len();
-        let stiffness = |a: &[f64]| {
-            let mut sums = (0.0, 0.0);
-            for row in 0..degrees {
-                for column in 0..degrees {
-                    let entry = a[(degrees + row) * states + column];
-                    let term = mode.shape[row].re * entry * mode.shape[column].re;
-                    sums = (sums.0 + term, sums.1 + term.abs());
-                }
-            }
-            sums
-        };
-        let (own, terms) = stiffness(a);
-        let rounding = MAX_STIFFNESS_ROUNDINGS * f64::EPSILON * terms;
-        if own.abs() <= rounding {
-            return None;
-        }
-        self.model().parameter_names().into_iter().find(|name| {
-            let doubled = self.scaled_state_matrix(name, 2.0, point);
-            doubled.is_some_and(|doubled| {
-                let change = (stiffness(&doubled).0 - own).abs();
-                change > rounding && own.abs() >= MIN_STIFFNESS_FRACTION * change
-            })
-        })
     }
 
     /// Returns the name of a parameter whose terms are lost in the rounding of others: a change of it changes
@@ -150,11 +108,4 @@ impl Instance<'_> {
         let a = changed.linearise(point).ok()?.a;
         (value != 0.0 && a.iter().all(|entry| entry.is_finite())).then_some(a)
     }
-}
-
-fn hidden_parameter_error(name: &str) -> Error {
-    Error::Request(format!(
-        "a motion has the frequency 0 because the term with `{name}` is below the rounding of a stiffness \
-         beside it: make the stiff part rigid, or reduce its stiffness"
-    ))
 }

@@ -23,3 +23,4 @@ mod redundant_constraints;
 mod reference_trajectory;
 mod stopped;
 mod taylor;
+mod woodpecker;

@@ -20,9 +20,7 @@ fn masses(stiff: &str, springs: &str) -> String {
 fn lost_stiffness_is_rejected_with_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
     // Both masses move together on c: 25/2 is lost in the sum with 1e30.
-    for stiff in [
-        "1e13", "1e14", "1e15", "1e16", "1e20", "1e30", "1e120", "1e200", "1e300",
-    ] {
+    for stiff in ["1e16", "1e20", "1e30", "1e120", "1e200", "1e300"] {
         let text = masses(stiff, "1/2*k*(x - y)^2 + 1/2*c*y^2");
         let message = run_rejected(&["modes", &write_model(folder.path(), &text)]);
         assert!(
