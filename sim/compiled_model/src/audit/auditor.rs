@@ -3,7 +3,7 @@
 use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_SIZE_FRACTION};
 
 use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
-use super::work::Refinement;
+use super::refinement::Refinement;
 use super::{Audit, Energies, EnergyAndPower, Imbalance};
 
 /// Factor on the energy change of an error at the tolerance in every entry of the state, for a

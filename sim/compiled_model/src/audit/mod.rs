@@ -8,6 +8,7 @@
 
 mod allowed_errors;
 mod auditor;
+mod refinement;
 #[cfg(test)]
 mod tests;
 mod work;

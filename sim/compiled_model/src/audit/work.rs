@@ -3,6 +3,7 @@
 use eomgen_sim::ode::{Interior, ObservedStep};
 
 use super::auditor::Auditor;
+use super::refinement::Refinement;
 use super::{Energies, EnergyAndPower};
 
 /// Allowed error of a quadrature, relative to the allowed change of the energy.
@@ -89,18 +90,6 @@ impl Auditor {
         }
         (work, 0.0)
     }
-}
-
-/// Refinement of a quadrature over a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Refinement {
-    /// Origin of the states inside the step.
-    pub interior: Interior,
-    /// Maximum number of panels.
-    pub most_panels: usize,
-    /// True if panels whose energy changes without work are halved too. A transient that is shorter than the distances
-    /// of the nodes is found only thus.
-    pub balances_panels: bool,
 }
 
 /// Integrates the power over a part of a step of this length (s); `None` if a state is unknown.

@@ -9,7 +9,7 @@ use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 
 use super::linear::LinearisedConstraints;
-use super::search::Unknown;
+use super::unknown::Unknown;
 
 /// Maximum number of corrections of a point.
 const MAX_CORRECTIONS: usize = 20;

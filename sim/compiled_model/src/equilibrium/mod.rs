@@ -11,6 +11,7 @@ mod search;
 mod stability;
 #[cfg(test)]
 mod tests;
+mod unknown;
 
 use std::cell::RefCell;
 
@@ -21,7 +22,8 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 
-use self::search::{Search, Unknown};
+use self::search::Search;
+use self::unknown::Unknown;
 
 pub use self::stability::Stability;
 

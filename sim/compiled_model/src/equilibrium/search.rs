@@ -16,6 +16,7 @@ use crate::state_space::StateSpaceEvaluator;
 
 use super::constraints::HolonomicConstraints;
 use super::linear::LinearisedEquations;
+use super::unknown::Unknown;
 
 /// Maximum number of steps; near an equilibrium ten are enough.
 const MAX_STEPS: usize = 300;
@@ -42,14 +43,6 @@ const MAX_NUDGES: usize = 3;
 /// Largest acceleration that counts as zero, relative to the largest value or term of its equation
 /// in this search.
 const MAX_ZERO_FRACTION: f64 = 1e-10;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unknown {
-    /// Coordinate, first-order state or input.
-    Setting(Setting),
-    /// Speed along a cyclic direction, by its index.
-    Speed(usize),
-}
 
 pub(super) struct Search<'i, 'm> {
     instance: &'i Instance<'m>,
