@@ -29,8 +29,10 @@ impl PartialEq for GivenInputs {
     }
 }
 
-/// Distances from a time, relative to it, between which the change of a function shows a jump.
+/// Small distance from a time, relative to it, across which a function jumps.
 const NEAR_JUMP_DISTANCE: f64 = 1e-13;
+
+/// Larger distance from a time, relative to it, across which a smooth function changes 10,000 times as much.
 const FAR_JUMP_DISTANCE: f64 = 1e-9;
 
 /// Inputs of a motion. Each is constant between samples, prescribed (a spline through its samples,

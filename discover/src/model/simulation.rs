@@ -586,7 +586,7 @@ push = { on = "x", value = "2*T - T*z/p" }
         let end = states.expect("states")[20][0];
         let right = integrate_stage();
         assert!((end / right - 1.0).abs() < 1e-5, "{end}, {right}");
-        // The explicit method alone needs 1000 per sample.
+        // Without the implicit method, 1000 evaluations per sample are needed.
         assert!(model.work.done() < 200 * 20, "{}", model.work.done());
     }
 

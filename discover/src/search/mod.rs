@@ -119,7 +119,7 @@ impl Search<'_> {
         }
     }
 
-    /// Accepts effect after effect, each with the largest explained part of what the others leave.
+    /// Accepts effects in turn: each explains most of the residual that the earlier ones leave.
     /// Returns true if laws were scanned.
     fn select_forward(&self, found: &mut SearchResult) -> Result<bool, DiscoverError> {
         let Self {
@@ -146,7 +146,7 @@ impl Search<'_> {
                 is_first_round,
             };
             let singles = round.test_single_candidates();
-            // Pairs are many: a law that explains the records alone comes before them.
+            // There are many pairs, so a single law that explains the records is tested first.
             if is_first_round && singles.lacks_effect() && !problem.stop.is_requested() {
                 is_scanned = true;
                 note_rejected(&mut found.rejected, &singles.tested);

@@ -3,7 +3,9 @@
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
-use crate::controllers::{ControlLoop, DeclaredController, LoopRecord, Plant, SampledController};
+use crate::controllers::{
+    ControlLoop, DeclaredController, LoopRecord, Plant, SampledController, limit_steps,
+};
 use crate::error::Error;
 use crate::exported_model::{ExportedCode, ExportedInstance, ExportedModel};
 use crate::general_motion::GeneralMotion;
@@ -90,11 +92,8 @@ impl ExportedMotion {
         self.motion = None;
         let controllers =
             DeclaredController::all(self.model().program(), &self.instance.parameters)?;
-        let periods = controllers.iter().map(|own| own.schedule().period);
-        let options = SolverOptions {
-            max_step: periods.fold(self.options.max_step, f64::min),
-            ..self.options
-        };
+        let schedules = controllers.iter().map(|own| own.schedule());
+        let options = limit_steps(self.options, schedules);
         let settings = options.settings(general_method(self.options.solver));
         let start = (self.t, &self.state[..]);
         let (motion, changes) =

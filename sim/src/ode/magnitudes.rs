@@ -3,7 +3,7 @@
 use super::settings::UNMOVED_SIZE_FRACTION;
 
 /// Rounding error of a state, in units of the last place.
-const ROUNDING: f64 = 10.0;
+pub const ROUNDING_FACTOR: f64 = 10.0;
 
 /// A step leaves an invariant by at most this number of its allowed errors.
 const MOST_STRAYED: f64 = 100.0;
@@ -47,7 +47,7 @@ impl Magnitudes {
     /// error of its largest value so far: a component at rest is small, but its rounding error is
     /// not.
     pub fn reset_copy(&self) -> Self {
-        let roundings = ROUNDING * f64::EPSILON / self.tolerance;
+        let roundings = ROUNDING_FACTOR * f64::EPSILON / self.tolerance;
         let largest = self.largest.iter().zip(&self.smallest);
         let largest = largest.map(|(largest, smallest)| smallest.max(roundings * largest));
         Self {
@@ -67,7 +67,7 @@ impl Magnitudes {
     /// Sets the rounding of each component in a step of `length` s, given those of the rates.
     pub fn set_rate_roundings(&mut self, rates: &[f64], length: f64) {
         for (slot, rate) in self.roundings.iter_mut().zip(rates) {
-            *slot = ROUNDING * length * rate;
+            *slot = ROUNDING_FACTOR * length * rate;
         }
     }
 

@@ -60,6 +60,7 @@ mod watch;
 pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
 pub use events::{Event, Jump, SurfaceMode};
 pub use external_motion::ExternalMotion;
+pub use magnitudes::ROUNDING_FACTOR;
 pub use names::{Names, Surface, SurfaceKind, UnsupportedSticking};
 pub use settings::{Method, Settings, UNMOVED_SIZE_FRACTION, difference_step};
 pub use simulation::{Simulation, simulate, simulate_into};

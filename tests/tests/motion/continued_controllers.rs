@@ -147,7 +147,7 @@ fn calls_that_end_anywhere_give_the_motion_of_simulate() {
     ] {
         let model = derive(text);
         let run = model.with_declared_parameters().expect("an instance");
-        // At samples, between them, and beside them by rounding.
+        // At samples, between them, and one rounding before or after them.
         let mut times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.1).collect();
         times.extend((1..20).map(|k| f64::from(k) * 0.07));
         times.extend((1..20).map(|k| (f64::from(k) * 0.07).next_up()));
@@ -230,7 +230,7 @@ fn simulation_refuses_values_of_driven_inputs_and_keeps_controllers_at_another_s
     simulation.advance(0.5).expect("an advance");
     let e_i = states[0] + 0.1 * (0.5 - simulation.state()[0]);
     assert!((simulation.controller_states()[0] - e_i).abs() < 1e-12);
-    // The wait for the outputs goes on: that of the sample at 0.3 s acts at 0.55 s.
+    // Outputs keep their delay: those of the sample at 0.3 s act at 0.55 s.
     let before = simulation.inputs()[1];
     simulation.advance(0.54).expect("an advance");
     assert_eq!(simulation.inputs()[1], before);

@@ -1,6 +1,6 @@
 //! Energy balance of a motion, step by step.
 
-use eomgen_sim::ode::{Interior, ObservedStep, UNMOVED_SIZE_FRACTION};
+use eomgen_sim::ode::{Interior, ObservedStep, ROUNDING_FACTOR, UNMOVED_SIZE_FRACTION};
 
 use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
 use super::refinement::Refinement;
@@ -19,8 +19,8 @@ const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 /// Maximum number of panels of a quadrature with interpolated states.
 const MAX_PANELS: usize = 4096;
 
-/// Maximum number of panels of a quadrature that also halves panels whose energy changes without work. A transient of a
-/// millionth of the step takes 30.
+/// Maximum number of panels of a quadrature that also halves panels whose energy changes without work. A transient of
+/// 1e-5 of the step takes fewer than 150.
 const MAX_BALANCED_PANELS: usize = 512;
 
 /// Maximum number of panels of a quadrature whose states need a step each.
@@ -28,9 +28,6 @@ const MAX_RESOLVED_PANELS: usize = 16;
 
 /// Rounding of an energy, relative to its magnitude.
 const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Factor on the rounding of rates at rest. Solvers count ten times this rounding as no error.
-const RATE_ROUNDING_FACTOR: f64 = 10.0;
 
 const EXACT_TOLERANCE: f64 = 1e-9;
 
@@ -297,7 +294,7 @@ impl Auditor {
     /// Raises the sizes of the states to what rounding of these rates changes in a step of `length` s.
     pub fn raise_to_roundings(&mut self, rates: &[f64], length: f64) {
         for (size, rate) in self.sizes.iter_mut().zip(rates) {
-            *size = size.max(RATE_ROUNDING_FACTOR * length * rate / self.tolerance);
+            *size = size.max(ROUNDING_FACTOR * length * rate / self.tolerance);
         }
     }
 

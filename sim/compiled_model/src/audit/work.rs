@@ -74,14 +74,8 @@ impl Auditor {
             };
             panels += 1;
             let is_accurate = (left + right - whole).abs() <= most_error * width
-                && (!refinement.balances_panels || {
-                    let ends = [from, from + width].map(&mut inside);
-                    let [Some(before), Some(after)] = ends else {
-                        work += left + right;
-                        continue;
-                    };
-                    (after.energy - before.energy - left - right).abs() <= most_error
-                });
+                && !(refinement.balances_panels
+                    && find_imbalance(&mut inside, (from, width), left + right) > most_error);
             if is_accurate || panels >= refinement.most_panels {
                 work += left + right;
             } else {
@@ -103,4 +97,16 @@ fn integrate_panel(
         sum += weight * width * length * inside(from + width * node)?.power;
     }
     Some(sum)
+}
+
+/// Returns the energy change of a part of a step that this work does not explain; 0 if a state is unknown.
+fn find_imbalance(
+    inside: &mut dyn FnMut(f64) -> Option<EnergyAndPower>,
+    (from, width): (f64, f64),
+    work: f64,
+) -> f64 {
+    match [from, from + width].map(inside) {
+        [Some(before), Some(after)] => (after.energy - before.energy - work).abs(),
+        _ => 0.0,
+    }
 }

@@ -1,15 +1,14 @@
 //! Simulations with controllers that continue from call to call.
 
-use eomgen_model_spec::schedule::Schedule;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
-use super::control_loop::{ControlLoop, LoopRecord, Plant};
+use super::control_loop::{ControlLoop, LoopRecord, Plant, limit_steps};
 use super::controller::SampledController;
 use super::memory::ControlMemory;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{EarlyStop, Solver};
+use crate::motion::EarlyStop;
 use crate::resumable::Simulation;
 use crate::solver_options::SolverOptions;
 
@@ -28,7 +27,8 @@ impl<'m> Instance<'m> {
         'm: 'c,
     {
         self.check_driven_once(&controllers, &inputs)?;
-        let options = limit_steps(options, &controllers);
+        let schedules = controllers.iter().map(|own| own.schedule());
+        let options = limit_steps(options, schedules);
         let mut simulation: Simulation<'c> = self.start_plant(start, inputs.clone(), options)?;
         let program = self.model().program();
         let counts = (program.inputs.len(), program.observables.len());
@@ -80,22 +80,6 @@ impl<'m> Instance<'m> {
             driven.push(*place);
         }
         Ok(())
-    }
-}
-
-/// Limits the steps of a solver to the shortest period: longer ones would end between samples, and lose digits there.
-pub(crate) fn limit_steps(
-    options: SolverOptions,
-    controllers: &[Box<dyn SampledController + '_>],
-) -> SolverOptions {
-    let schedules = controllers.iter().map(|own| own.schedule());
-    let periods = schedules.map(|Schedule { period, .. }| period);
-    match options.solver {
-        Solver::Fixed => options,
-        _ => SolverOptions {
-            max_step: periods.fold(options.max_step, f64::min),
-            ..options
-        },
     }
 }
 

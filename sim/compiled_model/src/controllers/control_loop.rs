@@ -1,5 +1,6 @@
 //! Controllers in a loop with a motion: samples, actions of their outputs, and inputs from outside.
 
+use eomgen_model_spec::schedule::Schedule;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
@@ -7,7 +8,8 @@ use super::clock::Clock;
 use super::controller::{Sample, SampledController};
 use super::memory::ControlMemory;
 use crate::error::Error;
-use crate::motion::{EarlyStop, StopCause};
+use crate::motion::{EarlyStop, Solver, StopCause};
+use crate::solver_options::SolverOptions;
 
 /// Motion whose inputs controllers drive.
 pub(crate) trait Plant {
@@ -84,6 +86,21 @@ impl<'t> LoopRecord<'t> {
 fn states_of(controllers: &[Box<dyn SampledController + '_>]) -> Vec<f64> {
     let states = controllers.iter().map(|controller| controller.states());
     states.collect::<Vec<_>>().concat()
+}
+
+/// Limits the steps of a solver to the shortest period: longer ones would end between samples, and lose digits there.
+pub(crate) fn limit_steps(
+    options: SolverOptions,
+    schedules: impl Iterator<Item = Schedule>,
+) -> SolverOptions {
+    let periods = schedules.map(|Schedule { period, .. }| period);
+    match options.solver {
+        Solver::Fixed => options,
+        _ => SolverOptions {
+            max_step: periods.fold(options.max_step, f64::min),
+            ..options
+        },
+    }
 }
 
 /// Controllers with their clock and the inputs of a motion.
@@ -235,12 +252,7 @@ impl<'c> ControlLoop<'c> {
         record: &mut LoopRecord<'_>,
     ) -> Result<Option<EarlyStop>, Error> {
         let before = self.held.clone();
-        let given = self.given.last_sample(instant);
-        for ((held, value), has_acted) in self.held.iter_mut().zip(given).zip(&self.has_acted) {
-            if !has_acted {
-                *held = *value;
-            }
-        }
+        self.hold_given(instant);
         for action in self.clock.take_actions(instant) {
             let driven = self.controllers[action.controller].driven_inputs();
             for (place, value) in driven.iter().zip(action.values) {
@@ -264,18 +276,22 @@ impl<'c> ControlLoop<'c> {
         }
     }
 
+    /// Holds the inputs from outside at a time (s), except those on which an output acts.
+    fn hold_given(&mut self, t: f64) {
+        let given = self.given.last_sample(t);
+        for ((held, value), has_acted) in self.held.iter_mut().zip(given).zip(&self.has_acted) {
+            if !has_acted {
+                *held = *value;
+            }
+        }
+    }
+
     /// Changes the inputs from outside at the time reached; returns the inputs of the motion from then on. Those that a
     /// controller drives keep the values of its outputs.
     pub fn give(&mut self, t: f64, inputs: HeldInputs) -> HeldInputs {
         let before = self.current.evaluate(t).into_owned();
         self.given = inputs;
-        let given = self.given.last_sample(t);
-        let all = self.held.iter_mut().zip(given).zip(&self.has_acted);
-        for ((held, value), has_acted) in all {
-            if !has_acted {
-                *held = *value;
-            }
-        }
+        self.hold_given(t);
         self.current = self.given.with_held_step(t, &before, &self.held);
         self.current.clone()
     }

@@ -27,10 +27,8 @@ pub(super) struct HolonomicConstraints {
     places: Vec<usize>,
     /// State of each unknown; `None` for unknowns that the constraints do not contain.
     columns: Vec<Option<usize>>,
-    /// Typical size of each unknown, SI.
-    sizes: Vec<f64>,
     /// Typical size of each coordinate and mode, SI.
-    coordinate_sizes: Vec<f64>,
+    sizes: Vec<f64>,
 }
 
 impl HolonomicConstraints {
@@ -51,41 +49,47 @@ impl HolonomicConstraints {
             })
             .collect();
         let typical = instance.model().typical_sizes();
-        let size = |place: &Option<usize>| place.map_or(1.0, |own| typical[own]);
-        let sizes = columns.iter().map(size).collect();
         (!places.is_empty()).then(|| Self {
             rows,
             places,
             columns,
-            sizes,
-            coordinate_sizes: typical[..degrees].to_vec(),
+            sizes: typical[..degrees].to_vec(),
         })
     }
 
     /// Returns the constraints at a point, or `None` if a number is not finite.
     pub fn linearise(&mut self, at: &OperatingPoint) -> Option<LinearisedConstraints> {
         let degrees = self.rows.degrees_of_freedom();
-        let all = self.rows.derivatives(at.point());
-        let by_coordinates = DMatrix::from_fn(self.places.len(), degrees, |row, column| {
-            all[self.places[row]][column] * self.coordinate_sizes[column]
-        });
-        let allowed = AllowedMotions::new(&row_by_row(&by_coordinates), degrees).ok()?;
+        let derivatives = self.derivatives(at);
+        let mut scaled = derivatives.clone();
+        for (mut column, size) in scaled.column_iter_mut().zip(&self.sizes) {
+            column *= *size;
+        }
+        let allowed = AllowedMotions::new(&row_by_row(&scaled), degrees).ok()?;
         let mut displacements = allowed.basis().clone();
-        for (mut row, size) in displacements.row_iter_mut().zip(&self.coordinate_sizes) {
+        for (mut row, size) in displacements.row_iter_mut().zip(&self.sizes) {
             row *= *size;
         }
+        let mass = self.rows.mass_matrix(at.point());
         Some(LinearisedConstraints {
-            by_unknowns: self.derivatives(at),
-            mass: DMatrix::from_row_slice(degrees, degrees, &self.rows.mass_matrix(at.point())),
+            by_unknowns: self.by_unknowns(&derivatives),
+            mass: DMatrix::from_row_slice(degrees, degrees, &mass),
             displacements,
         })
     }
 
-    /// Returns the derivatives of the constraints by the unknowns at a point, SI.
+    /// Returns the derivatives of the constraints by the coordinates and modes at a point, SI.
     fn derivatives(&mut self, at: &OperatingPoint) -> DMatrix<f64> {
         let all = self.rows.derivatives(at.point());
+        let degrees = self.rows.degrees_of_freedom();
+        DMatrix::from_fn(self.places.len(), degrees, |row, column| {
+            all[self.places[row]][column]
+        })
+    }
+
+    fn by_unknowns(&self, derivatives: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(self.places.len(), self.columns.len(), |row, column| {
-            self.columns[column].map_or(0.0, |place| all[self.places[row]][place])
+            self.columns[column].map_or(0.0, |place| derivatives[(row, place)])
         })
     }
 
@@ -94,11 +98,12 @@ impl HolonomicConstraints {
     pub fn project(&mut self, at: &mut OperatingPoint) -> bool {
         for _ in 0..MAX_CORRECTIONS {
             let residuals = self.rows.residuals(at.point());
-            let mut matrix = self.derivatives(at);
+            let derivatives = self.derivatives(at);
+            let mut matrix = self.by_unknowns(&derivatives);
             let mut wanted = DVector::zeros(self.places.len());
             for (row, place) in self.places.iter().enumerate() {
-                for (column, size) in self.sizes.iter().enumerate() {
-                    matrix[(row, column)] *= size;
+                for (column, place) in self.columns.iter().enumerate() {
+                    matrix[(row, column)] *= place.map_or(1.0, |place| self.sizes[place]);
                 }
                 let largest = matrix.row(row).amax();
                 let largest = if largest > 0.0 { largest } else { 1.0 };
@@ -120,12 +125,11 @@ impl HolonomicConstraints {
                 return false;
             };
             let mut relative: f64 = 0.0;
-            let unknowns = self.columns.iter().zip(&self.sizes).zip(change.iter());
-            for ((place, size), part) in unknowns {
-                if let Some(place) = place {
-                    let value = &mut at.state[*place];
+            for (place, part) in self.columns.iter().zip(change.iter()) {
+                if let Some(place) = *place {
+                    let (value, size) = (&mut at.state[place], self.sizes[place]);
                     *value += part * size;
-                    relative = relative.max(part.abs() * size / value.abs().max(*size));
+                    relative = relative.max(part.abs() * size / value.abs().max(size));
                 }
             }
             if relative <= LAST_CORRECTION_FRACTION {

@@ -16,7 +16,7 @@ mod unknown;
 use std::cell::RefCell;
 
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::System;
+use eomgen_sim::ode::{ROUNDING_FACTOR, System};
 
 use crate::error::Error;
 use crate::instance::Instance;
@@ -35,9 +35,6 @@ const MAX_SPEED_DIFFERENCE_FRACTION: f64 = 1e-9;
 
 /// Relative tolerance of the states at which friction holds a machine.
 const HELD_TOLERANCE: f64 = 1e-9;
-
-/// Number of roundings of the forces at rest within which a rate is 0, as in the solvers.
-const MAX_RATE_ROUNDINGS: f64 = 10.0;
 
 /// An equilibrium of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,13 +110,17 @@ impl Instance<'_> {
         )?;
         let start = at.clone();
         let first = search.run(&mut at);
-        let residual = match first {
-            Ok(residual) => residual,
-            Err(_) if request.fixed_values.is_empty() && holding.is_held_at_rest(&start)? => {
+        let held = match &first {
+            Err(_) if request.fixed_values.is_empty() => holding.find_held_rates(&start)?,
+            _ => None,
+        };
+        let residual = match (first, held) {
+            (Ok(residual), _) => residual,
+            (Err(_), Some(rates)) => {
                 at = start;
-                vec![0.0; at.state.len() - self.degrees()]
+                rates
             }
-            Err(error) => {
+            (Err(error), None) => {
                 // No equilibrium at these speeds: search for the speeds too.
                 let directions = holding.find_cyclic_directions(&start)?;
                 let speeds = self.find_unknown_speeds(&directions, request.fixed_values)?;
@@ -165,11 +166,11 @@ impl Instance<'_> {
             self.project_rates(&mut along, &directions);
             found.moving_rates = self.differing_rates(at, &along);
         }
-        let mut search = Search::new(&holding, &[], self.find_unknowns(at, &[])?)?;
-        let names = self.model().state_names();
-        if found.moving_rates.is_empty() && holding.is_held_at_rest(at)? {
+        if holding.find_held_rates(at)?.is_some() {
             return Ok(found);
         }
+        let mut search = Search::new(&holding, &[], self.find_unknowns(at, &[])?)?;
+        let names = self.model().state_names();
         for row in search.linearise(at)?.rows_above(MAX_ZERO_RATE_FRACTION) {
             let name = names[self.degrees() + row].clone();
             match row < self.degrees() {
@@ -180,23 +181,24 @@ impl Instance<'_> {
         Ok(found)
     }
 
-    /// Returns true if friction holds the machine at rest and no state changes.
-    fn is_held_at_rest(&self, at: &OperatingPoint) -> Result<bool, Error> {
+    /// Returns the accelerations and the rates of first-order states, all 0 up to rounding, if friction holds the machine
+    /// at rest and no state changes.
+    fn find_held_rates(&self, at: &OperatingPoint) -> Result<Option<Vec<f64>>, Error> {
         if !self.is_at_rest(at) || self.holding_model()?.is_none() {
-            return Ok(false);
+            return Ok(None);
         }
         let evaluator = RefCell::new(self.interpreter()?);
         let inputs = HeldInputs::constant(at.inputs.clone());
         let system = self.driven_model(&evaluator, inputs, HELD_TOLERANCE)?;
-        let mut rates = vec![0.0; at.state.len()];
         let mut guards = vec![0.0; system.guard_count()];
         // The first evaluation decides which surfaces hold.
         system.guards(at.t, &at.state, &mut guards);
+        let (mut rates, mut roundings) = (vec![0.0; at.state.len()], vec![0.0; at.state.len()]);
         system.rates(at.t, &at.state, &mut rates);
-        let mut roundings = vec![0.0; at.state.len()];
         system.add_rate_roundings(&mut roundings);
         let mut pairs = rates.iter().zip(roundings);
-        Ok(pairs.all(|(rate, rounding)| rate.abs() <= MAX_RATE_ROUNDINGS * rounding))
+        let is_held = pairs.all(|(rate, rounding)| rate.abs() <= ROUNDING_FACTOR * rounding);
+        Ok(is_held.then(|| rates.split_off(self.degrees())))
     }
 
     fn nonzero_rate_names(&self, at: &OperatingPoint) -> Vec<String> {

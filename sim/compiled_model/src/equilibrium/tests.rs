@@ -301,6 +301,8 @@ m = { value = 2, unit = "kg" }
 k = { value = 0, unit = "N/m" }
 level = { value = 3, unit = "N" }
 tau = { value = 5, unit = "ms" }
+J = { value = 0.1, unit = "kg m^2" }
+w = { value = 1, unit = "N m" }
 [coordinates]
 x = { unit = "m", initial = 0.05 }
 theta = { unit = "rad", initial = 0.3 }
@@ -318,17 +320,9 @@ push = { on = "x", value = "z - level*sign(dot(x))" }
 motor = { on = "theta", value = "T" }
 "#;
 
-fn slide() -> String {
-    SLIDE.replace(
-        "[coordinates]",
-        "J = { value = 0.1, unit = \"kg m^2\" }\nw = { value = 1, unit = \"N m\" }\n[coordinates]",
-    )
-}
-
 #[test]
 fn input_behind_an_actuator_lag_holds_a_fixed_coordinate() {
-    let model =
-        compiled(&slide().replace("value = 0, unit = \"N/m\"", "value = 40, unit = \"N/m\""));
+    let model = compiled(&SLIDE.replace("value = 0, unit = \"N/m\"", "value = 40, unit = \"N/m\""));
     let run = model.with_declared_parameters().expect("an instance");
     let found = fixed(&run, &[("x", 0.1)]).expect("an equilibrium").point;
     assert!((found.inputs[0] - 4.0).abs() < 1e-9, "{found:?}");
@@ -337,7 +331,7 @@ fn input_behind_an_actuator_lag_holds_a_fixed_coordinate() {
 
 #[test]
 fn machine_that_friction_holds_is_at_an_equilibrium() {
-    let text = slide().replace(
+    let text = SLIDE.replace(
         "theta = { unit = \"rad\", initial = 0.3 }",
         "theta = { unit = \"rad\" }",
     );
