@@ -9,8 +9,9 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::model::Model;
 
-/// Frequency (Hz), damping ratio, eigenvalue (1/s) and shape, complex numbers as real and imaginary parts.
-type ModeTuple = (f64, f64, (f64, f64), Vec<(f64, f64)>);
+/// Frequency (Hz), damping ratio, eigenvalue (1/s), shape and greatest frequency (Hz) of a rigid motion. Complex
+/// numbers are real and imaginary parts.
+type ModeTuple = (f64, f64, (f64, f64), Vec<(f64, f64)>, Option<f64>);
 
 /// Name and unit of a column.
 type NameAndUnit = (String, String);
@@ -47,5 +48,6 @@ fn describe_mode(mode: &NaturalMode) -> ModeTuple {
         mode.damping(),
         eigenvalue,
         shape.collect(),
+        mode.frequency_limit(),
     )
 }

@@ -28,7 +28,7 @@ pub fn run(options: &Modes) -> Result {
         drawing.write(figure(&run, &regime, &modes)?.as_bytes())?;
     }
     if !options.output.json {
-        let text = table(&compiled, &modes) + &sides(&regime);
+        let text = table(&compiled, &modes) + &describe_rigid_motions(&modes) + &sides(&regime);
         return drawing.map_or_else(|| print_text(&text), |drawing| drawing.summarise(&text));
     }
     let mut document = head(&compiled);
@@ -50,11 +50,21 @@ fn record(mode: &NaturalMode) -> Value {
     let imaginary: Vec<f64> = mode.shape.iter().map(|value| value.im).collect();
     json!({
         "frequency": mode.frequency(),
+        "frequency_limit": mode.frequency_limit(),
         "damping": mode.damping(),
         "eigenvalue": [mode.eigenvalue.re, mode.eigenvalue.im],
         "shape": real,
         "shape_imaginary": imaginary,
     })
+}
+
+/// States the accuracy of the frequency 0.
+fn describe_rigid_motions(modes: &[NaturalMode]) -> String {
+    let limits = modes.iter().filter_map(NaturalMode::frequency_limit);
+    match limits.reduce(f64::max) {
+        Some(limit) => format!("frequency 0 means less than {limit:.1e} Hz\n"),
+        None => String::new(),
+    }
 }
 
 /// Describes the regime of a piecewise model.

@@ -104,7 +104,15 @@ def modes(
     model: Model, t: float, x: _Array, u: _Array
 ) -> Tuple[
     List[Tuple[str, str]],
-    List[Tuple[float, float, Tuple[float, float], List[Tuple[float, float]]]],
+    List[
+        Tuple[
+            float,
+            float,
+            Tuple[float, float],
+            List[Tuple[float, float]],
+            Optional[float],
+        ]
+    ],
 ]: ...
 def sweep(
     model: Model,

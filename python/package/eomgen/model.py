@@ -223,8 +223,8 @@ class Model:
         amplitudes, found = _native.modes(self._native, time, call.x[0], call.u[0])
         names = tuple(name for name, _ in amplitudes)
         return [
-            Mode(frequency, damping, complex(*eigenvalue), np.array([complex(*v) for v in shape]), names)
-            for frequency, damping, eigenvalue, shape in found
+            Mode(frequency, damping, complex(*eigenvalue), np.array([complex(*v) for v in shape]), names, limit)
+            for frequency, damping, eigenvalue, shape, limit in found
         ]
 
     def validate(self, extras: Sequence[str] = ()) -> Certificate:

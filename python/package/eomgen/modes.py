@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Tuple
+from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,8 @@ class Mode(NamedTuple):
 
     frequency: undamped natural frequency, Hz; 0 for a rigid motion. damping: damping ratio. eigenvalue: in 1/s; of a
     conjugate pair, the one with positive imaginary part. shape: complex amplitudes, SI, scaled so that the largest is
-    1. names: names of the amplitudes: coordinates, then first-order states.
+    1. names: names of the amplitudes: coordinates, then first-order states. frequency_limit: of a rigid motion, the
+    greatest frequency that rounding can hide, Hz; otherwise None.
     """
 
     frequency: float
@@ -21,3 +22,4 @@ class Mode(NamedTuple):
     eigenvalue: complex
     shape: NDArray[np.complex128]
     names: Tuple[str, ...]
+    frequency_limit: Optional[float]

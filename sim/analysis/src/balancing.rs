@@ -7,6 +7,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::null_space::RANK_TOLERANCE;
+
 /// Largest number of sweeps over the states; three or four are usual.
 const MAX_SWEEPS: usize = 100;
 
@@ -51,6 +53,12 @@ impl BalancedMatrix {
             ),
             time,
         }
+    }
+
+    /// Returns the rate, 1/s, up to which an eigenvalue may count as 0: the null space of K then
+    /// contains motions with lambda^2 up to [`RANK_TOLERANCE`] times the square of the norm.
+    pub fn resolution(&self) -> f64 {
+        self.per_second(RANK_TOLERANCE.sqrt() * self.matrix.norm())
     }
 
     /// Converts a rate of scaled time to 1/s.

@@ -105,6 +105,7 @@ fn constrained_modes_of_part(
     let modes = modes.into_iter().map(|(eigenvalue, motion)| NaturalMode {
         eigenvalue: balanced.eigenvalue(eigenvalue),
         shape: shape(&(&in_si * motion), degrees),
+        resolution: balanced.resolution(),
     });
     Ok(modes.collect())
 }

@@ -32,12 +32,21 @@ pub struct NaturalMode {
     /// v: amplitudes of the coordinates in SI units, scaled so that the largest is 1, then those of
     /// first-order states. If no coordinate moves, the largest of these is 1.
     pub shape: Vec<Complex<f64>>,
+    /// Rate, 1/s, up to which an eigenvalue counts as 0, because rounding of the fastest motion hides
+    /// it.
+    pub resolution: f64,
 }
 
 impl NaturalMode {
     /// Returns the undamped natural frequency abs(lambda)/(2 pi), Hz; 0 for a rigid motion.
     pub fn frequency(&self) -> f64 {
         self.eigenvalue.norm() / std::f64::consts::TAU
+    }
+
+    /// Returns the greatest frequency, Hz, that a rigid motion may have; `None` if the motion is not
+    /// rigid.
+    pub fn frequency_limit(&self) -> Option<f64> {
+        (self.eigenvalue.norm() == 0.0).then_some(self.resolution / std::f64::consts::TAU)
     }
 
     /// Returns the damping ratio -Re(lambda)/abs(lambda): 1 for a decay without oscillation,
@@ -141,6 +150,7 @@ pub(crate) fn connected_modes(
     let scaled = modes.into_iter().map(|(eigenvalue, shape)| NaturalMode {
         eigenvalue: balanced.eigenvalue(eigenvalue),
         shape: pencil.to_si(&shape),
+        resolution: balanced.resolution(),
     });
     Ok(scaled.collect())
 }

@@ -31,6 +31,22 @@ fn lost_stiffness_is_rejected_with_its_name() {
 }
 
 #[test]
+fn frequency_zero_states_the_greatest_frequency_that_rounding_hides() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let right = f64::sqrt(12.5) / TAU;
+    for stiff in ["1e10", "1e11", "1e12", "1e13", "1e14", "1e15"] {
+        let spec = write_model(folder.path(), &masses(stiff, "1/2*k*(x - y)^2 + 1/2*c*y^2"));
+        let found = run_json(&["modes", &spec, "--json"]);
+        let number = |key: &str| found["modes"][0][key].as_f64();
+        let frequency = number("frequency").expect("a number");
+        match number("frequency_limit") {
+            Some(limit) => assert!(frequency == 0.0 && limit > right, "{stiff}: {limit}"),
+            None => assert!((frequency / right - 1.0).abs() < 1e-3, "{stiff}: {frequency}"),
+        }
+    }
+}
+
+#[test]
 fn visible_stiffness_and_rigid_motions_keep_their_frequencies() {
     let folder = tempfile::tempdir().expect("a folder");
     let lowest = |stiff: &str, springs: &str| {
