@@ -53,7 +53,7 @@ pub struct StateValues {
 #[derive(Args)]
 pub struct InputValues {
     /// Expression of `t` and parameters that drives an input. If an expression has no parameters, its value is in the
-    /// input's unit, with t in s; `5*above(t - 1)` is a step. Repeatable.
+    /// input's unit, with t in s, or in the unit after it: `F="5*above(t - 1) kN"` is a step. Repeatable.
     #[arg(long, value_name = "NAME=EXPR")]
     pub input: Vec<String>,
     /// Dataset file with a record that drives the inputs.

@@ -12,6 +12,7 @@ use crate::source::Source;
 use crate::span::Span;
 
 pub use quantity_reader::QuantityReader;
+pub(crate) use quantity_reader::find_unit_start;
 
 /// Parts of `NAME=VALUE`, with their positions.
 #[derive(Clone, Debug)]

@@ -173,7 +173,7 @@ fn convert_from_si(
 
 /// Returns the index of the first token of a unit: an operand that follows another without an
 /// operator.
-fn find_unit_start(tokens: &[Token]) -> usize {
+pub(crate) fn find_unit_start(tokens: &[Token]) -> usize {
     let ends = |kind: &TokenKind| {
         matches!(
             kind,

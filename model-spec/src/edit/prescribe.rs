@@ -5,17 +5,31 @@ use toml_edit::{DocumentMut, Item};
 use super::insert::{parameter, term};
 use super::substitute::{replaced, syntax};
 use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section};
+use crate::assignment::find_unit_start;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
+use crate::lexer::tokenize;
 use crate::span::Span;
+use crate::unit::Unit;
 
 pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
     let (unit, has_rates) = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
         section: "inputs".to_owned(),
         name: edit.name.clone(),
     })?;
-    let tree = syntax(&edit.value)?;
+    let (given, own_unit) = split_unit(edit, &unit)?;
+    let tree = syntax(given)?;
     reject_motion(document, edit, &tree)?;
+    if own_unit.is_some() && !has_only_numbers(&tree) {
+        let help = "remove the unit: parameters have units";
+        let label = ("an expression with a unit", help);
+        return Err(rejected(
+            edit,
+            tree.span,
+            "this value already has a unit",
+            label,
+        ));
+    }
     let value = if has_only_numbers(&tree) {
         // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
         // unit of the input, supply the units.
@@ -23,14 +37,14 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
             unused_name(document, "one_second"),
             unused_name(document, "one_unit"),
         );
-        let timed = replaced(&edit.value, "t", &format!("t/{second}"))?;
+        let timed = replaced(given, "t", &format!("t/{second}"))?;
         if timed.is_some() {
             parameter(document, &unit_parameter(&second, "s"))?;
         }
-        parameter(document, &unit_parameter(&one, &unit))?;
-        format!("({})*{one}", timed.as_deref().unwrap_or(&edit.value))
+        parameter(document, &unit_parameter(&one, own_unit.unwrap_or(&unit)))?;
+        format!("({})*{one}", timed.as_deref().unwrap_or(given))
     } else {
-        edit.value.clone()
+        given.to_owned()
     };
     if !has_rates {
         return define(document, &edit.name, value);
@@ -61,6 +75,33 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
         define(document, &rate, format!("dot({})", edit.name))?;
     }
     Ok(())
+}
+
+/// Splits a value into an expression and the unit after it, for example `5` and `kN`.
+fn split_unit<'e>(
+    edit: &'e PrescribeInput,
+    unit: &str,
+) -> Result<(&'e str, Option<&'e str>), EditError> {
+    let Ok(tokens) = tokenize(&edit.value, Span::new) else {
+        return Ok((&edit.value, None));
+    };
+    let Some(first) = tokens.get(find_unit_start(&tokens)) else {
+        return Ok((&edit.value, None));
+    };
+    let (expression, own) = edit.value.split_at(first.span.start);
+    let own = own.trim_end();
+    let place = Span::new(first.span.start, first.span.start + own.len());
+    let found = Unit::parse(own).map_err(|error| {
+        let help = "write a product with `*`: 2*x, not 2 x; or end with a unit: 5 N";
+        rejected(edit, place, &error.message, ("not a unit", help))
+    })?;
+    if Unit::parse(unit).is_ok_and(|unit| unit.dimension != found.dimension) {
+        let message = format!("`{}` is in {unit}, not in {found}", edit.name);
+        let help = format!("give a unit of the same dimension as {unit}");
+        let label = ("another kind of quantity", help.as_str());
+        return Err(rejected(edit, place, &message, label));
+    }
+    Ok((expression, Some(own)))
 }
 
 /// Returns the error of an expression at a place in it.

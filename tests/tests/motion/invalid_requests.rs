@@ -72,6 +72,22 @@ fn input_that_depends_on_the_motion_is_rejected_at_its_place() {
 }
 
 #[test]
+fn wrong_units_of_inputs_are_rejected_at_their_places() {
+    for (input, column, expected) in [
+        ("u=5 mm", 5, "`u` is in N, not in mm"),
+        ("u=5 foo", 5, "unknown unit `foo`"),
+        ("u=(2 + 1) 2", 11, "unknown unit `2`"),
+        ("u=k*0.1 N", 3, "this value already has a unit"),
+    ] {
+        let (status, message) = simulate(&["--input", input]);
+        assert_eq!(status, Some(2), "{input}: {message}");
+        assert!(message.contains(expected), "{input}: {message}");
+        let place = format!("--input:1:{column}");
+        assert!(message.contains(&place), "{input}: {message}");
+    }
+}
+
+#[test]
 fn input_without_a_finite_value_is_named_with_its_time() {
     // Infinite at the start, in between and at the end; not a number from a time on; infinite between steps.
     for (input, cause, status) in [

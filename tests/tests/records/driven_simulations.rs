@@ -384,6 +384,8 @@ fn prescribed_motion_by_expression_and_by_record_match_closed_form() {
         let found = last(&["--input", expression, "--until", "2", "--solver", solver]);
         assert!(off(&found) < bound, "{solver}: {found:?}");
     }
+    let unit = last(&["--input", "s=10*sin(7*t) mm", "--until", "2"]);
+    assert!(off(&unit) < 1e-11, "{unit:?}");
     // The bounds are the errors of a cubic spline through samples of 5 ms.
     let found = last(&["--record", &file("dataset.toml")]);
     assert!(off(&found[..2]) < 1e-6 && off(&found) < 1e-5, "{found:?}");

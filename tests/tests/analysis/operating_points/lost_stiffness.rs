@@ -41,7 +41,10 @@ fn frequency_zero_states_the_greatest_frequency_that_rounding_hides() {
         let frequency = number("frequency").expect("a number");
         match number("frequency_limit") {
             Some(limit) => assert!(frequency == 0.0 && limit > right, "{stiff}: {limit}"),
-            None => assert!((frequency / right - 1.0).abs() < 1e-3, "{stiff}: {frequency}"),
+            None => assert!(
+                (frequency / right - 1.0).abs() < 1e-3,
+                "{stiff}: {frequency}"
+            ),
         }
     }
 }
