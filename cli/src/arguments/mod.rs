@@ -113,7 +113,7 @@ pub enum Command {
         after_help = "Example:\n  eomgen modes model-spec/models/hub_beam_tip_mass.toml --order 4"
     )]
     Modes(Modes),
-    /// Find the equilibrium nearest to a state, at rest or in steady motion.
+    /// Find an equilibrium near a state, at rest or in steady motion.
     #[command(
         after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\n  eomgen trim model-spec/models/pendulum.toml --state theta=\"20 deg\"\nThe search varies the coordinates and keeps inputs at 0. If coordinates are fixed, it also varies the inputs that are not.\nA cyclic coordinate, whose value appears in no equation, may move at a constant speed: the initial one, or one that the search finds."
     )]

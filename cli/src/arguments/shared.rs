@@ -43,7 +43,7 @@ pub struct ParameterValues {
 pub struct StateValues {
     /// Value of a coordinate, a rate (NAME_dot) or another state: a number in SI, an expression of parameters
     /// such as `pi/3`, or a value with a unit such as `"30 deg"`. `linearise`, `modes` and `trim` also accept
-    /// inputs and `t`. The word `trim` selects the nearest equilibrium (except in the command `trim`).
+    /// inputs and `t`. The word `trim` selects the equilibrium that `trim` finds (except in the command `trim`).
     /// Repeatable. Default: the initial state of the specification, inputs 0, t = 0.
     #[arg(long, value_name = "NAME=EXPR|trim", alias = "at", alias = "initial")]
     pub state: Vec<String>,

@@ -18,7 +18,9 @@ pub(super) struct LinearisedEquations {
     pub matrix: DMatrix<f64>,
     /// Constraints at this point, if there are any.
     pub constraints: Option<LinearisedConstraints>,
-    /// Largest magnitude of each acceleration or of its terms up to now.
+    /// Largest magnitude of each acceleration or of its terms at this point.
+    pub terms: DVector<f64>,
+    /// The same, at all points of the search up to now: the scales of its norm.
     pub sizes: DVector<f64>,
 }
 
@@ -105,19 +107,19 @@ impl LinearisedEquations {
         energy / nonzero_or_one(size) + others
     }
 
-    /// Returns true if all accelerations are below this fraction of their sizes.
+    /// Returns true if all accelerations are below this fraction of their terms.
     pub fn is_below(&self, part: f64) -> bool {
         self.rows_above(part).is_empty()
     }
 
-    /// Returns the rows of the accelerations that are not below this fraction of their sizes.
+    /// Returns the rows of the accelerations that are not below this fraction of their terms.
     pub fn rows_above(&self, part: f64) -> Vec<usize> {
         let rows = self.relative_accelerations().enumerate();
         let above = rows.filter(|(_, own)| own.is_nan() || *own > part);
         above.map(|(row, _)| row).collect()
     }
 
-    /// Returns the row of the largest acceleration relative to its size, and its value, SI.
+    /// Returns the row of the largest acceleration relative to its terms, and its value, SI.
     pub fn largest_residual(&self) -> (usize, f64) {
         let worst = self
             .relative_accelerations()
@@ -129,14 +131,14 @@ impl LinearisedEquations {
     /// Returns the sign of the acceleration of a coordinate; 0 if it is rounding.
     pub fn acceleration_sign(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
-        match self.sizes.get(coordinate) {
+        match self.terms.get(coordinate) {
             Some(size) if value.abs() > MIN_SINGULAR_VALUE_FRACTION * size => value.signum(),
             _ => 0.0,
         }
     }
 
     fn relative_accelerations(&self) -> impl Iterator<Item = f64> {
-        let parts = self.accelerations.iter().zip(&self.sizes);
+        let parts = self.accelerations.iter().zip(&self.terms);
         parts.map(|(value, size)| {
             if *value == 0.0 {
                 0.0

@@ -40,8 +40,7 @@ const NUDGE_FRACTION: f64 = 1.0 / 1024.0;
 
 const MAX_NUDGES: usize = 3;
 
-/// Largest acceleration that counts as zero, relative to the largest value or term of its equation
-/// in this search.
+/// Largest acceleration that counts as zero, relative to the largest term of its equation.
 const MAX_ZERO_FRACTION: f64 = 1e-10;
 
 pub(super) struct Search<'i, 'm> {
@@ -53,6 +52,8 @@ pub(super) struct Search<'i, 'm> {
     unknowns: Vec<Unknown>,
     /// Natural scales of the unknowns, if known.
     scales: Vec<Option<f64>>,
+    /// Natural scales of the unknowns, or their typical sizes; 0 if neither is known.
+    typical: Vec<f64>,
     /// Ranges of the unknowns, if declared.
     ranges: Vec<Option<(f64, f64)>>,
 }
@@ -77,7 +78,14 @@ impl<'i, 'm> Search<'i, 'm> {
             Unknown::Setting(Setting::State(place)) => scales.get(*place).copied().flatten(),
             other => range(other).map(|(low, high)| high - low),
         };
+        let sizes = instance.model().typical_sizes();
+        let typical = |unknown: &Unknown| match (scale(unknown), unknown) {
+            (Some(scale), _) => scale,
+            (None, Unknown::Setting(Setting::State(place))) => sizes[*place],
+            _ => 0.0,
+        };
         Ok(Self {
+            typical: unknowns.iter().map(typical).collect(),
             evaluator: instance.interpreter()?,
             state_space: instance.state_space_evaluator()?,
             constraints: HolonomicConstraints::new(instance, &unknowns),
@@ -177,11 +185,9 @@ impl<'i, 'm> Search<'i, 'm> {
         at: &OperatingPoint,
         here: &LinearisedEquations,
     ) -> Option<(OperatingPoint, LinearisedEquations)> {
-        let typical = self.instance.model().typical_sizes();
         let change = DVector::from_fn(self.unknowns.len(), |place, _| match self.unknowns[place] {
             Unknown::Setting(Setting::State(state)) => {
-                let size = self.scales[place].unwrap_or(typical[state]);
-                NUDGE_FRACTION * size * here.acceleration_sign(state)
+                NUDGE_FRACTION * self.typical[place] * here.acceleration_sign(state)
             }
             _ => 0.0,
         });
@@ -235,9 +241,9 @@ impl<'i, 'm> Search<'i, 'm> {
             let of_states = by_state.iter().copied().zip(&at.state).map(term);
             let of_inputs = by_inputs.iter().copied().zip(&at.inputs).map(term);
             let scaled = matrix.row(row);
-            let of_scales = scaled.iter().zip(&self.scales);
-            let of_scales = of_scales.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
-            let terms = of_states.chain(of_inputs).chain(of_scales);
+            let of_sizes = scaled.iter().zip(&self.typical);
+            let of_sizes = of_sizes.map(|(entry, size)| (entry * size).abs());
+            let terms = of_states.chain(of_inputs).chain(of_sizes);
             terms.fold(accelerations[row].abs(), f64::max)
         });
         let constraints = match &mut self.constraints {
@@ -248,6 +254,7 @@ impl<'i, 'm> Search<'i, 'm> {
             accelerations,
             matrix,
             constraints,
+            terms: sizes.clone(),
             sizes,
         })
     }

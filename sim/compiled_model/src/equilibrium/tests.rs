@@ -353,3 +353,19 @@ fn machine_that_friction_holds_is_at_an_equilibrium() {
         }
     }
 }
+
+#[test]
+fn search_from_far_away_ends_at_the_equilibrium() {
+    // V = -a x^2/2 + b x^4/4 has equilibria at 0 and at the roots of a/b, here 1e-3 m.
+    let text = "[model]\nname = \"duffing\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                a = { value = 2, unit = \"N/m\" }\nb = { value = 2e6, unit = \"N/m^3\" }\n\
+                [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n\
+                [potential]\nV = \"-1/2*a*x^2 + 1/4*b*x^4\"\n";
+    let model = compiled(text);
+    let run = model.with_declared_parameters().expect("an instance");
+    for start in [2e-3, 1.0, 1e2, 1e4, 1e6, 1e8] {
+        let found = from(&run, &[("x", start)]).expect("an equilibrium");
+        let x = found.point.state[0];
+        assert!((x / 1e-3 - 1.0).abs() < 1e-12, "{start:e}: {x:e}");
+    }
+}
