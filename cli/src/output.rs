@@ -94,7 +94,7 @@ impl Destination {
                 .open(path)
                 .and_then(|mut device| device.write_all(contents))
                 .map_err(|error| Error::file("write", path, &error)),
-            Self::File(path) => write_file(path, contents),
+            Self::File(path) => write_file(&file_place(path)?, contents),
         }
     }
 
@@ -134,16 +134,17 @@ fn is_device(_path: &Path) -> bool {
     false
 }
 
-/// Writes a file and its parent folders. On an error an existing file is unchanged.
+/// Writes a file and its parent folders. On an error an existing file is unchanged. A link at the path is replaced,
+/// and its file is unchanged.
 pub fn write_file(path: &Path, contents: &[u8]) -> Result {
-    let place = file_place(path)?;
+    file_place(path)?;
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
-    let folder = folder_of(&place);
+    let folder = folder_of(path);
     std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
     let mut file = NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
     file.write_all(contents).map_err(|error| failed(&error))?;
     make_readable(file.as_file()).map_err(|error| failed(&error))?;
-    file.persist(place).map_err(|error| failed(&error.error))?;
+    file.persist(path).map_err(|error| failed(&error.error))?;
     Ok(())
 }
 

@@ -26,6 +26,9 @@ const MAX_VARIANTS: usize = 2000;
 /// Permitted rise of operation counts if the file states none.
 const DEFAULT_GROWTH: f64 = 0.05;
 
+/// Prefixes whose names are in the common files: the type `eomgen_model` of C and the trait `Model` of Rust.
+const FAMILY_NAMES: [&str; 2] = ["eomgen", "Model"];
+
 static FAMILY: Keys = Keys::new(&[
     Key::new("name", "name", "\"slew\"", "name of the family").required(),
     Key::new(
@@ -321,9 +324,10 @@ impl Reader<'_> {
             name if !is_identifier(name) || name.len() > 64 => "name of letters, digits and _",
             name if !c::is_identifier(name) => "word of C or C++",
             name if !rust::is_identifier(name) => "word of Rust",
+            name if FAMILY_NAMES.contains(&name) => "name of the common files of the family",
             _ => return Some(()),
         };
-        let message = match language.starts_with("word") {
+        let message = match language != "name of letters, digits and _" {
             true => format!("the prefix {} is a {language}", quote(&prefix.text)),
             false => format!("the prefix {} is no {language}", quote(&prefix.text)),
         };

@@ -305,6 +305,25 @@ fn files_of_removed_variants_are_removed_unless_edited() {
     assert_eq!(left.len(), 1);
 }
 
+#[cfg(unix)]
+#[test]
+fn link_in_the_output_folder_is_replaced() {
+    let copy = copy();
+    let (file, other) = (
+        copy.path().join("models/beam_1/mod.rs"),
+        copy.path().join("other.rs"),
+    );
+    let right = std::fs::read(&file).expect("a file");
+    std::fs::write(&other, "mine").expect("written");
+    std::fs::remove_file(&file).expect("removed");
+    std::os::unix::fs::symlink(&other, &file).expect("a link");
+    let (status, said) = family(copy.path(), &[]);
+    assert_eq!(status, Some(0), "{said}");
+    assert_eq!(std::fs::read(&other).expect("a file"), b"mine");
+    assert!(!file.is_symlink());
+    assert_eq!(std::fs::read(&file).expect("a file"), right);
+}
+
 #[test]
 fn truncated_manifest_is_rejected_and_nothing_written() {
     let copy = copy();
@@ -350,6 +369,8 @@ fn wrong_families_are_rejected_with_their_place() {
         ),
         (variant("prefix = \"int\"\n"), "word of C or C++"),
         (variant("prefix = \"match\"\n"), "word of Rust"),
+        (variant("prefix = \"eomgen\"\n"), "name of the common files"),
+        (variant("prefix = \"Model\"\n"), "name of the common files"),
         (variant("prefix = \"a-b\"\n"), "no name of letters"),
         (variant("prefix = \"\"\n"), "no name of letters"),
         (
