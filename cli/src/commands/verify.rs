@@ -1,5 +1,6 @@
 //! `eomgen verify`: the checks of a certificate on the emitted source as it is.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use eomgen_codegen::mechanics::outputs::Output;
@@ -28,9 +29,10 @@ pub fn run(options: &Verify) -> Result {
         let orders = vec![certificate.order; certificate.model.fields.len()];
         certify_sources(&certificate.model, &orders, &certificate.outputs, &sources)?
     };
+    let mut document =
+        serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
+    certificate.compare_statements(&document, &options.certificate)?;
     if options.output.json {
-        let mut document =
-            serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
         document["schema"] = json!(SCHEMA);
         document["file"] = json!(options.file.display().to_string());
         document["hash"] = json!({"expected": expected, "found": found, "same": is_same});
@@ -60,6 +62,8 @@ pub fn run(options: &Verify) -> Result {
 
 /// Content of a certificate that decides its checks.
 struct Certificate {
+    /// The whole certificate.
+    document: Value,
     /// Model with the values that were set.
     model: Model,
     order: usize,
@@ -112,10 +116,13 @@ impl Certificate {
         let settings = document["settings"]
             .as_object()
             .ok_or_else(|| missing("settings"))?;
-        let settings: Vec<(&str, f64)> = settings
-            .iter()
-            .filter_map(|(name, value)| Some((name.as_str(), value.as_f64()?)))
-            .collect();
+        let settings = settings.iter().map(|(name, value)| match value.as_f64() {
+            Some(value) => Ok((name.as_str(), value)),
+            None => Err(Error::input(format!(
+                "{shown}: the value of `{name}` in `settings` is not a number: the certificate was edited"
+            ))),
+        });
+        let settings = settings.collect::<Result<Vec<_>>>()?;
         let model = checked.model.with_parameters(&settings);
         let model = model.map_err(|error| Error::model(&checked.model.source, error))?;
         model
@@ -128,7 +135,42 @@ impl Certificate {
             source_sha256: string("source_sha256")?,
             c_source_sha256: document["c_source_sha256"].as_str().map(str::to_owned),
             c_header_sha256: document["c_header_sha256"].as_str().map(str::to_owned),
+            document,
         })
+    }
+
+    /// Compares what the certificate states with the repeated certificate.
+    ///
+    /// # Errors
+    /// The first statement that differs.
+    fn compare_statements(&self, repeated: &Value, path: &Path) -> Result {
+        let shown = path.display();
+        let stated = ["model", "order", "parameters"];
+        let different = stated
+            .iter()
+            .find(|key| self.document[**key] != repeated[**key]);
+        if let Some(key) = different {
+            return Err(Error::input(format!(
+                "{shown}: `{key}` is {} and not that of the specification, {}: the certificate was edited",
+                self.document[*key], repeated[*key]
+            )));
+        }
+        let names = |document: &Value| -> BTreeSet<String> {
+            let checks = document["checks"].as_array().into_iter().flatten();
+            let names = checks.filter_map(|check| check["name"].as_str().map(str::to_owned));
+            names.collect()
+        };
+        if let Some(missing) = names(repeated).difference(&names(&self.document)).next() {
+            return Err(Error::input(format!(
+                "{shown}: the certificate has no check `{missing}`: it was edited"
+            )));
+        }
+        match self.document["verdict"].as_str() {
+            Some("passed" | "partial") => Ok(()),
+            _ => Err(Error::input(format!(
+                "{shown}: the certificate states that checks failed: generate the file again"
+            ))),
+        }
     }
 }
 

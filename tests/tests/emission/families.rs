@@ -583,6 +583,23 @@ fn wrong_files_are_not_verified() {
         assert_eq!(status, Some(2), "{text}");
         assert!(text.contains(expected), "{expected}\n{text}");
     }
+    let unedited = std::fs::read(&certificate).expect("a certificate");
+    for (from, to, expected) in [
+        ("\"order\": 1", "\"order\": 2", "`order` is 2"),
+        ("900.0", "901.0", "`parameters` is {"),
+        ("\"passed\",", "\"failed\",", "states that checks failed"),
+        (
+            "\"accelerations\"",
+            "\"others\"",
+            "has no check `accelerations`",
+        ),
+    ] {
+        edit(&certificate, from, to);
+        let (status, text) = of(&rust, &certificate, &[]);
+        assert_eq!(status, Some(2), "{text}");
+        assert!(text.contains(expected), "{expected}\n{text}");
+        std::fs::write(&certificate, &unedited).expect("written");
+    }
     edit(&certificate, "value = 900", "value = 901");
     let (status, text) = of(&rust, &certificate, &[]);
     assert_eq!(status, Some(2), "{text}");
