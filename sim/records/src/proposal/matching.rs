@@ -146,22 +146,35 @@ const MATCHING_RULES: [(Rule, &str); 5] = [
     ),
 ];
 
-/// Matches unambiguous columns and quantities, lastly with the end of a name as a unit.
+/// Number of rules that do not guess: they precede the reading of units at the ends of names.
+const EXACT_RULES: usize = 3;
+
+/// Matches unambiguous columns and quantities: by their whole names, then with the ends of other names as units.
 pub(crate) fn match_columns(columns: &mut [FileColumn], quantities: &[Quantity]) -> Vec<Match> {
     let mut matches = Vec::new();
-    apply_rules(columns, quantities, &mut matches);
+    apply_rules(
+        &MATCHING_RULES[..EXACT_RULES],
+        columns,
+        quantities,
+        &mut matches,
+    );
     for (place, column) in columns.iter_mut().enumerate() {
         if matches.iter().all(|found| found.column != place) {
             column.read_unit_suffix();
         }
     }
-    apply_rules(columns, quantities, &mut matches);
+    apply_rules(&MATCHING_RULES, columns, quantities, &mut matches);
     matches.sort_by_key(|found| found.quantity);
     matches
 }
 
-fn apply_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Vec<Match>) {
-    for (rule, why) in MATCHING_RULES {
+fn apply_rules(
+    rules: &[(Rule, &'static str)],
+    columns: &[FileColumn],
+    quantities: &[Quantity],
+    matches: &mut Vec<Match>,
+) {
+    for (rule, why) in rules {
         let may = |column: usize, quantity: usize| {
             let (c, q) = (&columns[column], &quantities[quantity]);
             // An unknown unit can have any dimension.
@@ -197,7 +210,7 @@ fn apply_rules(columns: &[FileColumn], quantities: &[Quantity], matches: &mut Ve
     }
 }
 
-/// Splits a name and its unit: `u [N m]`, `u (N m)` or `u / N`.
+/// Splits a name and its unit: `u [N m]`, `u (N m)`, `u / N` or `u/N`.
 fn split_unit(name: &str) -> (&str, &str) {
     for (opening, closing) in [('[', ']'), ('(', ')')] {
         if let Some((stem, rest)) = name.split_once(opening)
@@ -207,6 +220,11 @@ fn split_unit(name: &str) -> (&str, &str) {
         }
     }
     if let Some((stem, unit)) = name.split_once(" / ") {
+        return (stem.trim(), unit.trim());
+    }
+    if let Some((stem, unit)) = name.split_once('/')
+        && Unit::parse(&strip_unit_brackets(unit)).is_ok()
+    {
         return (stem.trim(), unit.trim());
     }
     (name, "")
@@ -314,6 +332,17 @@ mod tests {
                 pair("TIP_mm", "tip")
             ]
         );
+        // Of a short name the end is a unit, not a misspelling.
+        let units = |name: &str| {
+            let mut columns = [FileColumn::from_header(1, name, "")];
+            let found = match_columns(&mut columns, &all);
+            let unit = columns[0].unit.as_ref().map(ToString::to_string);
+            (found.len(), unit.unwrap_or_default())
+        };
+        for name in ["x_c_mm", "x_c/mm", "tip_mm", "tip (mm)", "tip / mm"] {
+            assert_eq!(units(name), (1, "mm".to_owned()), "{name}");
+        }
+        assert_eq!(units("u_mNm"), (1, "mN m".to_owned()));
         // Accelerations do not match positions or rates in any notation of their unit.
         for unit in ["m/s2", "m/s²", "m·s⁻²", "m s-2"] {
             assert_eq!(names(&[("x_c", unit)]), [], "{unit}");
