@@ -11,6 +11,8 @@ pub struct Impact<N, R> {
     pub acceleration: N,
     /// Coefficient of restitution.
     pub restitution: N,
+    /// Gradient A of the distance by the coordinates.
+    pub row: R,
     /// Column D: change of the rates by a unit impulse.
     pub column: R,
     /// A D of all impacts: changes of g' by a unit impulse at each of them, then by a unit tangential impulse

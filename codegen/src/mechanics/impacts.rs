@@ -54,6 +54,7 @@ pub(crate) fn impacts(
             rate,
             acceleration: graph.add(of_rates, of_accelerations),
             restitution,
+            row: gradient.clone(),
             column: solved.rows,
             delassus: Vec::new(),
             friction: None,

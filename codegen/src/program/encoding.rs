@@ -260,7 +260,7 @@ encode_structures! {
     ScaledValue { row, matrix, transposed, column }
     Value { op, extent, parameter_only; name }
     Impact<ValueId, RowValues> {
-        distance, rate, acceleration, restitution, column, delassus, friction
+        distance, rate, acceleration, restitution, row, column, delassus, friction
     }
     Friction<ValueId, RowValues> { coefficient, slip, acceleration, column, delassus }
     Side { guard, is_odd }

@@ -104,7 +104,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             let evaluator = self.evaluator();
             let impacts = evaluator.program().impacts.iter().enumerate();
             let has_friction = impacts.filter(|(_, impact)| impact.friction.is_some());
-            Contacts::new(names).with_friction(has_friction.map(|(place, _)| place))
+            let degrees = evaluator.program().degrees_of_freedom();
+            Contacts::new(names, &self.typical_sizes()[..degrees])
+                .with_friction(has_friction.map(|(place, _)| place))
         });
         self.contacts = contacts.map(RefCell::new);
         self
@@ -481,6 +483,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let contact = guard.checked_sub(self.evaluator().guard_count());
         let contacts = self.contacts.as_ref().map(RefCell::borrow);
         contact.is_some_and(|contact| contacts.is_some_and(|known| contact < known.names.len()))
+    }
+
+    fn has_energy_jump(&self, guard: usize) -> bool {
+        let corners = self.corners.as_ref().map(RefCell::borrow);
+        corners.is_some_and(|corners| corners.contains(guard))
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

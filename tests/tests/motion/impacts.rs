@@ -674,6 +674,60 @@ fn initial_penetration_by_rounding_starts_on_contact() {
     }
 }
 
+/// Returns a body above a floor, with a force over time and an independent state.
+fn compile_body(height: &str, force: &str, pressure: &str) -> CompiledModel {
+    let text = format!(
+        "[model]\nname = \"body\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+         g = {{ value = 10, unit = \"m/s^2\" }}\ns = {{ value = 1, unit = \"s\" }}\n\
+         p = {{ value = {pressure}, unit = \"Pa\" }}\n[coordinates]\n\
+         y = {{ unit = \"m\", initial = {height} }}\n[states]\n\
+         P = {{ unit = \"Pa\", initial = \"p\", rate = \"(p - P)/s\" }}\n[kinetic]\n\
+         T = \"1/2*m*dot(y)^2\"\n[potential]\nV = \"m*g*y\"\n[forces]\n\
+         lift = {{ on = \"y\", value = \"m*g*({force})\" }}\n[impacts]\n\
+         floor = {{ when = \"y\", restitution = \"0.5\" }}\n"
+    );
+    CompiledModel::from_text("body.toml", &text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn force_that_reaches_the_weight_lifts_a_resting_body() {
+    // With u = 10 f the body leaves at f = 1, t = 1; then y'' = 10 (f - 1).
+    for (force, height) in [
+        ("t/s", 10.0 / 6.0),
+        ("(t/s)^3", 8.0),
+        ("2*t/s - 1", 10.0 / 3.0),
+    ] {
+        for start in [0.0, 1e-100, 1e-300] {
+            let model = compile_body("0", force, "0");
+            for motion in simulate_with_all_solvers(&model, &[start, 0.0, 0.0], &[0.0, 2.0]) {
+                let found = motion.trajectory.states[1][0];
+                assert!((found - height).abs() < 1e-7, "{force}, {start:e}: {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn large_independent_state_closes_no_contact() {
+    for height in ["1e-3", "1e-5", "1e-6"] {
+        let h: f64 = height.parse().expect("a number");
+        let (fall, rebound) = ((2.0 * h / 10.0).sqrt(), 0.5 * (2.0 * 10.0 * h).sqrt());
+        let until = fall + rebound / 10.0;
+        for pressure in ["0", "1e5", "1e7", "1e12"] {
+            let model = compile_body(height, "0", pressure);
+            let p: f64 = pressure.parse().expect("a number");
+            for motion in simulate_with_all_solvers(&model, &[h, 0.0, p], &[0.0, until]) {
+                let found = motion.trajectory.states[1][0] / h;
+                assert!(
+                    (found - 0.25).abs() < 1e-6,
+                    "{height} m, {pressure} Pa: {found}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn invalid_impacts_are_rejected_with_reason() {
     let model = compile_example("bouncing_ball", Orders::Declared);

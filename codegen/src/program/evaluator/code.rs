@@ -112,6 +112,7 @@ fn impact_values(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
         impact.restitution,
     ];
     values.extend(&impact.delassus);
+    values.extend(impact.row.all());
     values.extend(impact.column.all());
     if let Some(friction) = &impact.friction {
         values.extend([friction.coefficient, friction.slip, friction.acceleration]);

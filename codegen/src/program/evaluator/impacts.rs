@@ -13,6 +13,8 @@ pub struct ImpactValues {
     pub acceleration: f64,
     /// Coefficient of restitution.
     pub restitution: f64,
+    /// Gradient of the distance, one number for each degree of freedom.
+    pub row: Vec<f64>,
     /// Change of the rates by a unit impulse, one number for each degree of freedom.
     pub column: Vec<f64>,
     /// Change of the distance's rate by a unit impulse at each of the impacts, then by a unit tangential
@@ -62,6 +64,8 @@ impl Evaluator {
             for (entry, id) in slot.delassus.iter_mut().zip(&impact.delassus) {
                 *entry = number(*id);
             }
+            slot.row.resize(degrees, 0.0);
+            self.copy_rows(&impact.row.scalars, &impact.row.modal, &mut slot.row);
             slot.column.resize(degrees, 0.0);
             self.copy_rows(
                 &impact.column.scalars,

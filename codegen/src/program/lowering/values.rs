@@ -107,6 +107,7 @@ impl<'g> Lowering<'g> {
             rate: self.value(impact.rate),
             acceleration: self.value(impact.acceleration),
             restitution: self.value(impact.restitution),
+            row: self.rows(&impact.row),
             column: self.rows(&impact.column),
             delassus: impact.delassus.iter().map(|id| self.value(*id)).collect(),
             friction: impact.friction.as_ref().map(|one| self.friction(one)),

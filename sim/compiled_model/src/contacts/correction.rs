@@ -1,11 +1,10 @@
 //! Correction of states onto closed contacts, and detection of overlaps.
 
-use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap, distance_rounding};
+use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap};
 
-/// A distance below zero by more than this part of the largest coordinate is no error of a step. For a closed
+/// A distance below zero by more than this part of its terms is no error of a step. For a closed
 /// contact the same part of its distance before the correction may remain after it.
 const MAX_OVERLAP_FRACTION: f64 = 1e-6;
 
@@ -20,7 +19,6 @@ impl Contacts {
         state: &mut [f64],
     ) -> u64 {
         let degrees = own.program().degrees_of_freedom();
-        self.size = self.size.max(max_magnitude(&state[..degrees]));
         if self.has_no_forces {
             state.fill(f64::NAN);
             return 1;
@@ -44,9 +42,13 @@ impl Contacts {
             self.add_forces(&self.closed, &corrections, rates);
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
+        self.note_sizes(state);
         let is_left = |place: &&usize| {
             let (before, after) = (arrived[**place], self.at[**place].distance);
-            is_below(after, MAX_OVERLAP_FRACTION * self.size.max(before.abs()))
+            is_below(
+                after,
+                MAX_OVERLAP_FRACTION * self.sizes[**place].max(before.abs()),
+            )
         };
         if let Some(place) = self.closed.iter().find(is_left) {
             return self.stop_overlapping(*place, state);
@@ -55,7 +57,7 @@ impl Contacts {
         let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
         if !self.has_friction() && self.closed.iter().zip(&self.forces().normal).any(pulls) {
             let touching = std::mem::take(&mut self.closed);
-            self.close(&touching, distance_rounding(state, degrees, t));
+            self.close(&touching, (t, state));
         }
         self.keep_open_sides(&arrived);
         CORRECTIONS as u64 + 1
@@ -81,20 +83,20 @@ impl Contacts {
         point: Point<'_>,
         distances: &[f64],
     ) -> Option<usize> {
-        let deepest = MAX_OVERLAP_FRACTION * self.size;
+        let deepest = |contacts: &Self, place: usize| MAX_OVERLAP_FRACTION * contacts.sizes[place];
         let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
-        open.find(|place| is_below(distances[*place], deepest))?;
+        open.find(|place| is_below(distances[*place], deepest(self, *place)))?;
         own.impacts(point, &mut self.at);
-        let degrees = own.program().degrees_of_freedom();
-        let located = distance_rounding(point.state, degrees, point.t);
+        self.note_sizes(point.state);
         let elapsed = point.t - self.start.unwrap_or(point.t);
         let rounding = |place: usize| {
             let impact = &self.at[place];
             let covered = elapsed * (impact.rate.abs() + elapsed * impact.acceleration.abs());
-            located + DISTANCE_ROUNDING * covered
+            self.distance_rounding(place, (point.t, point.state)) + DISTANCE_ROUNDING * covered
         };
+        let allowed = |place: usize| deepest(self, place) + rounding(place);
         let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
-        open.find(|place| is_below(distances[*place], deepest + rounding(*place)))
+        open.find(|place| is_below(distances[*place], allowed(*place)))
     }
 
     fn stop_overlapping(&mut self, place: usize, state: &mut [f64]) -> u64 {

@@ -5,7 +5,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
 use super::tangents::ContactForces;
-use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS, Overlap, distance_rounding};
+use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS, Overlap};
 
 /// A flight that is this short beside the time since the start is rest.
 const MIN_FLIGHT_TIME_FRACTION: f64 = 1e-8;
@@ -26,21 +26,21 @@ pub(super) const RESTITUTION_HALVINGS: usize = 20;
 pub(super) struct Flight {
     /// Those that are this short, s.
     pub shortest: f64,
-    /// Those that are this low.
-    pub lowest: f64,
-    /// Rates that are rounding.
-    pub rate_rounding: f64,
-    /// Accelerations that are rounding, without what contacts push.
-    pub acceleration_rounding: f64,
+    /// Those of each contact that are this low.
+    pub lowest: Vec<f64>,
+    /// Rates of each distance that are rounding.
+    pub rate_roundings: Vec<f64>,
+    /// Accelerations of each distance that are rounding, without what contacts push.
+    pub acceleration_roundings: Vec<f64>,
 }
 
 impl Flight {
-    /// Returns true if a contact with this rate and acceleration does not fly, if accelerations up to `even`
-    /// are rounding.
-    pub fn is_none(&self, rate: f64, acceleration: f64, even: f64) -> bool {
+    /// Returns true if the contact `place` with this rate and acceleration does not fly, if accelerations up to
+    /// `even` are rounding.
+    pub fn is_none(&self, place: usize, (rate, acceleration): (f64, f64), even: f64) -> bool {
         let is_short = 2.0 * rate <= -acceleration * self.shortest;
-        let is_low = rate * rate <= -2.0 * acceleration * self.lowest;
-        let is_together = rate <= self.rate_rounding && acceleration <= even;
+        let is_low = rate * rate <= -2.0 * acceleration * self.lowest[place];
+        let is_together = rate <= self.rate_roundings[place] && acceleration <= even;
         acceleration < 0.0 && (is_short || is_low) || is_together
     }
 }
@@ -58,15 +58,18 @@ impl Contacts {
     ) {
         self.impact_work = 0.0;
         let count = self.names.len();
-        let degrees = own.program().degrees_of_freedom();
         let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
         own.distances(Point { t, state, inputs }, &mut beyond);
         let is_hit = |place: &usize, contacts: &Self| {
             !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
         };
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
-            let rounding = distance_rounding(before, degrees, t);
-            let updated = self.update_modes(own, Point { t, state, inputs }, rounding);
+            let located = Point {
+                t,
+                state: before,
+                inputs,
+            };
+            let updated = self.update_modes(own, Point { t, state, inputs }, located);
             if let Err(cause) = updated {
                 self.overlap = Some(cause);
                 state.fill(f64::NAN);
@@ -81,7 +84,9 @@ impl Contacts {
         own.distances(point, &mut near);
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let shortest = MIN_FLIGHT_TIME_FRACTION * (t - self.start.unwrap_or(t));
-        let rounding = distance_rounding(before, degrees, t);
+        let roundings: Vec<f64> = (0..count)
+            .map(|place| self.distance_rounding(place, (t, before)))
+            .collect();
         // What touches without a speed, as a body that falls together with the one below it, is hit
         // by the jump of the other.
         let hits: Vec<usize> = (0..count).filter(|place| is_hit(place, self)).collect();
@@ -89,7 +94,7 @@ impl Contacts {
         let touching: Vec<usize> = (0..count)
             .filter(|place| {
                 let impact = &self.at[*place];
-                let within = rounding.max(-impact.rate * shortest);
+                let within = roundings[*place].max(-impact.rate * shortest);
                 self.closed.contains(place)
                     || hits.contains(place)
                     || collapsing.contains(place)
@@ -105,12 +110,12 @@ impl Contacts {
         let ago = hits.iter().map(ago).fold(0.0, f64::max);
         if self.needs_no_impulse(&touching, ago) {
             // What leaves slowly went below zero by rounding.
-            self.offset_distances(&touching, rounding);
+            self.offset_by_rounding(&touching, (t, before));
             return;
         }
         self.has_restitution = collapsing.is_empty();
         let jumped = self.apply_impulses(own, (t, inputs), state, touching, ago);
-        let (touching, still) = match jumped {
+        let (touching, rate_roundings) = match jumped {
             Ok(jumped) => jumped,
             Err(cause) => {
                 self.overlap = Some((first, cause));
@@ -120,10 +125,12 @@ impl Contacts {
         };
         let flight = Flight {
             shortest,
-            lowest: MIN_FLIGHT_ROUNDINGS * rounding,
-            rate_rounding: still,
-            acceleration_rounding: DISTANCE_ROUNDING
-                * largest_acceleration(own, Point { t, state, inputs }),
+            lowest: roundings
+                .iter()
+                .map(|rounding| MIN_FLIGHT_ROUNDINGS * rounding)
+                .collect(),
+            rate_roundings,
+            acceleration_roundings: self.acceleration_roundings(own, Point { t, state, inputs }),
         };
         match self.has_friction() {
             false => self.close_resting(&touching, &flight),
@@ -234,7 +241,8 @@ impl Contacts {
     }
 
     /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
-    /// this brings to touch in turn. Returns all that touched and how far rounding takes a rate from zero.
+    /// this brings to touch in turn. Returns all that touched and how far rounding takes the rate of each distance
+    /// from zero.
     fn apply_impulses(
         &mut self,
         own: &mut Evaluator,
@@ -242,9 +250,9 @@ impl Contacts {
         state: &mut [f64],
         mut touching: Vec<usize>,
         mut ago: f64,
-    ) -> Result<(Vec<usize>, f64), Overlap> {
+    ) -> Result<(Vec<usize>, Vec<f64>), Overlap> {
         let degrees = own.program().degrees_of_freedom();
-        let mut still = 0.0_f64;
+        let mut roundings = vec![0.0_f64; self.names.len()];
         let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         loop {
@@ -255,8 +263,11 @@ impl Contacts {
             let impulses = impulses.ok_or(Overlap::NoImpulse)?;
             self.impact_work -= drifts.work_against(&touching, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
-            let most = max_magnitude(&*rates) + self.largest_push(&touching, &impulses);
-            still = still.max(DISTANCE_ROUNDING * most);
+            for (place, rounding) in roundings.iter_mut().enumerate() {
+                let pushed = self.push_size(place, &touching, &impulses);
+                let most = self.rate_size(place, rates) + pushed;
+                *rounding = rounding.max(DISTANCE_ROUNDING * most);
+            }
             self.add_forces(&touching, &impulses, rates);
             self.add_forces(&touching, &impulses.scaled(ago), coordinates);
             own.impacts(Point { t, state, inputs }, &mut self.at);
@@ -272,7 +283,7 @@ impl Contacts {
             };
             let more: Vec<usize> = (0..self.names.len()).filter(touched).collect();
             if more.is_empty() {
-                return Ok((touching, still));
+                return Ok((touching, roundings));
             }
             touching.extend(more);
             ago = 0.0;
@@ -298,14 +309,27 @@ impl Contacts {
         places
     }
 
+    /// Returns the roundings of the accelerations of the distances, without what contacts push.
+    fn acceleration_roundings(&self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
+        let degrees = own.program().degrees_of_freedom();
+        let mut rates = vec![0.0; point.state.len()];
+        own.rates(point, &mut rates);
+        let accelerations = &rates[degrees..2 * degrees];
+        (0..self.names.len())
+            .map(|place| DISTANCE_ROUNDING * self.rate_size(place, accelerations))
+            .collect()
+    }
+
     /// Closes those that touch and would not fly in earnest, or that move on together as bodies do
     /// that fall side by side.
     fn close_resting(&mut self, touching: &[usize], flight: &Flight) {
         self.closed.clear();
         loop {
             let forces = self.forces();
-            let even = flight.acceleration_rounding
-                + DISTANCE_ROUNDING * self.largest_push(&self.closed, &forces);
+            let even = |place: usize| {
+                flight.acceleration_roundings[place]
+                    + DISTANCE_ROUNDING * self.push_size(place, &self.closed, &forces)
+            };
             let rests = |place: &&usize| {
                 let impact = &self.at[**place];
                 let held = self.closed.iter().zip(&forces.normal);
@@ -313,15 +337,17 @@ impl Contacts {
                     .map(|(other, force)| impact.delassus[*other] * force)
                     .sum();
                 let acceleration = impact.acceleration + pushed;
-                !self.closed.contains(place) && flight.is_none(impact.rate, acceleration, even)
+                !self.closed.contains(place)
+                    && flight.is_none(**place, (impact.rate, acceleration), even(**place))
             };
             let Some(next) = touching.iter().find(rests) else {
                 break;
             };
+            let even = even(*next);
             self.closed.push(*next);
             self.allowances[*next] = even / self.at[*next].delassus[*next];
         }
-        self.offset_distances(touching, f64::MIN_POSITIVE);
+        self.offset_distances(touching);
     }
 }
 
@@ -330,12 +356,4 @@ fn is_solution(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
     let unsolved = MAX_UNSOLVED_RATE_FRACTION * max_magnitude(rates);
     let mut rows = delassus.iter().zip(rates);
     rows.all(|(row, rate)| dot(row, impulses) + rate >= -unsolved)
-}
-
-/// The largest acceleration of a coordinate, without what contacts push.
-fn largest_acceleration(own: &mut Evaluator, point: Point<'_>) -> f64 {
-    let degrees = own.program().degrees_of_freedom();
-    let mut rates = vec![0.0; point.state.len()];
-    own.rates(point, &mut rates);
-    max_magnitude(&rates[degrees..2 * degrees])
 }

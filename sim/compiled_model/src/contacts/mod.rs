@@ -18,20 +18,19 @@ mod tangents;
 
 use std::collections::VecDeque;
 
-use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Point, Stretch};
 
 use eomgen_sim::contact_friction::ContactMode;
-use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode};
+use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode, UNMOVED_SIZE_FRACTION};
 
 pub(crate) use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
-/// A distance this small beside the largest coordinate is rounding.
+/// A distance this small beside its terms is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// Rounding of a distance, beside the largest coordinate and how far that has come.
+/// Rounding of a distance, beside its terms and how far these have come.
 const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Number of impacts that have no end, if the time between them is below that of the shortest flights.
@@ -54,8 +53,10 @@ pub(crate) struct Contacts {
     allowances: Vec<f64>,
     /// The impacts where they were last looked at.
     at: Vec<ImpactValues>,
-    /// The largest that any coordinate has been.
-    size: f64,
+    /// Sizes of coordinates that have not moved.
+    unmoved_sizes: Vec<f64>,
+    /// The largest magnitude of the terms of each distance so far.
+    sizes: Vec<f64>,
     /// When the last impacts were, s.
     recent: VecDeque<(f64, Vec<usize>)>,
     /// False for an impact that ends infinitely many.
@@ -82,16 +83,21 @@ enum Overlap {
 }
 
 impl Contacts {
-    pub fn new(names: Vec<String>) -> Self {
+    /// Creates open contacts between coordinates of these typical sizes.
+    pub fn new(names: Vec<String>, typical_sizes: &[f64]) -> Self {
         let count = names.len();
         Self {
             names,
+            unmoved_sizes: typical_sizes
+                .iter()
+                .map(|size| UNMOVED_SIZE_FRACTION * size)
+                .collect(),
+            sizes: vec![0.0; count],
             start: None,
             closed: Vec::new(),
             offsets: vec![0.0; count],
             allowances: vec![0.0; count],
             at: Vec::new(),
-            size: 0.0,
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
             has_restitution: true,
             impact_work: 0.0,
@@ -225,7 +231,7 @@ impl Contacts {
     }
 
     /// Closes those of the contacts that touch which then push.
-    fn close(&mut self, touching: &[usize], rounding: f64) {
+    fn close(&mut self, touching: &[usize], (t, state): (f64, &[f64])) {
         let accelerations: Vec<f64> = touching.iter().map(|i| self.at[*i].acceleration).collect();
         let forces = solve_complementarity(&self.delassus(touching), &accelerations);
         let pushing = touching
@@ -237,14 +243,53 @@ impl Contacts {
             self.allowances[*place] = 0.0;
         }
         // They leave without speed: for a while rounding of the state moves them more.
-        self.offset_distances(touching, rounding);
+        self.offset_by_rounding(touching, (t, state));
     }
 
-    /// Has the distances of those that touch begin above zero, and by so much.
-    fn offset_distances(&mut self, touching: &[usize], above: f64) {
+    /// Has the distances of those that touch begin above zero.
+    fn offset_distances(&mut self, touching: &[usize]) {
         for place in touching {
             let distance = self.at[*place].distance;
-            self.offsets[*place] = above.max(-2.0 * distance);
+            self.offsets[*place] = f64::MIN_POSITIVE.max(-2.0 * distance);
+        }
+    }
+
+    /// Has the distances of those that touch begin above zero by the rounding of a state.
+    fn offset_by_rounding(&mut self, touching: &[usize], at: (f64, &[f64])) {
+        self.offset_distances(touching);
+        for place in touching {
+            self.offsets[*place] = self.offsets[*place].max(self.distance_rounding(*place, at));
+        }
+    }
+
+    /// Returns the magnitude of the terms of a distance at these coordinates.
+    fn distance_size(&self, place: usize, coordinates: &[f64]) -> f64 {
+        let sizes = coordinates.iter().zip(&self.unmoved_sizes);
+        let sizes = sizes.map(|(coordinate, unmoved)| coordinate.abs().max(*unmoved));
+        let row = self.at[place].row.iter();
+        row.zip(sizes).map(|(entry, size)| entry.abs() * size).sum()
+    }
+
+    /// Returns the magnitude of the terms of the rate of a distance.
+    fn rate_size(&self, place: usize, rates: &[f64]) -> f64 {
+        let terms = self.at[place].row.iter().zip(rates);
+        terms.map(|(entry, rate)| (entry * rate).abs()).sum()
+    }
+
+    /// Returns the change of a distance by rounding of state and time.
+    fn distance_rounding(&self, place: usize, (t, state): (f64, &[f64])) -> f64 {
+        let degrees = self.at[place].row.len();
+        let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
+        let size = self.distance_size(place, coordinates);
+        f64::MIN_POSITIVE + DISTANCE_ROUNDING * (size + t.abs() * self.rate_size(place, rates))
+    }
+
+    /// Notes the magnitudes of the terms of the distances at a state.
+    fn note_sizes(&mut self, state: &[f64]) {
+        for place in 0..self.sizes.len() {
+            let degrees = self.at[place].row.len();
+            let size = self.distance_size(place, &state[..degrees]);
+            self.sizes[place] = self.sizes[place].max(size);
         }
     }
 
@@ -252,21 +297,26 @@ impl Contacts {
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         own.impacts(point, &mut self.at);
-        let small = ROUNDING * max_magnitude(point.state);
-        let touching: Vec<usize> = (0..self.at.len())
-            .filter(|place| self.at[*place].distance <= small || self.closed.contains(place))
-            .collect();
-        let still = touching
-            .iter()
-            .filter(|place| self.at[**place].rate.abs() <= small || self.closed.contains(place));
-        let still: Vec<usize> = still.copied().collect();
-        self.offset_distances(&touching, f64::MIN_POSITIVE);
+        self.note_sizes(point.state);
         let degrees = own.program().degrees_of_freedom();
-        let rounding = distance_rounding(point.state, degrees, point.t);
+        let rates = &point.state[degrees..2 * degrees];
+        let small: Vec<f64> = (0..self.at.len())
+            .map(|place| ROUNDING * self.rate_size(place, rates))
+            .collect();
+        let touches = |place: &usize| self.at[*place].distance <= ROUNDING * self.sizes[*place];
+        let touching: Vec<usize> = (0..self.at.len())
+            .filter(|place| touches(place) || self.closed.contains(place))
+            .collect();
+        let is_still = |place: &usize| self.at[*place].rate.abs() <= small[*place];
+        let still = touching.iter().copied();
+        let still: Vec<usize> = still
+            .filter(|place| is_still(place) || self.closed.contains(place))
+            .collect();
+        self.offset_distances(&touching);
         match self.has_friction() {
-            false => self.close(&still, rounding),
+            false => self.close(&still, (point.t, point.state)),
             true => {
-                let started = self.start_resting(own, point, (&still, small), rounding);
+                let started = self.start_resting(own, point, (&still, &small));
                 self.note_forces(started);
             }
         }
@@ -282,9 +332,7 @@ impl Contacts {
 
     /// Updates the modes of friction at a point between steps, where inputs may jump.
     pub fn update_friction(&mut self, own: &mut Evaluator, point: Point<'_>) {
-        let degrees = own.program().degrees_of_freedom();
-        let rounding = distance_rounding(point.state, degrees, point.t);
-        let updated = self.update_modes(own, point, rounding);
+        let updated = self.update_modes(own, point, point);
         self.note_forces(updated);
     }
 
@@ -357,17 +405,18 @@ impl Contacts {
         }
     }
 
-    /// The most that one of these impulses changes a rate by.
-    fn largest_push(&self, places: &[usize], impulses: &ContactForces) -> f64 {
-        let pushes = places.iter().zip(&impulses.normal);
-        let pushes =
-            pushes.map(|(place, impulse)| impulse.abs() * max_magnitude(&self.at[*place].column));
-        let along = places.iter().zip(&impulses.tangential);
-        let along = along.map(|(place, impulse)| {
-            let friction = self.at[*place].friction.as_ref();
-            friction.map_or(0.0, |one| impulse.abs() * max_magnitude(&one.column))
+    /// Returns the magnitude of the terms by which impulses at other contacts change the rate of a distance.
+    fn push_size(&self, place: usize, others: &[usize], impulses: &ContactForces) -> f64 {
+        let pushes = others.iter().zip(&impulses.normal);
+        let pushes = pushes.map(|(other, impulse)| (&self.at[*other].column, impulse));
+        let along = others.iter().zip(&impulses.tangential);
+        let along = along.filter_map(|(other, impulse)| {
+            let friction = self.at[*other].friction.as_ref()?;
+            Some((&friction.column, impulse))
         });
-        pushes.chain(along).fold(0.0, f64::max)
+        let all = pushes.chain(along);
+        all.map(|(column, impulse)| impulse.abs() * self.rate_size(place, column))
+            .sum()
     }
 
     /// Delassus' matrix of these contacts.
@@ -383,11 +432,4 @@ pub(crate) fn delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<Vec<f6
         places.iter().map(|other| entries[*other]).collect()
     };
     places.iter().map(row).collect()
-}
-
-/// By how much rounding of state and time changes distances.
-fn distance_rounding(state: &[f64], degrees: usize, t: f64) -> f64 {
-    let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
-    f64::MIN_POSITIVE
-        + DISTANCE_ROUNDING * (max_magnitude(coordinates) + t.abs() * max_magnitude(rates))
 }

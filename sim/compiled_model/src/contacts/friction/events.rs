@@ -17,7 +17,8 @@ const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
     /// Changes the modes of closed contacts if a guard of theirs is negative: contacts that no longer push open,
-    /// sliding ends at zero slip, and rest ends at the limit of friction.
+    /// sliding ends at zero slip, and rest ends at the limit of friction. `located` is the point whose rounding decides
+    /// where contacts open.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -25,7 +26,7 @@ impl Contacts {
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
-        rounding: f64,
+        located: Point<'_>,
     ) -> Result<(), (usize, Overlap)> {
         if !self.has_friction() || self.closed.is_empty() {
             return Ok(());
@@ -56,7 +57,7 @@ impl Contacts {
         let decided = problem.decide(Some(&modes), &excluded);
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
-        self.enter_modes(&places, &decision, &roundings, rounding);
+        self.enter_modes(&places, &decision, &roundings, located);
         Ok(())
     }
 
@@ -98,12 +99,12 @@ impl Contacts {
     pub(in super::super) fn decide_resting(
         &self,
         places: &[usize],
-        (smallest, roundings): (f64, &[f64]),
+        (smallest, roundings): (&[f64], &[f64]),
     ) -> Result<ContactDecision, (usize, Overlap)> {
         let direction = |place: usize| {
             let index = self.tangent_index(place)?;
             let slip = self.slip(place);
-            (slip.abs() > roundings[index].max(smallest)).then(|| slip.signum())
+            (slip.abs() > roundings[index].max(smallest[place])).then(|| slip.signum())
         };
         let accelerations = self.free_accelerations(places);
         let problem = self.problem(places, direction, &accelerations);
@@ -117,7 +118,7 @@ impl Contacts {
         places: &[usize],
         decision: &ContactDecision,
         roundings: &[f64],
-        distance_rounding: f64,
+        located: Point<'_>,
     ) {
         self.closed.clear();
         let mut opened = Vec::new();
@@ -131,7 +132,7 @@ impl Contacts {
                 self.tangents[index].bears = false;
             }
         }
-        self.offset_distances(&opened, distance_rounding);
+        self.offset_by_rounding(&opened, (located.t, located.state));
         let forces = self.friction_forces();
         self.mark_bearing(&forces, roundings);
         for index in 0..self.closed.len() {

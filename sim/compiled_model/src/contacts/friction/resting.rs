@@ -5,10 +5,11 @@ use eomgen_sim::contact_friction::ContactMode;
 
 use super::super::impulses::Flight;
 use super::super::tangents::ContactForces;
-use super::super::{Contacts, DISTANCE_ROUNDING, Overlap, distance_rounding};
+use super::super::{Contacts, DISTANCE_ROUNDING, Overlap};
 
 impl Contacts {
-    /// Closes those of the contacts at rest that push at the start. Slips up to `small` are zero.
+    /// Closes those of the contacts at rest that push at the start. Slips up to the `small` rates of each contact are
+    /// zero.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
@@ -16,15 +17,14 @@ impl Contacts {
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
-        (still, small): (&[usize], f64),
-        rounding: f64,
+        (still, small): (&[usize], &[f64]),
     ) -> Result<(), (usize, Overlap)> {
         if still.is_empty() {
             return Ok(());
         }
         let roundings = self.slip_roundings(own, point);
         let decision = self.decide_resting(still, (small, &roundings))?;
-        self.enter_modes(still, &decision, &roundings, rounding);
+        self.enter_modes(still, &decision, &roundings, point);
         Ok(())
     }
 
@@ -43,25 +43,28 @@ impl Contacts {
         self.closed.clear();
         let mut resting: Vec<usize> = Vec::new();
         let mut decision = None;
-        let mut even = flight.acceleration_rounding;
+        let mut even = flight.acceleration_roundings.clone();
         let mut accelerations = self.resting_accelerations(touching, (&[], &Default::default()));
         loop {
             let is_next = |(place, acceleration): &(&usize, &f64)| {
                 let rate = self.at[**place].rate;
-                !resting.contains(*place) && flight.is_none(rate, **acceleration, even)
+                !resting.contains(*place)
+                    && flight.is_none(**place, (rate, **acceleration), even[**place])
             };
             let Some((next, _)) = touching.iter().zip(&accelerations).find(is_next) else {
                 break;
             };
             resting.push(*next);
-            let decided = self.decide_resting(&resting, (flight.rate_rounding, &roundings))?;
+            let decided = self.decide_resting(&resting, (&flight.rate_roundings, &roundings))?;
             let forces = ContactForces::from_directions(decided.impulses.clone());
-            even = flight.acceleration_rounding
-                + DISTANCE_ROUNDING * self.largest_push(&resting, &forces);
+            for (place, even) in even.iter_mut().enumerate() {
+                *even = flight.acceleration_roundings[place]
+                    + DISTANCE_ROUNDING * self.push_size(place, &resting, &forces);
+            }
             accelerations = self.resting_accelerations(touching, (&resting, &forces));
             decision = Some(decided);
         }
-        self.offset_distances(touching, f64::MIN_POSITIVE);
+        self.offset_distances(touching);
         let Some(mut decision) = decision else {
             return Ok(());
         };
@@ -70,10 +73,10 @@ impl Contacts {
             let among = touching.iter().zip(&accelerations);
             let is_even = among
                 .filter(|(own, _)| *own == place)
-                .any(|(_, a)| *a <= even);
+                .any(|(_, a)| *a <= even[*place]);
             if *mode == ContactMode::Open && is_even {
                 let is_slipping = self.tangent_index(*place).is_some_and(|index| {
-                    self.slip(*place).abs() > roundings[index].max(flight.rate_rounding)
+                    self.slip(*place).abs() > roundings[index].max(flight.rate_roundings[*place])
                 });
                 *mode = match (self.tangent_index(*place), is_slipping) {
                     (None, _) => ContactMode::Slides(0.0),
@@ -82,11 +85,9 @@ impl Contacts {
                 };
             }
         }
-        let degrees = own.program().degrees_of_freedom();
-        let rounding = distance_rounding(point.state, degrees, point.t);
-        self.enter_modes(&resting, &decision, &roundings, rounding);
+        self.enter_modes(&resting, &decision, &roundings, point);
         for place in self.closed.clone() {
-            let least = even / self.at[place].delassus[place];
+            let least = even[place] / self.at[place].delassus[place];
             self.allowances[place] = self.allowances[place].max(least);
             let tangents = self.tangents.iter_mut().filter(|own| own.place == place);
             for tangent in tangents {
