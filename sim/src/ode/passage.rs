@@ -21,7 +21,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let has_crossed = matches!(located, Located::Crossed(..));
         match located {
             Located::Crossed(near, mut beyond) => {
-                if let Some(near) = near {
+                if let Some(mut near) = near {
+                    self.watched.project_before(near.t, &mut near.y);
                     self.end_step(near)?;
                 }
                 let near = self.run.stepper.current_point().clone();

@@ -73,6 +73,12 @@ pub trait System {
         false
     }
 
+    /// Returns true if the energies jump where a switching function is 0. A motion that starts there is on the side on
+    /// which the function is negative.
+    fn has_energy_jump(&self, _guard: usize) -> bool {
+        false
+    }
+
     /// Returns the index of the first coordinate whose pivot in the mass matrix, after elimination
     /// of those before it, is not positive at time `t` and state `y`; `None` if there is none or
     /// the system does not check.
@@ -168,6 +174,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn is_distance(&self, guard: usize) -> bool {
         (**self).is_distance(guard)
+    }
+
+    fn has_energy_jump(&self, guard: usize) -> bool {
+        (**self).has_energy_jump(guard)
     }
 
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {

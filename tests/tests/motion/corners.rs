@@ -122,6 +122,31 @@ fn base_that_starts_to_move_changes_relative_rate() {
     }
 }
 
+#[test]
+fn start_on_a_surface_is_on_the_side_of_its_first_row() {
+    let step = |height: &str| {
+        let parameters = format!("U = {{ value = {height}, unit = \"J\" }}");
+        line(&parameters, "", "1/2*m*dot(x)^2", "U*above(x)")
+    };
+    let parameters = "d = { value = 3, unit = \"kg\" }\nt_1 = { value = 0, unit = \"s\" }";
+    let mass = line(parameters, "", "1/2*(m + d*above(t - t_1))*dot(x)^2", "0");
+    // The first rate is 1 m/s, or -1 m/s away from the step.
+    for (text, rate, expected) in [
+        (step("0.3"), 1.0, 0.4_f64.sqrt()),
+        (step("1"), 1.0, -1.0),
+        (step("-4"), 1.0, 3.0),
+        (step("1"), -1.0, -1.0),
+        (mass, 1.0, 0.25),
+    ] {
+        let start = format!("initial = 0, initial_rate = {rate:?}");
+        let text = text.replace("initial = -1, initial_rate = 1", &start);
+        for solver in SOLVERS {
+            let motion = simulate(&text, 1.0, solver);
+            assert_near(last(&motion), &[expected, expected], 1e-9, &text);
+        }
+    }
+}
+
 /// A base that moves at 0.5 m/s from 1 s on: position, rate and second rate.
 #[derive(Debug)]
 struct MovingBase;
@@ -350,6 +375,53 @@ fn automatic_solver_applies_corners_and_others_reject_them() {
         shown.contains("corners") && shown.contains("PARTIAL"),
         "{shown}"
     );
+}
+
+#[test]
+fn corners_on_a_constraint_are_those_of_an_angle() {
+    // A pendulum as a point with a constraint, and with its angle from the lowest position.
+    let head = |step: f64| {
+        format!(
+            "[model]\nname = \"pendulum\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             l = {{ value = 1, unit = \"m\" }}\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n\
+             U = {{ value = {step:?}, unit = \"J\" }}\n"
+        )
+    };
+    let start = 0.6_f64.asin();
+    for (place, step) in [
+        ("X - 0.1*l", 1.0),
+        ("X - 0.1*l", 0.3),
+        ("X - 0.1*l", -1.0),
+        ("X - 0.1*l", 1.9),
+        ("Y + 0.95*l", 0.25),
+        ("Y + 0.95*l", -0.23),
+    ] {
+        let potential = format!("[potential]\nV = \"m*g*Y + U*above({place})\"\n");
+        let written = |x: &str, y: &str| potential.replace('X', x).replace('Y', y);
+        let by_point = head(step)
+            + "[coordinates]\nx = { unit = \"m\", initial = -0.6 }\n\
+               y = { unit = \"m\", initial = -0.8 }\n[kinetic]\n\
+               T = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n[constraints]\n\
+               rod = { zero = \"x^2 + y^2 - l^2\" }\n"
+            + &written("x", "y");
+        let by_angle = head(step)
+            + &format!(
+                "[coordinates]\na = {{ unit = \"rad\", initial = {:?} }}\n",
+                -start
+            )
+            + "[kinetic]\nT = \"1/2*m*l^2*dot(a)^2\"\n"
+            + &written("l*sin(a)", "(-l*cos(a))");
+        for solver in SOLVERS {
+            let (point, angle) = (
+                simulate(&by_point, 4.0, solver),
+                simulate(&by_angle, 4.0, solver),
+            );
+            let angle = last(&angle)[0];
+            let expected = [angle.sin(), -angle.cos()];
+            let what = format!("{place}, {step} J, {solver:?}");
+            assert_near(&last(&point)[..2], &expected, 1e-6, &what);
+        }
+    }
 }
 
 #[test]

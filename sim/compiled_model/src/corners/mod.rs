@@ -63,11 +63,17 @@ impl Corners {
         self.failure.as_deref()
     }
 
-    /// Records on which sides the motion is.
+    /// Returns true if the energies jump at the surface of this switching function.
+    pub fn contains(&self, guard: usize) -> bool {
+        (0..self.sides.len()).any(|place| self.guard(place) == guard)
+    }
+
+    /// Records on which sides the motion is. On a surface it is on the side of `above(0) = 0`, unless it came from the
+    /// other one.
     pub fn update(&mut self, (t, state): (f64, &[f64]), inputs: &[f64]) {
         let values = self.functions((t, state), inputs);
         for (side, value) in self.sides.iter_mut().zip(values) {
-            *side = side_of(value).or(*side);
+            *side = side_of(value).or(*side).or(Some(0.0));
         }
     }
 
@@ -84,11 +90,7 @@ impl Corners {
         let beyond = self.functions((t, state), inputs);
         let known = self.sides.iter().zip(&near);
         let from: Vec<f64> = known
-            .zip(&beyond)
-            .map(|((side, near), beyond)| {
-                let side = side.or_else(|| side_of(*near)).or_else(|| side_of(*beyond));
-                side.unwrap_or(0.0)
-            })
+            .map(|(side, near)| side.or_else(|| side_of(*near)).unwrap_or(0.0))
             .collect();
         let to: Vec<f64> = beyond
             .iter()

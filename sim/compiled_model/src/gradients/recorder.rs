@@ -116,6 +116,10 @@ impl System for Recorder<'_> {
         self.system.is_distance(guard)
     }
 
+    fn has_energy_jump(&self, guard: usize) -> bool {
+        self.system.has_energy_jump(guard)
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         self.system.find_indefinite_coordinate(t, y)
     }

@@ -292,6 +292,10 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.is_singular(guard)
     }
 
+    fn has_energy_jump(&self, guard: usize) -> bool {
+        self.system.has_energy_jump(guard)
+    }
+
     fn find_indefinite_coordinate(&self, t: f64, y: &[f64]) -> Option<usize> {
         self.system.find_indefinite_coordinate(t, y)
     }
