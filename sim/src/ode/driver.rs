@@ -325,8 +325,11 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         if !self.watched.project(here.t, &mut y) {
             return true;
         }
-        let moved = y.iter().zip(&here.y).map(|(to, from)| to - from);
-        let is_near = self.run.stepper.magnitudes().allow(moved, &here.y);
+        let here = here.y.clone();
+        let moved: Vec<f64> = y.iter().zip(&here).map(|(to, from)| to - from).collect();
+        let magnitudes = self.run.stepper.magnitudes_mut();
+        magnitudes.note_correction(&moved, &here);
+        let is_near = magnitudes.allow(moved.into_iter(), &here);
         self.run.projected = Some(y);
         is_near
     }

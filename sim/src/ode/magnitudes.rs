@@ -8,7 +8,7 @@ pub const ROUNDING_FACTOR: f64 = 10.0;
 /// A step leaves an invariant by at most this number of its allowed errors.
 const MOST_STRAYED: f64 = 100.0;
 
-/// The same in units of the last place of the largest state.
+/// The same in units of the last place of the largest corrected state, relative to typical sizes.
 const ROUNDING_OF_OTHERS: f64 = 1000.0;
 
 /// The largest magnitude of each component so far, and the tolerance relative to it.
@@ -16,7 +16,11 @@ pub struct Magnitudes {
     largest: Vec<f64>,
     /// Smallest magnitude of each component.
     smallest: Vec<f64>,
-    /// Largest magnitude of any component so far.
+    /// Typical size of each component.
+    typical_sizes: Vec<f64>,
+    /// True for components that corrections onto constraints change.
+    is_corrected: Vec<bool>,
+    /// Largest magnitude of a corrected component so far, relative to its typical size.
     most: f64,
     tolerance: f64,
     /// Rounding of each component in a step, which is no error.
@@ -37,7 +41,9 @@ impl Magnitudes {
         Self {
             largest: largest.collect(),
             smallest,
-            most: y.iter().fold(0.0, |most, y| most.max(y.abs())),
+            typical_sizes: typical_sizes.to_vec(),
+            is_corrected: vec![false; y.len()],
+            most: 0.0,
             tolerance,
             roundings: vec![0.0; y.len()],
         }
@@ -53,6 +59,8 @@ impl Magnitudes {
         Self {
             largest: largest.collect(),
             smallest: self.smallest.clone(),
+            typical_sizes: self.typical_sizes.clone(),
+            is_corrected: self.is_corrected.clone(),
             most: self.most,
             tolerance: self.tolerance,
             roundings: self.roundings.clone(),
@@ -75,25 +83,44 @@ impl Magnitudes {
     pub fn raise(&mut self, y: &[f64]) {
         for (largest, y) in self.largest.iter_mut().zip(y) {
             *largest = largest.max(y.abs());
-            self.most = self.most.max(y.abs());
         }
+        self.raise_most(y);
     }
 
-    /// Takes note that states are corrected onto constraints: each then has the rounding of the others, which is no
-    /// error of a step.
+    fn raise_most(&mut self, y: &[f64]) {
+        let sizes = y.iter().zip(&self.typical_sizes).zip(&self.is_corrected);
+        let corrected = sizes.filter(|(_, is_corrected)| **is_corrected);
+        let relative = corrected.map(|((y, size), _)| y.abs() / size);
+        self.most = relative.fold(self.most, f64::max);
+    }
+
+    /// Takes note of the changes of a state `y` by a correction onto constraints.
+    pub fn note_correction(&mut self, changes: &[f64], y: &[f64]) {
+        for (is_corrected, change) in self.is_corrected.iter_mut().zip(changes) {
+            *is_corrected |= *change != 0.0;
+        }
+        self.raise_most(y);
+    }
+
+    /// Takes note that states are corrected onto constraints: each that changes then has the rounding of the others that
+    /// change, which is no error of a step.
     pub fn include_rounding_of_others(&mut self) {
         // Not of `largest`: below a tolerance of 2e-13 that would grow with every call.
         let rounding = ROUNDING_OF_OTHERS * f64::EPSILON / self.tolerance * self.most;
-        for largest in &mut self.largest {
-            *largest = largest.max(rounding);
+        let sizes = self.typical_sizes.iter().zip(&self.is_corrected);
+        let entries = self.largest.iter_mut().zip(sizes);
+        for (largest, (size, _)) in entries.filter(|(_, (_, is_corrected))| **is_corrected) {
+            *largest = largest.max(rounding * size);
         }
     }
 
     /// Returns true if all changes of a state `y` are below some multiple of the allowed error.
     /// Rounding of other components is ignored for a state that has not moved.
     pub fn allow(&self, changes: impl Iterator<Item = f64>, y: &[f64]) -> bool {
-        changes.zip(self.allowed(y)).all(|(change, allowed)| {
-            change.abs() <= MOST_STRAYED * allowed + ROUNDING_OF_OTHERS * f64::EPSILON * self.most
+        let rounding = ROUNDING_OF_OTHERS * f64::EPSILON * self.most;
+        let allowed = self.allowed(y).zip(&self.typical_sizes);
+        changes.zip(allowed).all(|(change, (allowed, size))| {
+            change.abs() <= MOST_STRAYED * allowed + rounding * size
         })
     }
 
@@ -135,9 +162,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn components_without_corrections_leave_the_others_unchanged() {
+        let mut magnitudes = Magnitudes::new(&[1.0, 1e10], &[1.0, 1.0], 1e-9);
+        magnitudes.note_correction(&[1e-20, 0.0], &[1.0, 1e10]);
+        magnitudes.raise(&[1.0, 1e10]);
+        magnitudes.include_rounding_of_others();
+        assert_eq!(magnitudes.largest, [1.0, 1e10]);
+        assert!(!magnitudes.allow([1e-5, 0.0].into_iter(), &[1.0, 1e10]));
+    }
+
+    #[test]
     fn rounding_of_others_does_not_grow_from_step_to_step() {
         for tolerance in [1e-9, 1e-13, 1e-14] {
             let mut magnitudes = Magnitudes::new(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
+            magnitudes.note_correction(&[1e-20, 1e-20], &[100.0, 1e-3]);
             let mut floors = Vec::new();
             for _ in 0..50 {
                 magnitudes.raise(&[100.0, 1e-3]);
