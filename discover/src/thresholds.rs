@@ -719,4 +719,4 @@ pub const MAX_HELD_OUT_RATIO: f64 = 1.5;
 
 /// Maximum fraction of the residual that an adequate curve leaves, and of the gap to the noise floor that
 /// a law leaves along the reference motion. A right law leaves up to 0.06 (a stop).
-pub const MAX_LEFT_ALONG_REFERENCE: f64 = 0.3;
+pub const MAX_LEFT_BY_CURVE: f64 = 0.3;

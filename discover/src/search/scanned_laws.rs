@@ -60,7 +60,7 @@ pub fn scan_records(context: RoundContext<'_>, answer: &Fit) -> Option<ScanResul
     let gap = (scan.rms_without - context.floor).max(0.0);
     let most = (thresholds::MAX_SCANNED_RIVAL_RATIO * by_curve.min(best.rms))
         .min((1.0 - thresholds::MIN_HELD_OUT_REDUCTION) * by_answer.min(scan.rms_without))
-        .min(context.floor + thresholds::MAX_LEFT_ALONG_REFERENCE * gap);
+        .min(context.floor + thresholds::MAX_LEFT_BY_CURVE * gap);
     let mut laws = scan.laws;
     let count = laws.iter().take_while(|law| law.rms < most).count();
     let others = laws.split_off(count.min(thresholds::MAX_FULL_FITS_PER_ROUND));
@@ -190,6 +190,6 @@ fn find_adequate_curve(context: RoundContext<'_>, scene: &Scene<'_>) -> Option<C
     ));
     let is_adequate = best.log_evidence > thresholds::MIN_INFORMATION_GAIN
         && test <= thresholds::MAX_HELD_OUT_RATIO * train.max(context.floor)
-        && train.max(test) < thresholds::MAX_LEFT_ALONG_REFERENCE * alone;
+        && train.max(test) < thresholds::MAX_LEFT_BY_CURVE * alone;
     is_adequate.then_some(best)
 }
