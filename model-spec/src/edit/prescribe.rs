@@ -8,7 +8,7 @@ use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section}
 use crate::assignment::find_unit_start;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
-use crate::lexer::tokenize;
+use crate::lexer::{Token, TokenKind, tokenize};
 use crate::span::Span;
 use crate::unit::Unit;
 
@@ -85,7 +85,10 @@ fn split_unit<'e>(
     let Ok(tokens) = tokenize(&edit.value, Span::new) else {
         return Ok((&edit.value, None));
     };
-    let Some(first) = tokens.get(find_unit_start(&tokens)) else {
+    let is_word = |token: &Token| token.kind == TokenKind::Name("if".to_owned());
+    let first = tokens.get(find_unit_start(&tokens));
+    // The parser explains conditions.
+    let Some(first) = first.filter(|first| !is_word(first)) else {
         return Ok((&edit.value, None));
     };
     let (expression, own) = edit.value.split_at(first.span.start);
