@@ -89,6 +89,7 @@ features! {
         bouncing_ball: [0];
         dropped_box: [0];
         box_with_friction: [0];
+        woodpecker: [0];
         beam_stop: [0, 1, 4];
         rheonomic: [0, 1, 4];
         mass_of_time: [0];
