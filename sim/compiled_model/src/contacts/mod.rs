@@ -27,10 +27,10 @@ pub(crate) use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
-/// A distance this small beside its terms is rounding.
+/// Largest distance that counts as rounding, relative to its terms.
 const ROUNDING: f64 = 1e-11;
 
-/// Rounding of a distance, beside its terms and how far these have come.
+/// Rounding of a distance, relative to its terms and to their changes since t = 0.
 const DISTANCE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Number of impacts that have no end, if the time between them is below that of the shortest flights.
@@ -51,7 +51,7 @@ pub(crate) struct Contacts {
     offsets: Vec<f64>,
     /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
     allowances: Vec<f64>,
-    /// The impacts where they were last looked at.
+    /// Impacts at the point of the last evaluation.
     at: Vec<ImpactValues>,
     /// Sizes of coordinates that have not moved.
     unmoved_sizes: Vec<f64>,
