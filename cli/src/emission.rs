@@ -1,6 +1,6 @@
 //! Emitted files of the targets of `generate`: the options of the command line for `eomgen_targets`.
 
-use eomgen_codegen::c;
+use eomgen_codegen::c::{self, Real};
 use eomgen_codegen::program::{Output, Program};
 use eomgen_codegen::rust::{self, Packaging};
 use eomgen_codegen::variant::Variant;
@@ -16,9 +16,9 @@ pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
     Ok(rust::emit(program, packaging)?)
 }
 
-/// Emits a program as C, with the default compiler for its certificate.
-pub fn c_source(program: &Program, outputs: &[Output]) -> Result<CSource> {
-    let c::Files { source, header } = c::emit(program)?;
+/// Emits a program as C with this number type, with the default compiler for its certificate.
+pub fn c_source(program: &Program, outputs: &[Output], real: Real) -> Result<CSource> {
+    let c::Files { source, header } = c::emit_with(program, real)?;
     let names = outputs.iter().map(|output| output.name().to_owned());
     Ok(CSource {
         name: program.name.clone(),

@@ -51,7 +51,7 @@ pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Ce
         outputs: (!outputs.is_empty()).then_some(&functions),
         emitted: Err("judged elsewhere".to_owned()),
         program: None,
-        c_source: None,
+        c_sources: &[],
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),
     })

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use eomgen_codegen::c::Real;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant;
@@ -129,12 +130,12 @@ fn sources(variant: &Variant, outputs: &[Output], target: Target) -> Result<Sour
     let program = &variant.program;
     Ok(match target {
         Target::C99 => Sources {
-            c: Some(emission::c_source(program, outputs)?),
+            c: vec![emission::c_source(program, outputs, Real::Double)?],
             rust: None,
         },
         _ => Sources {
             rust: Some(emission::source(program, Packaging::Crate)?),
-            c: None,
+            c: Vec::new(),
         },
     })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
+use eomgen_validate::certificate::CSourceHashes;
 use eomgen_validate::certify::{CCompiler, CSource};
 use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::{Value, json};
@@ -21,8 +22,10 @@ pub fn run(options: &Verify) -> Result {
     let text = read(&options.file)?;
     let (sources, expected) = sources(options, &certificate, text.clone())?;
     let found = sha256(&text);
-    let header = sources.c.as_ref().map(|source| sha256(&source.header));
-    let is_header_same = header.is_none() || header == certificate.c_header_sha256;
+    let is_header_same = sources.c.iter().all(|source| {
+        let certified = certificate.c_source(&source.name);
+        certified.is_some_and(|certified| certified.header_sha256 == sha256(&source.header))
+    });
     let is_same = expected == found && is_header_same;
     let repeated = {
         let _note = Note::new(format!("verifying {}", options.file.display()));
@@ -69,8 +72,7 @@ struct Certificate {
     order: usize,
     outputs: Vec<Output>,
     source_sha256: String,
-    c_source_sha256: Option<String>,
-    c_header_sha256: Option<String>,
+    c_sources: Vec<CSourceHashes>,
 }
 
 impl Certificate {
@@ -116,6 +118,19 @@ impl Certificate {
         let settings = document["settings"]
             .as_object()
             .ok_or_else(|| missing("settings"))?;
+        let c_sources = document["c_sources"]
+            .as_array()
+            .ok_or_else(|| missing("c_sources"))?;
+        let c_sources = c_sources.iter().map(|source| {
+            let of = |key: &str| source[key].as_str().map(str::to_owned);
+            Some(CSourceHashes {
+                name: of("name")?,
+                source_sha256: of("source_sha256")?,
+                header_sha256: of("header_sha256")?,
+            })
+        });
+        let c_sources = c_sources.collect::<Option<_>>();
+        let c_sources = c_sources.ok_or_else(|| missing("c_sources"))?;
         let settings = settings.iter().map(|(name, value)| match value.as_f64() {
             Some(value) => Ok((name.as_str(), value)),
             None => Err(Error::input(format!(
@@ -133,10 +148,14 @@ impl Certificate {
             order,
             outputs,
             source_sha256: string("source_sha256")?,
-            c_source_sha256: document["c_source_sha256"].as_str().map(str::to_owned),
-            c_header_sha256: document["c_header_sha256"].as_str().map(str::to_owned),
+            c_sources,
             document,
         })
+    }
+
+    /// Returns the hashes of the C with this prefix.
+    fn c_source(&self, name: &str) -> Option<&CSourceHashes> {
+        self.c_sources.iter().find(|source| source.name == name)
     }
 
     /// Compares what the certificate states with the repeated certificate.
@@ -191,7 +210,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
         Some("rs") => Ok((
             Sources {
                 rust: Some(text),
-                c: None,
+                c: Vec::new(),
             },
             certificate.source_sha256.clone(),
         )),
@@ -210,6 +229,17 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                 .outputs
                 .iter()
                 .map(|output| output.name().to_owned());
+            let expected = certificate.c_source(name).ok_or_else(|| {
+                let known = certificate.c_sources.iter();
+                let known: Vec<String> = known.map(|c| format!("{}.c", c.name)).collect();
+                let covered = match known.is_empty() {
+                    true => "no C".to_owned(),
+                    false => known.join(" and "),
+                };
+                Error::input(format!(
+                    "{shown}: the certificate covers {covered}; give the certificate that was written with the file"
+                ))
+            })?;
             let source = CSource {
                 name: name.to_owned(),
                 source: text,
@@ -217,18 +247,12 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                 outputs: names.collect(),
                 compiler,
             };
-            let expected = certificate.c_source_sha256.clone().ok_or_else(|| {
-                Error::input(format!(
-                    "the certificate covers no C, but {shown} is C; give the certificate that was written with it"
-                ))
-            })?;
-            Ok((
-                Sources {
-                    rust: None,
-                    c: Some(source),
-                },
-                expected,
-            ))
+            let expected = expected.source_sha256.clone();
+            let sources = Sources {
+                rust: None,
+                c: vec![source],
+            };
+            Ok((sources, expected))
         }
         _ => Err(Error::input(format!(
             "{shown} is neither Rust nor C: give a file that ends in .rs or .c"

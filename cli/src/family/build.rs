@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use eomgen_codegen::c::{self, Real};
+use eomgen_codegen::c::Real;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant as Derived;
 use eomgen_model_spec::model::Model;
-use eomgen_validate::certify::{CCompiler, CSource};
 use eomgen_validate::model_certificate::{Sources, certify_sources, unchecked_certificate};
 use serde_json::Value;
 
@@ -170,22 +169,12 @@ impl Emitted {
         };
         let mut program = derived.program.clone();
         prefix.clone_into(&mut program.name);
-        let files =
-            c::emit_with(&program, real).map_err(|error| Error::input(error.to_string()))?;
-        if self.sources.c.is_none() {
-            let names = self.outputs.iter().map(|output| output.name().to_owned());
-            self.sources.c = Some(CSource {
-                name: prefix.to_owned(),
-                source: files.source.clone(),
-                header: files.header.clone(),
-                outputs: names.collect(),
-                compiler: CCompiler::default(),
-            });
-        }
+        let emitted = emission::c_source(&program, &self.outputs, real)?;
         self.files
-            .insert(format!("{prefix}.c"), files.source.into_bytes());
+            .insert(format!("{prefix}.c"), emitted.source.clone().into_bytes());
         self.files
-            .insert(format!("{prefix}.h"), files.header.into_bytes());
+            .insert(format!("{prefix}.h"), emitted.header.clone().into_bytes());
+        self.sources.c.push(emitted);
         Ok(())
     }
 }

@@ -22,10 +22,8 @@ pub struct Certificate {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source; `None` if no source was emitted.
     pub source_sha256: Option<String>,
-    /// SHA-256 of the emitted C; `None` if no C was emitted.
-    pub c_source_sha256: Option<String>,
-    /// SHA-256 of the header of the emitted C, if any.
-    pub c_header_sha256: Option<String>,
+    /// Emitted C.
+    pub c_sources: Vec<CSourceHashes>,
     /// Hashes of the sources in their identities, as `eomgen identify` prints them.
     pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
@@ -46,6 +44,17 @@ pub struct Certificate {
     pub checks: Vec<Check>,
     /// Text of the specification, complete with the files that it extends.
     pub specification: String,
+}
+
+/// Hashes of the two files of emitted C.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CSourceHashes {
+    /// Prefix of its names: the files are `NAME.c` and `NAME.h`.
+    pub name: String,
+    /// SHA-256 of `NAME.c`.
+    pub source_sha256: String,
+    /// SHA-256 of `NAME.h`.
+    pub header_sha256: String,
 }
 
 /// Result of all checks together.
@@ -134,10 +143,8 @@ pub struct CertificateHeader {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source, if any.
     pub source_sha256: Option<String>,
-    /// SHA-256 of the emitted C, if any.
-    pub c_source_sha256: Option<String>,
-    /// SHA-256 of the header of the emitted C, if any.
-    pub c_header_sha256: Option<String>,
+    /// Emitted C.
+    pub c_sources: Vec<CSourceHashes>,
     /// Hashes of the sources in their identities.
     pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
@@ -176,8 +183,7 @@ impl Certificate {
             generator: concat!("eomgen ", env!("CARGO_PKG_VERSION")).to_owned(),
             specification_sha256: about.specification_sha256,
             source_sha256: about.source_sha256,
-            c_source_sha256: about.c_source_sha256,
-            c_header_sha256: about.c_header_sha256,
+            c_sources: about.c_sources,
             identities: about.identities,
             settings: about.settings,
             specification: about.specification,

@@ -1,6 +1,8 @@
 //! Runs all checks of a model at one order and writes the certificate.
 
-use super::certificate::{Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst};
+use super::certificate::{
+    CSourceHashes, Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst,
+};
 use super::checks::outputs::CheckContext;
 use super::checks::{
     MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, emitted_c, exact, nesting, outputs, regimes,
@@ -51,8 +53,8 @@ pub struct Subject<'s> {
     pub emitted: Result<Emitted, String>,
     /// Program of the emitted sources, to compare their interface with; `None` leaves this out.
     pub program: Option<&'s Program>,
-    /// Emitted C, if there is any.
-    pub c_source: Option<&'s CSource>,
+    /// Emitted C, one source for each prefix.
+    pub c_sources: &'s [CSource],
     /// Emitted source with kernels of regimes, or the reason for its absence.
     pub regimes: Result<Emitted, String>,
     /// State derivative of the exact solver, or the reason for its absence.
@@ -68,7 +70,7 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
         (vec![check], Coverage::default())
     });
     let emitted = subject.emitted.as_ref().ok();
-    let sources = (emitted, subject.c_source);
+    let sources = (emitted, subject.c_sources);
     let about = certificate_header(subject.model, subject.order, subject.parameters, sources);
     Certificate::new(about, Some(coverage), checks)
 }
@@ -78,32 +80,34 @@ pub fn certificate_header(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    (rust, c): (Option<&Emitted>, Option<&CSource>),
+    (rust, c): (Option<&Emitted>, &[CSource]),
 ) -> CertificateHeader {
     let rust_hash = rust.map(|emitted| sha256(&emitted.source));
-    let c_hash = c.map(|emitted| sha256(&emitted.source));
+    let c_sources = c.iter().map(|emitted| CSourceHashes {
+        name: emitted.name.clone(),
+        source_sha256: sha256(&emitted.source),
+        header_sha256: sha256(&emitted.header),
+    });
+    let c_sources: Vec<CSourceHashes> = c_sources.collect();
+    let first_c = c_sources.first().map(|c| c.source_sha256.clone());
+    let emitted = rust.map(|emitted| &emitted.source).into_iter();
+    let emitted = emitted.chain(c.iter().map(|emitted| &emitted.source));
     let names = model.parameters.iter().map(|known| known.name.clone());
     CertificateHeader {
         model: model.name.clone(),
         order,
         specification_sha256: model.hash(),
-        source_sha256: rust_hash.or(c_hash.clone()),
-        c_source_sha256: c_hash,
-        c_header_sha256: c.map(|emitted| sha256(&emitted.header)),
-        identities: [
-            rust.map(|emitted| &emitted.source),
-            c.map(|emitted| &emitted.source),
-        ]
-        .into_iter()
-        .flatten()
-        .flat_map(|source| find(source.as_bytes()))
-        .map(|identity| identity.source)
-        .collect(),
+        source_sha256: rust_hash.or(first_c),
+        c_sources,
+        identities: emitted
+            .flat_map(|source| find(source.as_bytes()))
+            .map(|identity| identity.source)
+            .collect(),
         settings: model.settings.clone(),
         specification: model.source.text.to_string(),
         with: rust
             .and_then(|emitted| emitted.outputs.clone())
-            .or(c.map(|emitted| emitted.outputs.clone()))
+            .or(c.first().map(|emitted| emitted.outputs.clone()))
             .unwrap_or_default(),
         parameters: names.zip(parameters.iter().copied()).collect(),
     }
@@ -133,9 +137,10 @@ fn source_checks(
         }
         Err(reason) => emitted::skipped_checks(None, SkipKind::NotApplicable, reason),
     };
-    if let Some(source) = subject.c_source {
+    if !subject.c_sources.is_empty() {
         let judged = (variant, subject.program);
-        checks.push(emitted_c::check(oracle, judged, source).map_err(describe_error)?);
+        let check = emitted_c::check(oracle, judged, subject.c_sources);
+        checks.push(check.map_err(describe_error)?);
     }
     Ok(checks)
 }

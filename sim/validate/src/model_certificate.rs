@@ -66,8 +66,8 @@ pub fn certify_specification(
 pub struct Sources {
     /// Rust, in any packaging that is a module or a crate.
     pub rust: Option<String>,
-    /// C.
-    pub c: Option<CSource>,
+    /// C, one source for each prefix.
+    pub c: Vec<CSource>,
 }
 
 /// Certifies an emitted Rust source of `model` with `outputs`.
@@ -82,7 +82,7 @@ pub fn certify_source(
 ) -> Result<Certificate, Error> {
     let sources = Sources {
         rust: Some(emitted),
-        c: None,
+        c: Vec::new(),
     };
     certify_sources(model, orders, outputs, &sources)
 }
@@ -175,7 +175,7 @@ fn with_subject<R>(
         regimes: generate_kernels(model, order, &parameters, &inputs),
         emitted: emitted.ok_or_else(|| "no Rust was emitted".to_owned()),
         program: program.as_ref().ok(),
-        c_source: sources.c.as_ref(),
+        c_sources: &sources.c,
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
             Err(reason) => Err(reason.clone()),
@@ -192,12 +192,7 @@ pub fn unchecked_certificate(
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let emitted = emitted_source(model, outputs, sources);
-    let about = certificate_header(
-        model,
-        order,
-        &parameters,
-        (emitted.as_ref(), sources.c.as_ref()),
-    );
+    let about = certificate_header(model, order, &parameters, (emitted.as_ref(), &sources.c));
     Ok(Certificate::new(about, None, Vec::new()))
 }
 

@@ -35,7 +35,7 @@ fn certify_model(
         outputs: None,
         emitted,
         program: None,
-        c_source: None,
+        c_sources: &[],
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })
@@ -86,7 +86,7 @@ fn certify_preload(kernel: &str, derivative: bool) -> Certificate {
         outputs: None,
         emitted: Err("not emitted".into()),
         program: None,
-        c_source: None,
+        c_sources: &[],
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
             input_fields: Vec::new(),
@@ -401,7 +401,7 @@ fn certify_faulty_outputs(wrong: &'static str) -> Certificate {
         outputs: Some(&outputs),
         emitted: Err("not emitted".into()),
         program: None,
-        c_source: None,
+        c_sources: &[],
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })

@@ -686,7 +686,8 @@ fn linked_programs_keep_the_identities() {
         compile.arg(models.join(file));
     }
     run(compile.arg("-o").arg(&program));
-    let (status, text) = said(&[Path::new("identify"), &program], &["--json"]);
+    let search = ["--certificates", &models.display().to_string(), "--json"];
+    let (status, text) = said(&[Path::new("identify"), &program], &search);
     assert_eq!(status, Some(0), "{text}");
     let document: Value = serde_json::from_str(&text).expect("JSON");
     let mut names: Vec<&str> = document["variants"]
@@ -697,6 +698,30 @@ fn linked_programs_keep_the_identities() {
         .collect();
     names.sort_unstable();
     assert_eq!(names, ["beam_1", "long_beam", "long_beam_f32"]);
+}
+
+/// One certificate covers the C in both precisions.
+#[test]
+fn files_in_single_precision_are_verified_by_the_certificate_of_their_variant() {
+    let folder = WRITTEN.path().join("models/beam_3");
+    let certificate = folder.join("certificate.json");
+    let work = tempfile::tempdir().expect("a folder");
+    let verify = |folder: &Path| {
+        let file = folder.join("long_beam_f32.c");
+        said(&[Path::new("verify"), &file, &certificate], &[])
+    };
+    let (status, text) = verify(&folder);
+    assert_eq!(status, Some(0), "{text}");
+    for ending in ["c", "h"] {
+        let name = format!("long_beam_f32.{ending}");
+        std::fs::copy(folder.join(&name), work.path().join(&name)).expect("copied");
+    }
+    let header = work.path().join("long_beam_f32.h");
+    let text = std::fs::read_to_string(&header).expect("a file") + "\n";
+    std::fs::write(&header, text).expect("written");
+    let (status, text) = verify(work.path());
+    assert_eq!(status, Some(1), "{text}");
+    assert!(text.contains("the header is DIFFERENT"), "{text}");
 }
 
 /// A controller that is written once drives the same coordinate at orders 3 and 7.

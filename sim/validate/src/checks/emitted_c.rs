@@ -101,34 +101,44 @@ const FUNCTIONS: [EmittedFunction; 6] = [
     EmittedFunction::MassMatrix,
 ];
 
-/// Compiles `emitted` and counts the numbers that differ from `variant` and, with its interface, from `program` by a bit.
+/// Compiles each of `emitted` and counts the numbers that differ from `variant` and, with its interface, from
+/// `program` by a bit.
 pub fn check(
     oracle: &Oracle,
     (variant, program): (&mut dyn Variant, Option<&Program>),
-    emitted: &CSource,
+    emitted: &[CSource],
 ) -> Result<Check, OracleError> {
     let samples = draw_samples(oracle)?;
     if samples.is_empty() {
         return Ok(not_run("no state in the model's domain was found"));
     }
-    let folder = match tempfile::tempdir() {
-        Ok(folder) => folder,
-        Err(error) => {
-            return Ok(not_run(&format!(
-                "cannot create a temporary folder: {error}"
-            )));
+    let mut worst: Option<Worst> = None;
+    for source in emitted {
+        let folder = match tempfile::tempdir() {
+            Ok(folder) => folder,
+            Err(error) => {
+                return Ok(not_run(&format!(
+                    "cannot create a temporary folder: {error}"
+                )));
+            }
+        };
+        if let Err(reason) = source.compiler.probe(folder.path()) {
+            return Ok(not_run(&reason));
         }
-    };
-    if let Err(reason) = emitted.compiler.probe(folder.path()) {
-        return Ok(not_run(&reason));
+        let found = run_harness(folder.path(), source, &format_samples(&samples));
+        let compared = found.and_then(|lines| compare(variant, &FUNCTIONS, &samples, &lines));
+        let interface = program
+            .map(|program| check_interface(folder.path(), source, &Calls::new(program, &samples)));
+        let compared = compared.and_then(|compared| Ok(compared.with(interface.transpose()?)));
+        let compared = compared.unwrap_or_else(|message| {
+            Worst::from_deviation(f64::INFINITY, format!("{}.c: {message}", source.name))
+        });
+        worst = Some(compared.with(worst));
     }
-    let found = run_harness(folder.path(), emitted, &format_samples(&samples));
-    let worst = found.and_then(|lines| compare(variant, &FUNCTIONS, &samples, &lines));
-    let interface = program
-        .map(|program| check_interface(folder.path(), emitted, &Calls::new(program, &samples)));
-    let worst = worst.and_then(|worst| Ok(worst.with(interface.transpose()?)));
-    let worst = worst.unwrap_or_else(|message| Worst::from_deviation(f64::INFINITY, message));
-    Ok(Check::from_deviation(NAME, worst, 0.0))
+    Ok(match worst {
+        Some(worst) => Check::from_deviation(NAME, worst, 0.0),
+        None => not_run("no C was emitted"),
+    })
 }
 
 /// Compares the interface in double and in single precision, unless the options of the compiler choose one.

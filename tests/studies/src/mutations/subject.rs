@@ -135,7 +135,7 @@ impl Subject {
         let sources = match self.is_c() {
             true => Sources {
                 rust: None,
-                c: Some(CSource {
+                c: vec![CSource {
                     name: self.name.clone(),
                     source: files[0].text.clone(),
                     header: files[1].text.clone(),
@@ -145,11 +145,11 @@ impl Subject {
                         .map(|output| output.name().to_owned())
                         .collect(),
                     compiler: CCompiler::default(),
-                }),
+                }],
             },
             false => Sources {
                 rust: Some(files[0].text.clone()),
-                c: None,
+                c: Vec::new(),
             },
         };
         let checks = check_sources(&self.model, &self.orders, &self.outputs, &sources);
