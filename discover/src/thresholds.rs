@@ -540,6 +540,10 @@ pub const SIGN_WIDTH_FRACTION: f64 = 0.03;
 /// An end stop that was named as friction and a spring left 41.
 pub const MAX_FLOORS_FOR_CERTAINTY: f64 = 3.0;
 
+/// Maximum number of unknowns of named effects that leave a gap above the noise floor. The weight of a beam
+/// and its payload was imitated with six, to 1.3 floors.
+pub const MAX_UNKNOWNS_ABOVE_FLOOR: usize = 3;
+
 /// Maximum gap of a channel for a correct model, in noise floors. Noise differs in each record.
 pub const MAX_FLOORS_OF_CORRECT_MODEL: f64 = 1.5;
 

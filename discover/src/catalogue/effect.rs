@@ -49,6 +49,8 @@ pub enum SiteKind {
     Spring,
     /// An input.
     Input,
+    /// The whole machine.
+    Machine,
 }
 
 impl Effect {
@@ -80,17 +82,18 @@ impl Effect {
 
 impl SiteKind {
     /// Kinds by their keywords in a file.
-    pub const KEYWORDS: [(&'static str, Self); 6] = [
+    pub const KEYWORDS: [(&'static str, Self); 7] = [
         ("axis", Self::Axis),
         ("angle", Self::Angle),
         ("mesh", Self::Mesh),
         ("arm", Self::Arm),
         ("spring", Self::Spring),
         ("input", Self::Input),
+        ("machine", Self::Machine),
     ];
 
-    /// Returns the placeholders of a site of this kind. `{root}`, `{stiffness}` and the `{k}` of a
-    /// spring exist only at some sites.
+    /// Returns the placeholders of a site of this kind. `{root}`, `{stiffness}`, the `{k}` of a
+    /// spring and each moment of a machine exist only at some sites.
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
@@ -107,6 +110,7 @@ impl SiteKind {
             ],
             Self::Spring => &["on", "p", "unit", "force", "k"],
             Self::Input => &["on", "unit"],
+            Self::Machine => &["moment_x", "moment_y", "moment_z"],
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Catalogue of missing effects: effects of the program and of the user ([`effect`]), the sites of
-//! a model ([`site`], [`sites`], `arms`, [`meshes`], `springs` and their `dampers`, read by
+//! a model ([`site`], [`sites`], `arms`, [`meshes`], `springs` and their `dampers`, the whole `machine`, read by
 //! `products` and `polynomial`), the `loads` at these sites and their [`usual_motion`]. A
 //! [`candidate`] is an effect at a site: the edits of a [`template`] and its parameters as unknowns
 //! ([`candidate_unknown`]). Effects are defined by edits of the specification only. A file of
@@ -16,6 +16,7 @@ mod fields;
 mod file;
 pub mod input_faults;
 mod loads;
+mod machine;
 pub mod meshes;
 mod placeholders;
 mod polynomial;

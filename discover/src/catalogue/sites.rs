@@ -1,5 +1,5 @@
 //! Sites of effects in a model: axes and angles, which are found here, meshes with play, flexible
-//! bodies, springs and inputs, with their placeholder values.
+//! bodies, springs, inputs and the whole machine, with their placeholder values.
 
 use std::collections::BTreeSet;
 
@@ -8,6 +8,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Input, Model};
 
 use crate::catalogue::arms::find_arms;
 use crate::catalogue::effect::SiteKind;
+use crate::catalogue::machine::find_machine;
 use crate::catalogue::meshes::{find_mesh_coordinates, find_meshes};
 use crate::catalogue::site::Site;
 use crate::catalogue::springs::find_springs;
@@ -20,6 +21,7 @@ pub fn find_sites(model: &Model) -> Vec<Site> {
     found.extend(find_arms(model));
     found.extend(find_springs(model));
     found.extend(list_replaceable(model).map(input));
+    found.extend(find_machine(model));
     found
 }
 

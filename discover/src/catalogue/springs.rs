@@ -127,15 +127,26 @@ fn is_position(model: &Model, expr: &Expr, read: &mut BTreeSet<DefinitionId>) ->
     }
 }
 
-/// The dimension of a position.
-fn dimension(model: &Model, expr: &Expr) -> Option<Dimension> {
+/// Returns the dimension of a position, or of a velocity times a time.
+pub(super) fn dimension(model: &Model, expr: &Expr) -> Option<Dimension> {
     let of = |expr: &Expr| dimension(model, expr);
     match &expr.kind {
         ExprKind::Coordinate(id) => Some(model.coordinates[*id].unit.dimension),
         ExprKind::Parameter(id) => Some(model.parameters[*id].unit.dimension),
         ExprKind::Number(_) | ExprKind::Pi => Some(Dimension::DIMENSIONLESS),
         ExprKind::Definition(id) => Some(model.definitions[*id].unit.dimension),
-        ExprKind::Negate(inner) => of(inner),
+        ExprKind::Position(_) => Some(Dimension::LENGTH),
+        ExprKind::Field(id) | ExprKind::ModeCoordinate(id) => {
+            Some(model.fields[*id].unit.dimension)
+        }
+        ExprKind::ModeShape(_) => Some(Dimension::DIMENSIONLESS),
+        ExprKind::Negate(inner)
+        | ExprKind::Dot(inner)
+        | ExprKind::At { value: inner, .. }
+        | ExprKind::Sum { summand: inner, .. } => of(inner),
+        ExprKind::Diff(inner, times) => {
+            (0..*times).try_fold(of(inner)?, |unit, _| unit.divide(Dimension::LENGTH))
+        }
         ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, _) => of(left),
         ExprKind::Binary(BinaryOperator::Multiply, left, right) => of(left)?.multiply(of(right)?),
         ExprKind::Binary(BinaryOperator::Divide, left, right) => of(left)?.divide(of(right)?),

@@ -46,6 +46,7 @@ use crate::search::context::RoundContext;
 use crate::search::search;
 use crate::search::unconfirmed_hypothesis::UnconfirmedHypothesis;
 use crate::threads::prepare_threads;
+use crate::thresholds;
 
 /// Receiver of progress lines.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
@@ -239,7 +240,11 @@ pub fn discover_until(
         notes.extend(contradicting(&problem, fit, floor.rms, progress));
     }
     stop.check_not_stopped()?;
+    let unknowns = found.accepted.iter().map(|effect| effect.unknowns.len());
+    let may_imitate = !best.is_at_floor(floor.rms)
+        && unknowns.sum::<usize>() > thresholds::MAX_UNKNOWNS_ABOVE_FLOOR;
     let is_sure = !RemainingGap::from_channels(&gap, ModelStage::Extended).is_large()
+        && !may_imitate
         && !nuisances.iter().any(Nuisance::is_at_bound);
     let certainty = Certainty {
         is_sure,

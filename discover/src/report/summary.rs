@@ -118,7 +118,8 @@ fn summarise_effects(
         .as_ref()
         .map_or(String::new(), |at| format!(", {at}"));
     let left = after.describe();
-    if after.is_large() || at_bounds.is_some() {
+    let is_provisional = |effect: &FoundEffect| effect.status == EffectStatus::Provisional;
+    if after.is_large() || at_bounds.is_some() || discovery.effects.iter().any(is_provisional) {
         return Summary {
             headline: format!(
                 "The named effects may be substitutes for others: the extended model {closed} and leaves \
