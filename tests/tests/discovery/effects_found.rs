@@ -189,6 +189,115 @@ const BEAM_FOR_LONG: Machine = Machine {
     ..BEAM
 };
 
+/// Beam with a payload, of which a part of the weight may be missing.
+const LOADED_BEAM: Machine = Machine {
+    name: "loaded_beam",
+    specification: r#"
+[model]
+name = "loaded_beam"
+
+[parameters]
+J_h = { value = 0.05, unit = "kg m^2", min = 0 }
+rho_A = { value = 0.5, unit = "kg/m", min = 0 }
+l = { value = 0.8, unit = "m", min = 0 }
+EI = { value = 8, unit = "N m^2", min = 0 }
+m_p = { value = 0.25, unit = "kg", min = 0 }
+eta = { value = 1e-3, unit = "s", min = 0 }
+c = { value = 0.05, unit = "N m s", min = 0 }
+
+[coordinates]
+theta = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "clamped_free"
+coordinates = "q"
+order = 2
+unit = "m"
+
+[kinetic]
+hub = "1/2*J_h*dot(theta)^2"
+beam = "1/2*integral(rho_A*(x*dot(theta) + dot(w))^2, w)"
+payload = "1/2*m_p*(l*dot(theta) + at(dot(w), l))^2"
+
+[potential]
+bending = "1/2*integral(EI*diff(w, x, 2)^2, w)"
+
+[dissipation]
+bearing = "1/2*c*dot(theta)^2"
+bending = "1/2*integral(eta*EI*diff(dot(w), x, 2)^2, w)"
+
+[forces]
+motor = { on = "theta", value = "u" }
+
+[observables]
+tip = { value = "at(w, l)", unit = "m" }
+"#,
+    input: |t, again| {
+        let turn = if again { 0.7 } else { 0.0 };
+        3.0 * (2.0 * t + turn).cos() - 2.0 * (9.0 * t * (1.0 + 0.2 * turn)).sin()
+    },
+    ..BEAM
+};
+
+/// Two bodies on springs in space, to which gravity applies in one or two directions.
+const BODIES: Machine = Machine {
+    name: "bodies",
+    specification: r#"
+[model]
+name = "bodies"
+
+[parameters]
+m_1 = { value = 2, unit = "kg", min = 0 }
+m_2 = { value = 1, unit = "kg", min = 0 }
+k = { value = 400, unit = "N/m", min = 0 }
+c = { value = 3, unit = "N s/m", min = 0 }
+
+[coordinates]
+x_1 = { unit = "m" }
+y_1 = { unit = "m" }
+z_1 = { unit = "m" }
+x_2 = { unit = "m" }
+y_2 = { unit = "m" }
+z_2 = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+first = "1/2*m_1*(dot(x_1)^2 + dot(y_1)^2 + dot(z_1)^2)"
+second = "1/2*m_2*(dot(x_2)^2 + dot(y_2)^2 + dot(z_2)^2)"
+
+[potential]
+ground = "1/2*k*(x_1^2 + y_1^2 + z_1^2)"
+between = "1/2*k*((x_2 - x_1)^2 + (y_2 - y_1)^2 + (z_2 - z_1)^2)"
+
+[dissipation]
+ground = "1/2*c*(dot(x_1)^2 + dot(y_1)^2 + dot(z_1)^2)"
+between = "1/2*c*((dot(x_2) - dot(x_1))^2 + (dot(y_2) - dot(y_1))^2 + (dot(z_2) - dot(z_1))^2)"
+
+[forces]
+x = { on = "x_1", value = "u" }
+y = { on = "y_1", value = "2*u" }
+z = { on = "z_2", value = "u" }
+"#,
+    channels: &[
+        ("x_1", "m", 1e-5),
+        ("y_1", "m", 1e-5),
+        ("z_1", "m", 1e-5),
+        ("x_2", "m", 1e-5),
+        ("y_2", "m", 1e-5),
+        ("z_2", "m", 1e-5),
+    ],
+    uncertain: "m_1 = { relative = 0.02 }",
+    ..OSCILLATOR
+};
+
 /// Two shafts connected by a pair of teeth with the mesh deflection `x`. The backlash is small:
 /// with a large one the teeth rattle, and the impacts hide a varying stiffness. The ratio is
 /// not a simple fraction, so that the orders of the two shafts differ.
@@ -523,6 +632,22 @@ fn effects_of_a_spring_are_found() {
         OSCILLATOR.assert_found(&Hidden { by, ..hidden });
     }
     OSCILLATOR.assert_found(&hidden("load_dependent_friction", "x", &[0.1]));
+}
+
+#[test]
+fn weights_of_a_machine_and_of_its_load_are_found() {
+    LOADED_BEAM.assert_found(&hidden("tip_weight", "beam", &[1.0, 2.2]));
+    for (machine, by) in [
+        (&BODIES, Change::Entry(2, None, &[2.0])),
+        (&LOADED_BEAM, Change::Entry(3, None, &[9.81])),
+        (&BODIES, Change::Entry(4, None, &[-9.81])),
+        (&LOADED_BEAM, Change::Entry(5, None, &[3.0, 9.0])),
+    ] {
+        machine.assert_found(&Hidden {
+            by,
+            ..hidden("gravity", "machine", &[])
+        });
+    }
 }
 
 /// Here a hardening spring is equivalent to stops on both sides, and closes only a part of the gap.
