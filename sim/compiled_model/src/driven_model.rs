@@ -607,7 +607,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
         if let Some(contacts) = &self.contacts {
             self.evaluate_at(t, y, |evaluator, point| {
-                contacts.borrow_mut().update_friction(evaluator, point);
+                contacts.borrow_mut().update_modes(evaluator, point);
             });
             self.follow_contacts((t, y), &given.evaluate(t));
         }

@@ -9,9 +9,8 @@ use super::{CORRECTIONS, Contacts, DISTANCE_ROUNDING, Overlap};
 const MAX_OVERLAP_FRACTION: f64 = 1e-6;
 
 impl Contacts {
-    /// Corrects a state onto the closed contacts, opens contacts whose force would pull, and
-    /// returns the number of evaluations. A state in which bodies overlap is replaced by NaN,
-    /// which stops the motion.
+    /// Corrects a state onto the closed contacts, and returns the number of evaluations. A state in which
+    /// bodies overlap is replaced by NaN, which stops the motion.
     pub fn correct_state(
         &mut self,
         own: &mut Evaluator,
@@ -43,6 +42,7 @@ impl Contacts {
         }
         own.impacts(Point { t, state, inputs }, &mut self.at);
         self.note_sizes(state);
+        self.note_slip_sizes();
         let is_left = |place: &&usize| {
             let (before, after) = (arrived[**place], self.at[**place].distance);
             is_below(
@@ -52,12 +52,6 @@ impl Contacts {
         };
         if let Some(place) = self.closed.iter().find(is_left) {
             return self.stop_overlapping(*place, state);
-        }
-        // With friction an event opens contacts.
-        let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
-        if !self.has_friction() && self.closed.iter().zip(&self.forces().normal).any(pulls) {
-            let touching = std::mem::take(&mut self.closed);
-            self.close(&touching, (t, state));
         }
         self.keep_open_sides(&arrived);
         CORRECTIONS as u64 + 1

@@ -69,7 +69,7 @@ impl Contacts {
                 state: before,
                 inputs,
             };
-            let updated = self.update_modes(own, Point { t, state, inputs }, located);
+            let updated = self.change_modes(own, Point { t, state, inputs }, located);
             if let Err(cause) = updated {
                 self.overlap = Some(cause);
                 state.fill(f64::NAN);

@@ -330,10 +330,36 @@ impl Contacts {
         }
     }
 
-    /// Updates the modes of friction at a point between steps, where inputs may jump.
-    pub fn update_friction(&mut self, own: &mut Evaluator, point: Point<'_>) {
-        let updated = self.update_modes(own, point, point);
+    /// Updates the modes of closed contacts at a point between steps, where inputs may jump.
+    pub fn update_modes(&mut self, own: &mut Evaluator, point: Point<'_>) {
+        let updated = self.change_modes(own, point, point);
         self.note_forces(updated);
+    }
+
+    /// Opens closed contacts that no longer push, and changes the modes of friction. `located` is the point whose
+    /// rounding decides where contacts open.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    fn change_modes(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        located: Point<'_>,
+    ) -> Result<(), (usize, Overlap)> {
+        if self.closed.is_empty() {
+            return Ok(());
+        }
+        own.impacts(point, &mut self.at);
+        if self.has_friction() {
+            return self.change_friction_modes(own, point, located);
+        }
+        let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
+        if self.closed.iter().zip(&self.forces().normal).any(pulls) {
+            let touching = std::mem::take(&mut self.closed);
+            self.close(&touching, (located.t, located.state));
+        }
+        Ok(())
     }
 
     /// Writes the modes of closed contacts and of friction.

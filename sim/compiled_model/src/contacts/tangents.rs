@@ -11,6 +11,8 @@ pub(super) struct Tangent {
     pub mode: ContactMode,
     /// True if the tangential force is at its limit while other contacts keep the slip at zero.
     pub bears: bool,
+    /// Largest magnitude so far of the slip and of its terms.
+    pub slip_size: f64,
     /// Offset of the slip in its direction, so that it is positive if it begins at zero.
     pub slip_offset: f64,
     /// Offset of the margin of friction: rounding of forces ends no rest.
@@ -23,6 +25,7 @@ impl Tangent {
             place,
             mode: ContactMode::Open,
             bears: false,
+            slip_size: 0.0,
             slip_offset: 0.0,
             force_allowance: 0.0,
         }

@@ -16,22 +16,18 @@ const MAX_STILL_FRACTION: f64 = 1e-9;
 const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
-    /// Changes the modes of closed contacts if a guard of theirs is negative: contacts that no longer push open,
+    /// Changes the modes of the closed contacts, evaluated at `point`, if a guard of theirs is negative: contacts that no longer push open,
     /// sliding ends at zero slip, and rest ends at the limit of friction. `located` is the point whose rounding decides
     /// where contacts open.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
-    pub(in super::super) fn update_modes(
+    pub(in super::super) fn change_friction_modes(
         &mut self,
         own: &mut Evaluator,
         point: Point<'_>,
         located: Point<'_>,
     ) -> Result<(), (usize, Overlap)> {
-        if !self.has_friction() || self.closed.is_empty() {
-            return Ok(());
-        }
-        own.impacts(point, &mut self.at);
         let places = self.closed.clone();
         let forces = self.friction_forces();
         let modes: Vec<ContactMode> = places.iter().map(|place| self.mode(*place)).collect();

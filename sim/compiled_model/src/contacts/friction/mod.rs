@@ -18,7 +18,7 @@ use super::tangents::{ContactForces, Tangent};
 /// Relative change of a rate for its effect on a slip.
 const RELATIVE_CHANGE: f64 = 1e-6;
 
-/// Rounding of a slip, relative to the sum of its terms.
+/// Rounding of a slip, relative to the largest sum of its terms so far.
 const SLIP_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
 impl Contacts {
@@ -151,7 +151,16 @@ impl Contacts {
         }
     }
 
-    /// Returns the effect of rounding of the rates on each slip.
+    /// Notes the magnitudes of the slips at the last point.
+    pub(super) fn note_slip_sizes(&mut self) {
+        for tangent in &mut self.tangents {
+            let slip = self.at[tangent.place].friction.as_ref().map(|one| one.slip);
+            tangent.slip_size = tangent.slip_size.max(slip.unwrap_or(0.0).abs());
+        }
+    }
+
+    /// Returns the effect of rounding of the rates on each slip. At rest the rates are the rounding of
+    /// earlier, larger ones.
     fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(point, &mut self.at);
@@ -180,8 +189,10 @@ impl Contacts {
             moved[entry] = point.state[entry];
         }
         own.impacts(point, &mut self.at);
-        sums.iter()
-            .map(|sum| f64::MIN_POSITIVE + SLIP_ROUNDING * sum)
-            .collect()
+        let rounding = |(tangent, sum): (&mut Tangent, f64)| {
+            tangent.slip_size = tangent.slip_size.max(sum);
+            f64::MIN_POSITIVE + SLIP_ROUNDING * tangent.slip_size
+        };
+        self.tangents.iter_mut().zip(sums).map(rounding).collect()
     }
 }
