@@ -495,6 +495,75 @@ fn box_dropped_flat_bounces_evenly() {
     }
 }
 
+/// A disc with spin comes to rest in a groove, after sliding or after rocking from wall to wall. The same machine
+/// is drawn at several angles.
+#[test]
+fn disc_comes_to_rest_in_a_groove_at_any_angle() {
+    let model = compile(
+        r#"
+[model]
+name = "disc"
+[parameters]
+m = { value = 1, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+r = { value = 0.2, unit = "m" }
+mu = { value = 0.3, unit = "1" }
+e = { value = 0, unit = "1" }
+alpha = { value = 0, unit = "rad" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+phi = { unit = "rad" }
+[definitions]
+a = "x*cos(alpha) + y*sin(alpha)"
+b = "y*cos(alpha) - x*sin(alpha)"
+[kinetic]
+k = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/4*m*r^2*dot(phi)^2"
+[potential]
+weight = "m*g*(a + b)/sqrt(2)"
+[impacts]
+floor = { when = "b - r", restitution = "e", friction = "mu", slip = "dot(a) + r*dot(phi)" }
+wall = { when = "a - r", restitution = "e", friction = "mu", slip = "r*dot(phi) - dot(b)" }
+"#,
+    );
+    for (mu, e, height, spin) in [
+        (0.3, 0.0, 0.0, 5.0),
+        (1.2, 0.0, 0.0, 5.0),
+        (1.2, 0.0, 0.0, -30.0),
+        (0.3, 0.2, 0.3, 30.0),
+        (1.2, 0.2, 0.1, 0.0),
+    ] {
+        let rest = |alpha: f64, solver: Solver| {
+            let (a, b) = (0.2 + height, 0.2);
+            let start = [
+                a * alpha.cos() - b * alpha.sin(),
+                a * alpha.sin() + b * alpha.cos(),
+                0.0,
+                0.0,
+                0.0,
+                spin,
+            ];
+            let settings = [("mu", mu), ("e", e), ("alpha", alpha)];
+            let end = final_state(&model, &settings, &start, 8.0, solver);
+            assert!(
+                end[3..].iter().all(|rate| rate.abs() < 1e-9),
+                "{mu} {e} {alpha} {solver}: {end:?}"
+            );
+            end[2]
+        };
+        let expected = rest(0.0, Solver::Rk);
+        for solver in SOLVERS {
+            for alpha in [0.3, std::f64::consts::FRAC_PI_4, 2.0] {
+                let found = rest(alpha, solver);
+                assert!(
+                    (found - expected).abs() < 1e-6,
+                    "{mu} {e} {alpha} {solver}: {found}, at 0 rad {expected}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn block_on_moving_belt_is_carried_along() {
     let friction = r#"friction = "mu", slip = "dot(x) - w*u""#;

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
-use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
+use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Request, Solver};
 use eomgen_tests::program::run_rejected;
 use eomgen_tests::random_numbers::Numbers;
 use nalgebra::{DMatrix, DVector};
@@ -346,6 +346,63 @@ fn random_stacks_of_balls_gain_no_energy_and_do_not_penetrate() {
                 heights.windows(2).all(|pair| pair[1] - pair[0] > -1e-9),
                 "{case} {t}: {state:?}"
             );
+        }
+    }
+}
+
+/// A bead that slides down a disc leaves it in the middle of a step.
+#[test]
+fn bead_leaves_a_disc_at_the_same_time_at_all_tolerances() {
+    let text = r#"
+[model]
+name = "bead"
+[parameters]
+m = { value = 1, unit = "kg" }
+g = { value = 9.81, unit = "m/s^2" }
+R = { value = 1, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+[kinetic]
+k = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[impacts]
+disc = { when = "norm([x, y]) - R", restitution = 0 }
+"#;
+    let model = CompiledModel::from_text("bead.toml", text, Orders::Declared);
+    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let run = model.with_declared_parameters().unwrap();
+    let times: Vec<f64> = (0..=150).map(|step| 0.01 * f64::from(step)).collect();
+    for speed in [0.3, 0.5, 1.0, 2.0] {
+        // The bead leaves where v^2/R = g cos(angle), with v^2 = speed^2 + 2 g R (1 - cos(angle)).
+        let cosine = (speed * speed + 2.0 * 9.81) / (3.0 * 9.81);
+        for solver in [Solver::Rk, Solver::Radau] {
+            for exponent in 4..=12 {
+                let inputs = run.default_inputs();
+                let request = Request {
+                    initial: &[0.0, 1.0, speed, 0.0],
+                    times: &times,
+                    inputs: &inputs,
+                    solver,
+                    tolerance: 10.0_f64.powi(-exponent),
+                    max_step: f64::INFINITY,
+                    audit: true,
+                };
+                let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
+                let stop = motion.early_stop.as_ref().map(|stop| &stop.reason);
+                assert!(stop.is_none(), "{speed} {solver} 1e-{exponent}: {stop:?}");
+                let states = &motion.trajectory.states;
+                let left = states
+                    .iter()
+                    .find(|state| state[0].hypot(state[1]) > 1.0 + 1e-6);
+                let height = left.expect("the bead leaves")[1];
+                // The first sample after it left is up to 10 ms later.
+                assert!(
+                    (-0.05..=1e-3).contains(&(height - cosine)),
+                    "{speed} {solver} 1e-{exponent}: {height}, expected {cosine}"
+                );
+            }
         }
     }
 }

@@ -22,6 +22,9 @@ impl Contacts {
             state.fill(f64::NAN);
             return 1;
         }
+        if state.iter().any(|value| value.is_nan()) {
+            return 1;
+        }
         // A step that was taken back may have ended below.
         self.overlap = None;
         let mut arrived = vec![0.0; self.names.len()];

@@ -32,6 +32,8 @@ pub(super) struct Flight {
     pub rate_roundings: Vec<f64>,
     /// Accelerations of each distance that are rounding, without what contacts push.
     pub acceleration_roundings: Vec<f64>,
+    /// Changes of each slip between the hit and the located point.
+    pub slip_changes: Vec<f64>,
 }
 
 impl Flight {
@@ -114,6 +116,8 @@ impl Contacts {
             return;
         }
         self.has_restitution = collapsing.is_empty();
+        let slip_changes = self.slip_acceleration_sizes().into_iter();
+        let slip_changes = slip_changes.map(|size| ago * size).collect();
         let jumped = self.apply_impulses(own, (t, inputs), state, touching, ago);
         let (touching, rate_roundings) = match jumped {
             Ok(jumped) => jumped,
@@ -131,6 +135,7 @@ impl Contacts {
                 .collect(),
             rate_roundings,
             acceleration_roundings: self.acceleration_roundings(own, Point { t, state, inputs }),
+            slip_changes,
         };
         match self.has_friction() {
             false => self.close_resting(&touching, &flight),

@@ -97,10 +97,23 @@ impl Contacts {
         places: &[usize],
         (smallest, roundings): (&[f64], &[f64]),
     ) -> Result<ContactDecision, (usize, Overlap)> {
+        let is_zero = |place: usize, slip: f64| {
+            let index = self.tangent_index(place);
+            index.is_none_or(|index| slip.abs() <= roundings[index].max(smallest[place]))
+        };
+        let modes: Vec<ContactMode> = places
+            .iter()
+            .map(|place| match is_zero(*place, self.slip(*place)) {
+                true => ContactMode::Sticks,
+                false => ContactMode::Slides(0.0),
+            })
+            .collect();
+        // Flights that count as rest leave rates; without them a body that rocks does not slip.
+        let stopped = self.stopped_slips(places, &modes);
+        let slips: Vec<(usize, f64)> = places.iter().copied().zip(stopped).collect();
         let direction = |place: usize| {
-            let index = self.tangent_index(place)?;
-            let slip = self.slip(place);
-            (slip.abs() > roundings[index].max(smallest[place])).then(|| slip.signum())
+            let slip = slips.iter().find(|(own, _)| *own == place)?.1;
+            (!is_zero(place, slip)).then(|| slip.signum())
         };
         let accelerations = self.free_accelerations(places);
         let problem = self.problem(places, direction, &accelerations);

@@ -36,6 +36,30 @@ impl Contacts {
         self.solve_together(touching, ago)
     }
 
+    /// Returns the magnitude of the terms of the acceleration of each slip, with the forces of closed contacts.
+    pub(in super::super) fn slip_acceleration_sizes(&self) -> Vec<f64> {
+        if !self.has_friction() {
+            return Vec::new();
+        }
+        let forces = self.friction_forces();
+        let impacts = self.names.len();
+        let size = |place: usize| {
+            let friction = self.friction_at(place)?;
+            let pushes = self.closed.iter().enumerate().map(|(index, other)| {
+                let tangent = self.tangent_index(*other);
+                let along = tangent.map_or(0.0, |tangent| {
+                    friction.delassus[impacts + tangent] * forces.tangential[index]
+                });
+                (friction.delassus[*other] * forces.normal[index]).abs() + along.abs()
+            });
+            Some(friction.acceleration.abs() + pushes.sum::<f64>())
+        };
+        let tangents = self.tangents.iter();
+        tangents
+            .map(|tangent| size(tangent.place).unwrap_or(0.0))
+            .collect()
+    }
+
     fn hit_slip(&self, place: usize, ago: f64) -> f64 {
         let friction = self.friction_at(place);
         friction.map_or(0.0, |friction| friction.slip - ago * friction.acceleration)

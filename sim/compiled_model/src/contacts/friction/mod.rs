@@ -115,12 +115,25 @@ impl Contacts {
             true => ContactMode::Sticks,
             false => ContactMode::Slides(0.0),
         });
-        let modes: Vec<ContactMode> = modes.collect();
-        let normal = self.closed.iter().map(|place| self.at[*place].rate);
-        let slips = self.closed.iter().map(|place| self.slip(*place));
+        self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
+    }
+
+    fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
+        let normal = places.iter().map(|place| self.at[*place].rate);
+        let slips = places.iter().map(|place| self.slip(*place));
         let rates: Vec<f64> = normal.chain(slips).collect();
-        let problem = self.problem(&self.closed, |_| None, &rates);
-        ContactForces::from_directions(problem.impulses(&modes))
+        let problem = self.problem(places, |_| None, &rates);
+        ContactForces::from_directions(problem.impulses(modes))
+    }
+
+    /// Returns the slips after the impulses that stop these contacts and the slips of those that stick.
+    fn stopped_slips(&self, places: &[usize], modes: &[ContactMode]) -> Vec<f64> {
+        let impulses = self.impulses_to_stop(places, modes);
+        let changes = self.rate_changes(places, &impulses);
+        let changes = places.iter().zip(&changes[places.len()..]);
+        changes
+            .map(|(place, change)| self.slip(*place) + change)
+            .collect()
     }
 
     /// Writes the guards of friction: the slip in its direction while a contact slides, the margin mu N - |T|

@@ -39,7 +39,10 @@ impl Contacts {
         touching: &[usize],
         flight: &Flight,
     ) -> Result<(), (usize, Overlap)> {
-        let roundings = self.slip_roundings(own, point);
+        let mut roundings = self.slip_roundings(own, point);
+        for (rounding, change) in roundings.iter_mut().zip(&flight.slip_changes) {
+            *rounding = rounding.max(*change);
+        }
         self.closed.clear();
         let mut resting: Vec<usize> = Vec::new();
         let mut decision = None;
