@@ -26,6 +26,9 @@ const LAST_CORRECTION_FRACTION: f64 = 1e-8;
 /// Maximum number of corrections after a step, which begins on the constraints.
 const MAX_STEP_CORRECTIONS: usize = 8;
 
+/// Its multiples differ from each other and from whole numbers, so that no two rates are equal.
+const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
+
 /// Projection of states onto the constraints, at one set of parameters.
 pub(crate) struct Projection {
     /// Model with the stabilisation rate w.
@@ -65,50 +68,79 @@ impl Projection {
         most: usize,
     ) -> Option<u64> {
         let degrees = own.program().degrees_of_freedom();
-        let mut rates = [(); 3].map(|()| vec![0.0; state.len()]);
         for correction in 1..=most as u64 {
-            {
-                let [here, plus, minus] = &mut rates;
-                let point = Point { t, state, inputs };
-                own.rates(point, here);
-                self.positive_rate_model.borrow_mut().rates(point, plus);
-                self.negative_rate_model.borrow_mut().rates(point, minus);
-            }
             let [largest, largest_rate] = [0, 1].map(|kind| {
                 let entries = state[kind * degrees..(kind + 1) * degrees].iter();
                 entries.fold(self.unmoved_sizes[kind], |most, entry| {
                     most.max(entry.abs())
                 })
             });
+            let [of_values, of_rates] = self.corrections(own, Point { t, state, inputs })?;
             let mut relative = 0.0_f64;
-            let [here, plus, minus] = &mut rates;
             for row in 0..degrees {
-                let (here, plus, minus) = (
-                    here[degrees + row],
-                    &mut plus[degrees + row],
-                    &mut minus[degrees + row],
-                );
-                let of_rate = (*minus - *plus) / (4.0 * LARGE_RATE_PER_S);
-                let mean = 0.5 * (*plus + *minus);
-                let of_value = (here + 2.0 * self.stabilisation_rate * of_rate - mean)
-                    / (LARGE_RATE_PER_S * LARGE_RATE_PER_S
-                        - self.stabilisation_rate * self.stabilisation_rate);
-                relative = relative.max(of_value.abs() / largest);
-                relative = relative.max(of_rate.abs() / largest_rate.max(largest));
-                if !(of_value.is_finite() && of_rate.is_finite()) {
-                    return None;
-                }
-                (*plus, *minus) = (of_value, of_rate);
-            }
-            for row in 0..degrees {
-                state[row] -= plus[degrees + row];
-                state[degrees + row] -= minus[degrees + row];
+                relative = relative.max(of_values[row].abs() / largest);
+                relative = relative.max(of_rates[row].abs() / largest_rate.max(largest));
+                state[row] -= of_values[row];
+                state[degrees + row] -= of_rates[row];
             }
             if relative <= LAST_CORRECTION_FRACTION {
                 return Some(3 * correction);
             }
         }
         None
+    }
+
+    /// Returns the corrections P g of the coordinates and P r of their rates; `None` if one is not finite.
+    fn corrections(&self, own: &mut Evaluator, point: Point<'_>) -> Option<[Vec<f64>; 2]> {
+        let found = self.corrections_at(own, point);
+        if is_finite(&found) {
+            return Some(found);
+        }
+        // A force along v/norm(v) has no value at rest. P g and P r do not depend on forces, and r is linear in the
+        // rates, so that two points with other rates determine both.
+        let degrees = own.program().degrees_of_freedom();
+        let mut moved = point.state.to_vec();
+        let mut beside = |multiple: f64| {
+            for row in 0..degrees {
+                let part = 1.0 + (GOLDEN_RATIO * row as f64).fract();
+                moved[degrees + row] =
+                    point.state[degrees + row] + multiple * part * self.unmoved_sizes[1];
+            }
+            self.corrections_at(
+                own,
+                Point {
+                    state: &moved,
+                    ..point
+                },
+            )
+        };
+        let [near, far] = [beside(1.0), beside(2.0)];
+        let extrapolate = |(near, far): (&Vec<f64>, &Vec<f64>)| {
+            let pairs = near.iter().zip(far);
+            pairs.map(|(near, far)| 2.0 * near - far).collect()
+        };
+        let found = [0, 1].map(|kind| extrapolate((&near[kind], &far[kind])));
+        is_finite(&found).then_some(found)
+    }
+
+    fn corrections_at(&self, own: &mut Evaluator, point: Point<'_>) -> [Vec<f64>; 2] {
+        let degrees = own.program().degrees_of_freedom();
+        let mut rates = [(); 3].map(|()| vec![0.0; point.state.len()]);
+        let [here, plus, minus] = &mut rates;
+        own.rates(point, here);
+        self.positive_rate_model.borrow_mut().rates(point, plus);
+        self.negative_rate_model.borrow_mut().rates(point, minus);
+        let mut found = [(); 2].map(|()| Vec::with_capacity(degrees));
+        for row in degrees..2 * degrees {
+            let of_rate = (minus[row] - plus[row]) / (4.0 * LARGE_RATE_PER_S);
+            let mean = 0.5 * (plus[row] + minus[row]);
+            let of_value = (here[row] + 2.0 * self.stabilisation_rate * of_rate - mean)
+                / (LARGE_RATE_PER_S * LARGE_RATE_PER_S
+                    - self.stabilisation_rate * self.stabilisation_rate);
+            found[0].push(of_value);
+            found[1].push(of_rate);
+        }
+        found
     }
 
     /// Corrects a state after a step and returns the number of evaluations. If the correction
@@ -136,4 +168,9 @@ impl Projection {
         }
         evaluations.unwrap_or(1)
     }
+}
+
+fn is_finite(corrections: &[Vec<f64>; 2]) -> bool {
+    let mut all = corrections.iter().flatten();
+    all.all(|correction| correction.is_finite())
 }

@@ -219,8 +219,8 @@ impl Contacts {
                  contact, or use a stiff spring instead of the impact"
             ),
             Overlap::NoImpulse => format!(
-                "no impulses separate the bodies at the impact `{name}`, because of other impacts or \
-                 constraints. Use a stiff spring instead of one of them"
+                "no impulses separate the bodies at the impact `{name}`: other impacts, constraints or \
+                 prescribed motions press them together. Use a stiff spring instead of one of them"
             ),
             Overlap::NoForces => format!(
                 "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the \

@@ -4,6 +4,8 @@
 use std::fmt::Write as _;
 
 use super::rows::Numbers;
+use eomgen_compiled_model::Solver;
+
 use super::{GENERAL, grid, of_text, simulated};
 
 /// Bead on a straight wire with dry friction.
@@ -44,6 +46,50 @@ block = "1/2*m*dot(s)^2"
 [forces]
 drive = { on = "s", value = "2/sqrt(5)*A*sin(w*t)" }
 friction = { on = "s", value = "-F*sign(dot(s))" }
+"#;
+
+/// Bead on a ring with a force against its velocity, which has no value at rest, in Cartesian coordinates.
+const BEAD_ON_RING: &str = r#"
+[model]
+name = "bead_on_ring"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 1, unit = "N" }
+R = { value = 1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { unit = "m", initial = "R" }
+y = { unit = "m" }
+[definitions]
+position = "[x, y]"
+velocity = "dot(position)"
+[kinetic]
+bead = "1/2*m*dot(velocity, velocity)"
+[potential]
+weight = "m*g*y"
+[constraints]
+ring = { zero = "norm(position) - R" }
+[forces]
+friction = { on = "position", value = "-F*velocity/norm(velocity)" }
+"#;
+
+/// The same with its angle.
+const RING_ANGLE: &str = r#"
+[model]
+name = "ring_angle"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 1, unit = "N" }
+R = { value = 1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+phi = { unit = "rad" }
+[kinetic]
+bead = "1/2*m*R^2*dot(phi)^2"
+[potential]
+weight = "m*g*R*sin(phi)"
+[forces]
+friction = { on = "phi", value = "-F*R*sign(dot(phi))" }
 "#;
 
 /// Pendulum with dry friction in its joint, in Cartesian coordinates.
@@ -117,6 +163,26 @@ fn bead_on_wire_sticks_and_slides_as_block_at_any_size() {
                 );
                 let residual = state[0] - 2.0 * state[1];
                 assert!(residual.abs() < 1e-12 * size, "{solver} {size}: {state:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bead_on_ring_starts_from_rest_and_stops_as_in_its_angle() {
+    let times = grid(4.0, 40);
+    let (ring, angle) = (of_text(BEAD_ON_RING), of_text(RING_ANGLE));
+    for force in [0.5, 1.0, 5.0] {
+        let settings = [("F", force)];
+        let found = simulated(&ring, &settings, &times, Solver::Rk).trajectory;
+        let expected = simulated(&angle, &settings, &times, Solver::Rk).trajectory;
+        for (state, other) in found.states.iter().zip(&expected.states) {
+            let place = [other[0].cos(), other[0].sin()];
+            for (found, expected) in state.iter().zip(place) {
+                assert!(
+                    (found - expected).abs() < 1e-7,
+                    "{force}: {state:?}, expected {place:?}"
+                );
             }
         }
     }
