@@ -13,12 +13,22 @@ use crate::error::Error;
 /// messages.
 ///
 /// # Errors
-/// A text that is not `NAME=VALUE`.
+/// A text that is not `NAME=VALUE`, and a name that is given twice.
 pub fn split_assignments(option: &str, texts: &[String]) -> Result<Vec<Assignment>, Error> {
     let split = texts.iter().map(|text| Assignment::split(option, text));
-    split
-        .collect::<Result<_, Diagnostics>>()
-        .map_err(Error::Specification)
+    let split = split
+        .collect::<Result<Vec<Assignment>, Diagnostics>>()
+        .map_err(Error::Specification)?;
+    for (place, given) in split.iter().enumerate() {
+        let mut earlier = split[..place].iter();
+        if let Some(first) = earlier.find(|other| other.name() == given.name()) {
+            let (name, [first, second]) = (given.name(), [first, given].map(Assignment::value));
+            return Err(Error::Request(format!(
+                "{option}: `{name}` is given twice, as {first} and as {second}; give one value"
+            )));
+        }
+    }
+    Ok(split)
 }
 
 /// Returns the model with each of these inputs replaced by a definition.

@@ -557,3 +557,28 @@ fn comparison_rejects_inputs_out_of_range() {
         }
     }
 }
+
+#[test]
+fn names_that_are_given_twice_are_rejected() {
+    let model = spec("furuta_pendulum");
+    let out = tempfile::tempdir().expect("a folder");
+    let csv = out.path().join("o.csv").display().to_string();
+    for (option, first, second) in [
+        ("--input", "u=1", "u=2"),
+        ("--state", "theta=1", "theta=2"),
+        ("--set", "g=1", "g=2"),
+    ] {
+        let motion = ["simulate", &model, "--until", "1", "--out", &csv];
+        let message = run_rejected(&[&motion[..], &[option, first, option, second]].concat());
+        let (name, values) = (&first[..first.len() - 2], "is given twice, as 1 and as 2");
+        assert!(
+            message.contains(&format!("{option}: `{name}` {values}")),
+            "{message}"
+        );
+    }
+    let message = run_rejected(&["trim", &model, "--fix", "theta=pi", "--fix", "theta=0"]);
+    assert!(
+        message.contains("--fix: `theta` is given twice, as pi and as 0"),
+        "{message}"
+    );
+}
