@@ -108,14 +108,11 @@ impl Contacts {
         ContactForces::from_directions(problem.impulses(&modes))
     }
 
-    /// Returns the impulses that stop the closed contacts and the slips of those that stick.
+    /// Returns the impulses that stop the closed contacts, with their friction, and the slips of those that stick. A
+    /// contact that closes in place of flights has less friction than one at rest, by that of the rate it had.
     pub(super) fn stopping_impulses(&self) -> ContactForces {
-        let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
-        let modes = self.closed.iter().map(|place| match sticks(place) {
-            true => ContactMode::Sticks,
-            false => ContactMode::Slides(0.0),
-        });
-        self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
+        let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
+        self.impulses_to_stop(&self.closed, &modes)
     }
 
     fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
