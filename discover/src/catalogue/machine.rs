@@ -29,13 +29,13 @@ const MOMENTS: [&str; 3] = ["moment_x", "moment_y", "moment_z"];
 enum Place {
     /// Sum of lengths, along one direction.
     Length(String),
-    /// Point beside a line that turns.
+    /// Point at a distance from a line that turns.
     Turning {
         root: String,
         lever: String,
         deflection: Option<String>,
     },
-    /// Velocity along a line that turns, of a point beside it.
+    /// Velocity, along a line that turns, of a point at a distance from it.
     AlongLine,
 }
 
@@ -400,7 +400,7 @@ mod tests {
             "a = \"1/2*m*dot(x)^2\"\nb = \"1/2*m*(2*dot(x))^2\"",
             // Three masses around an axis.
             "a = \"3/2*m*(l*dot(theta))^2\"\nb = \"1/2*m*dot(x)^2\"",
-            // The direction of x beside the line is unknown.
+            // The direction of x relative to the line is unknown.
             "a = \"1/2*m*(l*dot(theta) + dot(x))^2\"\nb = \"1/2*m*dot(x)^2\"",
         ] {
             assert_eq!(moments_of(kinetic), None, "{kinetic}");

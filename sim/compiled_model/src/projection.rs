@@ -100,7 +100,7 @@ impl Projection {
         // rates, so that two points with other rates determine both.
         let degrees = own.program().degrees_of_freedom();
         let mut moved = point.state.to_vec();
-        let mut beside = |multiple: f64| {
+        let mut corrections_near = |multiple: f64| {
             for row in 0..degrees {
                 let part = 1.0 + (GOLDEN_RATIO * row as f64).fract();
                 moved[degrees + row] =
@@ -114,7 +114,7 @@ impl Projection {
                 },
             )
         };
-        let [near, far] = [beside(1.0), beside(2.0)];
+        let [near, far] = [corrections_near(1.0), corrections_near(2.0)];
         let extrapolate = |(near, far): (&Vec<f64>, &Vec<f64>)| {
             let pairs = near.iter().zip(far);
             pairs.map(|(near, far)| 2.0 * near - far).collect()

@@ -109,7 +109,7 @@ impl Contacts {
     }
 
     /// Returns the impulses that stop the closed contacts, with their friction, and the slips of those that stick. A
-    /// contact that closes in place of flights has less friction than one at rest, by that of the rate it had.
+    /// contact that closes after an impact has a smaller impulse of friction, because a part of its normal impulse is removed.
     pub(super) fn stopping_impulses(&self) -> ContactForces {
         let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
         self.impulses_to_stop(&self.closed, &modes)
