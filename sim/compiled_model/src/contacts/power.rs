@@ -24,6 +24,11 @@ impl Drifts {
         let slips = slips.map(|(place, impulse)| impulse * self.slips[*place]);
         normal.chain(slips).sum()
     }
+
+    /// Returns true if a contact does not move itself.
+    pub fn is_still(&self, place: usize) -> bool {
+        self.normal[place] == 0.0 && self.slips[place] == 0.0
+    }
 }
 
 impl Contacts {

@@ -108,11 +108,14 @@ impl Contacts {
         ContactForces::from_directions(problem.impulses(&modes))
     }
 
-    /// Returns the impulses that stop the closed contacts, with their friction, and the slips of those that stick. A
-    /// contact that closes after an impact has a smaller impulse of friction, because a part of its normal impulse is removed.
+    /// Returns the impulses that stop the closed contacts and the slips of those that stick.
     pub(super) fn stopping_impulses(&self) -> ContactForces {
-        let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
-        self.impulses_to_stop(&self.closed, &modes)
+        let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
+        let modes = self.closed.iter().map(|place| match sticks(place) {
+            true => ContactMode::Sticks,
+            false => ContactMode::Slides(0.0),
+        });
+        self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
     }
 
     fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
