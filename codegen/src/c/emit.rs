@@ -44,6 +44,7 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
 /// As for [`emit`].
 pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
     let file = File::new(program, &WORDS)?;
+    controllers::check_names(program)?;
     let mut needed = RequiredFunctions::default();
     let prepared = preparation(&file, &mut needed)?;
     let stages = stages(&file, &mut needed)?;
