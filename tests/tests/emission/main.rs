@@ -7,6 +7,7 @@ mod checked_in_variants;
 mod closed_loop;
 mod families;
 mod family_interface;
+mod header_only;
 mod machine_code;
 mod regimes;
 mod routes;
