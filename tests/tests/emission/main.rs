@@ -9,6 +9,7 @@ mod families;
 mod family_interface;
 mod header_only;
 mod machine_code;
+mod misra;
 mod regimes;
 mod routes;
 mod settings;
