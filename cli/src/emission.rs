@@ -2,37 +2,108 @@
 
 use eomgen_codegen::c::{self, Real};
 use eomgen_codegen::program::{Output, Program};
-use eomgen_codegen::rust::{self, Packaging};
+use eomgen_codegen::rust;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_targets::emit;
 use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::model_certificate::Sources;
 
-use crate::arguments::{Extra, Target};
+use crate::arguments::{Extra, Packaging, Target};
 use crate::count::count;
 use crate::error::{Error, Result, warn};
 
-pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
+/// Emits a program as Rust in this form.
+pub fn source(program: &Program, packaging: rust::Packaging) -> Result<String> {
     Ok(rust::emit(program, packaging)?)
 }
 
-/// Emits a program as C with this number type, with the default compiler for its certificate.
-pub fn c_source(program: &Program, outputs: &[Output], real: Real) -> Result<CSource> {
-    let c::Files { source, header } = c::emit_with(program, real)?;
+/// Returns names and contents of the emitted files in this form, or in the usual one. The file with the equations is
+/// first.
+///
+/// # Errors
+/// A form that the target does not have.
+pub fn files(
+    model: &Model,
+    variant: &Variant,
+    (target, packaging): (Target, Option<Packaging>),
+) -> Result<Vec<(String, Vec<u8>)>> {
+    let program = &variant.program;
+    match (target, packaging) {
+        (_, None) | (Target::Rust, Some(Packaging::Crate)) => {
+            let files = emit(model, variant, target.into(), &warn)?.into_iter();
+            Ok(files.map(|file| (file.name, file.contents)).collect())
+        }
+        (Target::Rust, Some(Packaging::Module)) => {
+            let text = source(program, rust::Packaging::Module)?;
+            Ok(vec![("mod.rs".to_owned(), text.into_bytes())])
+        }
+        (Target::C99, Some(Packaging::HeaderOnly)) => {
+            let text = c::emit_header_only(program, Real::Double)?;
+            Ok(vec![(format!("{}.h", program.name), text.into_bytes())])
+        }
+        (_, Some(Packaging::HeaderOnly)) => Err(Error::input(
+            "--packaging header-only needs --target c99: it is a form of C",
+        )),
+        (_, Some(Packaging::Crate | Packaging::Module)) => Err(Error::input(
+            "--packaging crate and --packaging module need --target rust: they are forms of Rust",
+        )),
+    }
+}
+
+/// Returns the source to certify from the emitted files of [`files`], with the default compiler for C.
+pub fn sources(
+    name: &str,
+    target: Target,
+    files: &[(String, Vec<u8>)],
+    outputs: &[Output],
+) -> Sources {
+    let text = |place: usize| {
+        let file = files.get(place);
+        file.map(|(_, contents)| String::from_utf8_lossy(contents).into_owned())
+    };
+    let mut sources = Sources::default();
+    match (target, text(0), text(1)) {
+        (Target::C99, Some(source), Some(header)) => {
+            let compiler = CCompiler::default();
+            sources.c = vec![c_source(name, (source, header), outputs, compiler)];
+        }
+        (Target::C99, Some(header), None) => {
+            let compiler = CCompiler::default();
+            sources.c = vec![header_only_source(name, header, outputs, compiler)];
+        }
+        (_, source, _) => sources.rust = source,
+    }
+    sources
+}
+
+/// Returns emitted C in a source file and its header, with the compiler that checks it.
+pub fn c_source(
+    name: &str,
+    (source, header): (String, String),
+    outputs: &[Output],
+    compiler: CCompiler,
+) -> CSource {
     let names = outputs.iter().map(|output| output.name().to_owned());
-    Ok(CSource {
-        name: program.name.clone(),
+    CSource {
+        name: name.to_owned(),
         source,
         header,
         outputs: names.collect(),
-        compiler: CCompiler::default(),
-    })
+        compiler,
+    }
 }
 
-/// Returns names and contents of the emitted files. The file with the equations is first.
-pub fn files(model: &Model, variant: &Variant, target: Target) -> Result<Vec<(String, Vec<u8>)>> {
-    let files = emit(model, variant, target.into(), &warn)?.into_iter();
-    Ok(files.map(|file| (file.name, file.contents)).collect())
+/// Returns emitted C in one header, with the compiler that checks it. The source is the file that compiles the
+/// functions.
+pub fn header_only_source(
+    name: &str,
+    header: String,
+    outputs: &[Output],
+    compiler: CCompiler,
+) -> CSource {
+    let source = format!("#define {name}_IMPLEMENTATION\n{header}");
+    c_source(name, (source, header), outputs, compiler)
 }
 
 /// Returns the outputs to derive for the requested target.

@@ -14,7 +14,8 @@ use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
 pub use models::{
-    Check, Derive, Extra, Family, Format, Generate, Identify, Page, Target, Validate, Verify,
+    Check, Derive, Extra, Family, Format, Generate, Identify, Packaging, Page, Target, Validate,
+    Verify,
 };
 pub use motions::{Linearise, Modes, Simulate, Trim};
 pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};

@@ -72,6 +72,17 @@ impl From<Target> for eomgen_targets::Target {
     }
 }
 
+/// Form of the emitted source.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Packaging {
+    /// Rust as the root of a crate: `lib.rs`.
+    Crate,
+    /// Rust as a module: `mod.rs`.
+    Module,
+    /// C as one header with the functions, which one file of a program compiles: `NAME.h`.
+    HeaderOnly,
+}
+
 /// Additional output of `generate`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extra {
@@ -136,6 +147,9 @@ pub struct Generate {
     /// Language of the emitted source.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
+    /// Form of the emitted source. Default: a crate in Rust, `NAME.h` and `NAME.c` in C.
+    #[arg(long, value_enum)]
+    pub packaging: Option<Packaging>,
     /// Output folder.
     #[arg(long, required_unless_present = "all")]
     pub out: Option<PathBuf>,
@@ -144,7 +158,7 @@ pub struct Generate {
     pub certify: bool,
     /// Regenerate the variants of `generated/family.toml` and their certificates, as `eomgen family`; run it in the
     /// project's folder.
-    #[arg(long, conflicts_with_all = ["spec", "out", "order", "set", "with", "target", "certify"])]
+    #[arg(long, conflicts_with_all = ["spec", "out", "order", "set", "with", "target", "packaging", "certify"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit with status 1 on a difference.
     #[arg(long)]
@@ -175,7 +189,7 @@ pub struct Family {
 /// Options of `verify`.
 #[derive(Args)]
 pub struct Verify {
-    /// Emitted source: Rust (`.rs`), or C (`.c`) with its header in the same folder.
+    /// Emitted source: Rust (`.rs`), C (`.c`) with its header in the same folder, or a header with the functions (`.h`).
     pub file: PathBuf,
     /// Certificate of the source.
     pub certificate: PathBuf,

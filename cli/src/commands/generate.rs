@@ -2,15 +2,12 @@
 
 use std::path::Path;
 
-use eomgen_codegen::c::Real;
-use eomgen_codegen::mechanics::outputs::Output;
-use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant;
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::model_certificate::{Sources, certify_sources};
+use eomgen_validate::model_certificate::certify_sources;
 use serde_json::json;
 
-use crate::arguments::{Extra, Generate, Target};
+use crate::arguments::{Extra, Generate, Packaging};
 use crate::bench_files;
 use crate::certification::document;
 use crate::document::SCHEMA;
@@ -64,11 +61,19 @@ fn checked_in_variants(check: bool, json: bool) -> Result {
 
 fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let outputs = emission::outputs(options.target, &options.with, options.certify)?;
+    if options.with.contains(&Extra::Bench) && options.packaging == Some(Packaging::Module) {
+        return Err(Error::input(
+            "--with bench needs --packaging crate: the benchmark is a crate",
+        ));
+    }
     let model = with_settings(load(spec)?.model, &options.parameters.set)?;
     let orders = orders(&model, options.order.text())?;
     let variant =
         Variant::derive_with_trace(&model, &orders, &outputs).map_err(Error::Specification)?;
-    let mut emitted = emission::files(&model, &variant, options.target)?;
+    let form = (options.target, options.packaging);
+    let mut emitted = emission::files(&model, &variant, form)?;
+    let name = &variant.program.name;
+    let sources = emission::sources(name, options.target, &emitted, &outputs);
     emitted.extend(test_vectors::files(
         &model,
         &orders,
@@ -83,7 +88,6 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     }
     let mut certificate = None;
     if options.certify {
-        let sources = sources(&variant, &outputs, options.target)?;
         certificate = Some(certify_sources(&model, &orders, &outputs, &sources)?);
     }
     let mut files = Vec::new();
@@ -123,21 +127,6 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         }
     }
     certificate.as_ref().map_or(Ok(()), judge)
-}
-
-/// Returns the sources to certify.
-fn sources(variant: &Variant, outputs: &[Output], target: Target) -> Result<Sources> {
-    let program = &variant.program;
-    Ok(match target {
-        Target::C99 => Sources {
-            c: vec![emission::c_source(program, outputs, Real::Double)?],
-            rust: None,
-        },
-        _ => Sources {
-            rust: Some(emission::source(program, Packaging::Crate)?),
-            c: Vec::new(),
-        },
-    })
 }
 
 /// Fails with exit status 1 if a check failed or was not run.

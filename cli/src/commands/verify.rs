@@ -7,13 +7,14 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
 use eomgen_validate::certificate::CSourceHashes;
-use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::certify::CCompiler;
 use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::{Value, json};
 
 use crate::arguments::Verify;
 use crate::certification::summary;
 use crate::document::SCHEMA;
+use crate::emission::{c_source, header_only_source};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::progress::Note;
 
@@ -22,7 +23,9 @@ pub fn run(options: &Verify) -> Result {
     let text = read(&options.file)?;
     let (sources, expected) = sources(options, &certificate, text.clone())?;
     let found = sha256(&text);
-    let is_header_same = sources.c.iter().all(|source| {
+    // A header with the functions is the file itself.
+    let mut with_header = sources.c.iter().filter(|source| source.header != text);
+    let is_header_same = with_header.all(|source| {
         let certified = certificate.c_source(&source.name);
         certified.is_some_and(|certified| certified.header_sha256 == sha256(&source.header))
     });
@@ -214,7 +217,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
             },
             certificate.source_sha256.clone(),
         )),
-        Some("c") => {
+        Some("c" | "h") => {
             let name = path
                 .file_stem()
                 .and_then(|name| name.to_str())
@@ -225,10 +228,12 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                     Error::input("--cc is blank: give a command such as \"gcc -O2\"")
                 })?,
             };
-            let names = certificate
-                .outputs
-                .iter()
-                .map(|output| output.name().to_owned());
+            let is_header = extension == Some("h");
+            if is_header && !text.contains(&format!("{name}_IMPLEMENTATION")) {
+                return Err(Error::input(format!(
+                    "{shown} contains declarations only: give the source next to it, {name}.c"
+                )));
+            }
             let expected = certificate.c_source(name).ok_or_else(|| {
                 let known = certificate.c_sources.iter();
                 let known: Vec<String> = known.map(|c| format!("{}.c", c.name)).collect();
@@ -240,14 +245,20 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                     "{shown}: the certificate covers {covered}; give the certificate that was written with the file"
                 ))
             })?;
-            let source = CSource {
-                name: name.to_owned(),
-                source: text,
-                header: read(&path.with_extension("h"))?,
-                outputs: names.collect(),
-                compiler,
+            let outputs = &certificate.outputs;
+            let (source, expected) = match is_header {
+                true => (
+                    header_only_source(name, text, outputs, compiler),
+                    expected.header_sha256.clone(),
+                ),
+                false => {
+                    let header = read(&path.with_extension("h"))?;
+                    (
+                        c_source(name, (text, header), outputs, compiler),
+                        expected.source_sha256.clone(),
+                    )
+                }
             };
-            let expected = expected.source_sha256.clone();
             let sources = Sources {
                 rust: None,
                 c: vec![source],
@@ -255,7 +266,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
             Ok((sources, expected))
         }
         _ => Err(Error::input(format!(
-            "{shown} is neither Rust nor C: give a file that ends in .rs or .c"
+            "{shown} is neither Rust nor C: give a file that ends in .rs, .c or .h"
         ))),
     }
 }

@@ -3,20 +3,21 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use eomgen_codegen::c::Real;
+use eomgen_codegen::c::{self, Real};
 use eomgen_codegen::mechanics::outputs::Output;
-use eomgen_codegen::rust::Packaging;
+use eomgen_codegen::rust;
 use eomgen_codegen::variant::Variant as Derived;
 use eomgen_model_spec::model::Model;
+use eomgen_validate::certify::CCompiler;
 use eomgen_validate::model_certificate::{Sources, certify_sources, unchecked_certificate};
 use serde_json::Value;
 
-use super::description::{Family, Precision, RustPackaging, Variant};
+use super::description::{Family, Precision, Variant};
 use super::hashes::hash_file;
 use super::options::Options;
-use crate::arguments::{Extra, Target};
+use crate::arguments::{Extra, Packaging, Target};
 use crate::certification::document;
-use crate::emission;
+use crate::emission::{self, c_source, header_only_source};
 use crate::error::{Error, Result};
 use crate::settings::with_settings;
 use crate::test_vectors;
@@ -112,9 +113,9 @@ impl Emitted {
             outputs,
         };
         if variant.has(Target::Rust) {
-            let (packaging, file) = match variant.packaging {
-                RustPackaging::Module => (Packaging::Module, "mod.rs"),
-                RustPackaging::Crate => (Packaging::Crate, "lib.rs"),
+            let (packaging, file) = match variant.is_module() {
+                true => (rust::Packaging::Module, "mod.rs"),
+                false => (rust::Packaging::Crate, "lib.rs"),
             };
             let text = emission::source(program, packaging)?;
             this.files
@@ -131,7 +132,7 @@ impl Emitted {
         if variant.has(Target::C99) {
             emission::outputs(Target::C99, &others, false)?;
             for (prefix, precision) in variant.c_prefixes() {
-                this.emit_c(&derived, &prefix, precision)?;
+                this.emit_c(&derived, (&prefix, variant.packaging), precision)?;
                 let mut program = program.clone();
                 program.name.clone_from(&prefix);
                 let files = test_vectors::files(model, orders, &program, &others, Target::C99)?;
@@ -147,7 +148,7 @@ impl Emitted {
         }
         if variant.has(Target::Cuda) {
             this.files
-                .extend(emission::files(model, &derived, Target::Cuda)?);
+                .extend(emission::files(model, &derived, (Target::Cuda, None))?);
         }
         if others.contains(&Extra::Trace) {
             let sources = this.files.iter().map(|(name, text)| (&**name, &**text));
@@ -157,24 +158,42 @@ impl Emitted {
         if variant.has(Target::Casadi) {
             let derived = derive(&emission::outputs(Target::Casadi, &of_casadi, false)?)?;
             this.files
-                .extend(emission::files(model, &derived, Target::Casadi)?);
+                .extend(emission::files(model, &derived, (Target::Casadi, None))?);
         }
         Ok(this)
     }
 
-    fn emit_c(&mut self, derived: &Derived, prefix: &str, precision: Precision) -> Result {
+    fn emit_c(
+        &mut self,
+        derived: &Derived,
+        (prefix, packaging): (&str, Packaging),
+        precision: Precision,
+    ) -> Result {
         let real = match precision {
             Precision::Double => Real::Double,
             Precision::Single => Real::Single,
         };
         let mut program = derived.program.clone();
         prefix.clone_into(&mut program.name);
-        let emitted = emission::c_source(&program, &self.outputs, real)?;
-        self.files
-            .insert(format!("{prefix}.c"), emitted.source.clone().into_bytes());
-        self.files
-            .insert(format!("{prefix}.h"), emitted.header.clone().into_bytes());
-        self.sources.c.push(emitted);
+        let compiler = CCompiler::default();
+        let (source, files) = match packaging {
+            Packaging::HeaderOnly => {
+                let header = c::emit_header_only(&program, real)?;
+                let files = vec![("h", header.clone())];
+                let source = header_only_source(prefix, header, &self.outputs, compiler);
+                (source, files)
+            }
+            Packaging::Module | Packaging::Crate => {
+                let c::Files { source, header } = c::emit_with(&program, real)?;
+                let files = vec![("c", source.clone()), ("h", header.clone())];
+                let source = c_source(prefix, (source, header), &self.outputs, compiler);
+                (source, files)
+            }
+        };
+        self.sources.c.push(source);
+        let named =
+            |(ending, text): (&str, String)| (format!("{prefix}.{ending}"), text.into_bytes());
+        self.files.extend(files.into_iter().map(named));
         Ok(())
     }
 }

@@ -14,7 +14,7 @@ use eomgen_model_spec::table::Entry;
 use eomgen_model_spec::toml_file;
 use serde_json::{Value, json};
 
-use crate::arguments::{Extra, Target};
+use crate::arguments::{Extra, Packaging, Target};
 use crate::error::{Error, Result};
 
 /// Largest family file, in bytes.
@@ -74,7 +74,7 @@ static VARIANT: Keys = Keys::new(&[
         "packaging",
         "text",
         "\"module\"",
-        "form of the emitted Rust",
+        "form of the emitted source",
     ),
 ]);
 
@@ -116,7 +116,7 @@ pub struct Variant {
     pub with: Vec<Extra>,
     with_names: Vec<String>,
     pub precision: Vec<Precision>,
-    pub packaging: RustPackaging,
+    pub packaging: Packaging,
 }
 
 /// Number type of emitted C.
@@ -126,19 +126,15 @@ pub enum Precision {
     Single,
 }
 
-/// Form of emitted Rust.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum RustPackaging {
-    /// `mod.rs`.
-    Module,
-    /// `lib.rs`.
-    Crate,
-}
-
 impl Variant {
     /// Returns true if the targets contain `target`.
     pub fn has(&self, target: Target) -> bool {
         self.targets.contains(&target)
+    }
+
+    /// Returns true if the Rust is a module, not the root of a crate.
+    pub fn is_module(&self) -> bool {
+        self.packaging != Packaging::Crate
     }
 
     /// Returns the prefixes of the emitted C, with their number types.
@@ -169,10 +165,7 @@ impl Variant {
             "targets": self.targets.iter().filter_map(target).collect::<Vec<_>>(),
             "with": self.with_names,
             "precision": self.precision.iter().map(precision).collect::<Vec<_>>(),
-            "packaging": match self.packaging {
-                RustPackaging::Module => "module",
-                RustPackaging::Crate => "crate",
-            },
+            "packaging": self.packaging.to_possible_value().map(|value| value.get_name().to_owned()),
         })
     }
 }
@@ -277,23 +270,33 @@ impl Reader<'_> {
             "packaging",
             |entry| {
                 entry.keyword(&[
-                    ("module", RustPackaging::Module),
-                    ("crate", RustPackaging::Crate),
+                    ("module", Packaging::Module),
+                    ("crate", Packaging::Crate),
+                    ("header-only", Packaging::HeaderOnly),
                 ])
             },
             self.found,
         );
+        let targets = targets?;
+        if packaging == Some(Packaging::HeaderOnly) && !targets.contains(&Target::C99) {
+            let message = "`header-only` is a form of C, and the variant has no C";
+            let span = record.get("packaging").map_or(name.span, Entry::span);
+            let error = Diagnostic::error(message).with_span(span, "expected `module` or `crate`");
+            self.found
+                .push(error.with_help("add \"c99\" to `targets`, or remove `packaging`"));
+            return None;
+        }
         let variant = Variant {
             line: self.source.place(name.span.start).line,
             prefix: prefix.text.clone(),
             spec: spec.text,
             order,
             settings: self.settings(&record)?,
-            targets: targets?,
+            targets,
             with,
             with_names: with_names.into_iter().map(|word| word.text).collect(),
             precision: precision?,
-            packaging: packaging.unwrap_or(RustPackaging::Module),
+            packaging: packaging.unwrap_or(Packaging::Module),
             name: name.text.clone(),
         };
         let is_new = used.add_name(&name, self.found)

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::build::Built;
-use super::description::{Family, Precision, RustPackaging};
+use super::description::{Family, Precision};
 use super::hashes::hash_file;
 use super::interface::{self, CVariant};
 use super::manifest::{self, Manifest};
@@ -15,9 +15,8 @@ use crate::output::write_file;
 /// Returns the files of the whole family: the modules with their trait, and the tables of the C in double precision.
 pub fn root_files(family: &Family) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
-    let is_module = |packaging: RustPackaging| packaging == RustPackaging::Module;
     let variants = family.variants.iter();
-    let modules = variants.filter(|v| v.has(Target::Rust) && is_module(v.packaging));
+    let modules = variants.filter(|v| v.has(Target::Rust) && v.is_module());
     let mut text = format!(
         "//! Variants of the family `{}`, emitted by `eomgen family`. Do not edit: generate again.\n\n\
          #![allow(dead_code)]\n\n",

@@ -1,12 +1,16 @@
 //! Controllers in C: structures, and functions that start and update them.
 
+use std::collections::BTreeMap;
+
 use super::comments::comment;
 use super::expression::{Writer, assignment};
 use super::names::fill_template;
 use super::stages::{head, nest_lines};
 use crate::program::{Program, ProgramController, Quantity};
 use crate::statements::layout::block;
-use crate::statements::{ControllerStage, ControllerStages, TIMES, quantity_line};
+use crate::statements::{
+    ControllerStage, ControllerStages, EmitError, EmitResult, TIMES, quantity_line,
+};
 
 /// Types and names of the arguments of `start` and `update`; NAME_controller_ is followed by the controller's name.
 const START: [(&str, &str); 2] = [
@@ -19,6 +23,29 @@ const UPDATE: [(&str, &str); 4] = [
     ("const NAME_parameters *", "parameters"),
     ("NAME_controller_OWN_outputs *", "outputs"),
 ];
+
+/// Ends of the names of the types and functions of a controller, after NAME_controller_OWN.
+const NAME_ENDS: [&str; 5] = ["", "_measured", "_outputs", "_start", "_update"];
+
+/// Checks that no two controllers have a type or function of the same name.
+///
+/// # Errors
+/// The first name that two controllers have.
+pub(super) fn check_names(program: &Program) -> EmitResult<()> {
+    let mut owners: BTreeMap<String, &str> = BTreeMap::new();
+    for controller in &program.controllers {
+        for end in NAME_ENDS {
+            let name = format!("{}_controller_{}{end}", program.name, controller.name);
+            if let Some(other) = owners.insert(name.clone(), &controller.name) {
+                return Err(EmitError::Collision {
+                    name,
+                    owners: [other, &controller.name].map(|own| format!("controllers.{own}")),
+                });
+            }
+        }
+    }
+    Ok(())
+}
 
 /// Returns the declarations for the header.
 pub(super) fn declarations(program: &Program) -> String {

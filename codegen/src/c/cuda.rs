@@ -1,7 +1,7 @@
 //! Header of a program for CUDA C++: the functions of the emitted C as device functions.
 //!
 //! [`emit`](super::emit::emit) starts every declaration and definition in the first column. This module adds the
-//! qualifiers of CUDA to these lines, and leaves out the lists of names, which only the host can read.
+//! qualifiers of CUDA to these lines, and leaves out the lists of names, units and ranges, which only the host can read.
 
 use super::comments::comment;
 use super::emit::emit;
@@ -84,7 +84,7 @@ inline __device__ int NAME_is_unfused(NAME_real one) {
 #endif
 ";
 
-/// Adds the qualifiers to the lines of C. Removes the first comment, and the lists of names with their documentation.
+/// Adds the qualifiers to the lines of C. Removes the first comment, and the lists for callers with their documentation.
 fn convert<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
     let mut text = String::new();
     let mut documentation = String::new();
@@ -98,7 +98,7 @@ fn convert<'l>(mut lines: impl Iterator<Item = &'l str>, name: &str) -> String {
             continue;
         }
         let documentation = std::mem::take(&mut documentation);
-        if is_list_of_names(line, name) {
+        if is_list_for_callers(line, name) {
             take_until(line, &mut lines, ";");
         } else {
             text += &documentation;
@@ -126,9 +126,9 @@ fn identity_head(name: &str) -> String {
     format!("const char {name}_identity[] = ")
 }
 
-/// Returns true for the first line of a list that is no table of numbers, and for declarations.
-fn is_list_of_names(line: &str, name: &str) -> bool {
-    let is_list = ["const char ", "const int ", "extern const "];
+/// Returns true for the first line of a list for callers, and for declarations of lists.
+fn is_list_for_callers(line: &str, name: &str) -> bool {
+    let is_list = ["const ", "extern const "];
     is_list.iter().any(|head| line.starts_with(head)) && !line.starts_with(&identity_head(name))
 }
 

@@ -4,7 +4,7 @@ use super::comments::comment;
 use super::controllers;
 use super::expression::{initialiser, number};
 use super::functions::functions;
-use super::header::{documentation, header, lists};
+use super::header::{self, UNBOUNDED, documentation, lists};
 use super::jacobians;
 use super::names::{WORDS, fill_template};
 use super::real::Real;
@@ -43,41 +43,93 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
 /// # Errors
 /// As for [`emit`].
 pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
-    let file = File::new(program, &WORDS)?;
-    let mut needed = RequiredFunctions::default();
-    let prepared = preparation(&file, &mut needed)?;
-    let stages = stages(&file, &mut needed)?;
-    let header = header(&file, &prepared, &stages, real)?;
-    let mut defined = fill_functions(&file, prepared)?;
-    for stage in stages {
-        defined += &definition(program, stage);
-    }
-    defined += &regime(&file);
-    defined += &step::definition(program);
-    defined += &jacobians::definitions(program);
-    for controller in &program.controllers {
-        let stages = controller_stages(&file, controller, &mut needed)?;
-        defined += &controllers::definitions(program, controller, &stages);
-    }
-    let mut text = comment(&documentation(program));
-    text += &opening(program);
-    text += &tables(&file)?;
-    text += &functions(program, &needed, &defined);
-    for (head, elements, _) in lists(program) {
-        text += &format!("{head} = {};\n", initialiser(&elements));
-    }
-    text += &comment(&["Identity, for `eomgen identify`.".to_owned()]);
-    text += &format!(
-        "const char {}_identity[] = \"{}\";\n",
-        program.name,
-        unsealed(program)
-    );
-    text += &defined;
-    text += "#undef R\n";
+    let parts = Parts::new(program, real)?;
+    let notes = header::notes(program, real, header::TWO_FILES);
+    let include = format!("#include \"{}.h\"\n", program.name);
+    let source = comment(&documentation(program)) + &include + &parts.definitions;
     Ok(Files {
-        header: layout::source(&header),
-        source: seal(&layout::source(&text)),
+        header: layout::source(&(notes + &parts.declarations)),
+        source: seal(&layout::source(&source)),
     })
+}
+
+/// Writes a program like [`emit_with`], as one header `NAME.h`. The file that defines `NAME_IMPLEMENTATION` before it
+/// includes the header contains the functions; others contain the declarations only.
+///
+/// # Errors
+/// As for [`emit`].
+pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitError> {
+    let Parts {
+        declarations,
+        definitions,
+        hidden,
+    } = Parts::new(program, real)?;
+    let [hide, restore] = header::hide_macros(hidden.into_iter().chain(["R"]));
+    let notes = header::notes(program, real, header::HEADER_ONLY);
+    let opening = "#if defined(NAME_IMPLEMENTATION) && !defined(NAME_IMPLEMENTED)\n#define NAME_IMPLEMENTED\n";
+    let closing = "#if defined(__clang__)\n#pragma STDC FP_CONTRACT DEFAULT\n\
+                   #elif defined(_MSC_VER)\n#pragma fp_contract(on)\n#endif\n";
+    let text = [
+        &notes,
+        &*declarations,
+        &fill_template(program, opening),
+        &hide,
+        &definitions,
+        &restore,
+        closing,
+        "#endif\n",
+    ];
+    Ok(seal(&layout::source(&text.concat())))
+}
+
+/// Emitted C without the comment at its top, with marks of the layout.
+struct Parts {
+    declarations: String,
+    definitions: String,
+    /// Macros with the name of a field.
+    hidden: Vec<&'static str>,
+}
+
+impl Parts {
+    fn new(program: &Program, real: Real) -> Result<Self, EmitError> {
+        let file = File::new(program, &WORDS)?;
+        controllers::check_names(program)?;
+        let mut needed = RequiredFunctions::default();
+        let prepared = preparation(&file, &mut needed)?;
+        let stages = stages(&file, &mut needed)?;
+        let declarations = header::header(&file, &prepared, &stages, real)?;
+        let mut defined = fill_functions(&file, prepared)?;
+        for stage in stages {
+            defined += &definition(program, stage);
+        }
+        defined += &regime(&file);
+        defined += &step::definition(program);
+        defined += &jacobians::definitions(program);
+        for controller in &program.controllers {
+            let stages = controller_stages(&file, controller, &mut needed)?;
+            defined += &controllers::definitions(program, controller, &stages);
+        }
+        let mut text = opening(program);
+        text += &fill_template(program, UNBOUNDED);
+        text += &tables(&file)?;
+        text += &functions(program, &needed, &defined);
+        for (head, elements, _) in lists(program) {
+            text += &format!("{head} = {};\n", initialiser(&elements));
+        }
+        text += &comment(&["Identity, for `eomgen identify`.".to_owned()]);
+        text += &format!(
+            "const char {}_identity[] = \"{}\";\n",
+            program.name,
+            unsealed(program)
+        );
+        text += &defined;
+        text += "#undef R\n";
+        Ok(Self {
+            declarations,
+            definitions: text,
+            hidden: header::hidden_macros(&file),
+        })
+    }
 }
 
 fn stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Stage>> {
@@ -98,15 +150,13 @@ fn stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Sta
 fn opening(program: &Program) -> String {
     fill_template(
         program,
-        &"#include \"HEADER\"\n\
-         #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
+        "#if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
          #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n#endif\n\
          /** Output arguments of a function do not overlap its input arguments. */\n\
          #if defined(__cplusplus) || defined(_MSC_VER)\n#define NAME_RESTRICT __restrict\n\
          #else\n#define NAME_RESTRICT restrict\n#endif\n\
          /** Converts a number to the number type. */\n\
-         #define R(number) ((NAME_real)(number))\n"
-            .replace("HEADER", &format!("{}.h", program.name)),
+         #define R(number) ((NAME_real)(number))\n",
     )
 }
 

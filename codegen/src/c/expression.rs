@@ -8,7 +8,9 @@ use super::sine_and_cosine::{SineAndCosine, find_pair};
 use eomgen_elementary::{Double, Precision};
 
 use crate::program::{PARTIAL_SUMS, Program};
-use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
+use crate::statements::layout::{
+    BLOCK, CLOSE, COMMA_OUT, DEEPER, FLOW, FLOW_OUT, SHALLOWER, SPACE, ZERO, block,
+};
 use crate::statements::{Array, Expression, Index, Notes, Operator, Place, Statement, Structure};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,7 +84,7 @@ impl Writer {
 
     fn sine_and_cosine(&self, both: &SineAndCosine) -> String {
         let [sine, cosine] = [both.sine, both.cosine];
-        let declared = format!("{} {sine}, {cosine};\n", self.real);
+        let declared = format!("{0} {sine};\n{0} {cosine};\n", self.real);
         let argument = self.expression(both.argument);
         declared
             + &self.call_function(
@@ -97,6 +99,9 @@ impl Writer {
             Statement::Let(name, value) => self.write_definition(name, value),
             Statement::Zeros(name, lengths) => self.zeros(name, lengths),
             Statement::Flag(name) => format!("int {name} = 1;\n"),
+            Statement::Assign(place, value) if place.indices.is_empty() => {
+                self.set_flag(&place.name, value)
+            }
             Statement::Assign(place, value) => {
                 assignment(&place_text(place), &self.expression(value))
             }
@@ -143,7 +148,7 @@ impl Writer {
     fn sum(&self, name: &str, length: usize, element: &Expression) -> String {
         let real = &self.real;
         if length == 0 {
-            return format!("const {real} {name} = 0;\n");
+            return format!("const {real} {name} = R(0.0);\n");
         }
         let parts = format!("{name}_parts");
         let count = length.min(PARTIAL_SUMS);
@@ -235,7 +240,7 @@ impl Writer {
     fn write_with_level(&self, expression: &Expression) -> (String, Level) {
         let text = match expression {
             Expression::Number(value) => return self.number(*value),
-            Expression::Name(name) => name.clone(),
+            Expression::Name(name) | Expression::Flag(name) => name.clone(),
             Expression::Element(Array::Filled(value, _), _) => return self.write_with_level(value),
             Expression::Element(array, indices) => self.array(array) + &brackets(indices),
             Expression::Field(structure, name) => field(*structure, name),
@@ -252,7 +257,7 @@ impl Writer {
             Expression::Primitive("select_equal", parts) => self.choice("==", parts),
             Expression::Primitive(name, parts) => self.function(name, parts),
             Expression::Select(parts) => self.choice(">", &**parts),
-            Expression::Positive(place) => format!("((regime >> {place}) & 1)"),
+            Expression::Positive(place) => format!("((regime >> {place}) & 1U)"),
             Expression::Greater(parts) => {
                 let [a, b] = &**parts;
                 let text = infix(
@@ -264,11 +269,7 @@ impl Writer {
             }
             Expression::And(parts) => {
                 let [a, b] = &**parts;
-                let text = infix(
-                    "&&",
-                    self.write_at_level(a, Level::And),
-                    self.write_at_level(b, Level::Comparison),
-                );
+                let text = infix("&&", self.operand_of_and(a), self.operand_of_and(b));
                 return (text, Level::And);
             }
             Expression::True => "1".to_owned(),
@@ -330,11 +331,43 @@ impl Writer {
         }
     }
 
+    /// Writes a condition, which has the type of a comparison: flags are `int`, sides of a regime are `uint32_t`.
+    fn condition(&self, condition: &Expression) -> (String, Level) {
+        let (text, level) = self.write_with_level(condition);
+        match condition {
+            Expression::Greater(_) | Expression::And(_) => (text, level),
+            Expression::Flag(_) | Expression::True => (infix("!=", text, "0"), Level::Comparison),
+            _ => (infix("!=", text, "0U"), Level::Comparison),
+        }
+    }
+
+    fn operand_of_and(&self, operand: &Expression) -> String {
+        match self.condition(operand) {
+            (text, Level::And) => text,
+            (text, _) => format!("({text})"),
+        }
+    }
+
+    /// Writes statements that set a flag to 1 if a condition is true, else to 0.
+    pub(super) fn set_flag(&self, target: &str, condition: &Expression) -> String {
+        match condition {
+            Expression::Flag(_) | Expression::True => {
+                assignment(target, &self.expression(condition))
+            }
+            _ => {
+                let head = format!("if ({}) {{", self.condition(condition).0);
+                let set = |value: &str| assignment(target, value);
+                let otherwise = block("} else {", &set("0"), "}");
+                format!("{head}\n{DEEPER}{}{SHALLOWER}{otherwise}", set("1"))
+            }
+        }
+    }
+
     /// Writes `[condition, then, otherwise]`.
     fn conditional(&self, parts: &[Expression]) -> String {
         match parts {
             [first, then, otherwise] => ternary(
-                &self.expression(first),
+                &self.condition(first).0,
                 &self.expression(then),
                 &self.expression(otherwise),
             ),

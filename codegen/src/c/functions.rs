@@ -140,10 +140,9 @@ fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
     let writer = Writer::in_format::<P>(program);
     let mut lines = writer.statements(&kernel.computed);
     for (name, value) in ["sine", "cosine"].iter().zip(kernel.values()) {
-        lines += &fill_template(
-            program,
-            &format!("*{name} = (NAME_real)({});\n", writer.expression(value)),
-        );
+        let exact = format!("{name}_of_x");
+        lines += &writer.write_definition(&exact, value);
+        lines += &fill_template(program, &format!("*{name} = (NAME_real){exact};\n"));
     }
     let head = format!(
         "static {}void NAME_sin_cos({} x, NAME_real *NAME_RESTRICT sine, NAME_real *NAME_RESTRICT cosine) {{",
@@ -183,24 +182,24 @@ static NAME_real NAME_above(NAME_real p) {
 /// f_k on a given side of its dead zone.
 const DEADZONE_ON_SIDE: &str = "\
 /** Deflection beyond the backlash on a given side of it: f_k of Eq. (7). */
-static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_real b) {
-    return above ? p - b : beyond ? R(0.0) : p + b;
+static NAME_real NAME_deadzone_on_side(uint32_t above, uint32_t beyond, NAME_real p, NAME_real b) {
+    return (above != 0U) ? (p - b) : ((beyond != 0U) ? R(0.0) : (p + b));
 }
 ";
 
 /// Contact on a given side of its dead zone.
 const TOUCHING: &str = "\
 /** 1 if there is contact on a given side of the backlash, else 0. */
-static int NAME_touching(int above, int beyond) {
-    return above || !beyond;
+static uint32_t NAME_touching(uint32_t above, uint32_t beyond) {
+    return above | (beyond ^ 1U);
 }
 ";
 
 /// Indicator for a function on either side of its zero interval.
 const EITHER: &str = "\
 /** 1 if a switching function is on either side of its zero interval, else 0. */
-static int NAME_either(int above, int below) {
-    return above || below;
+static uint32_t NAME_either(uint32_t above, uint32_t below) {
+    return above | below;
 }
 ";
 
@@ -217,7 +216,7 @@ const CHOLESKY: &str = "\
 /** Lower factor L of a symmetric matrix L L^T of n rows; NaN if it is not positive definite. */
 static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {
     for (int i = 0; i < n * n; ++i) {
-        factor[i] = 0;
+        factor[i] = R(0.0);
     }
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < i + 1; ++j) {

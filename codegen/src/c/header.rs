@@ -2,6 +2,7 @@
 
 use super::comments::{comment, resolve_links};
 use super::controllers;
+use super::expression::number;
 use super::jacobians;
 use super::names::fill_template;
 use super::real::Real;
@@ -11,7 +12,9 @@ use super::step;
 use super::types;
 use super::types::structures;
 use crate::program::Program;
-use crate::statements::{EmitResult, File, Indices, Preparation, Stage, indices};
+use crate::statements::{
+    DataElements, EmitResult, File, Indices, Preparation, Stage, data_arrays, indices,
+};
 
 /// Returns title and origin of a file, by lines.
 pub(super) fn documentation(program: &Program) -> Vec<String> {
@@ -37,9 +40,20 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
     ]
 }
 
-/// Returns the notes for callers, by lines.
-fn notes(program: &Program, (other, precision): (&str, &str)) -> Vec<String> {
+/// Use of the source file with its header.
+pub(super) const TWO_FILES: &str = "Compile NAME.c as C99 or C++.";
+
+/// Use of the header with the functions.
+pub(super) const HEADER_ONLY: &str = "Define NAME_IMPLEMENTATION in one C99 or C++ file of the program before it includes this header: that file\n\
+     then contains the functions, and the files that include the header without it call them.";
+
+/// Returns the comment at the top of the header, with the notes for callers.
+pub(super) fn notes(program: &Program, real: Real, usage: &str) -> String {
     let mut lines = documentation(program);
+    let (other, precision) = match real {
+        Real::Double => ("float", "single"),
+        Real::Single => ("double", "double"),
+    };
     let state = program.state_names().join(", ");
     let name = &program.name;
     let text = format!(
@@ -47,12 +61,14 @@ fn notes(program: &Program, (other, precision): (&str, &str)) -> Vec<String> {
          All quantities are in SI units. The code does not allocate or call a library. Functions are\n\
          reentrant. Their output arguments must not overlap their input arguments.\n\
          \n\
-         Compile {name}.c as C99 or C++. The results have the same bits with every compiler that does\n\
-         not contract products and sums: use -std=c99 or -ffp-contract=off. For {precision} precision,\n\
-         use -D{name}_REAL={other} here and for every file that includes this one."
+         {}\n\
+         The results have the same bits with every compiler that does not contract products and sums:\n\
+         use -std=c99 or -ffp-contract=off. For {precision} precision, use -D{name}_REAL={other} for\n\
+         every file that includes this one.",
+        usage.replace("NAME", name)
     );
     lines.extend(text.split('\n').map(str::to_owned));
-    lines
+    comment(&lines)
 }
 
 pub(super) fn header(
@@ -62,12 +78,11 @@ pub(super) fn header(
     real: Real,
 ) -> EmitResult<String> {
     let program = file.program;
-    let (number, other, precision) = match real {
-        Real::Double => ("double", "float", "single"),
-        Real::Single => ("float", "double", "double"),
+    let number = match real {
+        Real::Double => "double",
+        Real::Single => "float",
     };
-    let mut text = comment(&notes(program, (other, precision)));
-    text += &fill_template(
+    let mut text = fill_template(
         program,
         &"#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
@@ -81,7 +96,7 @@ pub(super) fn header(
          #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
-    let [hide, restore] = hidden_macros(file);
+    let [hide, restore] = hide_macros(hidden_macros(file));
     text += &hide;
     text += &sizes(file);
     text += &jacobians::sizes(program);
@@ -103,8 +118,8 @@ pub(super) fn header(
 /// Macros of `<complex.h>`, which a caller can include before this header.
 const COMPLEX_MACROS: [&str; 3] = ["I", "complex", "imaginary"];
 
-/// Returns the lines that hide macros with the name of a field, and those that restore them.
-fn hidden_macros(file: &File<'_>) -> [String; 2] {
+/// Returns the macros with the name of a field.
+pub(super) fn hidden_macros(file: &File<'_>) -> Vec<&'static str> {
     let program = file.program;
     let parameters = program
         .parameters
@@ -115,15 +130,20 @@ fn hidden_macros(file: &File<'_>) -> [String; 2] {
         .chain(inputs)
         .chain(file.field_names.values())
         .collect();
+    let mut names = COMPLEX_MACROS.to_vec();
+    names.retain(|name| fields.iter().any(|field| *field == name));
+    names
+}
+
+/// Returns the lines that hide macros of the caller, and those that restore them.
+pub(super) fn hide_macros(names: impl IntoIterator<Item = &'static str>) -> [String; 2] {
     let [mut hide, mut restore] = [String::new(), String::new()];
-    for name in COMPLEX_MACROS {
-        if fields.iter().any(|field| *field == name) {
-            hide += &format!("#pragma push_macro(\"{name}\")\n#undef {name}\n");
-            restore += &format!("#pragma pop_macro(\"{name}\")\n");
-        }
+    for name in names {
+        hide += &format!("#pragma push_macro(\"{name}\")\n#undef {name}\n");
+        restore += &format!("#pragma pop_macro(\"{name}\")\n");
     }
     if !hide.is_empty() {
-        hide = "/** The header <complex.h> defines macros with the name of a field. */\n"
+        hide = "/** Macros of the caller, such as those of <complex.h>, can have these names. */\n"
             .to_owned()
             + &hide;
     }
@@ -209,8 +229,8 @@ fn index_constants(program: &Program) -> String {
     text
 }
 
-/// Returns the arrays of names and orders: head, elements, documentation. An empty array has one null pointer
-/// or 0, because C has no empty arrays.
+/// Returns the arrays of names, orders, units, initial state and ranges: head, elements, documentation. An empty array
+/// has one null pointer or 0, because C has no empty arrays.
 pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str)> {
     let quoted = |names: Vec<String>| -> Vec<String> {
         names
@@ -263,5 +283,40 @@ pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str
     let head = format!("const int NAME_orders[{}]", orders.len());
     let doc = "Modal truncation order of each field.";
     lists.push((fill_template(program, &head), orders, doc));
+    for of in data_arrays(program) {
+        let (item, mut elements) = match of.elements {
+            DataElements::Texts(texts) => ("char *const", quoted(texts)),
+            DataElements::Numbers(numbers) => {
+                let numbers = numbers.into_iter().map(|value| data_number(program, value));
+                ("NAME_real", numbers.collect())
+            }
+        };
+        if elements.is_empty() {
+            elements.push("0".to_owned());
+        }
+        let head = format!("const {item} NAME_{}[{}]", of.name, elements.len());
+        lists.push((fill_template(program, &head), elements, of.doc));
+    }
     lists
 }
+
+/// Writes a number of a constant array; see [`UNBOUNDED`].
+fn data_number(program: &Program, value: f64) -> String {
+    match value.is_infinite() {
+        true if value > 0.0 => fill_template(program, "R(NAME_UNBOUNDED)"),
+        true => fill_template(program, "R(-NAME_UNBOUNDED)"),
+        false => format!("R({})", number(value)),
+    }
+}
+
+/// Infinity as a constant. Compilers without a header of mathematics, such as those for microcontrollers, have a word for
+/// it.
+pub(super) const UNBOUNDED: &str = "\
+/** Infinity: end of a range that the specification does not give. */
+#if defined(__GNUC__)
+#define NAME_UNBOUNDED __builtin_inf()
+#else
+#include <math.h>
+#define NAME_UNBOUNDED INFINITY
+#endif
+";

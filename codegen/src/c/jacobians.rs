@@ -22,7 +22,12 @@ pub(super) fn declarations(program: &Program) -> String {
         text += &format!("{}{};\n", comment(&lines), places_head(program, jacobian));
     }
     if has_linearisation(program) {
-        text += &fill_template(program, LINEARISATION);
+        // C has no empty arrays.
+        let columns = match program.inputs.len() {
+            0 => "1",
+            _ => "NAME_INPUTS",
+        };
+        text += &fill_template(program, &LINEARISATION.replace("COLUMNS", columns));
         text += &comment(&["Linearisation about a point.".to_owned()]);
         text += &format!("{};\n", linearise_head(program, false));
     }
@@ -148,20 +153,23 @@ const PLACES: &str = "\
 its diagonal is filled, else 0. Blocks of the same rows are adjacent. */
 static void NAME_places(const int (*blocks)[5], int count, int *rows, int *columns) {
     int next = 0;
-    for (int first = 0, last = 0; first < count; first = last) {
+    int first = 0;
+    while (first < count) {
+        int last = first;
         while (last < count && blocks[last][0] == blocks[first][0]) {
             ++last;
         }
         for (int i = 0; i < blocks[first][1]; ++i) {
             for (int b = first; b < last; ++b) {
                 const int diagonal = blocks[b][4];
-                for (int j = 0; j < (diagonal ? 1 : blocks[b][3]); ++j) {
+                for (int j = 0; j < ((diagonal != 0) ? 1 : blocks[b][3]); ++j) {
                     rows[next] = blocks[b][0] + i;
-                    columns[next] = blocks[b][2] + (diagonal ? i : j);
+                    columns[next] = blocks[b][2] + ((diagonal != 0) ? i : j);
                     ++next;
                 }
             }
         }
+        first = last;
     }
 }
 ";
@@ -174,22 +182,25 @@ static void NAME_dense(
 ) {
     int next = 0;
     for (int i = 0; i < rows * width; ++i) {
-        matrix[i] = 0;
+        matrix[i] = R(0.0);
     }
-    for (int first = 0, last = 0; first < count; first = last) {
+    int first = 0;
+    while (first < count) {
+        int last = first;
         while (last < count && blocks[last][0] == blocks[first][0]) {
             ++last;
         }
         for (int i = 0; i < blocks[first][1]; ++i) {
             for (int b = first; b < last; ++b) {
                 const int diagonal = blocks[b][4];
-                for (int j = 0; j < (diagonal ? 1 : blocks[b][3]); ++j) {
-                    const int column = blocks[b][2] + (diagonal ? i : j);
+                for (int j = 0; j < ((diagonal != 0) ? 1 : blocks[b][3]); ++j) {
+                    const int column = blocks[b][2] + ((diagonal != 0) ? i : j);
                     matrix[(blocks[b][0] + i) * width + column] = nonzeros[next];
                     ++next;
                 }
             }
         }
+        first = last;
     }
 }
 ";
@@ -205,10 +216,10 @@ typedef struct {
     /** Derivatives of the rates by the state. */
     NAME_real A[NAME_STATES][NAME_STATES];
     /** Derivatives of the rates by the inputs. */
-    NAME_real B[NAME_STATES][NAME_INPUTS + !NAME_INPUTS];
+    NAME_real B[NAME_STATES][COLUMNS];
     /** Derivatives of the observables by the state. */
     NAME_real C[NAME_OBSERVABLES][NAME_STATES];
     /** Derivatives of the observables by the inputs. */
-    NAME_real D[NAME_OBSERVABLES][NAME_INPUTS + !NAME_INPUTS];
+    NAME_real D[NAME_OBSERVABLES][COLUMNS];
 } NAME_linearisation;
 ";

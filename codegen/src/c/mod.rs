@@ -29,7 +29,7 @@ mod vectors;
 pub use crate::statements::EmitError;
 pub use casadi::{CASADI_OUTPUTS, emit_casadi};
 pub use cuda::emit_cuda;
-pub use emit::{Files, emit, emit_with};
+pub use emit::{Files, emit, emit_header_only, emit_with};
 pub use real::Real;
 pub use vectors::{baked, vectors};
 

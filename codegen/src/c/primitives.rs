@@ -24,7 +24,7 @@ impl CFormat for Double {
         ("EXPONENT_ALIGNER", "4503599627371519.0"),
         ("LARGEST_INTEGER_BITS", "51"),
         ("MANTISSA_BITS", "52"),
-        ("EXPONENT_MASK", "0x7ff"),
+        ("EXPONENT_MASK", "0x7ffU"),
         ("ONE_EXPONENT", "0x3ff"),
         ("SIGN_PLACE", "63"),
         ("BIASED", "1023"),
@@ -40,7 +40,7 @@ impl CFormat for Single {
     const WORDS: [(&'static str, &'static str); 15] = [
         (
             "MAGNITUDE",
-            "    NAME_bits value;\n    value.number = x;\n    value.bits &= 0x7fffffff;\n    return value.number;",
+            "    NAME_bits value;\n    value.number = x;\n    value.bits &= 0x7fffffffU;\n    return value.number;",
         ),
         ("NAN_BITS", "0x7fc0 << 16"),
         ("INFINITY_BITS", "0x7f80 << 16"),
@@ -49,7 +49,7 @@ impl CFormat for Single {
         ("EXPONENT_ALIGNER", "8388735.0F"),
         ("LARGEST_INTEGER_BITS", "22"),
         ("MANTISSA_BITS", "23"),
-        ("EXPONENT_MASK", "0xff"),
+        ("EXPONENT_MASK", "0xffU"),
         ("ONE_EXPONENT", "0x7f"),
         ("SIGN_PLACE", "31"),
         ("BIASED", "127"),
@@ -173,7 +173,8 @@ static FLOAT NAME_nearest_multiple_of_four(FLOAT x) {
 /** Magnitude of one number with the sign bit of another. */
 static FLOAT NAME_copy_sign(FLOAT x, FLOAT sign) {
     const WORD top = (WORD)1 << SIGN_PLACE;
-    NAME_bits value, other;
+    NAME_bits value;
+    NAME_bits other;
     value.number = x;
     other.number = sign;
     value.bits = (value.bits & ~top) | (other.bits & top);
@@ -200,7 +201,8 @@ static FLOAT NAME_power_of_two(FLOAT k) {
 static FLOAT NAME_exponent(FLOAT x) {
     NAME_bits value;
     value.number = x;
-    return (FLOAT)((value.bits >> MANTISSA_BITS) & EXPONENT_MASK) - BIAS;
+    value.bits = (value.bits >> MANTISSA_BITS) & EXPONENT_MASK;
+    return (FLOAT)value.bits - BIAS;
 }
 ",
     ),
@@ -211,7 +213,7 @@ static FLOAT NAME_exponent(FLOAT x) {
 static FLOAT NAME_significand(FLOAT x) {
     NAME_bits value;
     value.number = x;
-    value.bits = (value.bits & (((WORD)1 << MANTISSA_BITS) - 1)) | ((WORD)ONE_EXPONENT << MANTISSA_BITS);
+    value.bits = (value.bits & (((WORD)1 << MANTISSA_BITS) - 1U)) | ((WORD)ONE_EXPONENT << MANTISSA_BITS);
     return value.number;
 }
 ",

@@ -23,15 +23,15 @@ pub(super) fn regime(file: &File<'_>) -> String {
     let head = format!("{} {{", regime_head(program, true));
     if bits == 0 {
         let unused = GIVEN.map(|(_, name)| format!("(void){name};\n")).concat();
-        return block(&head, &(unused + "return 0;\n"), "}");
+        return block(&head, &(unused + "return 0U;\n"), "}");
     }
     let declared = fill_template(
         program,
-        "NAME_real guards[NAME_GUARDS];\nuint32_t regime = 0;\n",
+        "NAME_real guards[NAME_GUARDS];\nuint32_t regime = 0U;\n",
     );
     let set = format!(
         "for (int k = 0; k < {bits}; ++k) {{\n    if (guards[k] > R(0.0)) {{\n        \
-         regime |= (uint32_t)1 << k;\n    }}\n}}\nreturn regime;\n"
+         regime |= (uint32_t)1 << (uint32_t)k;\n    }}\n}}\nreturn regime;\n"
     );
     block(
         &head,

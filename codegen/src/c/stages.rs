@@ -113,7 +113,7 @@ pub(super) fn definition(program: &Program, stage: Stage) -> String {
         Outcome::MassMatrix => {
             let degrees = program.degrees_of_freedom();
             let entry = Place::new("values", ["i", "j"].map(Index::Variable));
-            let zero = assignment(&place_text(&entry), "0");
+            let zero = assignment(&place_text(&entry), "R(0.0)");
             write_loop("i", degrees, &write_loop("j", degrees, &zero))
         }
         Outcome::ArrayAndInputs(_) => zero_array(program, "product", &Size::States),
@@ -132,7 +132,7 @@ fn zero_array(program: &Program, name: &str, size: &Size) -> String {
     if length == 0 {
         return format!("(void){name};\n");
     }
-    write_loop("i", length, &assignment(&format!("{name}[i]"), "0"))
+    write_loop("i", length, &assignment(&format!("{name}[i]"), "R(0.0)"))
 }
 
 fn length(program: &Program, size: &Size) -> usize {

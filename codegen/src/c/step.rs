@@ -41,12 +41,14 @@ pub(super) fn definition(program: &Program) -> String {
             &format!("stage[i] = state[i] + {h} * k{k}[i];\n"),
         )
     };
-    let mut lines =
-        "NAME_real k1[NAME_STATES], k2[NAME_STATES], k3[NAME_STATES], k4[NAME_STATES];\n\
+    let mut lines = "NAME_real k1[NAME_STATES];\n\
+                     NAME_real k2[NAME_STATES];\n\
+                     NAME_real k3[NAME_STATES];\n\
+                     NAME_real k4[NAME_STATES];\n\
                      NAME_real stage[NAME_STATES];\n\
                      const NAME_real half = R(0.5) * h;\n\
                      const NAME_real sixth = h / R(6.0);\n"
-            .to_owned();
+        .to_owned();
     lines += &(rates("t", "state", 1) + &advance("half", 1));
     lines += &(rates("t + half", "stage", 2) + &advance("half", 2));
     lines += &(rates("t + half", "stage", 3) + &advance("h", 3));

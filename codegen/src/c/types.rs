@@ -123,7 +123,7 @@ pub(super) fn fill_functions(file: &File<'_>, preparation: Preparation) -> EmitR
         let target = format!("parameters->{}", parameter.quantity.name);
         lines += &assignment(&target, &format!("R({})", number(parameter.value)));
     }
-    let mut text = write_function(&defaults, "parameters->none = 0;\n", lines);
+    let mut text = write_function(&defaults, "parameters->none = '\\0';\n", lines);
     let names = program.parameters.iter().map(|p| p.quantity.name.as_str());
     text += &from_array(&parameters, "parameters", names);
     let names = program.inputs.iter().map(|input| input.name.as_str());
@@ -135,7 +135,7 @@ fn from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) ->
     let lines = names
         .enumerate()
         .map(|(place, name)| assignment(&format!("{of}->{name}"), &format!("numbers[{place}]")));
-    let none = format!("(void)numbers;\n{of}->none = 0;\n");
+    let none = format!("(void)numbers;\n{of}->none = '\\0';\n");
     write_function(head, &none, lines.collect())
 }
 
@@ -177,7 +177,9 @@ fn prepared(file: &File<'_>, head: &str, prepared: Preparation) -> String {
             }
         };
     }
-    let check = writer.expression(&prepared.positive_definite);
-    lines += &assignment("coefficients->positive_definite", &check);
+    lines += &writer.set_flag(
+        "coefficients->positive_definite",
+        &prepared.positive_definite,
+    );
     block(&format!("{head} {{"), &lines, "}")
 }

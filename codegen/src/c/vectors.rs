@@ -40,26 +40,64 @@ pub fn baked(program: &Program) -> Result<String, EmitError> {
 /// Writes the header `vectors.h`: the test vectors in both precisions and `NAME_self_test`, which computes the outputs
 /// with the coefficients of `NAME_baked.h` and returns 0 or the place of the first number with other bits.
 pub fn vectors(program: &Program, vectors: &TestVectors) -> Result<String, EmitError> {
-    let guards = File::new(program, &WORDS)?.guard_count();
-    let degrees = program.degrees_of_freedom();
-    let observables = program.observables.len();
-    let outputs = program.states() + observables + 2 + guards + degrees * degrees;
+    let outputs = Outputs::new(program)?;
     let text = SELF_TEST
         .replace("DOUBLE_COUNT", &vectors.double.len().to_string())
         .replace("SINGLE_COUNT", &vectors.single.len().to_string())
         .replace("DOUBLE_VECTORS", &rows(&vectors.double))
         .replace("SINGLE_VECTORS", &rows(&vectors.single))
-        .replace("OUTPUTS", &outputs.to_string())
-        .replace(
-            "ENERGY_PLACE",
-            &(program.states() + observables).to_string(),
-        )
-        .replace(
-            "GUARDS_PLACE",
-            &(program.states() + observables + 2).to_string(),
-        )
-        .replace("MASS_PLACE", &(outputs - degrees * degrees).to_string());
+        .replace("OUTPUT_FIELDS", &outputs.fields)
+        .replace("OUTPUT_CALLS", &outputs.calls)
+        .replace("OUTPUTS", &outputs.numbers.to_string());
     Ok(layout::source(&fill_template(program, &text)))
+}
+
+/// Outputs that the self-test compares: fields of a structure, calls that fill them, and their numbers.
+struct Outputs {
+    fields: String,
+    calls: String,
+    numbers: usize,
+}
+
+impl Outputs {
+    /// Lists the outputs that have numbers, because C has no empty arrays.
+    fn new(program: &Program) -> Result<Self, EmitError> {
+        let degrees = program.degrees_of_freedom();
+        let guards = File::new(program, &WORDS)?.guard_count();
+        let mut outputs = Self {
+            fields: String::new(),
+            calls: String::new(),
+            numbers: 0,
+        };
+        for (function, extents, numbers) in [
+            ("rates", "[NAME_STATES]", program.states()),
+            (
+                "observables",
+                "[NAME_OBSERVABLES]",
+                program.observables.len(),
+            ),
+            ("energy", "", 1),
+            ("power", "", 1),
+            ("guards", "[NAME_GUARDS]", guards),
+            (
+                "mass_matrix",
+                "[NAME_DEGREES_OF_FREEDOM][NAME_DEGREES_OF_FREEDOM]",
+                degrees * degrees,
+            ),
+        ] {
+            if numbers == 0 {
+                continue;
+            }
+            outputs.numbers += numbers;
+            outputs.fields += &format!("        NAME_real {function}{extents};\n");
+            let given = "given[0], state, &inputs, coefficients";
+            outputs.calls += &match extents {
+                "" => format!("        found.{function} = NAME_{function}({given});\n"),
+                _ => format!("        NAME_{function}({given}, found.{function});\n"),
+            };
+        }
+        Ok(outputs)
+    }
 }
 
 fn rows(vectors: &[TestVector]) -> String {
@@ -97,27 +135,20 @@ static const NAME_real NAME_vectors[NAME_VECTORS][1 + NAME_STATES + NAME_INPUTS 
 /** Computes all vectors and compares the bits. Returns 0 if they are equal, else the place of the first number that
  * differs, counted from 1 over the outputs of all vectors, OUTPUTS of each. */
 static int NAME_self_test(void) {
-    NAME_real found[OUTPUTS];
+    struct {
+OUTPUT_FIELDS    } found;
     NAME_inputs inputs;
     const NAME_coefficients *coefficients = &NAME_baked.coefficients;
     for (int vector = 0; vector < NAME_VECTORS; ++vector) {
         const NAME_real *const given = NAME_vectors[vector];
-        const NAME_real *const state = given + 1;
-        const unsigned char *const expected = (const unsigned char *)(state + NAME_STATES + NAME_INPUTS);
-        const unsigned char *const bytes = (const unsigned char *)found;
-        NAME_inputs_from_array(state + NAME_STATES, &inputs);
-        NAME_rates(given[0], state, &inputs, coefficients, found);
-        NAME_observables(given[0], state, &inputs, coefficients, found + NAME_STATES);
-        found[ENERGY_PLACE] = NAME_energy(given[0], state, &inputs, coefficients);
-        found[ENERGY_PLACE + 1] = NAME_power(given[0], state, &inputs, coefficients);
-        NAME_guards(given[0], state, &inputs, coefficients, found + GUARDS_PLACE);
-        NAME_mass_matrix(
-            given[0], state, &inputs, coefficients,
-            (NAME_real (*)[NAME_DEGREES_OF_FREEDOM])(found + MASS_PLACE)
-        );
-        for (int i = 0; i < (int)sizeof found; ++i) {
+        const NAME_real *const state = &given[1];
+        const NAME_real *const numbers = &state[NAME_STATES];
+        const unsigned char *const expected = (const unsigned char *)&numbers[NAME_INPUTS];
+        const unsigned char *const bytes = (const unsigned char *)&found;
+        NAME_inputs_from_array(numbers, &inputs);
+OUTPUT_CALLS        for (int i = 0; i < (int)sizeof found; ++i) {
             if (bytes[i] != expected[i]) {
-                return 1 + vector * OUTPUTS + i / (int)sizeof(NAME_real);
+                return 1 + (vector * OUTPUTS) + (i / (int)sizeof(NAME_real));
             }
         }
     }

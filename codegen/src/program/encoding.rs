@@ -278,7 +278,7 @@ encode_structures! {
         parameters, coordinates, fields, first_order, inputs, observables, tables, values,
         accelerations, first_order_rates, mass, velocity_terms, forces, observable_values, guards,
         impacts, pivots, outputs, controllers;
-        name, specification, title, spec_hash, coefficient_values, trace
+        name, specification, title, spec_hash, coefficient_values, domain, trace
     }
     ProgramController {
         name, measured, sources, states, outputs, driven, values, times, initial, next,

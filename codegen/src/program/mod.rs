@@ -6,7 +6,7 @@
 //! operation has one defined result in IEEE double arithmetic, every sum has a fixed order, and nothing is
 //! contracted, so that all backends compute the same bits.
 //!
-//! `value`, `types` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
+//! `value`, `types`, `domain` and `controllers` define programs, `lowering` builds them from the equations of motion, `evaluator` runs
 //! them, `encoding` writes them as bytes, `affine` computes the matrices of a piecewise-linear model, `describe` writes formulas of prepared
 //! values, `content` names values by their content, `trace` has their origin, `units` infers their units, and `operation_count` estimates the cost of a call.
 
@@ -17,6 +17,7 @@ pub mod content;
 mod controllers;
 #[cfg(feature = "derive")]
 pub mod describe;
+mod domain;
 pub mod encoding;
 pub mod evaluator;
 #[cfg(feature = "derive")]
@@ -39,6 +40,7 @@ pub use crate::mechanics::outputs::{Corners, RateRow, SlidingSurface};
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::variable::{Argument, Variable};
 pub use controllers::{ControlOp, ControlValues, MeasuredSource, ProgramController};
+pub use domain::Domain;
 pub use quantity::Quantity;
 pub use trace::{Trace, TraceTerm, ValueTrace};
 pub use types::{

@@ -1,6 +1,7 @@
 //! Program, quantities, rows and blocks.
 
 use super::controllers::ProgramController;
+use super::domain::Domain;
 use super::quantity::Quantity;
 use super::trace::Trace;
 use super::value::{Extent, Op, Value, ValueId};
@@ -117,6 +118,8 @@ pub struct Program {
     pub pivots: Vec<ValueId>,
     /// Values of the named coefficients of the specification.
     pub coefficient_values: Vec<ValueId>,
+    /// Units, initial state and ranges, for data of emitted files.
+    pub domain: Domain,
     /// Sampled controllers.
     pub controllers: Vec<ProgramController>,
     /// Requested outputs.

@@ -1,9 +1,10 @@
 //! Constants of an emitted file: sizes and names.
 
 use super::expression::array;
+use super::literals::number;
 use crate::identity::unsealed;
 use crate::statements::layout::block;
-use crate::statements::{File, Indices, indices};
+use crate::statements::{DataElements, File, Indices, data_arrays, indices};
 
 pub(super) fn constants(file: &File<'_>) -> String {
     let program = file.program;
@@ -40,6 +41,7 @@ pub(super) fn constants(file: &File<'_>) -> String {
         program.spec_hash,
         env!("CARGO_PKG_VERSION"),
     ) + &names(file)
+        + &data(file)
         + &index_modules(file)
         + &identity(file)
 }
@@ -84,6 +86,28 @@ fn names(file: &File<'_>) -> String {
         program.parameters.len(),
         quoted(parameters),
     )
+}
+
+/// Writes units, initial state and ranges.
+fn data(file: &File<'_>) -> String {
+    let mut text = String::new();
+    for of in data_arrays(file.program) {
+        let (item, elements) = match &of.elements {
+            DataElements::Texts(texts) => {
+                ("&'static str", quoted(texts.iter().map(String::as_str)))
+            }
+            DataElements::Numbers(numbers) => {
+                let numbers: Vec<String> = numbers.iter().map(|value| number(*value)).collect();
+                ("f64", array(&numbers))
+            }
+        };
+        let (name, length) = (of.name.to_uppercase(), of.length);
+        text += &format!(
+            "/// {}\npub const {name}: [{item}; {length}] = {elements};\n",
+            of.doc
+        );
+    }
+    text
 }
 
 fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {

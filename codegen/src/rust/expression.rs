@@ -129,7 +129,7 @@ impl Writer {
     fn write_with_level(&mut self, expression: &Expression) -> (String, Level) {
         let text = match expression {
             Expression::Number(value) => converted(&number(*value)),
-            Expression::Name(name) => name.clone(),
+            Expression::Name(name) | Expression::Flag(name) => name.clone(),
             Expression::Element(array, indices) => self.element(array, indices),
             Expression::Field(structure, name) => field(structure_name(*structure), name),
             Expression::Shared(coefficient) => call("C::read", &[self.expression(coefficient)]),

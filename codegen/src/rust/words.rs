@@ -16,7 +16,9 @@ pub(super) const WORDS: Words = Words {
         input_direction weights product input_product pattern INPUTS INPUT_NAMES PARAMETERS \
         PARAMETER_NAMES guards deadzone_on_side touching either chosen positive \
         pivot_reciprocal positive_definite ORDERS DEGREES_OF_FREEDOM STATES STATE_NAMES \
-        OBSERVABLES OBSERVABLE_NAMES GUARDS SPECIFICATION_SHA256 GENERATOR_VERSION IDENTITY Some None \
+        OBSERVABLES OBSERVABLE_NAMES GUARDS SPECIFICATION_SHA256 GENERATOR_VERSION IDENTITY STATE_UNITS \
+        INPUT_UNITS PARAMETER_UNITS OBSERVABLE_UNITS INITIAL_STATE STATE_LOWER STATE_UPPER \
+        INPUT_LOWER INPUT_UPPER Some None \
         Ok Err",
     prefixed: false,
 };

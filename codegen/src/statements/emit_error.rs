@@ -12,6 +12,13 @@ pub enum EmitError {
         /// The language.
         language: &'static str,
     },
+    /// Two entries of the specification with an item of the same name in the emitted source.
+    Collision {
+        /// Name of both items.
+        name: String,
+        /// Sections of the specification.
+        owners: [String; 2],
+    },
     /// Value without source in its stage: a defect of the generator.
     Value(String),
 }
@@ -29,6 +36,13 @@ impl std::fmt::Display for EmitError {
             Self::Name { name, language } => write!(
                 f,
                 "`{name}` is not a valid {language} identifier: rename it in the specification"
+            ),
+            Self::Collision {
+                name,
+                owners: [first, second],
+            } => write!(
+                f,
+                "[{first}] and [{second}] would both have the item `{name}`: rename one of them in the specification"
             ),
             Self::Value(message) => {
                 write!(f, "the program cannot be emitted: {message}")

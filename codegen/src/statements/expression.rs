@@ -61,6 +61,8 @@ pub enum Expression {
     Number(f64),
     /// Named number of the stage.
     Name(String),
+    /// Flag of the stage.
+    Flag(String),
     /// Element of an array.
     Element(Array, Vec<Index>),
     /// Field of a structure.
@@ -141,7 +143,12 @@ impl Expression {
     pub fn size(&self) -> usize {
         let of = |parts: &[Self]| 1 + parts.iter().map(Self::size).sum::<usize>();
         match self {
-            Self::Number(_) | Self::Name(_) | Self::Element(..) | Self::Field(..) | Self::True => 0,
+            Self::Number(_)
+            | Self::Name(_)
+            | Self::Flag(_)
+            | Self::Element(..)
+            | Self::Field(..)
+            | Self::True => 0,
             Self::Binary(_, a, b) => 1 + a.size() + b.size(),
             Self::Negate(a) | Self::Shared(a) => 1 + a.size(),
             Self::Call(_, arguments) | Self::Primitive(_, arguments) => of(arguments),

@@ -16,7 +16,10 @@ pub enum Index {
 impl Index {
     /// Returns `first + rest`.
     pub fn from_first(first: usize, rest: impl Into<Self>) -> Self {
-        Self::Number(first).offset_by(rest)
+        match first {
+            0 => rest.into(),
+            first => Self::Number(first).offset_by(rest),
+        }
     }
 
     /// Returns `self + other`.

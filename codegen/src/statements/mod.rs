@@ -3,12 +3,13 @@
 //!
 //! `stages`, `requested` and `controllers` build the functions, `preparation` the coefficients, from the shared data in
 //! `file`. `body` (with `operands`, `blocks`, `rows` and `sides`) builds the `statement`s of a function from
-//! `expression`s; `kernel` builds those of an elementary function. The backends contain the syntax of each
+//! `expression`s; `kernel` builds those of an elementary function. `indices` and `data` list the constants for callers. The backends contain the syntax of each
 //! language.
 
 mod blocks;
 mod body;
 mod controllers;
+mod data;
 mod emit_error;
 mod expression;
 mod file;
@@ -31,6 +32,7 @@ mod step;
 mod used;
 
 pub(crate) use controllers::{ControllerStage, ControllerStages, TIMES, controller_stages};
+pub use data::{DataArray, DataElements, data_arrays};
 pub use emit_error::EmitError;
 pub(crate) use emit_error::EmitResult;
 pub(crate) use expression::{Array, Expression, Operator, Structure};

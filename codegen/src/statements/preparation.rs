@@ -77,7 +77,7 @@ fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> EmitResult<Expression> {
                     other => (body.element(*id)?, other.length()),
                 };
                 let [above, below] = is_positive(&element);
-                let flag = Expression::name(&*name);
+                let flag = Expression::Flag(name.clone());
                 let all = Expression::and(Expression::and(flag.clone(), above), below);
                 body.push(Statement::Flag(name.clone()));
                 body.assign_each(length, Place::new(name, []), all);

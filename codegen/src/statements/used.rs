@@ -102,7 +102,7 @@ impl UsedNames {
             parts.iter().for_each(|part| used.expression(part));
         };
         match expression {
-            Expression::Name(name) => self.name(name),
+            Expression::Name(name) | Expression::Flag(name) => self.name(name),
             Expression::Element(array, _) => self.array(array),
             Expression::Field(structure, _) => self.name(match structure {
                 Structure::Coefficients => "coefficients",

@@ -11,7 +11,7 @@ impl Code<'_> {
             Expression::Number(value) => {
                 self.instructions().f64_const((*value).into());
             }
-            Expression::Name(name) => {
+            Expression::Name(name) | Expression::Flag(name) => {
                 let variable = self.local_index(name)?;
                 self.instructions().local_get(variable);
             }

@@ -7,8 +7,8 @@ use super::values::Lowering;
 use crate::mechanics::affine::{AffineEquations, AffineRow};
 use crate::program::affine::{AffineLayout, AffineProgram, AffineRowValues};
 use crate::program::{
-    MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues, Trace,
-    ValueId,
+    Domain, MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues,
+    Trace, ValueId,
 };
 
 /// Lowers the coefficients of `equations`, which belong to `model`.
@@ -89,6 +89,7 @@ pub fn lower_affine(
             impacts: Vec::new(),
             pivots,
             coefficient_values: Vec::new(),
+            domain: Domain::default(),
             controllers: Vec::new(),
             outputs: Outputs::default(),
             trace: Trace::default(),

@@ -21,7 +21,7 @@ use crate::symbolic::formula::abridged_formula;
 use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
 pub use controllers::lower_controllers;
-use quantities::{program_observables, program_parameters, quantity};
+use quantities::{domain, program_observables, program_parameters, quantity};
 use values::Lowering;
 
 /// Lowers the equations to the program of one variant.
@@ -148,6 +148,7 @@ pub(crate) fn lower_with_values(
         impacts,
         pivots,
         coefficient_values,
+        domain: domain(model, equations.graph.orders(), parameter_values),
         controllers: Vec::new(),
         outputs,
         trace: Trace::default(),

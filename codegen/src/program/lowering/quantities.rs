@@ -1,9 +1,12 @@
 //! Named quantities of a program, in SI units.
 
-use eomgen_model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::model::{Model, ParameterValue, Range};
 use eomgen_model_spec::unit::Unit;
 
-use crate::program::{ProgramParameter, Quantity};
+use crate::program::{Domain, ProgramParameter, Quantity};
+
+/// Range without ends.
+const UNBOUNDED: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 pub(super) fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
     Quantity {
@@ -49,4 +52,32 @@ pub(super) fn program_observables(model: &Model) -> Vec<Quantity> {
         "power of all non-conservative forces: the rate of the energy",
     ));
     all
+}
+
+/// Returns units, initial state and ranges at these values of all parameters. Modes and rates have no range.
+pub(super) fn domain(model: &Model, orders: &[usize], parameter_values: &[f64]) -> Domain {
+    let ends = |range: &Option<Range>| {
+        range.as_ref().map_or(UNBOUNDED, |range| {
+            let (low, high) = range.ends(parameter_values);
+            [low, high]
+        })
+    };
+    let units = model.state_units(orders);
+    let states = units.len();
+    let mut state_ranges = vec![UNBOUNDED; states];
+    let coordinates = state_ranges.iter_mut().zip(&model.coordinates);
+    coordinates.for_each(|(range, coordinate)| *range = ends(&coordinate.range));
+    let first_order = state_ranges.iter_mut().rev().zip(model.states.iter().rev());
+    first_order.for_each(|(range, state)| *range = ends(&state.range));
+    Domain {
+        state_units: units.iter().map(si_unit).collect(),
+        // The derivation reports initial values that are not finite.
+        initial_state: model.initial_state(orders).unwrap_or(vec![0.0; states]),
+        state_ranges,
+        input_ranges: model
+            .inputs
+            .iter()
+            .map(|input| ends(&input.range))
+            .collect(),
+    }
 }

@@ -71,6 +71,57 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "c",
 ];
 
+/// SI units of the states.
+pub const STATE_UNITS: [&'static str; STATES] = ["rad", "m", "m", "rad/s", "m/s", "m/s"];
+
+/// SI units of the inputs.
+pub const INPUT_UNITS: [&'static str; INPUTS] = ["N m"];
+
+/// SI units of the parameters.
+pub const PARAMETER_UNITS: [&'static str; PARAMETERS] = [
+    "kg m^2",
+    "kg/m^3",
+    "m^2",
+    "m",
+    "Pa",
+    "m^4",
+    "kg",
+    "kg m^2",
+    "N m s",
+];
+
+/// SI units of the observables.
+pub const OBSERVABLE_UNITS: [&'static str; OBSERVABLES] = ["m", "rad", "J", "W"];
+
+/// Initial state of the specification, at its parameters.
+pub const INITIAL_STATE: [f64; STATES] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+
+/// Lower ends of the ranges of the states, -infinity if the specification gives none.
+pub const STATE_LOWER: [f64; STATES] = [
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+];
+
+/// Upper ends of the ranges of the states, infinity if the specification gives none.
+pub const STATE_UPPER: [f64; STATES] = [
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+];
+
+/// Lower ends of the ranges of the inputs, -infinity if the specification gives none.
+pub const INPUT_LOWER: [f64; INPUTS] = [f64::NEG_INFINITY];
+
+/// Upper ends of the ranges of the inputs, infinity if the specification gives none.
+pub const INPUT_UPPER: [f64; INPUTS] = [f64::INFINITY];
+
 /// Indices of the states, and of their time derivatives in the rates.
 #[allow(non_upper_case_globals)]
 pub mod state {
@@ -132,7 +183,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=44e8841b3ed3129ceb6b943500ed228fa3dcbbf62b9c692cc6e2a4c68e071e93 generator=0.2.0;";
+pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=7cb2ad15a553802bc34ecaefbe66f0c412f881866b6b9cf3686334d3d257eca0 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -124,7 +124,7 @@ pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
 ) -> [T; RATES_BY_STATE_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_STATE_NONZEROS];
     for i in 0..3 {
-        values[0 + i] = T::number(1.0);
+        values[i] = T::number(1.0);
     }
     for i in 0..2 {
         values[3 + i] = C::read(coefficients.c_12mdq[i]);

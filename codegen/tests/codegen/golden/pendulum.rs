@@ -49,6 +49,39 @@ pub const PARAMETERS: usize = 5;
 /// Names of the parameters, in their order.
 pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = ["m", "a", "I", "k", "g"];
 
+/// SI units of the states.
+pub const STATE_UNITS: [&'static str; STATES] = ["rad", "rad/s"];
+
+/// SI units of the inputs.
+pub const INPUT_UNITS: [&'static str; INPUTS] = [];
+
+/// SI units of the parameters.
+pub const PARAMETER_UNITS: [&'static str; PARAMETERS] = [
+    "kg",
+    "m",
+    "kg m^2",
+    "N m s",
+    "m/s^2",
+];
+
+/// SI units of the observables.
+pub const OBSERVABLE_UNITS: [&'static str; OBSERVABLES] = ["J", "W"];
+
+/// Initial state of the specification, at its parameters.
+pub const INITIAL_STATE: [f64; STATES] = [2.356194490192345, 0.0];
+
+/// Lower ends of the ranges of the states, -infinity if the specification gives none.
+pub const STATE_LOWER: [f64; STATES] = [f64::NEG_INFINITY, f64::NEG_INFINITY];
+
+/// Upper ends of the ranges of the states, infinity if the specification gives none.
+pub const STATE_UPPER: [f64; STATES] = [f64::INFINITY, f64::INFINITY];
+
+/// Lower ends of the ranges of the inputs, -infinity if the specification gives none.
+pub const INPUT_LOWER: [f64; INPUTS] = [];
+
+/// Upper ends of the ranges of the inputs, infinity if the specification gives none.
+pub const INPUT_UPPER: [f64; INPUTS] = [];
+
 /// Indices of the states, and of their time derivatives in the rates.
 #[allow(non_upper_case_globals)]
 pub mod state {
@@ -83,7 +116,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=9e2902f4bdb2bcb9dbb08a4cc1a0d1f083151cdc0b1c51897be116e569f13459 generator=0.2.0;";
+pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=19e402553d6b58e1cc4900bf19a4d198d7aa4552ec896cfad000f73db670761f generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]

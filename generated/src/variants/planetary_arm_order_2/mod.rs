@@ -96,6 +96,114 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "omega",
 ];
 
+/// SI units of the states.
+pub const STATE_UNITS: [&'static str; STATES] = [
+    "m",
+    "m",
+    "m",
+    "m",
+    "m",
+    "m/s",
+    "m/s",
+    "m/s",
+    "m/s",
+    "m/s",
+];
+
+/// SI units of the inputs.
+pub const INPUT_UNITS: [&'static str; INPUTS] = [];
+
+/// SI units of the parameters.
+pub const PARAMETER_UNITS: [&'static str; PARAMETERS] = [
+    "1",
+    "1",
+    "1",
+    "m",
+    "1",
+    "kg",
+    "kg",
+    "kg",
+    "kg",
+    "N/m",
+    "N/m",
+    "N s/m",
+    "N s/m",
+    "m",
+    "m",
+    "kg/m^3",
+    "m^2",
+    "m",
+    "Pa",
+    "m^4",
+    "N m",
+    "N m s",
+    "N m",
+    "rad/s",
+];
+
+/// SI units of the observables.
+pub const OBSERVABLE_UNITS: [&'static str; OBSERVABLES] = [
+    "rad",
+    "rad",
+    "rad",
+    "m",
+    "rad",
+    "m",
+    "m",
+    "N",
+    "N",
+    "J",
+    "W",
+];
+
+/// Initial state of the specification, at its parameters.
+pub const INITIAL_STATE: [f64; STATES] = [
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+];
+
+/// Lower ends of the ranges of the states, -infinity if the specification gives none.
+pub const STATE_LOWER: [f64; STATES] = [
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+];
+
+/// Upper ends of the ranges of the states, infinity if the specification gives none.
+pub const STATE_UPPER: [f64; STATES] = [
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+];
+
+/// Lower ends of the ranges of the inputs, -infinity if the specification gives none.
+pub const INPUT_LOWER: [f64; INPUTS] = [];
+
+/// Upper ends of the ranges of the inputs, infinity if the specification gives none.
+pub const INPUT_UPPER: [f64; INPUTS] = [];
+
 /// Indices of the states, and of their time derivatives in the rates.
 #[allow(non_upper_case_globals)]
 pub mod state {
@@ -202,7 +310,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=0fe453d9df5229f474c8d648edc3e7d50823b562fdedae7c4118eec8ffc44fbb generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=34bbf7a005510c3b3df96cbfd32f99cd3694c90eefa06d8b42376a52bc9da313 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -92,6 +92,84 @@ pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
     "omega",
 ];
 
+/// SI units of the states.
+pub const STATE_UNITS: [&'static str; STATES] = ["m", "m", "m", "m/s", "m/s", "m/s"];
+
+/// SI units of the inputs.
+pub const INPUT_UNITS: [&'static str; INPUTS] = [];
+
+/// SI units of the parameters.
+pub const PARAMETER_UNITS: [&'static str; PARAMETERS] = [
+    "1",
+    "1",
+    "1",
+    "m",
+    "1",
+    "kg",
+    "kg",
+    "kg",
+    "kg",
+    "N/m",
+    "N/m",
+    "N s/m",
+    "N s/m",
+    "m",
+    "m",
+    "kg/m^3",
+    "m^2",
+    "m",
+    "Pa",
+    "m^4",
+    "N m",
+    "N m s",
+    "N m",
+    "rad/s",
+];
+
+/// SI units of the observables.
+pub const OBSERVABLE_UNITS: [&'static str; OBSERVABLES] = [
+    "rad",
+    "rad",
+    "rad",
+    "m",
+    "rad",
+    "m",
+    "m",
+    "N",
+    "N",
+    "J",
+    "W",
+];
+
+/// Initial state of the specification, at its parameters.
+pub const INITIAL_STATE: [f64; STATES] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+
+/// Lower ends of the ranges of the states, -infinity if the specification gives none.
+pub const STATE_LOWER: [f64; STATES] = [
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+    f64::NEG_INFINITY,
+];
+
+/// Upper ends of the ranges of the states, infinity if the specification gives none.
+pub const STATE_UPPER: [f64; STATES] = [
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+    f64::INFINITY,
+];
+
+/// Lower ends of the ranges of the inputs, -infinity if the specification gives none.
+pub const INPUT_LOWER: [f64; INPUTS] = [];
+
+/// Upper ends of the ranges of the inputs, infinity if the specification gives none.
+pub const INPUT_UPPER: [f64; INPUTS] = [];
+
 /// Indices of the states, and of their time derivatives in the rates.
 #[allow(non_upper_case_globals)]
 pub mod state {
@@ -190,7 +268,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=dd58f094c8c0a416af85cc9d6817f321f775d06853dd34043db2628c9b91ea1f generator=0.2.0;";
+pub static IDENTITY: [u8; 208] = *b"eomgen-identity name=planetary_arm_rigid specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=f796c711d77f9d5ad4206ce4867ade8e0f4f3b21294328a2c2a51909911f73d0 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]

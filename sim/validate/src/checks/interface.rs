@@ -1,10 +1,10 @@
-//! Everything that emitted source offers to its callers, compared with its program: sizes, names, indices, default
-//! parameters, conversions from arrays, preparation with other parameters, and all functions at zeros, in the domain
+//! Everything that emitted source offers to its callers, compared with its program: sizes, names, indices, units, initial
+//! state, ranges, default parameters, conversions from arrays, preparation with other parameters, and all functions at zeros, in the domain
 //! and at large values, in double and in single precision, bit for bit.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
-use eomgen_codegen::statements::{Indices, coefficient_values, indices};
+use eomgen_codegen::statements::{DataElements, Indices, coefficient_values, data_arrays, indices};
 
 use super::linked_program::{count_differences, format_bits};
 use crate::certificate::Worst;
@@ -386,6 +386,19 @@ fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(Str
             add(&format!("the indices of kind {kind}"), place.to_string());
         }
     }
+    for data in data_arrays(program) {
+        match data.elements {
+            DataElements::Texts(texts) => texts.into_iter().for_each(|text| add(data.name, text)),
+            DataElements::Numbers(numbers) => {
+                let of_file = |number: f64| match precision {
+                    Precision::Single => precision.round(number),
+                    _ => number,
+                };
+                let numbers: Vec<f64> = numbers.into_iter().map(of_file).collect();
+                add(data.name, format_bits(&numbers));
+            }
+        }
+    }
     let count = program.parameters.len();
     let round = |numbers: Vec<f64>| -> Vec<f64> {
         let of_parameters = |number: f64| match precision {
@@ -421,6 +434,19 @@ pub fn c_harness(program: &Program, name: &str) -> String {
             interface += &format!(
                 "    printf(\"%s\\n%d\\n\", NAME_{kind}_names[{place}], (int)NAME_{capitals}_{constant});\n"
             );
+        }
+    }
+    for data in data_arrays(program) {
+        let name = data.name;
+        match data.elements {
+            DataElements::Texts(texts) => {
+                for place in 0..texts.len() {
+                    interface += &format!("    printf(\"%s\\n\", NAME_{name}[{place}]);\n");
+                }
+            }
+            DataElements::Numbers(numbers) => {
+                interface += &format!("    show(NAME_{name}, {});\n", numbers.len());
+            }
         }
     }
     let show = |of: &str, names: &[&str]| {
@@ -569,6 +595,15 @@ pub fn rust_harness(program: &Program, emitted: &str) -> String {
                 "    println!(\"{{}}\\n{{}}\", model::{capitals}_NAMES[{place}], model::{kind}::{constant});\n"
             );
         }
+    }
+    for data in data_arrays(program) {
+        let name = data.name.to_uppercase();
+        interface += &match data.elements {
+            DataElements::Texts(_) => {
+                format!("    model::{name}.iter().for_each(|text| println!(\"{{text}}\"));\n")
+            }
+            DataElements::Numbers(_) => format!("    show::<f64>(&model::{name});\n"),
+        };
     }
     let show = |of: &str, names: Vec<&str>| {
         let values: Vec<String> = names.iter().map(|field| format!("{of}.{field}")).collect();

@@ -1,8 +1,11 @@
-//! Names that are C keywords, and texts that would end a comment.
+//! Names that are C keywords or collide, and texts that would end a comment.
+
+use std::process::Command;
 
 use eomgen_codegen::c::{self, EmitError};
+use eomgen_codegen::rust::{self, Packaging};
 
-use super::{compare, has_compilers, program, supported_outputs};
+use super::{compare, has_compilers, program, run, supported_outputs};
 
 pub fn pendulum(
     model: &str,
@@ -108,4 +111,63 @@ fn keywords_of_c_and_rust_are_rejected_with_line() {
             "{said}"
         );
     }
+}
+
+/// Two integrators of an input each, with these names.
+fn controllers(first: &str, second: &str) -> String {
+    let controller = |name: &str, input: &str| {
+        format!(
+            "[controllers.{name}]\nperiod = 0.01\n\
+             states = {{ {input}_i = {{ unit = \"rad\", next = \"{input}_i + phi\" }} }}\n\
+             outputs = {{ {input} = \"-k*{input}_i\" }}\n"
+        )
+    };
+    "[model]\nname = \"pair\"\n[parameters]\nm = { value = 2, unit = \"kg m^2\" }\nk = { value = 1, unit = \"N m\" }\n\
+     [coordinates]\nphi = { unit = \"rad\" }\n[inputs]\nu = { unit = \"N m\" }\nv = { unit = \"N m\" }\n\
+     [kinetic]\nwheel = \"1/2*m*dot(phi)^2\"\n[forces]\nboth = { on = \"phi\", value = \"u + v\" }\n"
+        .to_owned()
+        + &controller(first, "u")
+        + &controller(second, "v")
+}
+
+#[test]
+fn controllers_with_a_common_name_in_c_are_rejected() {
+    for end in ["measured", "outputs", "start", "update"] {
+        let text = controllers("a", &format!("a_{end}"));
+        let error = c::emit(&program(&text, 0, &[])).expect_err("a collision");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "[controllers.a] and [controllers.a_{end}] would both have the item `pair_controller_a_{end}`: \
+                 rename one of them in the specification"
+            )
+        );
+    }
+}
+
+/// In Rust each controller has a module, so that their items cannot collide.
+#[test]
+fn controllers_with_similar_names_compile() {
+    if !has_compilers() {
+        return;
+    }
+    compare(&program(&controllers("a", "a_out"), 0, &[]));
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = folder.path().join("lib.rs");
+    let text = controllers("a", "a_outputs");
+    let text = rust::emit(&program(&text, 0, &[]), Packaging::Crate).expect("emitted");
+    std::fs::write(&source, text).expect("written");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    run(Command::new(rustc)
+        .args([
+            "--edition",
+            "2021",
+            "--crate-type",
+            "lib",
+            "--emit",
+            "metadata",
+        ])
+        .arg("--out-dir")
+        .arg(folder.path())
+        .arg(source));
 }

@@ -15,6 +15,8 @@ use eomgen_model_spec::source::Source;
 use eomgen_tests::models::{project, shipped_specifications};
 
 mod command;
+mod data;
+mod header_only;
 mod hostile;
 mod linked;
 mod reordered;
