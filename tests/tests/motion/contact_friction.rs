@@ -615,6 +615,42 @@ top = { when = "v - y", restitution = 0, friction = 0.2, slip = "dot(u) - dot(x)
     }
 }
 
+/// Links on a hinge fall on a floor, bounce without end while they slide, and stick. The expected end is that of the
+/// equations of motion in SciPy (DOP853, 1e-13) with impacts down to 1e-7 m/s.
+#[test]
+fn links_that_stop_bouncing_while_they_slide_keep_their_momentum() {
+    let model = compile(
+        r#"
+[model]
+name = "links"
+[parameters]
+m = { value = 1, unit = "kg" }
+l = { value = 1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+h = { value = 1.2, unit = "m" }
+[coordinates]
+a = { unit = "rad" }
+b = { unit = "rad" }
+[definitions]
+x = "l*sin(a)"
+y = "h - l*cos(a)"
+u = "x + l*sin(b)"
+v = "y - l*cos(b)"
+[kinetic]
+k = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(u)^2 + dot(v)^2)"
+[potential]
+weight = "m*g*(y + v)"
+[impacts]
+floor = { when = "v", restitution = 0.2, friction = 0.8, slip = "dot(u)" }
+"#,
+    );
+    for solver in SOLVERS {
+        let end = final_state(&model, &[], &[1.2, 2.0, 0.0, 0.0], 2.5, solver);
+        let u = end[0].sin() + end[1].sin();
+        assert!((u - 1.233_391_277_7).abs() < 1e-8, "{solver}: {u}");
+    }
+}
+
 #[test]
 fn block_on_moving_belt_is_carried_along() {
     let friction = r#"friction = "mu", slip = "dot(x) - w*u""#;

@@ -151,8 +151,8 @@ impl Contacts {
         self.stop_closed(own, (t, inputs), state);
     }
 
-    /// Stops the remaining motion along closed contacts that move: it would do work. If no contact moves, the
-    /// correction of the state does the same.
+    /// Stops the remaining motion along closed contacts that move, which would do work, and of those that slide on. The
+    /// correction of the state stops that of others.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;
@@ -160,10 +160,13 @@ impl Contacts {
         let degrees = own.program().degrees_of_freedom();
         let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        if self.closed.iter().all(|place| drifts.is_still(*place)) {
-            return;
-        }
-        let impulses = self.stopping();
+        let closing = self.has_friction().then(|| self.closing_impulses());
+        let are_still = self.closed.iter().all(|place| drifts.is_still(*place));
+        let impulses = match closing.flatten() {
+            Some(impulses) => impulses,
+            None if are_still => return,
+            None => self.stopping(),
+        };
         self.add_forces(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
         self.impact_work -= drifts.work_against(&self.closed, &impulses);
     }

@@ -118,6 +118,21 @@ impl Contacts {
         self.impulses_to_stop(&self.closed, &modes.collect::<Vec<ContactMode>>())
     }
 
+    /// Returns the same with the friction of contacts that slide; `None` if one does not slide on. A contact that closes
+    /// after an impact has a smaller impulse of friction, because a part of its normal impulse is removed.
+    pub(super) fn closing_impulses(&self) -> Option<ContactForces> {
+        let modes: Vec<ContactMode> = self.closed.iter().map(|place| self.mode(*place)).collect();
+        let impulses = self.impulses_to_stop(&self.closed, &modes);
+        let changes = self.rate_changes(&self.closed, &impulses);
+        let changes = changes[self.closed.len()..].iter();
+        let mut sliding = self.closed.iter().zip(&modes).zip(changes);
+        let slides_on = sliding.all(|((place, mode), change)| match mode {
+            ContactMode::Slides(side) if *side != 0.0 => side * (self.slip(*place) + change) > 0.0,
+            _ => true,
+        });
+        slides_on.then_some(impulses)
+    }
+
     fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
         let normal = places.iter().map(|place| self.at[*place].rate);
         let slips = places.iter().map(|place| self.slip(*place));
