@@ -1,6 +1,7 @@
 //! Certificates as JSON and as summaries.
 
 use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
+use eomgen_validate::rounding::Bounds;
 
 use crate::error::{Error, Result};
 
@@ -25,11 +26,40 @@ pub fn summary(certificate: &Certificate) -> String {
     if let Some(coverage) = &certificate.coverage {
         text.push_str(&format!("coverage: {}\n", coverage.sentence()));
     }
+    if let Some(bounds) = &certificate.bounds {
+        text.push_str(&bounds_table(bounds));
+    }
     text.push_str(match certificate.verdict {
         Verdict::Passed => "passed\n",
         Verdict::Partial => "PARTIAL: no check failed, but some were not run\n",
         Verdict::Failed => "FAILED\n",
     });
+    text
+}
+
+/// Returns one line per quantity with the bounds of its rounding errors.
+fn bounds_table(bounds: &Bounds) -> String {
+    let mut text = "rounding errors, at most\n".to_owned();
+    let names = bounds.quantities.iter().map(|quantity| quantity.name.len());
+    let width = names.max().unwrap_or(0);
+    for both in bounds.quantities.chunks(2) {
+        let words = both.iter().map(|quantity| match quantity.bound {
+            Some(bound) => format!("{bound:.1e} {}", quantity.precision),
+            None => format!("not bounded {}", quantity.precision),
+        });
+        let words: Vec<String> = words.collect();
+        let reason = both.iter().find_map(|quantity| quantity.reason.as_deref());
+        let note = match (reason, &both[0].unit) {
+            (Some(reason), _) => format!("  ({reason})"),
+            (None, Some(unit)) => format!("  [{unit}]"),
+            (None, None) => String::new(),
+        };
+        text.push_str(&format!(
+            "  {:width$}  {}{note}\n",
+            both[0].name,
+            words.join(", ")
+        ));
+    }
     text
 }
 

@@ -6,6 +6,7 @@
 mod arguments;
 mod audit;
 mod bench_files;
+mod bounds;
 mod certification;
 mod commands;
 mod count;

@@ -58,6 +58,7 @@
 //! `trace` finds the terms of the specification from which each value comes, for comments in emitted source.
 //! [`vectors`] computes test vectors, which the backends write next to the source.
 //!
+//! [`rounding`] bounds the rounding errors of a program over ranges of its variables.
 //! [`variant`] derives the program of a model in one call and finds dependent constraints
 //! ([`independence`]). [`examination`] finds most errors of a model without its equations. [`singular_terms`]
 //! finds terms without a derivative at a point.
@@ -73,6 +74,8 @@ pub mod mechanics;
 pub mod program;
 #[cfg(feature = "derive")]
 pub mod report;
+#[cfg(feature = "derive")]
+pub mod rounding;
 #[cfg(feature = "derive")]
 pub mod rust;
 #[cfg(feature = "derive")]

@@ -16,6 +16,17 @@ pub struct Interval {
 /// Relative widening of every result: a few rounding errors.
 const ROUNDING: f64 = 1e-15;
 
+/// Returns a few rounding errors of a result; at least the smallest positive number, except for an exact 0.
+fn widening(end: f64) -> f64 {
+    match end == 0.0 || end.is_infinite() {
+        true => 0.0,
+        false => (ROUNDING * end.abs()).max(SMALLEST),
+    }
+}
+
+/// Smallest positive number.
+const SMALLEST: f64 = f64::from_bits(1);
+
 impl Interval {
     /// All real numbers.
     pub const ALL: Self = Self {
@@ -29,9 +40,10 @@ impl Interval {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
         }
+        // A number that overflows is not infinite.
         Self {
-            low: low - ROUNDING * low.abs(),
-            high: high + ROUNDING * high.abs(),
+            low: (low - widening(low)).min(f64::MAX),
+            high: (high + widening(high)).max(f64::MIN),
         }
     }
 
@@ -50,8 +62,12 @@ impl Interval {
 
     /// Returns the bounds of a product.
     pub fn multiply(self, other: Self) -> Self {
-        // 0 times an unbounded number is 0.
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
+        // 0 times an unbounded number is 0, and a product that underflows is not.
+        let product = |a: f64, b: f64| match a * b {
+            _ if a == 0.0 || b == 0.0 => 0.0,
+            product if product == 0.0 => SMALLEST.copysign(product),
+            product => product,
+        };
         let ends = [
             product(self.low, other.low),
             product(self.low, other.high),
@@ -148,9 +164,18 @@ impl Interval {
                 .apply_sine(),
             Function::Asin => self.apply_non_decreasing((-1.0, 1.0), value),
             Function::Acos => Self::from_ends(0.0, PI),
-            Function::Atan | Function::Sinh | Function::Tanh | Function::Exp => {
+            Function::Atan | Function::Sinh | Function::Tanh => {
                 self.apply_non_decreasing(everywhere, value)
             }
+            // An exponential that underflows is not 0.
+            Function::Exp => {
+                let bounds = self.apply_non_decreasing(everywhere, value);
+                Self {
+                    high: bounds.high.max(SMALLEST),
+                    ..bounds
+                }
+            }
+            Function::Tan => self.apply_tangent(value),
             Function::Cosh => self
                 .magnitude()
                 .apply_non_decreasing((0.0, f64::INFINITY), value),
@@ -185,6 +210,16 @@ impl Interval {
             false => a.max(b),
         };
         Self::from_ends((low - slack).max(-1.0), (high + slack).min(1.0))
+    }
+
+    /// Returns the bounds of the tangent; all numbers if a pole may be inside.
+    fn apply_tangent(self, tangent: impl Fn(f64) -> f64) -> Self {
+        let cosine = self.apply_unary(Function::Cos);
+        let is_branch = self.high - self.low < PI && !cosine.contains(0.0);
+        match is_branch {
+            true => Self::from_ends(tangent(self.low), tangent(self.high)),
+            false => Self::ALL,
+        }
     }
 
     fn apply_binary(function: Function, x: Self, y: Self) -> Self {
@@ -258,6 +293,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn tangent_is_bounded_between_its_poles() {
+        let tangent = |low, high| {
+            let x = Interval::from_ends(low, high);
+            Interval::apply_function(Function::Tan, &[x])
+        };
+        let bounds = tangent(2.0, 4.0);
+        assert!(bounds.contains(2.0_f64.tan()) && bounds.contains(4.0_f64.tan()));
+        assert!(bounds.low > -2.2 && bounds.high < 1.2, "{bounds:?}");
+        assert_eq!(tangent(1.0, 2.0), Interval::ALL);
+        assert_eq!(tangent(-1.0, 3.0), Interval::ALL);
+    }
+
+    #[test]
+    fn results_that_underflow_or_overflow_are_inside() {
+        let tiny = Interval::from_ends(1e-200, 2e-200);
+        assert!(tiny.multiply(tiny).high > 0.0);
+        let exponential = Interval::apply_function(Function::Exp, &[exactly(-800.0)]);
+        assert!(exponential.high > 0.0 && exponential.low == 0.0);
+        let subnormal = exactly(1e-310);
+        assert!(subnormal.low < 1e-310 && subnormal.high > 1e-310);
+        assert!(exactly(1e300).square().low < f64::INFINITY);
+        assert_eq!(exactly(0.0), exactly(0.0).negate());
+    }
+
+    fn exactly(value: f64) -> Interval {
+        Interval::from_ends(value, value)
     }
 
     #[test]

@@ -96,7 +96,7 @@ pub enum Command {
     Identify(Identify),
     /// Check the derived equations against independent ones and write a certificate.
     #[command(
-        after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json"
+        after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json\n  eomgen validate model-spec/models/pendulum.toml --bounds --range theta=-pi:pi --range theta_dot=-10:10"
     )]
     Validate(Validate),
     /// Simulate a model and write the trajectory.

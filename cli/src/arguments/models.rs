@@ -224,6 +224,18 @@ pub struct Validate {
     /// only.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
+    /// Also bound the rounding errors of mass matrix, velocity terms, forces and rates in both precisions, over the
+    /// ranges of the specification and of --range, or at a state.
+    #[arg(long)]
+    pub bounds: bool,
+    /// Range of a coordinate, a rate (NAME_dot), another state, all modes of a field, an input, a parameter or `t`
+    /// for --bounds, or one value. Numbers are as for --state and --set. Repeatable.
+    #[arg(long, value_name = "NAME=LOW:HIGH", requires = "bounds")]
+    pub range: Vec<String>,
+    /// State for --bounds: all variables without --range have its values. As for `linearise`; `--state t=0` alone is the
+    /// initial state.
+    #[arg(long, value_name = "NAME=EXPR|trim", requires = "bounds", alias = "at")]
+    pub state: Vec<String>,
     /// Output file for the certificate, `-` for stdout. Default: only a summary is printed.
     #[arg(long)]
     pub out: Option<PathBuf>,

@@ -1,8 +1,10 @@
 //! `eomgen validate`: the certificate of a variant.
 
+use eomgen_validate::certificate::Certificate;
 use eomgen_validate::model_certificate::certify_model;
 
 use crate::arguments::{Extra, Validate};
+use crate::bounds::bounds;
 use crate::certification::{document, summary};
 use crate::error::{Error, Result, print_bytes, print_text};
 use crate::model::{load, orders};
@@ -18,9 +20,18 @@ pub fn run(options: &Validate) -> Result {
     let model = load(&options.model.spec)?.model;
     let model = with_settings(model, &options.parameters.set)?;
     let orders = orders(&model, options.model.order.text())?;
+    let outputs = Extra::outputs(&options.with);
+    let bounds = match options.bounds {
+        true => Some(bounds(&model, &orders, &outputs, options)?),
+        false => None,
+    };
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));
-        certify_model(&model, &orders, &Extra::outputs(&options.with))?
+        let certificate = certify_model(&model, &orders, &outputs)?;
+        Certificate {
+            bounds,
+            ..certificate
+        }
     };
     let text = document(&certificate)?;
     if let Some(destination) = &destination {

@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 pub use crate::coverage::Coverage;
+use crate::rounding::Bounds;
 
 /// Version of the certificate format.
 pub const SCHEMA: u32 = 2;
@@ -42,6 +43,9 @@ pub struct Certificate {
     pub coverage: Option<Coverage>,
     /// Checks in the order in which they were run.
     pub checks: Vec<Check>,
+    /// Bounds of rounding errors, if they were requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<Bounds>,
     /// Text of the specification, complete with the files that it extends.
     pub specification: String,
 }
@@ -193,6 +197,7 @@ impl Certificate {
             passed: verdict == Verdict::Passed,
             coverage,
             checks,
+            bounds: None,
         }
     }
 

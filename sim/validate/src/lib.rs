@@ -6,7 +6,7 @@
 //! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source. Hand-written
 //! equations of known machines are [`mod@references`]. [`certify`](certify::certify) runs all checks
 //! and writes the [`certificate`]; [`model_certificate`] certifies a model with its emitted source.
-//! [`meaning`] describes the checks in words.
+//! [`meaning`] describes the checks in words. [`rounding`] bounds the rounding errors of a variant.
 //!
 //! Example: residuals of the oracle's own accelerations of a pendulum.
 //!
@@ -33,6 +33,7 @@ pub mod coverage;
 pub mod derived;
 pub mod derived_outputs;
 mod differences;
+pub mod double_double;
 mod feasibility;
 pub mod meaning;
 pub mod model_certificate;
@@ -42,6 +43,7 @@ pub mod random;
 pub mod references;
 mod regime_search;
 mod regimes;
+pub mod rounding;
 mod sample;
 pub mod sampler;
 mod sizes;

@@ -2,6 +2,7 @@
 //! each.
 
 pub mod alarms;
+pub mod bounds;
 pub mod contacts;
 pub mod coverage;
 pub mod gradients;

@@ -5,7 +5,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use eomgen_studies::sample::Sample;
-use eomgen_studies::{alarms, contacts, coverage, gradients, grazing, hosts, mutations, solvers};
+use eomgen_studies::{
+    alarms, bounds, contacts, coverage, gradients, grazing, hosts, mutations, solvers,
+};
 
 /// Studies of the program on many random machines and records.
 #[derive(Parser)]
@@ -25,6 +27,8 @@ enum Study {
         #[arg(long, default_value_t = 1.0)]
         friction: f64,
     },
+    /// Rounding errors of the shipped machines at random points against their bounds
+    Bounds(Sample),
     /// Energy and agreement of the solvers for passive machines that graze their stops
     Grazing(Sample),
     /// Stacks of balls and boxes that fall on a floor
@@ -51,6 +55,7 @@ fn main() -> ExitCode {
     eomgen_discover::prepare_threads();
     let report = match Options::parse().study {
         Study::Alarms { sample, friction } => alarms::run(&sample, friction),
+        Study::Bounds(sample) => bounds::run(&sample),
         Study::Grazing(sample) => grazing::run(&sample),
         Study::Contacts(sample) => contacts::run(&sample),
         Study::Mutations(sample) => mutations::run(&sample),

@@ -1,15 +1,7 @@
 //! Functions of one or two numbers, with the results that every backend must give.
 
-use eomgen_elementary::Function as Elementary;
+use eomgen_elementary::{Function as Elementary, Real};
 use eomgen_model_spec::function::Function;
-
-use super::number::Number;
-
-/// Returns 1/a for a positive pivot, else NaN.
-pub(super) fn pivot_reciprocal<N: Number>(a: N) -> N {
-    let [zero, one, none] = [0.0, 1.0, f64::NAN].map(N::constant);
-    if a > zero { one / a } else { none }
-}
 
 /// Definition of a function of the expression language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +17,7 @@ pub enum PiecewiseFunction {
 }
 
 /// Computes a function of the expression language; functions of one argument ignore `b`.
-pub fn call<N: Number>(function: Function, a: N, b: N) -> N {
+pub fn call<N: Real + PartialOrd>(function: Function, a: N, b: N) -> N {
     match piecewise_function(function) {
         PiecewiseFunction::Elementary(elementary) => elementary.apply(&[a, b]),
         PiecewiseFunction::Deadzone => deadzone(a, b),
@@ -35,17 +27,17 @@ pub fn call<N: Number>(function: Function, a: N, b: N) -> N {
 }
 
 /// Computes f_k of Eq. (7).
-fn deadzone<N: Number>(p: N, b: N) -> N {
+fn deadzone<N: Real + PartialOrd>(p: N, b: N) -> N {
     let held = if p > b { b } else { p };
     p - if -b > held { -b } else { held }
 }
 
 /// Computes the indicator of |p| > b, Eq. (8).
-fn contact<N: Number>(p: N, b: N) -> N {
+fn contact<N: Real + PartialOrd>(p: N, b: N) -> N {
     N::constant(if p > b || p < -b { 1.0 } else { 0.0 })
 }
 
-fn above<N: Number>(p: N) -> N {
+fn above<N: Real + PartialOrd>(p: N) -> N {
     N::constant(if p > N::constant(0.0) { 1.0 } else { 0.0 })
 }
 

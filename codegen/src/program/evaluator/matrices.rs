@@ -1,7 +1,7 @@
 //! Matrix operations of the evaluator: products, Gram matrices, assembled blocks and Cholesky factors, with
 //! the order of summation that the program defines.
 
-use eomgen_elementary::Function as Elementary;
+use eomgen_model_spec::function::Function;
 
 use super::number::Number;
 use super::operands::Operands;
@@ -108,11 +108,8 @@ pub(super) fn cholesky<N: Number>(out: &mut [N], matrix: &[N], size: usize) {
                 rest - out[r * size + k] * out[c * size + k]
             });
             out[r * size + c] = if r == c {
-                if rest > N::constant(0.0) {
-                    Elementary::Sqrt.apply(&[rest])
-                } else {
-                    N::constant(f64::NAN)
-                }
+                let pivot = rest.positive();
+                N::call(Function::Sqrt, pivot, pivot)
             } else {
                 rest / out[c * size + c]
             };

@@ -29,11 +29,11 @@ pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
 pub use functions::{PiecewiseFunction, call, piecewise_function};
 pub use impacts::{FrictionValues, ImpactValues};
-use number::Number;
+pub use number::Number;
 pub use places::Places;
 pub use point::Point;
 pub use sliding::SlidingValues;
-use step::step;
+pub(crate) use step::step;
 
 /// Program with memory for its values. No memory is allocated after construction.
 pub struct Evaluator {
@@ -350,7 +350,8 @@ impl Evaluator {
     }
 }
 
-const NO_POINT: Point<'static> = Point {
+/// No time, state and inputs, for prepared values.
+pub(crate) const NO_POINT: Point<'static> = Point {
     t: 0.0,
     state: &[],
     inputs: &[],

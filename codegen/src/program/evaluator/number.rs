@@ -1,10 +1,68 @@
 //! Numbers in which the steps of a program are computed.
 
-use eomgen_elementary::Real;
-use std::ops::AddAssign;
+use eomgen_elementary::{Function as Elementary, Real};
+use eomgen_model_spec::function::Function;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// Number of the evaluator: `f64`, or `f32` for the bits of emitted code in single precision.
-pub trait Number: Real + PartialOrd + AddAssign + Into<f64> {}
+use super::functions::call;
 
-impl Number for f64 {}
-impl Number for f32 {}
+/// Number of the evaluator: `f64`, `f32` for the bits of emitted code in single precision, or a number that records
+/// the operations.
+pub trait Number:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+{
+    /// Returns the constant `value`, rounded to the format.
+    fn constant(value: f64) -> Self;
+
+    /// Computes a function of the expression language; functions of one argument ignore `b`.
+    fn call(function: Function, a: Self, b: Self) -> Self;
+
+    /// Returns a^b.
+    fn power(self, exponent: Self) -> Self;
+
+    /// Returns `then` if a > b, else `otherwise`, also if a or b is NaN.
+    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Returns the number if it is positive, else NaN.
+    fn positive(self) -> Self;
+}
+
+macro_rules! implement_number {
+    ($number:ty) => {
+        impl Number for $number {
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                <Self as Real>::constant(value)
+            }
+
+            #[inline(always)]
+            fn call(function: Function, a: Self, b: Self) -> Self {
+                call(function, a, b)
+            }
+
+            #[inline(always)]
+            fn power(self, exponent: Self) -> Self {
+                Elementary::Pow.apply(&[self, exponent])
+            }
+
+            #[inline(always)]
+            fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                if a > b { then } else { otherwise }
+            }
+
+            #[inline(always)]
+            fn positive(self) -> Self {
+                if self > 0.0 { self } else { Self::NAN }
+            }
+        }
+    };
+}
+
+implement_number!(f64);
+implement_number!(f32);

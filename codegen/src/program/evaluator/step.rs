@@ -1,8 +1,5 @@
 //! Evaluation of one value of a program.
 
-use eomgen_elementary::Function as Elementary;
-
-use super::functions::{call, pivot_reciprocal};
 use super::matrices::{apply, assemble, cholesky, cholesky_solve, gram, gram_diagonal};
 use super::number::Number;
 use super::operands::Operands;
@@ -11,7 +8,7 @@ use super::point::Point;
 use crate::program::{Arguments, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Computes the value `id` into its place in `memory`.
-pub(super) fn step<N: Number>(
+pub(crate) fn step<N: Number>(
     memory: &mut [N],
     places: &Places,
     program: &Program,
@@ -47,18 +44,16 @@ pub(super) fn step<N: Number>(
         }
         Op::Time => out[0] = N::constant(point.t),
         Op::Negate(a) => unary(out, &operands, *a, |a| -a),
-        Op::PivotReciprocal(a) => unary(out, &operands, *a, pivot_reciprocal),
+        Op::PivotReciprocal(a) => unary(out, &operands, *a, |a| N::constant(1.0) / a.positive()),
         Op::Add(a, b) => binary(out, &operands, *a, *b, |a, b| a + b),
         Op::Subtract(a, b) => binary(out, &operands, *a, *b, |a, b| a - b),
         Op::Multiply(a, b) => binary(out, &operands, *a, *b, |a, b| a * b),
         Op::Divide(a, b) => binary(out, &operands, *a, *b, |a, b| a / b),
-        Op::Power(a, b) => binary(out, &operands, *a, *b, |a, b| {
-            Elementary::Pow.apply(&[a, b])
-        }),
+        Op::Power(a, b) => binary(out, &operands, *a, *b, N::power),
         Op::Call(function, arguments) => match *arguments {
-            Arguments::One([a]) => unary(out, &operands, a, |a| call(*function, a, a)),
+            Arguments::One([a]) => unary(out, &operands, a, |a| N::call(*function, a, a)),
             Arguments::Two([a, b]) => {
-                binary(out, &operands, a, b, |a, b| call(*function, a, b));
+                binary(out, &operands, a, b, |a, b| N::call(*function, a, b));
             }
         },
         Op::Select {
@@ -70,12 +65,12 @@ pub(super) fn step<N: Number>(
             let (a, b) = (operands.strided(*a), operands.strided(*b));
             let (then, otherwise) = (operands.strided(*then), operands.strided(*otherwise));
             for (i, slot) in out.iter_mut().enumerate() {
-                let taken = a.0[i * a.1] > b.0[i * b.1];
-                *slot = if taken {
-                    then.0[i * then.1]
-                } else {
-                    otherwise.0[i * otherwise.1]
-                };
+                *slot = N::select_greater(
+                    a.0[i * a.1],
+                    b.0[i * b.1],
+                    then.0[i * then.1],
+                    otherwise.0[i * otherwise.1],
+                );
             }
         }
         Op::Total(a) => out[0] = total(operands.slice(*a)),

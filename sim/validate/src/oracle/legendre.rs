@@ -2,7 +2,7 @@
 //! error of half a unit in the last place of an `f64` node is a phase error of 200 times that at
 //! mode 64. The first moment of that mode (5e-5 of its amplitude) would then be wrong by 1e-11.
 
-use super::double_double::DoubleDouble;
+use crate::double_double::DoubleDouble;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {

@@ -29,7 +29,6 @@ mod affine;
 mod bounds;
 mod conditioned;
 mod constraints;
-mod double_double;
 mod emptiness;
 mod energy;
 mod equations;

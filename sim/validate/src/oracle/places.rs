@@ -6,10 +6,10 @@
 //! as the cube root of w. A margin of 32 is enough up to S = 128. With 4 S + 40 nodes, 2 N = 8 S +
 //! 80 exceeds 2 pi S + 32 for every S. The surplus covers coefficients that vary along the field.
 
-use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
 use super::shapes::Shape;
 use super::splines::{self, SplineShape};
+use crate::double_double::DoubleDouble;
 use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 

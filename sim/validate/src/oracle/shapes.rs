@@ -10,7 +10,7 @@
 //! multiple of pi/4 to find z; the null vector is the shape. The phase is that multiple of s plus a
 //! small part. The multiple is reduced exactly before it is multiplied by pi.
 
-use super::double_double::DoubleDouble;
+use crate::double_double::DoubleDouble;
 use eomgen_model_spec::model::{Basis, End};
 use nalgebra::{Matrix4, SVD, Vector4};
 use std::f64::consts::PI;

@@ -8,8 +8,8 @@
 //!
 //! The third derivative is continuous at the first and the last inner knot.
 
-use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
+use crate::double_double::DoubleDouble;
 use eomgen_model_spec::shape_table::ShapeTable;
 
 /// Minimum number of Gauss-Legendre nodes per piece. A product of two shapes has degree 6, of four

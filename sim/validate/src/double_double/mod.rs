@@ -1,15 +1,20 @@
-//! Double-double numbers of about 32 digits, for Gauss-Legendre rules and phases of mode shapes.
+//! Double-double numbers of about 32 digits, for Gauss-Legendre rules, phases of mode shapes and rounding errors of programs.
 
-use std::ops::{Add, Mul, Sub};
+mod functions;
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// Sum `high + low` with `|low|` at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct DoubleDouble {
+pub struct DoubleDouble {
+    /// Leading part.
     pub high: f64,
+    /// Rest.
     pub low: f64,
 }
 
 impl DoubleDouble {
+    /// Returns the number `value`.
     pub fn new(value: f64) -> Self {
         Self {
             high: value,
@@ -17,6 +22,7 @@ impl DoubleDouble {
         }
     }
 
+    /// Returns the exact product of two `f64`.
     pub fn product(left: f64, right: f64) -> Self {
         let high = left * right;
         Self {
@@ -64,10 +70,7 @@ impl Sub for DoubleDouble {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        self + Self {
-            high: -other.high,
-            low: -other.low,
-        }
+        self + -other
     }
 }
 
@@ -78,6 +81,31 @@ impl Mul for DoubleDouble {
         let product = Self::product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         Self::ordered_sum(product.high, product.low + cross)
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        self.quotient(other)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            high: -self.high,
+            low: -self.low,
+        }
+    }
+}
+
+impl AddAssign for DoubleDouble {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
     }
 }
 

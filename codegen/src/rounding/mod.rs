@@ -1,0 +1,57 @@
+//! Bounds of the rounding errors of a program over ranges of time, states, inputs and parameters.
+//!
+//! `scalars` lists the operations on single numbers, `analysis` bounds each number and its error over a box, with the
+//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `quantities` are what has a
+//! bound, and an `obstacle` is the reason for a missing one.
+//!
+//! The error of a quantity is the difference between the value that emitted code computes and the exact value of the same
+//! formulas. Constants, tables, time, states, inputs and parameters are exact: the numbers of the call. In single
+//! precision the coefficients are prepared in double precision and converted. Where a function jumps, both values are on
+//! the same side of the jump.
+
+mod analysis;
+mod boxes;
+mod format;
+mod obstacle;
+mod quantities;
+mod scalars;
+mod slopes;
+
+pub use analysis::{Bounded, bound_by_sensitivities, bound_numbers};
+pub use boxes::{Ranges, bound_root};
+pub use format::Format;
+pub use obstacle::{Cause, Obstacle, point_names};
+pub use quantities::{Quantity, quantities};
+pub use scalars::{Scalar, ScalarOp, Scalars};
+
+use crate::program::Program;
+
+/// Bound of the rounding error of one quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoundingBound {
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Format of the computation.
+    pub format: Format,
+    /// Bound in the unit of the quantity, or the reason for its absence.
+    pub bound: Result<f64, String>,
+}
+
+/// Bounds the rounding errors of mass matrix, velocity terms, forces and rates at all points in `ranges`, which has an
+/// entry for each component of a [point](Program::point_place).
+pub fn bound_quantities(program: &Program, format: Format, ranges: &Ranges) -> Vec<RoundingBound> {
+    let quantities = quantities(program);
+    let roots: Vec<_> = quantities.iter().map(|quantity| quantity.value).collect();
+    let scalars = Scalars::record(program, &roots, format);
+    let bound = |quantity: &Quantity| {
+        let root = scalars.element(program, quantity.value, quantity.index);
+        let bound = bound_root(&scalars, root, ranges);
+        bound.map_err(|obstacle| obstacle.describe(program, &scalars))
+    };
+    let bounds = quantities.into_iter().map(|quantity| RoundingBound {
+        bound: bound(&quantity),
+        quantity,
+        format,
+    });
+    bounds.collect()
+}
