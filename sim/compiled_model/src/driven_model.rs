@@ -628,9 +628,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
-    fn add_rate_roundings(&self, (t, y): (f64, &[f64]), length: f64, out: &mut [f64]) {
-        // The last evaluation may be that of a rejected trial.
-        self.rates(t, y, &mut vec![0.0; y.len()]);
+    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
         let degrees = self.degrees_of_freedom();
         if let Some(contacts) = &self.contacts {
             contacts.borrow().add_rate_roundings(&mut out[degrees..]);
@@ -657,7 +655,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if is_held || self.has_closed_contacts() {
             let mut rates = vec![0.0; step.end.1.len()];
             let length = step.end.0 - step.start.0;
-            self.add_rate_roundings((step.end.0, step.end.1), length, &mut rates);
+            self.add_rate_roundings(length, &mut rates);
             auditor.raise_to_roundings(&rates, length);
         }
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);

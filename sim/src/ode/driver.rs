@@ -263,9 +263,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         let mut rates = vec![0.0; self.run.stepper.current_point().y.len()];
         let length = self.run.stepper.step();
         if is_resting {
-            let here = self.run.stepper.current_point();
-            let at = (here.t, &here.y[..]);
-            self.watched.add_rate_roundings(at, length, &mut rates);
+            self.watched.add_rate_roundings(length, &mut rates);
         }
         self.run
             .stepper

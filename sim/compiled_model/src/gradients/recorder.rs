@@ -165,8 +165,8 @@ impl System for Recorder<'_> {
         self.system.write_modes(modes);
     }
 
-    fn add_rate_roundings(&self, at: (f64, &[f64]), length: f64, out: &mut [f64]) {
-        self.system.add_rate_roundings(at, length, out);
+    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
+        self.system.add_rate_roundings(length, out);
     }
 
     fn is_observing(&self) -> bool {
