@@ -628,16 +628,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
-    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
-        let degrees = self.degrees_of_freedom();
+    fn add_rate_roundings(&self, out: &mut [f64]) {
         if let Some(contacts) = &self.contacts {
+            let degrees = self.degrees_of_freedom();
             contacts.borrow().add_rate_roundings(&mut out[degrees..]);
         }
         if let Some(sliding) = &self.sliding {
             sliding.borrow().add_rate_roundings(out);
-        }
-        for place in 0..degrees {
-            out[place] += length * out[degrees + place];
         }
     }
 
@@ -654,8 +651,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let is_held = sliding.is_some_and(|sliding| !sliding.borrow().is_free());
         if is_held || self.has_closed_contacts() {
             let mut rates = vec![0.0; step.end.1.len()];
-            let length = step.end.0 - step.start.0;
-            self.add_rate_roundings(length, &mut rates);
+            self.add_rate_roundings(&mut rates);
+            let (length, degrees) = (step.end.0 - step.start.0, self.degrees_of_freedom());
+            for place in 0..degrees {
+                rates[place] = length * rates[degrees + place];
+            }
             auditor.raise_to_roundings(&rates, length);
         }
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);

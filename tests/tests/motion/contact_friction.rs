@@ -564,6 +564,7 @@ wall = { when = "a - r", restitution = "e", friction = "mu", slip = "r*dot(phi) 
     }
 }
 
+<<<<<<< HEAD
 /// The upper of two blocks at rest is held by no force, which is a difference of large ones.
 #[test]
 fn blocks_at_rest_take_the_same_steps_at_all_tolerances() {
@@ -651,6 +652,8 @@ floor = { when = "v", restitution = 0.2, friction = 0.8, slip = "dot(u)" }
     }
 }
 
+=======
+>>>>>>> parent of c5261a83 (Count the rounding of small friction forces by the limit of friction)
 #[test]
 fn block_on_moving_belt_is_carried_along() {
     let friction = r#"friction = "mu", slip = "dot(x) - w*u""#;

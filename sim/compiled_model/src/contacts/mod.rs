@@ -200,23 +200,10 @@ impl Contacts {
 
     /// Adds the roundings of the accelerations by the forces of closed contacts.
     pub fn add_rate_roundings(&self, accelerations: &mut [f64]) {
-        let forces = self.forces();
-        let normal = self.closed.iter().zip(&forces.normal);
-        let pushes = normal.map(|(place, force)| (&self.at[*place].column, force.abs()));
-        // A small force of friction is a difference of larger ones; its limit has their size.
-        let along = self
-            .closed
-            .iter()
-            .zip(&forces.normal)
-            .zip(&forces.tangential);
-        let along = along.filter_map(|((place, normal), force)| {
-            let friction = self.at[*place].friction.as_ref()?;
-            let limit = friction.coefficient * normal.abs();
-            Some((&friction.column, limit + force.abs()))
-        });
-        for (column, size) in pushes.chain(along) {
-            for (slot, entry) in accelerations.iter_mut().zip(column) {
-                *slot += f64::EPSILON * entry.abs() * size;
+        let normal = self.forces().normal;
+        for (place, force) in self.closed.iter().zip(normal) {
+            for (slot, entry) in accelerations.iter_mut().zip(&self.at[*place].column) {
+                *slot += f64::EPSILON * (entry * force).abs();
             }
         }
     }
