@@ -58,8 +58,9 @@ fn catalogue_effects_keep_shipped_specifications_valid() {
     }
     for (place, effect) in effects.iter().enumerate() {
         let homes = homes.get(&place).map_or(0, BTreeSet::len);
+        // Shipped machines with several masses in space have a weight; `effects_found` has one without.
         assert!(
-            homes > 0,
+            homes > 0 || effect.site_kind == SiteKind::Machine,
             "`{}` ({}) has no site in any shipped specification",
             effect.name,
             effect.description

@@ -564,58 +564,6 @@ wall = { when = "a - r", restitution = "e", friction = "mu", slip = "r*dot(phi) 
     }
 }
 
-<<<<<<< HEAD
-/// The upper of two blocks at rest is held by no force, which is a difference of large ones.
-#[test]
-fn blocks_at_rest_take_the_same_steps_at_all_tolerances() {
-    let model = compile(
-        r#"
-[model]
-name = "blocks"
-[parameters]
-m = { value = 1, unit = "kg" }
-M = { value = 2, unit = "kg" }
-g = { value = 10, unit = "m/s^2" }
-F = { value = 2.9, unit = "N" }
-[coordinates]
-x = { unit = "m" }
-y = { unit = "m" }
-u = { unit = "m" }
-v = { unit = "m" }
-[kinetic]
-k = "1/2*M*(dot(x)^2 + dot(y)^2) + 1/2*m*(dot(u)^2 + dot(v)^2)"
-[potential]
-weight = "M*g*y + m*g*v"
-[forces]
-push = { on = "x", value = "F" }
-[impacts]
-floor = { when = "y", restitution = 0, friction = 0.1, slip = "dot(x)" }
-top = { when = "v - y", restitution = 0, friction = 0.2, slip = "dot(u) - dot(x)" }
-"#,
-    );
-    let run = model.with_declared_parameters().unwrap();
-    let inputs = run.default_inputs();
-    let evaluations = |tolerance: f64| {
-        let request = Request {
-            initial: run.initial_state(),
-            times: &[0.0, 2.5],
-            inputs: &inputs,
-            solver: Solver::Rk,
-            tolerance,
-            max_step: f64::INFINITY,
-            audit: false,
-        };
-        let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
-        assert!(motion.early_stop.is_none(), "{tolerance:e}");
-        motion.trajectory.statistics.evaluations
-    };
-    let few = evaluations(1e-9);
-    for tolerance in [1e-11, 1e-12, 1e-14] {
-        let found = evaluations(tolerance);
-        assert!(found <= 2 * few, "{tolerance:e}: {found}, at 1e-9 {few}");
-    }
-}
-
 /// Links on a hinge fall on a floor, bounce without end while they slide, and stick. The expected end is that of the
 /// equations of motion in SciPy (DOP853, 1e-13) with impacts down to 1e-7 m/s.
 #[test]
@@ -652,8 +600,6 @@ floor = { when = "v", restitution = 0.2, friction = 0.8, slip = "dot(u)" }
     }
 }
 
-=======
->>>>>>> parent of c5261a83 (Count the rounding of small friction forces by the limit of friction)
 #[test]
 fn block_on_moving_belt_is_carried_along() {
     let friction = r#"friction = "mu", slip = "dot(x) - w*u""#;
