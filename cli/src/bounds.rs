@@ -56,8 +56,8 @@ fn ends(run: &Instance<'_>, text: &str) -> Result<(String, [f64; 2])> {
 /// Reads one end of the range of a variable or of all modes of a field.
 fn read_end(run: &Instance<'_>, name: &str, end: &str) -> Result<f64> {
     let model = run.model().model();
-    let is_parameter = |known: &str| known == name;
-    if let Some(place) = model.parameters.iter().position(|p| is_parameter(&p.name)) {
+    let mut parameters = model.parameters.iter();
+    if let Some(place) = parameters.position(|known| known.name == name) {
         let settings = settings(model, &[format!("{name}={end}")])?;
         let changed = model.with_parameters(&as_borrowed(&settings));
         let values = changed.and_then(|changed| changed.parameter_values());
@@ -66,9 +66,8 @@ fn read_end(run: &Instance<'_>, name: &str, end: &str) -> Result<f64> {
     let first = modes(run.model(), name).into_iter().next();
     let name = first.unwrap_or_else(|| name.to_owned());
     let given = split_assignments("--range", &[format!("{name}={end}")])?;
-    let values = run.read_quantities(&given)?;
-    let values = values.into_iter().map(|(_, value)| value);
-    Ok(values.sum())
+    let value = run.read_quantities(&given)?.pop();
+    Ok(value.map_or(f64::NAN, |(_, value)| value))
 }
 
 /// Returns the names of all modes, or of their rates, if `name` is that of a field; else the name itself.

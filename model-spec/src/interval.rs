@@ -138,6 +138,32 @@ impl Interval {
         }
     }
 
+    /// Returns the bounds of the derivative of a smooth function of one argument, which has the bounds `value` here;
+    /// `None` for other functions.
+    pub fn differentiate(self, function: Function, value: Self) -> Option<Self> {
+        let number = |value: f64| Self {
+            low: value,
+            high: value,
+        };
+        let one = number(1.0);
+        let apply = |function| Self::apply_function(function, &[self]);
+        Some(match function {
+            Function::Sin => apply(Function::Cos),
+            Function::Cos => apply(Function::Sin).negate(),
+            Function::Tan => one.add_interval(value.square()),
+            Function::Asin => one.subtract(self.square()).raise(-0.5),
+            Function::Acos => one.subtract(self.square()).raise(-0.5).negate(),
+            Function::Atan => one.add_interval(self.square()).reciprocal(),
+            Function::Sinh => apply(Function::Cosh),
+            Function::Cosh => apply(Function::Sinh),
+            Function::Tanh => one.subtract(value.square()),
+            Function::Exp => value,
+            Function::Ln => self.reciprocal(),
+            Function::Sqrt => value.reciprocal().multiply(number(0.5)),
+            _ => return None,
+        })
+    }
+
     fn magnitude(self) -> Self {
         let high = self.low.abs().max(self.high.abs());
         let low = if self.low > 0.0 || self.high < 0.0 {

@@ -232,7 +232,7 @@ pub struct Validate {
     /// for --bounds, or one value. Numbers are as for --state and --set. Repeatable.
     #[arg(long, value_name = "NAME=LOW:HIGH", requires = "bounds")]
     pub range: Vec<String>,
-    /// State for --bounds: all variables without --range have its values. As for `linearise`; `--state t=0` alone is the
+    /// State for --bounds: all variables without --range have its values. As for `linearise`; `--state t=0` selects the
     /// initial state.
     #[arg(long, value_name = "NAME=EXPR|trim", requires = "bounds", alias = "at")]
     pub state: Vec<String>,

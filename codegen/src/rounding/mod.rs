@@ -1,12 +1,12 @@
 //! Bounds of the rounding errors of a program over ranges of time, states, inputs and parameters.
 //!
 //! `scalars` lists the operations on single numbers, `analysis` bounds each number and its error over a box, with the
-//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `quantities` are what has a
-//! bound, and an `obstacle` is the reason for a missing one.
+//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `quantities` lists the
+//! numbers with a bound, and `obstacle` describes the reason for a missing one.
 //!
 //! The error of a quantity is the difference between the value that emitted code computes and the exact value of the same
 //! formulas. Constants, tables, time, states, inputs and parameters are exact: the numbers of the call. In single
-//! precision the coefficients are prepared in double precision and converted. Where a function jumps, both values are on
+//! precision the coefficients are prepared in double precision and converted. If a function jumps, both values are on
 //! the same side of the jump.
 
 mod analysis;

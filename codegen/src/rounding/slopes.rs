@@ -84,29 +84,19 @@ pub(super) fn find_obstacle(
 /// Returns the derivatives by both arguments; for piecewise functions, bounds of all difference quotients on one side of
 /// the jumps.
 pub(super) fn slopes(function: Function, x: Interval, y: Interval) -> [Interval; 2] {
-    let apply = |function| Interval::apply_function(function, &[x]);
-    let by_first = match function {
-        Function::Sin => apply(Function::Cos),
-        Function::Cos => apply(Function::Sin).negate(),
-        Function::Tan => ONE.add_interval(apply(Function::Tan).square()),
-        Function::Asin => ONE.subtract(x.square()).raise(-0.5),
-        Function::Acos => ONE.subtract(x.square()).raise(-0.5).negate(),
-        Function::Atan => ONE.add_interval(x.square()).reciprocal(),
-        Function::Sinh => apply(Function::Cosh),
-        Function::Cosh => apply(Function::Sinh),
-        Function::Tanh => ONE.subtract(apply(Function::Tanh).square()),
-        Function::Exp => apply(Function::Exp),
-        Function::Ln => x.reciprocal(),
-        Function::Sqrt => apply(Function::Sqrt).reciprocal().multiply(number(0.5)),
-        Function::Abs if x.low >= 0.0 => ONE,
-        Function::Abs if x.high <= 0.0 => ONE.negate(),
-        Function::Abs => ONE.negate().hull(ONE),
-        Function::Sign | Function::Above | Function::Contact => ZERO,
+    if let Some(slope) = x.differentiate(function, Interval::apply_function(function, &[x])) {
+        return [slope, ZERO];
+    }
+    match function {
+        Function::Abs if x.low >= 0.0 => [ONE, ZERO],
+        Function::Abs if x.high <= 0.0 => [ONE.negate(), ZERO],
+        Function::Abs => [ONE.negate().hull(ONE), ZERO],
         Function::Atan2 | Function::Min | Function::Max | Function::Deadzone => {
-            return slopes_of_two(function, x, y);
+            slopes_of_two(function, x, y)
         }
-    };
-    [by_first, ZERO]
+        // The functions that jump.
+        _ => [ZERO, ZERO],
+    }
 }
 
 fn slopes_of_two(function: Function, x: Interval, y: Interval) -> [Interval; 2] {

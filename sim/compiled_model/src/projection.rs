@@ -68,6 +68,7 @@ impl Projection {
         most: usize,
     ) -> Option<u64> {
         let degrees = own.program().degrees_of_freedom();
+        let mut rates = [(); 3].map(|()| vec![0.0; state.len()]);
         for correction in 1..=most as u64 {
             let [largest, largest_rate] = [0, 1].map(|kind| {
                 let entries = state[kind * degrees..(kind + 1) * degrees].iter();
@@ -75,13 +76,15 @@ impl Projection {
                     most.max(entry.abs())
                 })
             });
-            let [of_values, of_rates] = self.corrections(own, Point { t, state, inputs })?;
+            let point = Point { t, state, inputs };
+            let [_, of_values, of_rates] = self.corrections(own, point, &mut rates)?;
             let mut relative = 0.0_f64;
             for row in 0..degrees {
-                relative = relative.max(of_values[row].abs() / largest);
-                relative = relative.max(of_rates[row].abs() / largest_rate.max(largest));
-                state[row] -= of_values[row];
-                state[degrees + row] -= of_rates[row];
+                let (of_value, of_rate) = (of_values[row], of_rates[row]);
+                relative = relative.max(of_value.abs() / largest);
+                relative = relative.max(of_rate.abs() / largest_rate.max(largest));
+                state[row] -= of_value;
+                state[degrees + row] -= of_rate;
             }
             if relative <= LAST_CORRECTION_FRACTION {
                 return Some(3 * correction);
@@ -90,57 +93,60 @@ impl Projection {
         None
     }
 
-    /// Returns the corrections P g of the coordinates and P r of their rates; `None` if one is not finite.
-    fn corrections(&self, own: &mut Evaluator, point: Point<'_>) -> Option<[Vec<f64>; 2]> {
-        let found = self.corrections_at(own, point);
-        if is_finite(&found) {
-            return Some(found);
+    /// Computes the corrections P g of the coordinates and P r of their rates in the memory of three rates, and returns
+    /// it, with the corrections second and third; `None` if one is not finite.
+    fn corrections<'r>(
+        &self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        rates: &'r mut [Vec<f64>; 3],
+    ) -> Option<&'r [Vec<f64>; 3]> {
+        let degrees = own.program().degrees_of_freedom();
+        self.compute_corrections(own, point, rates);
+        if is_finite(rates, degrees) {
+            return Some(rates);
         }
         // A force along v/norm(v) has no value at rest. P g and P r do not depend on forces, and r is linear in the
         // rates, so that two points with other rates determine both.
-        let degrees = own.program().degrees_of_freedom();
         let mut moved = point.state.to_vec();
-        let mut corrections_near = |multiple: f64| {
+        let mut compute_near = |multiple: f64, rates: &mut [Vec<f64>; 3]| {
             for row in 0..degrees {
                 let part = 1.0 + (GOLDEN_RATIO * row as f64).fract();
                 moved[degrees + row] =
                     point.state[degrees + row] + multiple * part * self.unmoved_sizes[1];
             }
-            self.corrections_at(
-                own,
-                Point {
-                    state: &moved,
-                    ..point
-                },
-            )
+            let state = &moved;
+            self.compute_corrections(own, Point { state, ..point }, rates);
         };
-        let [near, far] = [corrections_near(1.0), corrections_near(2.0)];
-        let extrapolate = |(near, far): (&Vec<f64>, &Vec<f64>)| {
-            let pairs = near.iter().zip(far);
-            pairs.map(|(near, far)| 2.0 * near - far).collect()
-        };
-        let found = [0, 1].map(|kind| extrapolate((&near[kind], &far[kind])));
-        is_finite(&found).then_some(found)
+        compute_near(2.0, rates);
+        let far = rates.clone();
+        compute_near(1.0, rates);
+        for (near, far) in rates.iter_mut().flatten().zip(far.iter().flatten()) {
+            *near = 2.0 * *near - far;
+        }
+        is_finite(rates, degrees).then_some(rates)
     }
 
-    fn corrections_at(&self, own: &mut Evaluator, point: Point<'_>) -> [Vec<f64>; 2] {
+    fn compute_corrections(
+        &self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        rates: &mut [Vec<f64>; 3],
+    ) {
         let degrees = own.program().degrees_of_freedom();
-        let mut rates = [(); 3].map(|()| vec![0.0; point.state.len()]);
-        let [here, plus, minus] = &mut rates;
+        let [here, plus, minus] = rates;
         own.rates(point, here);
         self.positive_rate_model.borrow_mut().rates(point, plus);
         self.negative_rate_model.borrow_mut().rates(point, minus);
-        let mut found = [(); 2].map(|()| Vec::with_capacity(degrees));
-        for row in degrees..2 * degrees {
-            let of_rate = (minus[row] - plus[row]) / (4.0 * LARGE_RATE_PER_S);
-            let mean = 0.5 * (plus[row] + minus[row]);
-            let of_value = (here[row] + 2.0 * self.stabilisation_rate * of_rate - mean)
+        for row in 0..degrees {
+            let place = degrees + row;
+            let of_rate = (minus[place] - plus[place]) / (4.0 * LARGE_RATE_PER_S);
+            let mean = 0.5 * (plus[place] + minus[place]);
+            let of_value = (here[place] + 2.0 * self.stabilisation_rate * of_rate - mean)
                 / (LARGE_RATE_PER_S * LARGE_RATE_PER_S
                     - self.stabilisation_rate * self.stabilisation_rate);
-            found[0].push(of_value);
-            found[1].push(of_rate);
+            (plus[row], minus[row]) = (of_value, of_rate);
         }
-        found
     }
 
     /// Corrects a state after a step and returns the number of evaluations. If the correction
@@ -170,7 +176,8 @@ impl Projection {
     }
 }
 
-fn is_finite(corrections: &[Vec<f64>; 2]) -> bool {
-    let mut all = corrections.iter().flatten();
+fn is_finite(corrections: &[Vec<f64>; 3], degrees: usize) -> bool {
+    let [_, of_values, of_rates] = corrections;
+    let mut all = of_values[..degrees].iter().chain(&of_rates[..degrees]);
     all.all(|correction| correction.is_finite())
 }

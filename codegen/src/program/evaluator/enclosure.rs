@@ -248,23 +248,12 @@ fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosur
 
 /// Returns the bounds of the derivative of a function at arguments in `x`, where it has the values `value`.
 fn slope(function: Function, x: Interval, value: Interval) -> Interval {
-    let apply = |function| Interval::apply_function(function, &[x]);
-    match function {
-        Function::Sin => apply(Function::Cos),
-        Function::Cos => apply(Function::Sin).negate(),
-        Function::Asin => ONE.subtract(x.square()).raise(-0.5),
-        Function::Acos => ONE.subtract(x.square()).raise(-0.5).negate(),
-        Function::Atan => ONE.add_interval(x.square()).reciprocal(),
-        Function::Sinh => apply(Function::Cosh),
-        Function::Cosh => apply(Function::Sinh),
-        Function::Tanh => ONE.subtract(value.square()),
-        Function::Exp => value,
-        Function::Ln => x.reciprocal(),
-        Function::Sqrt => value.reciprocal().multiply(exact(0.5)),
+    let smooth = x.differentiate(function, value);
+    smooth.unwrap_or(match function {
         Function::Abs => ONE.hull(ONE.negate()),
         Function::Sign | Function::Above if x.low > 0.0 || x.high < 0.0 => ZERO,
         _ => Interval::ALL,
-    }
+    })
 }
 
 fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {

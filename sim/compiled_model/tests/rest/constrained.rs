@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::rows::Numbers;
 use eomgen_compiled_model::Solver;
 
+use super::rows::Numbers;
 use super::{GENERAL, grid, of_text, simulated};
 
 /// Bead on a straight wire with dry friction.

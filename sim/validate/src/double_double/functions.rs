@@ -21,8 +21,8 @@ const LN_2: [f64; 3] = [
     5.707_708_438_416_212e-34,
 ];
 
-const ZERO: DoubleDouble = whole(0.0);
-const ONE: DoubleDouble = whole(1.0);
+const ZERO: DoubleDouble = DoubleDouble::new(0.0);
+const ONE: DoubleDouble = DoubleDouble::new(1.0);
 
 /// Number of terms of the series, enough for arguments up to 0.8.
 const TERMS: usize = 34;
@@ -30,20 +30,13 @@ const TERMS: usize = 34;
 /// Largest whole exponent of a power by multiplications.
 const LARGEST_WHOLE: f64 = 64.0;
 
-const fn whole(number: f64) -> DoubleDouble {
-    DoubleDouble {
-        high: number,
-        low: 0.0,
-    }
-}
-
 impl DoubleDouble {
     fn is_greater(self, other: Self) -> bool {
         (self - other).high > 0.0
     }
 
     fn half(self) -> Self {
-        self * whole(0.5)
+        self * DoubleDouble::new(0.5)
     }
 
     /// Subtracts the multiple `count` of a sum of three numbers.
@@ -66,7 +59,7 @@ impl DoubleDouble {
                 0 => 1.0,
                 _ => sign,
             };
-            term = term * self * whole(flip) / whole((n + 1) as f64);
+            term = term * self * DoubleDouble::new(flip) / DoubleDouble::new((n + 1) as f64);
         }
         [even, odd]
     }
@@ -87,12 +80,12 @@ impl DoubleDouble {
         let doublings = (self.high * consts::LOG2_E).round();
         let [even, odd] = self.reduce(doublings, LN_2).series(1.0);
         let half = (doublings / 2.0).trunc();
-        let scale = |doublings: f64| whole(2.0_f64.powi(doublings as i32));
+        let scale = |doublings: f64| DoubleDouble::new(2.0_f64.powi(doublings as i32));
         (even + odd) * scale(half) * scale(doublings - half)
     }
 
     fn logarithm(self) -> Self {
-        let first = whole(self.high.ln());
+        let first = DoubleDouble::new(self.high.ln());
         first + (self * (-first).exponential() - ONE)
     }
 
@@ -100,7 +93,7 @@ impl DoubleDouble {
         match self.high == 0.0 {
             true => ZERO,
             false => {
-                let first = whole(self.high.sqrt());
+                let first = DoubleDouble::new(self.high.sqrt());
                 first + (self - first * first) / (first + first)
             }
         }
@@ -108,7 +101,7 @@ impl DoubleDouble {
 
     /// Returns the angle of the point with this ordinate.
     fn angle(self, abscissa: Self) -> Self {
-        let first = whole(self.high.atan2(abscissa.high));
+        let first = DoubleDouble::new(self.high.atan2(abscissa.high));
         let [sine, cosine] = first.sine_and_cosine();
         let rest = self * cosine - abscissa * sine;
         first + rest / (abscissa * cosine + self * sine)
@@ -138,7 +131,7 @@ impl DoubleDouble {
 
 impl Number for DoubleDouble {
     fn constant(value: f64) -> Self {
-        whole(value)
+        DoubleDouble::new(value)
     }
 
     fn call(function: Function, a: Self, b: Self) -> Self {
@@ -197,7 +190,7 @@ impl Number for DoubleDouble {
     fn positive(self) -> Self {
         match self.high > 0.0 {
             true => self,
-            false => whole(f64::NAN),
+            false => DoubleDouble::new(f64::NAN),
         }
     }
 }
@@ -218,15 +211,15 @@ mod tests {
     #[test]
     fn identities_hold_to_29_digits() {
         for place in 1..40 {
-            let x = whole(0.173 * f64::from(place)) / whole(3.0);
+            let x = DoubleDouble::new(0.173 * f64::from(place)) / DoubleDouble::new(3.0);
             let [sine, cosine] = [Function::Sin, Function::Cos].map(|f| call(f, x));
             assert_small(sine * sine + cosine * cosine - ONE, "circle");
             let triple = call(Function::Sin, x + x + x);
-            let cube = whole(3.0) * sine - whole(4.0) * sine * sine * sine;
+            let cube = DoubleDouble::new(3.0) * sine - DoubleDouble::new(4.0) * sine * sine * sine;
             assert_small(triple - cube, "three times the angle");
             let back = Number::call(Function::Atan2, sine, cosine);
             assert_small(call(Function::Sin, back) - sine, "angle");
-            let inner = sine * whole(0.9);
+            let inner = sine * DoubleDouble::new(0.9);
             assert_small(
                 call(Function::Sin, call(Function::Asin, inner)) - inner,
                 "asin",
@@ -236,7 +229,7 @@ mod tests {
                 "acos",
             );
             assert_small(call(Function::Ln, call(Function::Exp, x)) - x, "ln");
-            let power = x.power(ONE / whole(3.0));
+            let power = x.power(ONE / DoubleDouble::new(3.0));
             assert_small(power * power * power - x, "cube root");
             let root = call(Function::Sqrt, x);
             assert_small(root * root - x, "root");
@@ -257,7 +250,7 @@ mod tests {
         ] {
             for x in [-3.0, -0.7, 0.0, 0.2, 1.1, 40.0] {
                 let expected: f64 = Number::call(function, x, x);
-                let found = call(function, whole(x));
+                let found = call(function, DoubleDouble::new(x));
                 assert!(
                     (found.high - expected).abs() <= 1e-15 * expected.abs(),
                     "{function:?} at {x}: {found:?}, not {expected}"
@@ -272,8 +265,13 @@ mod tests {
                 Function::Max,
             ] {
                 let expected: f64 = Number::call(function, p, b);
-                let found = DoubleDouble::call(function, whole(p), whole(b));
-                assert_eq!(found, whole(expected), "{function:?} of {p} and {b}");
+                let found =
+                    DoubleDouble::call(function, DoubleDouble::new(p), DoubleDouble::new(b));
+                assert_eq!(
+                    found,
+                    DoubleDouble::new(expected),
+                    "{function:?} of {p} and {b}"
+                );
             }
         }
     }

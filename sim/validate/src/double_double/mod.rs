@@ -15,7 +15,7 @@ pub struct DoubleDouble {
 
 impl DoubleDouble {
     /// Returns the number `value`.
-    pub fn new(value: f64) -> Self {
+    pub const fn new(value: f64) -> Self {
         Self {
             high: value,
             low: 0.0,

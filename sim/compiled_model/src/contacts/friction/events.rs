@@ -16,9 +16,9 @@ const MAX_STILL_FRACTION: f64 = 1e-9;
 const NEAR_ROUNDINGS: f64 = 1e3;
 
 impl Contacts {
-    /// Changes the modes of the closed contacts, evaluated at `point`, if a guard of theirs is negative: contacts that no longer push open,
-    /// sliding ends at zero slip, and rest ends at the limit of friction. `located` is the point whose rounding decides
-    /// where contacts open.
+    /// Changes the modes of the closed contacts, evaluated at `point`, if a guard of theirs is negative: contacts that
+    /// no longer push open, sliding ends at zero slip, and rest ends at the limit of friction. `located` is the point
+    /// whose rounding decides where contacts open.
     ///
     /// # Errors
     /// No forces satisfy the law of friction.
