@@ -1,0 +1,74 @@
+//! Loops of libgcc with limits that follow from the number format.
+
+use std::collections::BTreeMap;
+
+use eomgen_model_spec::source::sha256;
+
+use crate::listing::{Listing, Place};
+use crate::state::State;
+use crate::value::{Flags, UNKNOWN};
+
+/// Loop that shifts the fraction of a subnormal number to the left until its highest bit is set.
+struct Normalisation {
+    /// Distance of the jump back from the beginning of the function, in bytes.
+    jump: u64,
+    /// Registers that the loop writes.
+    registers: [u8; 3],
+}
+
+/// Product of doubles, and the loops that the quotient shares with it.
+const PRODUCT: &str = "__aeabi_dmul";
+
+/// SHA-256 of the hexadecimal digits of [`PRODUCT`] in libgcc for processors with Thumb-2 (`ieee754-df.S`).
+const PRODUCT_SHA256: &str = "c857296badd9bae22602656ca7dfb3d4aa7811313f81a2303da86db86219893d";
+
+const NORMALISATIONS: [Normalisation; 2] = [
+    Normalisation {
+        jump: 0x1b4,
+        registers: [0, 1, 4],
+    },
+    Normalisation {
+        jump: 0x1d4,
+        registers: [2, 3, 5],
+    },
+];
+
+/// Instructions of such a loop, from `lsls` to `beq`.
+const INSTRUCTIONS: u64 = 6;
+
+/// Largest number of iterations: bits of the fraction. The function enters the loop only for numbers that are not 0.
+const ITERATIONS: u64 = 52;
+
+/// Loop with a known limit.
+#[derive(Clone, Copy, Debug)]
+pub struct KnownLoop {
+    registers: [u8; 3],
+    /// Largest number of instructions after the first iteration.
+    pub repeated_instructions: u64,
+}
+
+impl KnownLoop {
+    /// Forgets what the loop changes.
+    pub fn forget(self, state: &mut State) {
+        for register in self.registers {
+            state.set(register, UNKNOWN);
+        }
+        state.flags = Flags::default();
+    }
+}
+
+/// Returns the loops with known limits by the places of their jumps back.
+pub fn known_loops(listing: &Listing) -> BTreeMap<Place, KnownLoop> {
+    let product = listing.functions.get(PRODUCT);
+    let product = product.filter(|product| sha256(listing.bytes(**product)) == PRODUCT_SHA256);
+    let loops = product.into_iter().flat_map(|product| {
+        NORMALISATIONS.iter().map(|known| {
+            let limit = KnownLoop {
+                registers: known.registers,
+                repeated_instructions: (ITERATIONS - 1) * INSTRUCTIONS,
+            };
+            (product.place + known.jump, limit)
+        })
+    });
+    loops.collect()
+}
