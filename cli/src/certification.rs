@@ -4,6 +4,7 @@ use eomgen_validate::certificate::{Certificate, Check, SkipKind, Verdict};
 use eomgen_validate::rounding::Bounds;
 
 use crate::error::{Error, Result};
+use crate::instruction_table::table;
 
 pub fn document(certificate: &Certificate) -> Result<String> {
     let text = serde_json::to_string_pretty(certificate)
@@ -28,6 +29,9 @@ pub fn summary(certificate: &Certificate) -> String {
     }
     if let Some(bounds) = &certificate.bounds {
         text.push_str(&bounds_table(bounds));
+    }
+    for bounds in &certificate.instructions {
+        text.push_str(&table(bounds));
     }
     text.push_str(match certificate.verdict {
         Verdict::Passed => "passed\n",

@@ -20,6 +20,7 @@ mod family;
 mod field_shapes;
 mod figures;
 mod history;
+mod instruction_table;
 mod linearisation;
 mod mode_figure;
 mod model;
@@ -67,6 +68,7 @@ fn main() -> ExitCode {
         Command::Family(options) => commands::family::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
         Command::Identify(options) => commands::identify::run(&options),
+        Command::Instructions(options) => commands::instructions::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
         Command::Linearise(options) => commands::linearise::run(&options),

@@ -14,8 +14,8 @@ use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
 pub use models::{
-    Check, Derive, Extra, Family, Format, Generate, Identify, Packaging, Page, Target, Validate,
-    Verify,
+    Check, Derive, Extra, Family, Format, Generate, Identify, Instructions, Packaging, Page,
+    Target, Validate, Verify,
 };
 pub use motions::{Linearise, Modes, Simulate, Trim};
 pub use paper::{Claims, ModeShapes, Paper, Study, StudyName, Tour};
@@ -94,6 +94,11 @@ pub enum Command {
         after_help = "Examples:\n  eomgen identify firmware.elf\n  eomgen identify firmware.bin --certificates models"
     )]
     Identify(Identify),
+    /// Bound the executed instructions and the stack of each function of a C file, compiled for a Cortex-M4F or Cortex-M7.
+    #[command(
+        after_help = "Example:\n  eomgen instructions arm4/planetary_arm.c --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
+    )]
+    Instructions(Instructions),
     /// Check the derived equations against independent ones and write a certificate.
     #[command(
         after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json\n  eomgen validate model-spec/models/pendulum.toml --bounds --range theta=-pi:pi --range theta_dot=-10:10"

@@ -156,6 +156,15 @@ pub struct Generate {
     /// Write `certificate.json` (see `eomgen validate`) to the same folder; exit with status 1 if a check fails.
     #[arg(long)]
     pub certify: bool,
+    /// Also state bounds of the instructions and the stack of each function in the certificate, for a cross compiler with its
+    /// options (see `eomgen instructions`). Repeatable.
+    #[arg(
+        long,
+        value_name = "COMMAND",
+        requires = "certify",
+        allow_hyphen_values = true
+    )]
+    pub instructions: Vec<String>,
     /// Regenerate the variants of `generated/family.toml` and their certificates, as `eomgen family`; run it in the
     /// project's folder.
     #[arg(long, conflicts_with_all = ["spec", "out", "order", "set", "with", "target", "packaging", "certify"])]
@@ -209,6 +218,18 @@ pub struct Identify {
     /// Folder with certificates: names the certificate of each variant; exit with status 1 if one is missing.
     #[arg(long, value_name = "DIR")]
     pub certificates: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: Json,
+}
+
+/// Options of `instructions`.
+#[derive(Args)]
+pub struct Instructions {
+    /// C file, with its headers in the same folder.
+    pub file: PathBuf,
+    /// Cross compiler (GCC) with its options, as in your build.
+    #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
+    pub cc: String,
     #[command(flatten)]
     pub output: Json,
 }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use eomgen_codegen::variant::Variant;
 use eomgen_validate::certificate::Certificate;
-use eomgen_validate::model_certificate::certify_sources;
+use eomgen_validate::instructions::InstructionBounds;
+use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::json;
 
 use crate::arguments::{Extra, Generate, Packaging};
@@ -88,7 +89,11 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     }
     let mut certificate = None;
     if options.certify {
-        certificate = Some(certify_sources(&model, &orders, &outputs, &sources)?);
+        let instructions = instruction_bounds(&sources, &options.instructions)?;
+        certificate = Some(Certificate {
+            instructions,
+            ..certify_sources(&model, &orders, &outputs, &sources)?
+        });
     }
     let mut files = Vec::new();
     for (name, contents) in &emitted {
@@ -127,6 +132,28 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         }
     }
     certificate.as_ref().map_or(Ok(()), judge)
+}
+
+/// Bounds the functions of emitted C with each of the compilers.
+///
+/// # Errors
+/// Another target, and a compiler that cannot compile the source.
+fn instruction_bounds(sources: &Sources, commands: &[String]) -> Result<Vec<InstructionBounds>> {
+    if !commands.is_empty() && sources.c.is_empty() {
+        return Err(Error::input(
+            "--instructions needs --target c99: it compiles the emitted C",
+        ));
+    }
+    let mut bounds = Vec::new();
+    for command in commands {
+        for source in &sources.c {
+            let of_source = InstructionBounds::of_source(source, command);
+            bounds.push(of_source.map_err(|message| {
+                Error::input(format!("--instructions {command:?}: {message}"))
+            })?);
+        }
+    }
+    Ok(bounds)
 }
 
 /// Fails with exit status 1 if a check failed or was not run.

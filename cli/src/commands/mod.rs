@@ -9,6 +9,7 @@ pub mod discover;
 pub mod family;
 pub mod generate;
 pub mod identify;
+pub mod instructions;
 pub mod linearise;
 pub mod man;
 pub mod merge;

@@ -8,6 +8,7 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
 use eomgen_validate::certificate::CSourceHashes;
 use eomgen_validate::certify::CCompiler;
+use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::{Value, json};
 
@@ -38,10 +39,12 @@ pub fn run(options: &Verify) -> Result {
     let mut document =
         serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
     certificate.compare_statements(&document, &options.certificate)?;
+    let bounds = certificate.repeat_bounds(&sources)?;
     if options.output.json {
         document["schema"] = json!(SCHEMA);
         document["file"] = json!(options.file.display().to_string());
         document["hash"] = json!({"expected": expected, "found": found, "same": is_same});
+        document["instructions"] = json!(bounds.found);
         document["passed"] = json!(repeated.passed && is_same);
         print_json(&document)?;
     } else {
@@ -52,7 +55,7 @@ pub fn run(options: &Verify) -> Result {
             }
             false => format!("hash: DIFFERENT, {found} instead of {expected}\n"),
         };
-        print_text(&(summary(&repeated) + &hash))?;
+        print_text(&(summary(&repeated) + &bounds.text + &hash))?;
     }
     if !is_same {
         warn(&format!(
@@ -64,6 +67,15 @@ pub fn run(options: &Verify) -> Result {
         true => Ok(()),
         false => Err(Error::Failed),
     }
+}
+
+/// Bounds of instructions and stack that were computed again.
+#[derive(Default)]
+struct RepeatedBounds {
+    /// Bounds that equal those of the certificate.
+    found: Vec<InstructionBounds>,
+    /// Line per compiler.
+    text: String,
 }
 
 /// Content of a certificate that decides its checks.
@@ -159,6 +171,52 @@ impl Certificate {
     /// Returns the hashes of the C with this prefix.
     fn c_source(&self, name: &str) -> Option<&CSourceHashes> {
         self.c_sources.iter().find(|source| source.name == name)
+    }
+
+    /// Compiles the C again with the compilers of the certificate's bounds of instructions and stack, and compares.
+    ///
+    /// # Errors
+    /// Bounds that differ although the compiler is the same.
+    fn repeat_bounds(&self, sources: &Sources) -> Result<RepeatedBounds> {
+        let mut repeated = RepeatedBounds::default();
+        let stated = match &self.document["instructions"] {
+            Value::Null => return Ok(repeated),
+            stated => serde_json::from_value::<Vec<InstructionBounds>>(stated.clone()),
+        };
+        let stated = stated
+            .map_err(|error| Error::input(format!("`instructions` of the certificate: {error}")))?;
+        for stated in stated {
+            let InstructionBounds {
+                source,
+                command,
+                compiler,
+                functions,
+                ..
+            } = stated;
+            let mut given = sources.c.iter();
+            let found = match given.find(|given| format!("{}.c", given.name) == source) {
+                Some(given) => InstructionBounds::of_source(given, &command),
+                None => Err(format!("the bounds are those of {source}")),
+            };
+            let result = match found {
+                Err(reason) => format!("NOT RUN ({reason})"),
+                Ok(found) if found.compiler != compiler => format!(
+                    "NOT RUN (this compiler is {}, that of the certificate {compiler})",
+                    found.compiler
+                ),
+                Ok(found) if found.functions == functions => {
+                    repeated.found.push(found);
+                    "as certified".to_owned()
+                }
+                Ok(_) => {
+                    return Err(Error::Stopped(format!(
+                        "the bounds of instructions and stack with `{command}` are not those of the certificate"
+                    )));
+                }
+            };
+            repeated.text += &format!("instructions and stack: {result}, {command}\n");
+        }
+        Ok(repeated)
     }
 
     /// Compares what the certificate states with the repeated certificate.

@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 pub use crate::coverage::Coverage;
+use crate::instructions::InstructionBounds;
 use crate::rounding::Bounds;
 
 /// Version of the certificate format.
@@ -46,6 +47,9 @@ pub struct Certificate {
     /// Bounds of rounding errors, if they were requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
+    /// Bounds of the instructions and the stack of the emitted C, if they were requested.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub instructions: Vec<InstructionBounds>,
     /// Text of the specification, complete with the files that it extends.
     pub specification: String,
 }
@@ -198,6 +202,7 @@ impl Certificate {
             coverage,
             checks,
             bounds: None,
+            instructions: Vec::new(),
         }
     }
 

@@ -6,7 +6,8 @@
 //! [`outputs::Outputs`] with the oracle, and a [`compiler`] builds the emitted source. Hand-written
 //! equations of known machines are [`mod@references`]. [`certify`](certify::certify) runs all checks
 //! and writes the [`certificate`]; [`model_certificate`] certifies a model with its emitted source.
-//! [`meaning`] describes the checks in words. [`rounding`] bounds the rounding errors of a variant.
+//! [`meaning`] describes the checks in words. [`rounding`] bounds the rounding errors of a variant,
+//! [`instructions`] the instructions and the stack of its compiled C.
 //!
 //! Example: residuals of the oracle's own accelerations of a pendulum.
 //!
@@ -35,6 +36,7 @@ pub mod derived_outputs;
 mod differences;
 pub mod double_double;
 mod feasibility;
+pub mod instructions;
 pub mod meaning;
 pub mod model_certificate;
 pub mod oracle;

@@ -8,6 +8,7 @@ mod closed_loop;
 mod families;
 mod family_interface;
 mod header_only;
+mod instruction_bounds;
 mod machine_code;
 mod misra;
 mod regimes;

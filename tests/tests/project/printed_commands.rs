@@ -40,7 +40,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// Commands that another test runs, with its file.
-const TESTED_ELSEWHERE: [(&str, &str); 22] = [
+const TESTED_ELSEWHERE: [(&str, &str); 23] = [
     // The test compiles an image with two variants and lists them.
     (
         "cargo run --release -- identify firmware.elf ",
@@ -77,6 +77,11 @@ const TESTED_ELSEWHERE: [(&str, &str); 22] = [
     (
         "cargo run --release -- paper claims ",
         "tests/tests/paper/study_search.rs",
+    ),
+    // The test bounds several machines and compares with the emulator.
+    (
+        "cargo run --release -- instructions ",
+        "tests/tests/emission/instruction_bounds.rs",
     ),
     // The test runs all four studies.
     (

@@ -104,7 +104,15 @@ fn help_succeeds_and_has_an_example() {
     assert!(run_accepted(&["--help"]).contains("simulate"));
     assert!(run_accepted(&["--version"]).starts_with("eomgen "));
     for command in COMMANDS.into_iter().chain([
-        "family", "verify", "identify", "dataset", "sweep", "merge", "paper", "tour",
+        "family",
+        "verify",
+        "identify",
+        "instructions",
+        "dataset",
+        "sweep",
+        "merge",
+        "paper",
+        "tour",
     ]) {
         let help = run_accepted(&[command, "--help"]);
         // The usage line contains the command, too.
