@@ -7,6 +7,7 @@ use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_targets::emit;
 use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::Sources;
 
 use crate::arguments::{Extra, Packaging, Target};
@@ -104,6 +105,11 @@ pub fn header_only_source(
 ) -> CSource {
     let source = format!("#define {name}_IMPLEMENTATION\n{header}");
     c_source(name, (source, header), outputs, compiler)
+}
+
+/// Bounds the functions of emitted C with a cross compiler.
+pub fn instructions(source: &CSource, command: &str) -> Result<InstructionBounds, String> {
+    InstructionBounds::of_source(&source.name, (&source.source, &source.header), command)
 }
 
 /// Returns the outputs to derive for the requested target.

@@ -147,8 +147,8 @@ fn instruction_bounds(sources: &Sources, commands: &[String]) -> Result<Vec<Inst
     let mut bounds = Vec::new();
     for command in commands {
         for source in &sources.c {
-            let of_source = InstructionBounds::of_source(source, command);
-            bounds.push(of_source.map_err(|message| {
+            let bounded = emission::instructions(source, command);
+            bounds.push(bounded.map_err(|message| {
                 Error::input(format!("--instructions {command:?}: {message}"))
             })?);
         }

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use crate::arguments::Verify;
 use crate::certification::summary;
 use crate::document::SCHEMA;
-use crate::emission::{c_source, header_only_source};
+use crate::emission::{c_source, header_only_source, instructions};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::progress::Note;
 
@@ -195,7 +195,7 @@ impl Certificate {
             } = stated;
             let mut given = sources.c.iter();
             let found = match given.find(|given| format!("{}.c", given.name) == source) {
-                Some(given) => InstructionBounds::of_source(given, &command),
+                Some(given) => instructions(given, &command),
                 None => Err(format!("the bounds are those of {source}")),
             };
             let result = match found {

@@ -1,9 +1,9 @@
 //! Instructions of the integer unit.
 
 use crate::instruction::Instruction;
+use crate::jump::{Step, assign};
 use crate::operand::Operand;
 use crate::state::State;
-use crate::step::{Step, assign, register};
 use crate::value::{
     Flags, Shift, UNKNOWN, Value, add, and, complement, opaque, or, shift, subtract, xor,
 };
@@ -40,7 +40,7 @@ pub fn compute(of: &Instruction, state: &mut State) -> Option<Step> {
     let carry = state.flags.c;
     if matches!(name, "umull" | "umlal" | "smull" | "smlal") {
         for result in 0..2 {
-            state.set(register(of, result)?, UNKNOWN);
+            state.set(of.register(result)?, UNKNOWN);
         }
         return (!of.sets_flags).then_some(Step::Next);
     }
@@ -50,11 +50,11 @@ pub fn compute(of: &Instruction, state: &mut State) -> Option<Step> {
             _ => None,
         });
         let value = opaque(&inputs.collect::<Vec<_>>());
-        state.set(register(of, 0)?, value);
+        state.set(of.register(0)?, value);
         return (!of.sets_flags).then_some(Step::Next);
     }
     if matches!(name, "movw" | "movt") {
-        let number = register(of, 0)?;
+        let number = of.register(0)?;
         let value = match (&of.symbol, of.operands.get(1), name) {
             (Some(_), _, _) => UNKNOWN,
             (None, Some(Operand::Number(bits)), "movw") => Value::number(*bits),
@@ -75,7 +75,7 @@ pub fn compute(of: &Instruction, state: &mut State) -> Option<Step> {
         .count();
     // Of two operands the first one is the result, too.
     let last = count.checked_sub(1)?;
-    let left = state.register(register(of, last.checked_sub(1)?)?);
+    let left = state.register(of.register(last.checked_sub(1)?)?);
     let (right, moved_carry) = second(of, last, state)?;
     let logical = |value: Value| {
         let (n, z) = value.sign_and_zero();
@@ -145,6 +145,6 @@ pub fn compute(of: &Instruction, state: &mut State) -> Option<Step> {
     }
     match name {
         "cmp" | "cmn" | "tst" | "teq" => Some(Step::Next),
-        _ => Some(assign(state, register(of, 0)?, value)),
+        _ => Some(assign(state, of.register(0)?, value)),
     }
 }

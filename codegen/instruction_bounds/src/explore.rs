@@ -5,10 +5,11 @@ use std::rc::Rc;
 
 use crate::graph::Graph;
 use crate::instruction::{Instruction, decode};
+use crate::jump::Step;
 use crate::library::{KnownLoop, known_loops};
 use crate::listing::{Listing, Place};
 use crate::state::{Effect, State, Writes};
-use crate::step::{Machine, Step};
+use crate::step::Machine;
 use crate::value::{UNKNOWN, Value};
 
 /// Largest number of states at the targets of jumps in one function.

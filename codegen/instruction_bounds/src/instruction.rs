@@ -23,6 +23,16 @@ pub struct Instruction {
     pub symbol: Option<String>,
 }
 
+impl Instruction {
+    /// Returns the register at a place of the operands.
+    pub fn register(&self, place: usize) -> Option<u8> {
+        match self.operands.get(place) {
+            Some(Operand::Register(number)) => Some(*number),
+            _ => None,
+        }
+    }
+}
+
 /// Condition of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {

@@ -1,15 +1,16 @@
 //! Upper bounds of the instructions and the stack of compiled functions of a Cortex-M4F or Cortex-M7, from the
 //! disassembly.
 //!
-//! `listing` reads the output of objdump, `operand` and `instruction` decode it. `step` (with `compute`) executes an
-//! instruction on a `state` of partly known `value`s. `explore` follows all branches whose condition is not known and
-//! takes the longest path of the `graph` of states; a loop ends if its counter is known. `library` has the loops of
-//! libgcc whose limits follow from the number format.
+//! `listing` reads the output of objdump, `operand` and `instruction` decode it. `step` (with `compute` and `jump`)
+//! executes an instruction on a `state` of partly known `value`s. `explore` follows all branches whose condition is not
+//! known and takes the longest path of the `graph` of states; a loop ends if its counter is known. `library` has the
+//! loops of libgcc whose limits follow from the number format.
 
 mod compute;
 mod explore;
 mod graph;
 mod instruction;
+mod jump;
 mod library;
 mod listing;
 mod operand;

@@ -2,30 +2,11 @@
 
 use crate::compute::compute;
 use crate::instruction::Instruction;
+use crate::jump::{PC, Step, assign, goto};
 use crate::listing::{Listing, Place};
 use crate::operand::{Memory, Operand};
 use crate::state::{LR, State, Writes};
 use crate::value::{Base, Flags, SP, Shift, UNKNOWN, Value, add, opaque, shift, subtract};
-
-/// Number of the program counter.
-const PC: u8 = 15;
-
-/// Continuation after an instruction.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// The next instruction.
-    Next,
-    /// A jump.
-    Jump(Place),
-    /// A jump that is taken if the value is true; `None` if it is not known.
-    Branch(Place, Option<bool>),
-    /// A call of a function.
-    Call(Place),
-    /// The end of the function.
-    Return,
-    /// No bound, for a reason.
-    Unbounded(String),
-}
 
 /// Executes instructions of a listing.
 pub struct Machine<'a> {
@@ -56,7 +37,9 @@ impl Machine<'_> {
             "b" | "bl" => self
                 .target(place, of)
                 .map(|target| self.branch(place, of, target, state)),
-            "bx" => register(of, 0).map(|number| goto(state.register(number), number == LR, state)),
+            "bx" => of
+                .register(0)
+                .map(|number| goto(state.register(number), number == LR, state)),
             "blx" => Some(Step::Unbounded("an indirect call".to_owned())),
             "tbb" | "tbh" => Some(Step::Unbounded("an indirect jump".to_owned())),
             "cbz" | "cbnz" => self.compare_and_branch(place, of, state),
@@ -66,7 +49,7 @@ impl Machine<'_> {
             | "strh" | "vstr" => self.access(place, of, state),
             "vmov" => Some(move_float(of, state)),
             "vmrs" => {
-                match register(of, 0) {
+                match of.register(0) {
                     Some(number) => state.set(number, UNKNOWN),
                     None => state.flags = Flags::default(),
                 }
@@ -111,7 +94,7 @@ impl Machine<'_> {
     }
 
     fn compare_and_branch(&self, place: Place, of: &Instruction, state: &State) -> Option<Step> {
-        let (_, is_zero) = state.register(register(of, 0)?).sign_and_zero();
+        let (_, is_zero) = state.register(of.register(0)?).sign_and_zero();
         let is_taken = is_zero.map(|is_zero| is_zero == (of.name == "cbz"));
         match self.target(place, of)? {
             Ok(target) => Some(Step::Branch(target, is_taken)),
@@ -187,7 +170,7 @@ impl Machine<'_> {
             return None;
         };
         if address.base == PC {
-            let number = register(of, 0)?;
+            let number = of.register(0)?;
             let at = ((place + 4) & !3).checked_add_signed(i64::from(address.offset))?;
             let value = match of.name.as_str() {
                 "ldr" if address.index.is_none() => self.constant(at),
@@ -285,39 +268,6 @@ impl Machine<'_> {
 /// Returns the address of an instruction as a value.
 fn code(place: Place) -> Value {
     Value::Address(Base::Code((place >> 32) as u32), place as u32)
-}
-
-/// Jumps to a value. An unknown one from the link register or the stack is the address of the caller if the stack
-/// pointer has its first value again: compiled functions do not overwrite it.
-fn goto(value: Value, is_saved: bool, state: &State) -> Step {
-    let at_end = state.stack_offset() == Some(0);
-    match value {
-        Value::Address(Base::Code(section), offset) => {
-            Step::Jump(u64::from(section) << 32 | u64::from(offset))
-        }
-        Value::Address(Base::Entry(LR), 0) if at_end => Step::Return,
-        UNKNOWN if is_saved && at_end => Step::Return,
-        _ => Step::Unbounded("an indirect jump".to_owned()),
-    }
-}
-
-/// Returns the register at a place of the operands.
-pub fn register(of: &Instruction, place: usize) -> Option<u8> {
-    match of.operands.get(place) {
-        Some(Operand::Register(number)) => Some(*number),
-        _ => None,
-    }
-}
-
-/// Sets a register that may be the program counter.
-pub fn assign(state: &mut State, number: u8, value: Value) -> Step {
-    match number {
-        PC => goto(value, false, state),
-        _ => {
-            state.set(number, value);
-            Step::Next
-        }
-    }
 }
 
 fn displaced(base: Value, address: &Memory, state: &State) -> Value {

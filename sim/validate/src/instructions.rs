@@ -7,7 +7,6 @@ use eomgen_instruction_bounds::bound_functions;
 use eomgen_model_spec::source::sha256;
 use serde::{Deserialize, Serialize};
 
-use crate::checks::emitted_c::CSource;
 use crate::compiler::{first_line, run, write};
 
 /// Bounds of the functions of one C source with one compiler and its options.
@@ -41,15 +40,20 @@ pub struct FunctionBounds {
 }
 
 impl InstructionBounds {
-    /// Compiles emitted C with a command such as `arm-none-eabi-gcc -mcpu=cortex-m4 -O2` and bounds its functions.
+    /// Compiles emitted C with the prefix `name` with a command such as `arm-none-eabi-gcc -mcpu=cortex-m4 -O2` and bounds
+    /// its functions.
     ///
     /// # Errors
     /// As [`InstructionBounds::of_file`].
-    pub fn of_source(source: &CSource, command: &str) -> Result<Self, String> {
+    pub fn of_source(
+        name: &str,
+        (source, header): (&str, &str),
+        command: &str,
+    ) -> Result<Self, String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-        let path = |ending: &str| folder.path().join(format!("{}.{ending}", source.name));
-        write(&path("h"), &source.header)?;
-        write(&path("c"), &source.source)?;
+        let path = |ending: &str| folder.path().join(format!("{name}.{ending}"));
+        write(&path("h"), header)?;
+        write(&path("c"), source)?;
         Self::of_file(&path("c"), command)
     }
 
