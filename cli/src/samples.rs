@@ -54,11 +54,12 @@ fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
         .until
         .or_else(|| recorded.and_then(|times| times.last()).copied());
     let end = end.ok_or_else(|| Error::input("--until is missing: the simulated time in s"))?;
-    if end.is_finite() && end > start {
+    if end.is_finite() && (end - start) / DEFAULT_INTERVALS >= f64::MIN_POSITIVE {
         return Ok((start, end));
     }
     Err(Error::input(format!(
-        "--until {end:?}: expected a time in s after {start:?}"
+        "--until {end:?}: expected a time in s after {start:?}, by at least {:?} s",
+        DEFAULT_INTERVALS * f64::MIN_POSITIVE
     )))
 }
 

@@ -31,9 +31,11 @@ pub fn check<S: System + ?Sized>(
 /// Rejects an end before the start (s), and samples outside or not in order.
 pub fn check_span((begin, end): (f64, f64), samples: &[f64]) -> Result<(), SolveError> {
     let refuse = |problem: String| Err(SolveError::Request { problem });
-    if !(begin.is_finite() && end.is_finite() && begin < end) {
+    // The steps of a shorter span have no accuracy.
+    let shortest = f64::MIN_POSITIVE / f64::EPSILON;
+    if !(begin.is_finite() && end.is_finite() && end - begin >= shortest) {
         return refuse(format!(
-            "the end of the simulation, {end} s, must be later than its start, {begin} s"
+            "the end of the simulation, {end} s, must be later than its start, {begin} s, by at least {shortest:e} s"
         ));
     }
     let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);

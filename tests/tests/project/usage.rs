@@ -396,6 +396,7 @@ fn invalid_times_are_rejected() {
         ("--until", "-1", "after 0"),
         ("--until", "nan", "after 0"),
         ("--until", "inf", "after 0"),
+        ("--until", "1e-320", "after 0"),
         ("--until", "soon", "invalid"),
         ("--interval", "0", "above 0"),
         ("--interval", "-1", "above 0"),
