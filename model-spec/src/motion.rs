@@ -424,7 +424,9 @@ impl Checker<'_, '_> {
         motion.switch = motion.switch.or(inner.switch);
         let deepest = inner.states.iter().map(|state| self.state_rates[state]);
         motion.depth = motion.depth.max(depth + 1 + deepest.max().unwrap_or(0));
-        motion.rate = motion.rate.or(Some(operand.span));
+        if !inner.is_function_of_time() {
+            motion.rate = motion.rate.or(Some(operand.span));
+        }
         motion.rates.extend(&inner.values);
         // The rate of a definition, or of `at`, depends on the coordinates too.
         if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
@@ -440,6 +442,12 @@ impl Checker<'_, '_> {
 }
 
 impl Dependencies {
+    /// Returns true if the value depends on nothing but parameters and the time.
+    fn is_function_of_time(&self) -> bool {
+        let is_moved = self.rate.is_some() || !self.values.is_empty() || !self.states.is_empty();
+        !is_moved && self.input.is_none()
+    }
+
     /// Adds an input with this number of given rates.
     fn add_input(&mut self, rates: u8, span: Span) {
         if self.input.is_none_or(|(fewest, _)| rates < fewest) {

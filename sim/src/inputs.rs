@@ -188,17 +188,31 @@ impl HeldInputs {
         if !self.is_time_varying() {
             return Cow::Borrowed(held);
         }
-        let mut inputs = held.to_vec();
-        let is_jump = (self.jump_times).binary_search_by(|time| time.total_cmp(&t));
-        let after = if is_jump.is_ok() { t.next_up() } else { t };
+        let after = if self.is_jump(t) { t.next_up() } else { t };
+        Cow::Owned(self.complete(held.to_vec(), t, after))
+    }
+
+    /// Returns the inputs just before a time (s), in the order of the model, where those that are held have given values.
+    pub fn evaluate_before(&self, t: f64, held: &[f64]) -> Vec<f64> {
+        let before = if self.is_jump(t) { t.next_down() } else { t };
+        self.complete(held.to_vec(), t, before)
+    }
+
+    fn is_jump(&self, t: f64) -> bool {
+        let found = self.jump_times.binary_search_by(|time| time.total_cmp(&t));
+        found.is_ok()
+    }
+
+    /// Sets prescribed motion at `t` and functions at `beside`, in s, among held inputs.
+    fn complete(&self, mut inputs: Vec<f64>, t: f64, beside: f64) -> Vec<f64> {
         for given in &self.functions {
             let places = given.place..given.place + given.count;
-            given.function.write(after, &mut inputs[places]);
+            given.function.write(beside, &mut inputs[places]);
         }
         for (place, spline) in &self.prescribed {
             inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));
         }
-        Cow::Owned(inputs)
+        inputs
     }
 
     /// Returns the bounds of the inputs from `begin` to `end` (s), between which no input jumps.

@@ -59,20 +59,12 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     };
     define(document, &edit.name, value)?;
     let [rate, second] = ["dot", "ddot"].map(|suffix| format!("{}_{suffix}", edit.name));
-    if contains_name(document, &second) {
-        let message = format!(
-            "the model contains `{second}`, the second rate of the input, which is not derived from an expression"
-        );
-        let help = "drive the input by a record, or in Python by a function that returns (s, s_dot, s_ddot)";
-        return Err(rejected(
-            edit,
-            tree.span,
-            &message,
-            ("needs a second rate", help),
-        ));
-    }
-    if contains_name(document, &rate) {
+    let has_second = contains_name(document, &second);
+    if has_second || contains_name(document, &rate) {
         define(document, &rate, format!("dot({})", edit.name))?;
+    }
+    if has_second {
+        define(document, &second, format!("dot({rate})"))?;
     }
     Ok(())
 }

@@ -222,7 +222,7 @@ impl<'c> ControlLoop<'c> {
         if !due.is_empty() {
             plant.write_observables(&mut self.observables);
         }
-        let inputs = self.current.evaluate(instant).into_owned();
+        let inputs = self.current.evaluate_before(instant, &self.held);
         for place in due {
             let at = Sample {
                 t: plant.evaluation_time(),
