@@ -67,8 +67,11 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
     let [hide, restore] = header::hide_macros(hidden.into_iter().chain(["R"]));
     let notes = header::notes(program, real, header::HEADER_ONLY);
     let opening = "#if defined(NAME_IMPLEMENTATION) && !defined(NAME_IMPLEMENTED)\n#define NAME_IMPLEMENTED\n";
-    let closing = "#if defined(__clang__)\n#pragma STDC FP_CONTRACT DEFAULT\n\
-                   #elif defined(_MSC_VER)\n#pragma fp_contract(on)\n#endif\n";
+    let closing = format!(
+        "#if defined(__clang__)\n#pragma STDC FP_CONTRACT DEFAULT\n\
+         #elif defined(_MSC_VER)\n#pragma fp_contract(on)\n\
+         {GCC_CONTRACTS}\n#pragma GCC pop_options\n#endif\n"
+    );
     let text = [
         &notes,
         &*declarations,
@@ -76,7 +79,7 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
         &hide,
         &definitions,
         &restore,
-        closing,
+        &closing,
         "#endif\n",
     ];
     Ok(seal(&layout::source(&text.concat())))
@@ -145,19 +148,28 @@ fn stages(file: &File<'_>, needed: &mut RequiredFunctions) -> EmitResult<Vec<Sta
     Ok(stages)
 }
 
-/// Writes the first lines of the source. Clang contracts by default and obeys the pragma; gcc needs its
-/// option.
+/// Condition that gcc contracts products and sums: as C++, or with a dialect of GNU C. It ignores the pragma of C99.
+const GCC_CONTRACTS: &str = "#elif defined(__GNUC__) && !defined(__CUDACC__) && \
+    (defined(__cplusplus) || !defined(__STRICT_ANSI__))";
+
+/// Writes the first lines of the source: products and sums stay separate, and sums in their order.
 fn opening(program: &Program) -> String {
-    fill_template(
-        program,
-        "#if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
-         #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n#endif\n\
-         /** Output arguments of a function do not overlap its input arguments. */\n\
+    let settings = format!(
+        "#if defined(__FAST_MATH__) && !defined(NAME_ALLOW_REASSOCIATION)\n\
+         #error \"-ffast-math changes bits: remove it, or define NAME_ALLOW_REASSOCIATION\"\n#endif\n\
+         #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
+         #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n\
+         {GCC_CONTRACTS}\n#pragma GCC push_options\n#pragma GCC optimize(\"fp-contract=off\")\n#endif\n"
+    );
+    fill_template(program, &settings)
+        + &fill_template(
+            program,
+            "/** Output arguments of a function do not overlap its input arguments. */\n\
          #if defined(__cplusplus) || defined(_MSC_VER)\n#define NAME_RESTRICT __restrict\n\
          #else\n#define NAME_RESTRICT restrict\n#endif\n\
          /** Converts a number to the number type. */\n\
          #define R(number) ((NAME_real)(number))\n",
-    )
+        )
 }
 
 fn tables(file: &File<'_>) -> EmitResult<String> {

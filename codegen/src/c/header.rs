@@ -62,8 +62,8 @@ pub(super) fn notes(program: &Program, real: Real, usage: &str) -> String {
          reentrant. Their output arguments must not overlap their input arguments.\n\
          \n\
          {}\n\
-         The results have the same bits with every compiler that does not contract products and sums:\n\
-         use -std=c99 or -ffp-contract=off. For {precision} precision, use -D{name}_REAL={other} for\n\
+         The results have the same bits with every compiler that keeps products and sums apart, as gcc,\n\
+         Clang and MSVC do in the source; others need -std=c99. For {precision} precision, use -D{name}_REAL={other} for\n\
          every file that includes this one.",
         usage.replace("NAME", name)
     );

@@ -1,8 +1,8 @@
-//! The emitted C with reordered sums: other bits, the same values within rounding.
+//! The emitted C in other dialects, with the same bits, and with reordered sums, with the same values within rounding.
 
 use std::fmt::Write;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use super::{has_compilers, program, run};
 use eomgen_codegen::c;
@@ -55,25 +55,28 @@ int main(void) {
 }
 ";
 
-fn print_values(flags: &[&str], folder: &Path) -> Vec<f64> {
-    let executable = folder.join("each");
-    run(Command::new("cc")
-        .arg("-std=c99")
-        .args(flags)
-        .args([folder.join("main.c"), folder.join("each.c")])
-        .arg("-o")
-        .arg(&executable));
-    let text = run(&mut Command::new(executable));
-    text.lines()
-        .map(|line| line.parse().expect("a number"))
-        .collect()
+/// Compiles the program with `compiler` and these flags, in the folder of its files.
+fn compile(compiler: &str, flags: &[&str], folder: &Path) -> Output {
+    let mut command = Command::new(compiler);
+    command.current_dir(folder).args(flags);
+    let files = ["main.c", "each.c", "-o", "each"];
+    command.args(files).output().expect("a compiler")
 }
 
-#[test]
-fn reordered_sums_preserve_values() {
-    if !has_compilers() {
-        return;
-    }
+fn print_values(compiler: &str, flags: &[&str], folder: &Path) -> Vec<f64> {
+    let output = compile(compiler, flags, folder);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{flags:?}: {message}");
+    let text = run(&mut Command::new(folder.join("each")));
+    let values: Vec<f64> = text
+        .lines()
+        .map(|line| line.parse().expect("a number"))
+        .collect();
+    assert!(values.len() >= 199 * FUNCTIONS.len());
+    values
+}
+
+fn write_program(folder: &Path) {
     let mut text = "[model]\nname = \"each\"\ntitle = \"Every elementary function\"\n\
         [parameters]\nm = { value = 1, unit = \"kg\" }\nd = { value = 1, unit = \"m\" }\n\
         [coordinates]\nx = { unit = \"m\" }\ny = { unit = \"m\" }\n\
@@ -82,24 +85,60 @@ fn reordered_sums_preserve_values() {
     for (place, function) in FUNCTIONS.iter().enumerate() {
         writeln!(text, "o_{place} = \"{function}\"").expect("written");
     }
-    let folder = tempfile::tempdir().expect("a folder");
     let files = c::emit(&program(&text, 0, &[])).expect("emitted");
     for (name, content) in [
         ("each.h", files.header.as_str()),
         ("each.c", files.source.as_str()),
         ("main.c", MAIN),
     ] {
-        std::fs::write(folder.path().join(name), content).expect("written");
+        std::fs::write(folder.join(name), content).expect("written");
     }
-    let strict = print_values(&["-O1"], folder.path());
-    let reordered = print_values(&["-O3", "-ffast-math"], folder.path());
-    assert_eq!(strict.len(), reordered.len());
-    assert!(strict.len() >= 199 * FUNCTIONS.len());
+}
+
+#[test]
+fn reordered_sums_preserve_values() {
+    if !has_compilers() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    write_program(folder.path());
+    let strict = print_values("cc", &["-std=c99", "-O1"], folder.path());
+    let flags = ["-std=c99", "-O3", "-ffast-math"];
+    let output = compile("cc", &flags, folder.path());
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(
+        message.contains("define each_ALLOW_REASSOCIATION"),
+        "{message}"
+    );
+    let allowed = [&flags[..], &["-Deach_ALLOW_REASSOCIATION"]].concat();
+    let reordered = print_values("cc", &allowed, folder.path());
     for (place, (strict, reordered)) in strict.iter().zip(&reordered).enumerate() {
         let off = (strict - reordered).abs();
         assert!(
             off <= BOUND * strict.abs().max(1.0),
             "value {place}: {strict:e} and {reordered:e}"
         );
+    }
+}
+
+/// gcc fuses products and sums in these dialects if the processor has the operation.
+#[test]
+fn dialects_of_gnu_c_and_cpp_preserve_bits() {
+    if !has_compilers() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    write_program(folder.path());
+    let strict = print_values("cc", &["-std=c99", "-O1"], folder.path());
+    for (compiler, dialect) in [
+        ("cc", &["-std=gnu99"][..]),
+        ("cc", &["-std=gnu17"]),
+        ("c++", &["-std=c++17", "-x", "c++"]),
+        ("c++", &["-std=gnu++17", "-x", "c++"]),
+    ] {
+        let flags = [dialect, &["-O3", "-march=native"]].concat();
+        let values = print_values(compiler, &flags, folder.path());
+        assert_eq!(strict, values, "{flags:?}");
     }
 }
