@@ -531,6 +531,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         evaluations
     }
 
+    fn forget_projection(&self) {
+        if let Some(contacts) = &self.contacts {
+            contacts.borrow_mut().forget_correction();
+        }
+    }
+
     fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let mut jumps = false;
         if let Some(contacts) = &self.contacts {
@@ -540,6 +546,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             });
             let work = contacts.borrow().impact_work();
             jumps = arrived != y;
+            if jumps && self.projection.is_some() {
+                contacts.borrow_mut().offset_for_projection((t, y));
+            }
             if let Some(auditor) = self.auditor.as_ref().filter(|_| jumps) {
                 let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
                 let states = (&arrived[..], &*y);
@@ -606,8 +615,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             corners.borrow_mut().update((t, y), &given.evaluate(t));
         }
         if let Some(contacts) = &self.contacts {
-            self.evaluate_at(t, y, |evaluator, point| {
-                contacts.borrow_mut().update_modes(evaluator, point);
+            self.with_contacts(contacts, (t, y), |contacts, evaluator, inputs| {
+                let point = Point {
+                    t,
+                    state: y,
+                    inputs,
+                };
+                contacts.update_modes(evaluator, point);
             });
             self.follow_contacts((t, y), &given.evaluate(t));
         }

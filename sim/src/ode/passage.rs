@@ -21,12 +21,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let has_crossed = matches!(located, Located::Crossed(..));
         match located {
             Located::Crossed(near, mut beyond) => {
+                let crossed = self.crossed_guards(&beyond);
                 if let Some(mut near) = near {
-                    self.watched.project_before(near.t, &mut near.y);
+                    let surfaces = (&crossing.guards[..], length);
+                    self.watched.project_before(surfaces, near.t, &mut near.y);
                     self.end_step(near)?;
                 }
                 let near = self.run.stepper.current_point().clone();
-                self.apply_event(&near, &mut beyond);
+                self.apply_event((&crossed, length), &near, &mut beyond);
                 self.run.stepper.restart(beyond, length);
                 self.project();
                 self.accept(near.t)?;
@@ -49,7 +51,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let Some(mut beyond) = self.find_point_beyond() else {
             return Err(rejection_error(self.watched, &near, step));
         };
-        self.apply_event(&near, &mut beyond);
+        let crossed = self.crossed_guards(&beyond);
+        self.apply_event((&crossed, step), &near, &mut beyond);
         self.run.stepper.restart(beyond, step / SHORTENED);
         self.project();
         self.accept(near.t)
@@ -63,9 +66,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.accept(begin)
     }
 
-    /// Applies the event at the surfaces between `start` and `point`, and records those that returned the
-    /// motion to its side.
-    fn apply_event(&mut self, start: &Point, point: &mut Point) {
+    /// Applies the event at the crossed surfaces between `start` and `point` in a step of given length (s), and records those
+    /// that returned the motion to its side.
+    fn apply_event(&mut self, crossed: (&[usize], f64), start: &Point, point: &mut Point) {
+        self.watched
+            .project_beyond(crossed, &start.y, point.t, &mut point.y);
         let arrived = self.crossed_guards(point);
         let before = point.y.clone();
         let start = (start.t, &start.y[..]);

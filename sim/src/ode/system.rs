@@ -92,6 +92,9 @@ pub trait System {
         0
     }
 
+    /// Forgets what the last call of [`System::project`] noted beside its result, because the motion does not pass there.
+    fn forget_projection(&self) {}
+
     /// Returns the next time after `t` at which the right-hand side is not smooth in time, for
     /// example the next sample of an input. No step crosses it.
     fn next_breakpoint(&self, _t: f64) -> Option<f64> {
@@ -186,6 +189,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
         (**self).project(t, y)
+    }
+
+    fn forget_projection(&self) {
+        (**self).forget_projection();
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

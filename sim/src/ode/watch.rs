@@ -12,11 +12,8 @@ use super::root_band::{GuardHistory, RootBand, has_band};
 use super::settings::UNMOVED_SIZE_FRACTION;
 use super::system::{Interior, ObservedStep, System};
 
-/// Largest number of doublings of a time, from rounding on, in search of a state whose projection is on one side of a
-/// surface.
-const MAX_DOUBLINGS: usize = 1100;
-
-/// Smallest distance of this state to the surface, in roundings: later projections move it by rounding.
+/// Smallest distance to a surface, in roundings, of a state whose projection is to stay on one side: later projections move
+/// it by rounding.
 const MIN_DISTANCE_ROUNDINGS: f64 = 16.0;
 
 /// Side of every switching surface: -1, 1, or 0 if a step begins on it.
@@ -326,34 +323,41 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
 
     /// Applies the jumps of an event between a point just before a surface and one just beyond it.
     pub fn apply_event(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
-        self.project_beyond(t, y);
         self.system.apply_event(before, t, y)
     }
 
-    /// Projects a state just beyond surfaces at which the energies jump onto the invariants, so that no later projection
-    /// leads back over these surfaces.
-    fn project_beyond(&self, t: f64, y: &mut [f64]) {
-        let mut crossed = self.energy_jumps();
-        crossed.retain(|guard| self.is_beyond(*guard, self.evaluate_guards(t, y)[*guard]));
-        self.project_along(&crossed, true, t, y);
+    /// Projects a state just beyond surfaces onto the invariants, so that no later projection leads back over these
+    /// surfaces, in a step of `length` s. The state just before them is `near`.
+    pub fn project_beyond(
+        &self,
+        (surfaces, length): (&[usize], f64),
+        near: &[f64],
+        t: f64,
+        y: &mut [f64],
+    ) {
+        self.project_along(surfaces, (near, length), t, y);
     }
 
-    /// Projects a state on the near side of surfaces at which the energies jump onto the invariants, so that no later
-    /// projection leads over these surfaces.
-    pub fn project_before(&self, t: f64, y: &mut [f64]) {
-        self.project_along(&self.energy_jumps(), false, t, y);
-    }
-
-    fn energy_jumps(&self) -> Vec<usize> {
+    /// Projects a state on the near side of surfaces onto the invariants, so that no later projection leads over these
+    /// surfaces, or over one at which the energies jump, in a step of `length` s.
+    pub fn project_before(&self, (surfaces, length): (&[usize], f64), t: f64, y: &mut [f64]) {
         let guards = 0..self.system.guard_count();
-        guards
-            .filter(|guard| self.system.has_energy_jump(*guard))
-            .collect()
+        let surfaces: Vec<usize> = guards
+            .filter(|guard| surfaces.contains(guard) || self.system.has_energy_jump(*guard))
+            .collect();
+        self.project_along(&surfaces, (&y.to_vec(), -length), t, y);
     }
 
-    /// Projects a state, and moves it forward (beyond surfaces) or back along its rates until the projection is and stays on
-    /// that side of the surfaces.
-    fn project_along(&self, surfaces: &[usize], beyond: bool, t: f64, y: &mut [f64]) {
+    /// Projects a state. If the projection is not on one side of the surfaces, or does not stay there, replaces the state
+    /// by the nearest on the line from `start` along its rates whose projection is and stays there: up to `longest` s, beyond
+    /// the surfaces if it is positive and before them if it is negative.
+    fn project_along(
+        &self,
+        surfaces: &[usize],
+        (start, longest): (&[f64], f64),
+        t: f64,
+        y: &mut [f64],
+    ) {
         if surfaces.is_empty() {
             return;
         }
@@ -365,24 +369,28 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             let mut surfaces = surfaces.iter();
             surfaces.all(|guard| {
                 let value = guards[*guard];
-                self.is_beyond(*guard, value) == beyond
+                self.is_beyond(*guard, value) == (longest > 0.0)
                     && value.abs() > MIN_DISTANCE_ROUNDINGS * roundings[*guard]
             })
         };
-        let direction = if beyond { 1.0 } else { -1.0 };
-        let (mut rates, mut length) = (vec![0.0; y.len()], 0.0);
-        self.count_rates(t, y, &mut rates);
-        for _ in 0..MAX_DOUBLINGS {
-            let motion = y.iter().zip(&rates);
-            let moved = motion.map(|(from, rate)| from + direction * length * rate);
-            let mut state: Vec<f64> = moved.collect();
+        let (mut state, mut rates) = (y.to_vec(), Vec::new());
+        let mut length = t.next_up() - t;
+        while length <= longest.abs() {
             if !self.project(t, &mut state) {
                 return;
             }
             if is_right(&state) {
                 return y.copy_from_slice(&state);
             }
-            length = (2.0 * length).max(t.next_up() - t);
+            self.system.forget_projection();
+            if rates.is_empty() {
+                rates = vec![0.0; start.len()];
+                self.count_rates(t, start, &mut rates);
+            }
+            for (entry, (from, rate)) in state.iter_mut().zip(start.iter().zip(&rates)) {
+                *entry = from + length.copysign(longest) * rate;
+            }
+            length *= 2.0;
         }
     }
 

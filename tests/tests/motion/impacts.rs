@@ -992,3 +992,47 @@ fn sleigh_and_rolling_disc_bounce_within_their_constraints() {
         ]
     });
 }
+
+/// A block that rests at a stop is pulled away by one that slides on it and begins to stick: the stop cannot pull.
+#[test]
+fn block_leaves_its_stop_when_the_one_on_it_begins_to_stick() {
+    let text = r#"
+[model]
+name = "pulled"
+[parameters]
+m = { value = 2, unit = "kg" }
+F_c = { value = 4, unit = "N" }
+u = { value = -2, unit = "N" }
+d = { value = 0.05, unit = "m" }
+[coordinates]
+a = { unit = "m", initial = "d" }
+b = { unit = "m", initial_rate = 1 }
+[kinetic]
+T = "1/2*m*(dot(a)^2 + dot(b)^2)"
+[forces]
+pull = { on = "b", value = "u" }
+friction = { on = "a - b", value = "-F_c*sign(dot(a) - dot(b))" }
+[impacts]
+stop = { when = "d - a", restitution = 0 }
+"#;
+    let model = CompiledModel::from_text("pulled.toml", text, Orders::Declared).unwrap();
+    for m in [0.5, 1.0, 1.5, 1.9, 2.0, 2.1, 2.5, 3.0, 5.0] {
+        let run = model.with_parameters(&[("m", m)]).unwrap();
+        // It slides until m/6, then both have the acceleration u/(2 m).
+        let since = 1.0 - m / 6.0;
+        let expected = 0.05 - since * since / (2.0 * m);
+        for solver in [Solver::Rk, Solver::Radau] {
+            let motion = run.simulate(
+                run.initial_state(),
+                &[0.0, 1.0],
+                &run.default_inputs(),
+                solver,
+            );
+            let found = motion.unwrap().trajectory.states[1][0];
+            assert!(
+                (found - expected).abs() < 1e-7,
+                "{m}, {solver}: {found} and {expected}"
+            );
+        }
+    }
+}

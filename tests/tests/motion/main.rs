@@ -1,5 +1,6 @@
 //! Motions against closed forms, published figures, reference trajectories and other solvers.
 
+mod chains_against_walls;
 mod chambers;
 mod constraints;
 mod contact_friction;
@@ -16,6 +17,7 @@ mod exact_reference;
 mod exact_survival;
 mod fixed_steps;
 mod impacts;
+mod inputs_of_time;
 mod invalid_requests;
 mod passed_surfaces;
 mod piecewise;

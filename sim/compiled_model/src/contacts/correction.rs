@@ -27,6 +27,7 @@ impl Contacts {
         }
         // A step that was taken back may have ended below.
         self.overlap = None;
+        self.uncorrected_offsets.clone_from(&self.offsets);
         let mut arrived = vec![0.0; self.names.len()];
         own.distances(Point { t, state, inputs }, &mut arrived);
         if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
@@ -58,6 +59,12 @@ impl Contacts {
         }
         self.keep_open_sides(&arrived);
         CORRECTIONS as u64 + 1
+    }
+
+    /// Forgets what the last correction of a state noted.
+    pub fn forget_correction(&mut self) {
+        self.overlap = None;
+        self.offsets.clone_from(&self.uncorrected_offsets);
     }
 
     /// Offsets the distances of open contacts that a correction makes negative, because the motion

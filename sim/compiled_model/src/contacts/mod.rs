@@ -49,6 +49,8 @@ pub(crate) struct Contacts {
     closed: Vec<usize>,
     /// What is added to each distance, so that one that leaves from zero is positive.
     offsets: Vec<f64>,
+    /// The same before the last correction of a state.
+    uncorrected_offsets: Vec<f64>,
     /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
     allowances: Vec<f64>,
     /// Impacts at the point of the last evaluation.
@@ -96,6 +98,7 @@ impl Contacts {
             start: None,
             closed: Vec::new(),
             offsets: vec![0.0; count],
+            uncorrected_offsets: vec![0.0; count],
             allowances: vec![0.0; count],
             at: Vec::new(),
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
@@ -259,6 +262,19 @@ impl Contacts {
         self.offset_distances(touching);
         for place in touching {
             self.offsets[*place] = self.offsets[*place].max(self.distance_rounding(*place, at));
+        }
+    }
+
+    /// Has the distances of open contacts that touch after an impact stay positive if a projection moves the state by
+    /// rounding.
+    pub fn offset_for_projection(&mut self, at: (f64, &[f64])) {
+        for place in 0..self.names.len() {
+            let rounding = self.distance_rounding(place, at);
+            let touches =
+                (0.0..rounding).contains(&(self.at[place].distance + self.offsets[place]));
+            if touches && !self.closed.contains(&place) {
+                self.offsets[place] += rounding;
+            }
         }
     }
 

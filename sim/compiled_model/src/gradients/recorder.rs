@@ -128,6 +128,10 @@ impl System for Recorder<'_> {
         self.system.project(t, y)
     }
 
+    fn forget_projection(&self) {
+        self.system.forget_projection();
+    }
+
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
         self.system.next_breakpoint(t)
     }
