@@ -1,12 +1,12 @@
 //! Emitted files of the targets of `generate`: the options of the command line for `eomgen_targets`.
 
-use eomgen_codegen::c::{self, Real};
+use eomgen_codegen::c::{self, CASADI_OUTPUTS, Real};
 use eomgen_codegen::program::{Output, Program};
 use eomgen_codegen::rust;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 use eomgen_targets::emit;
-use eomgen_validate::certify::{CCompiler, CSource};
+use eomgen_validate::certify::{CCompiler, CSource, CasadiSource};
 use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::Sources;
 
@@ -73,6 +73,10 @@ pub fn sources(
             let compiler = CCompiler::default();
             sources.c = vec![header_only_source(name, header, outputs, compiler)];
         }
+        (Target::Casadi, Some(source), _) => {
+            let compiler = CCompiler::default();
+            sources.casadi = Some(casadi_source(name, source, outputs, compiler));
+        }
         (_, source, _) => sources.rust = source,
     }
     sources
@@ -112,15 +116,31 @@ pub fn instructions(source: &CSource, command: &str) -> Result<InstructionBounds
     InstructionBounds::of_source(&source.name, (&source.source, &source.header), command)
 }
 
+/// Returns emitted functions for CasADi with all their outputs, and the compiler that checks them.
+pub fn casadi_source(
+    name: &str,
+    source: String,
+    outputs: &[Output],
+    compiler: CCompiler,
+) -> CasadiSource {
+    let is_requested = |output: &&Output| !CASADI_OUTPUTS.contains(output);
+    CasadiSource {
+        name: name.to_owned(),
+        source,
+        with: outputs.iter().filter(is_requested).copied().collect(),
+        compiler,
+    }
+}
+
 /// Returns the outputs to derive for the requested target.
 ///
 /// # Errors
 /// An option that the target does not support.
 pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Output>> {
-    let has_certificate = matches!(target, Target::Rust | Target::C99);
+    let has_certificate = matches!(target, Target::Rust | Target::C99 | Target::Casadi);
     if certify && !has_certificate {
         return Err(Error::input(
-            "--certify needs --target rust or --target c99: a certificate covers the emitted Rust or C",
+            "--certify needs --target rust, c99 or casadi: CUDA C++ and functional mock-up units have no certificate",
         ));
     }
     if with.contains(&Extra::Bench) && target != Target::Rust {

@@ -52,6 +52,7 @@ pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Ce
         emitted: Err("judged elsewhere".to_owned()),
         program: None,
         c_sources: &[],
+        casadi: None,
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),
     })

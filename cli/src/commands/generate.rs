@@ -90,9 +90,14 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let mut certificate = None;
     if options.certify {
         let instructions = instruction_bounds(&sources, &options.instructions)?;
+        // Functions for CasADi have outputs of their own.
+        let shared = match sources.casadi {
+            Some(_) => &[][..],
+            None => &outputs,
+        };
         certificate = Some(Certificate {
             instructions,
-            ..certify_sources(&model, &orders, &outputs, &sources)?
+            ..certify_sources(&model, &orders, shared, &sources)?
         });
     }
     let mut files = Vec::new();

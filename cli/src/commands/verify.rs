@@ -6,8 +6,9 @@ use std::path::Path;
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
-use eomgen_validate::certificate::CSourceHashes;
-use eomgen_validate::certify::CCompiler;
+use eomgen_targets::parse_output;
+use eomgen_validate::certificate::{CSourceHashes, CasadiHash};
+use eomgen_validate::certify::{CCompiler, CasadiSource};
 use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::{Sources, certify_sources};
 use serde_json::{Value, json};
@@ -15,7 +16,7 @@ use serde_json::{Value, json};
 use crate::arguments::Verify;
 use crate::certification::summary;
 use crate::document::SCHEMA;
-use crate::emission::{c_source, header_only_source, instructions};
+use crate::emission::{c_source, casadi_source, header_only_source, instructions};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::progress::Note;
 
@@ -88,6 +89,7 @@ struct Certificate {
     outputs: Vec<Output>,
     source_sha256: String,
     c_sources: Vec<CSourceHashes>,
+    casadi: Option<CasadiHash>,
 }
 
 impl Certificate {
@@ -146,6 +148,10 @@ impl Certificate {
         });
         let c_sources = c_sources.collect::<Option<_>>();
         let c_sources = c_sources.ok_or_else(|| missing("c_sources"))?;
+        let casadi = match &document["casadi"] {
+            Value::Null => None,
+            casadi => Some(casadi_hash(casadi).ok_or_else(|| missing("casadi"))?),
+        };
         let settings = settings.iter().map(|(name, value)| match value.as_f64() {
             Some(value) => Ok((name.as_str(), value)),
             None => Err(Error::input(format!(
@@ -164,6 +170,7 @@ impl Certificate {
             outputs,
             source_sha256: string("source_sha256")?,
             c_sources,
+            casadi,
             document,
         })
     }
@@ -219,6 +226,17 @@ impl Certificate {
         Ok(repeated)
     }
 
+    /// Returns the names of the emitted C files.
+    fn c_files(&self) -> String {
+        let files = self.c_sources.iter().map(|c| format!("{}.c", c.name));
+        let casadi = self.casadi.iter().map(|c| format!("{}_casadi.c", c.name));
+        let files: Vec<String> = files.chain(casadi).collect();
+        match files.is_empty() {
+            true => "no C".to_owned(),
+            false => files.join(" and "),
+        }
+    }
+
     /// Compares what the certificate states with the repeated certificate.
     ///
     /// # Errors
@@ -254,6 +272,18 @@ impl Certificate {
     }
 }
 
+fn casadi_hash(document: &Value) -> Option<CasadiHash> {
+    let of = |key: &str| document[key].as_str().map(str::to_owned);
+    let with = document["with"].as_array()?.iter();
+    Some(CasadiHash {
+        name: of("name")?,
+        source_sha256: of("source_sha256")?,
+        with: with
+            .map(|name| name.as_str().map(str::to_owned))
+            .collect::<Option<_>>()?,
+    })
+}
+
 /// Returns true if the specification reads tables, whose hashes are part of its hash.
 fn specification_has_tables(source: &Source) -> bool {
     source.text.contains("table")
@@ -271,7 +301,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
         Some("rs") => Ok((
             Sources {
                 rust: Some(text),
-                c: Vec::new(),
+                ..Sources::default()
             },
             certificate.source_sha256.clone(),
         )),
@@ -286,6 +316,14 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                     Error::input("--cc is blank: give a command such as \"gcc -O2\"")
                 })?,
             };
+            let casadi = certificate.casadi.as_ref();
+            if let Some(certified) = casadi.filter(|c| name == format!("{}_casadi", c.name)) {
+                let sources = Sources {
+                    casadi: Some(certified_casadi(certified, text, compiler)?),
+                    ..Sources::default()
+                };
+                return Ok((sources, certified.source_sha256.clone()));
+            }
             let is_header = extension == Some("h");
             if is_header && !text.contains(&format!("{name}_IMPLEMENTATION")) {
                 return Err(Error::input(format!(
@@ -293,12 +331,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                 )));
             }
             let expected = certificate.c_source(name).ok_or_else(|| {
-                let known = certificate.c_sources.iter();
-                let known: Vec<String> = known.map(|c| format!("{}.c", c.name)).collect();
-                let covered = match known.is_empty() {
-                    true => "no C".to_owned(),
-                    false => known.join(" and "),
-                };
+                let covered = certificate.c_files();
                 Error::input(format!(
                     "{shown}: the certificate covers {covered}; give the certificate that was written with the file"
                 ))
@@ -318,8 +351,8 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                 }
             };
             let sources = Sources {
-                rust: None,
                 c: vec![source],
+                ..Sources::default()
             };
             Ok((sources, expected))
         }
@@ -327,6 +360,18 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
             "{shown} is neither Rust nor C: give a file that ends in .rs, .c or .h"
         ))),
     }
+}
+
+/// Returns functions for CasADi with the outputs of their certificate.
+fn certified_casadi(
+    certified: &CasadiHash,
+    text: String,
+    compiler: CCompiler,
+) -> Result<CasadiSource> {
+    let with = certified.with.iter().map(|name| parse_output(name));
+    let with = with.collect::<std::result::Result<Vec<Output>, String>>();
+    let with = with.map_err(Error::input)?;
+    Ok(casadi_source(&certified.name, text, &with, compiler))
 }
 
 fn read(path: &Path) -> Result<String> {

@@ -156,9 +156,12 @@ impl Emitted {
             this.files.insert(TRACE.to_owned(), trace.into_bytes());
         }
         if variant.has(Target::Casadi) {
-            let derived = derive(&emission::outputs(Target::Casadi, &of_casadi, false)?)?;
-            this.files
-                .extend(emission::files(model, &derived, (Target::Casadi, None))?);
+            let outputs = emission::outputs(Target::Casadi, &of_casadi, false)?;
+            let derived = derive(&outputs)?;
+            let files = emission::files(model, &derived, (Target::Casadi, None))?;
+            let sources = emission::sources(&variant.prefix, Target::Casadi, &files, &outputs);
+            this.sources.casadi = sources.casadi;
+            this.files.extend(files);
         }
         Ok(this)
     }

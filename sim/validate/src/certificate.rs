@@ -26,6 +26,9 @@ pub struct Certificate {
     pub source_sha256: Option<String>,
     /// Emitted C.
     pub c_sources: Vec<CSourceHashes>,
+    /// Emitted functions for CasADi, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub casadi: Option<CasadiHash>,
     /// Hashes of the sources in their identities, as `eomgen identify` prints them.
     pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
@@ -63,6 +66,17 @@ pub struct CSourceHashes {
     pub source_sha256: String,
     /// SHA-256 of `NAME.h`.
     pub header_sha256: String,
+}
+
+/// Hash of emitted functions for CasADi.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CasadiHash {
+    /// Prefix of the names: the file is `NAME_casadi.c`.
+    pub name: String,
+    /// SHA-256 of the file.
+    pub source_sha256: String,
+    /// Requested outputs, by their names in `--with`.
+    pub with: Vec<String>,
 }
 
 /// Result of all checks together.
@@ -153,6 +167,8 @@ pub struct CertificateHeader {
     pub source_sha256: Option<String>,
     /// Emitted C.
     pub c_sources: Vec<CSourceHashes>,
+    /// Emitted functions for CasADi, if any.
+    pub casadi: Option<CasadiHash>,
     /// Hashes of the sources in their identities.
     pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
@@ -192,6 +208,7 @@ impl Certificate {
             specification_sha256: about.specification_sha256,
             source_sha256: about.source_sha256,
             c_sources: about.c_sources,
+            casadi: about.casadi,
             identities: about.identities,
             settings: about.settings,
             specification: about.specification,

@@ -1,21 +1,24 @@
 //! Runs all checks of a model at one order and writes the certificate.
 
 use super::certificate::{
-    CSourceHashes, Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst,
+    CSourceHashes, CasadiHash, Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst,
 };
 use super::checks::outputs::CheckContext;
 use super::checks::{
-    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, emitted_c, exact, nesting, outputs, regimes,
-    states, zeros,
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, casadi, emitted, emitted_c, exact, nesting, outputs,
+    regimes, states, zeros,
 };
+use super::derived_outputs::DerivedOutputs;
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
 use super::variant::Variant;
 use eomgen_codegen::identity::find;
 use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
+pub use super::checks::casadi::CasadiSource;
 pub use super::checks::emitted_c::{CCompiler, CSource};
 pub use super::checks::exact::{Derivative, ScaledRates};
 pub use super::checks::linked_program::{Emitted, EmittedFunction};
@@ -55,6 +58,8 @@ pub struct Subject<'s> {
     pub program: Option<&'s Program>,
     /// Emitted C, one source for each prefix.
     pub c_sources: &'s [CSource],
+    /// Emitted functions for CasADi with their program, or the reason for its absence.
+    pub casadi: Option<(&'s CasadiSource, &'s Result<Program, String>)>,
     /// Emitted source with kernels of regimes, or the reason for its absence.
     pub regimes: Result<Emitted, String>,
     /// State derivative of the exact solver, or the reason for its absence.
@@ -70,7 +75,8 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
         (vec![check], Coverage::default())
     });
     let emitted = subject.emitted.as_ref().ok();
-    let sources = (emitted, subject.c_sources);
+    let casadi = subject.casadi.map(|(source, _)| source);
+    let sources = (emitted, subject.c_sources, casadi);
     let about = certificate_header(subject.model, subject.order, subject.parameters, sources);
     Certificate::new(about, Some(coverage), checks)
 }
@@ -80,7 +86,7 @@ pub fn certificate_header(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    (rust, c): (Option<&Emitted>, &[CSource]),
+    (rust, c, casadi): (Option<&Emitted>, &[CSource], Option<&CasadiSource>),
 ) -> CertificateHeader {
     let rust_hash = rust.map(|emitted| sha256(&emitted.source));
     let c_sources = c.iter().map(|emitted| CSourceHashes {
@@ -89,16 +95,26 @@ pub fn certificate_header(
         header_sha256: sha256(&emitted.header),
     });
     let c_sources: Vec<CSourceHashes> = c_sources.collect();
+    let casadi_hash = casadi.map(|emitted| CasadiHash {
+        name: emitted.name.clone(),
+        source_sha256: sha256(&emitted.source),
+        with: (emitted.with.iter())
+            .map(|output| output.name().to_owned())
+            .collect(),
+    });
     let first_c = c_sources.first().map(|c| c.source_sha256.clone());
+    let of_casadi = casadi_hash.as_ref().map(|hash| hash.source_sha256.clone());
     let emitted = rust.map(|emitted| &emitted.source).into_iter();
     let emitted = emitted.chain(c.iter().map(|emitted| &emitted.source));
+    let emitted = emitted.chain(casadi.map(|emitted| &emitted.source));
     let names = model.parameters.iter().map(|known| known.name.clone());
     CertificateHeader {
         model: model.name.clone(),
         order,
         specification_sha256: model.hash(),
-        source_sha256: rust_hash.or(first_c),
+        source_sha256: rust_hash.or(first_c).or(of_casadi),
         c_sources,
+        casadi: casadi_hash,
         identities: emitted
             .flat_map(|source| find(source.as_bytes()))
             .map(|identity| identity.source)
@@ -142,6 +158,32 @@ fn source_checks(
         let check = emitted_c::check(oracle, judged, subject.c_sources);
         checks.push(check.map_err(describe_error)?);
     }
+    if let Some(emitted) = subject.casadi {
+        checks.extend(casadi::check(oracle, emitted).map_err(describe_error)?);
+    }
+    Ok(checks)
+}
+
+/// Compares the requested outputs with the oracle, then those of the functions for CasADi that were not requested.
+fn output_checks(
+    subject: &Subject<'_>,
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    requested: [Option<&mut (dyn Outputs + 'static)>; 2],
+) -> Result<Vec<Check>, String> {
+    let judged = CheckContext {
+        oracle,
+        model: subject.model,
+        order: subject.order,
+        parameters: subject.parameters,
+    };
+    let mut checks: Vec<Check> = Vec::new();
+    for outputs in requested.into_iter().flatten() {
+        let found = outputs::check(&judged, variant, outputs).map_err(describe_error)?;
+        let is_new = |check: &Check| checks.iter().all(|known| known.name != check.name);
+        let new: Vec<Check> = found.into_iter().filter(is_new).collect();
+        checks.extend(new);
+    }
     Ok(checks)
 }
 
@@ -156,17 +198,20 @@ fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
     checks.extend(check_nesting(subject, &oracle, variant)?);
     checks.extend(check_rigid_limit(subject, variant)?);
     let mut outputs = subject.outputs.map(|make| make()).transpose()?;
-    if let Some(outputs) = &mut outputs {
-        let judged = CheckContext {
-            oracle: &oracle,
-            model: subject.model,
-            order: subject.order,
-            parameters: subject.parameters,
-        };
-        let found = outputs::check(&judged, variant, outputs.as_mut());
-        checks.extend(found.map_err(describe_error)?);
-    }
-    let jacobians = outputs.as_deref_mut();
+    let of_casadi = subject
+        .casadi
+        .and_then(|(_, program)| program.as_ref().ok());
+    let mut of_casadi =
+        of_casadi.map(|program| DerivedOutputs::new(Evaluator::new(program.clone())));
+    let casadi_outputs = of_casadi
+        .as_mut()
+        .map(|outputs| outputs as &mut dyn Outputs);
+    let requested = [outputs.as_deref_mut(), casadi_outputs];
+    checks.extend(output_checks(subject, &oracle, variant, requested)?);
+    let casadi_outputs = of_casadi
+        .as_mut()
+        .map(|outputs| outputs as &mut dyn Outputs);
+    let jacobians = outputs.as_deref_mut().or(casadi_outputs);
     checks.extend(zeros::check(&oracle, variant, jacobians).map_err(describe_error)?);
     let of_sources = outputs.as_deref_mut();
     checks.extend(source_checks(subject, &oracle, variant, of_sources)?);

@@ -41,6 +41,10 @@ pub fn describe(name: &str) -> Option<String> {
         "rates_at_zeros" => "Rates are finite where coordinates or rates are zero.",
         "jacobians_at_zeros" => "Jacobians are finite where coordinates or rates are zero.",
         "emitted_rust" => "The compiled Rust gives the same bits as the equations.",
+        "emitted_c" => "The compiled C gives the same bits as the equations.",
+        "emitted_casadi" => {
+            "The compiled functions for CasADi give the same bits as the equations."
+        }
         "f32" => "In single precision, the compiled Rust stays within the bound of its rounding.",
         "regime_kernels" => {
             "The compiled code of each regime gives the same bits as the equations."
@@ -66,6 +70,10 @@ fn outputs(name: &str) -> Option<&'static str> {
         | "vector_jacobian_product"
         | "vector_jacobian_product_by_parameters" => {
             "This product with a Jacobian agrees with differences of the independent equations."
+        }
+        "rates_by_time" => "The derivatives of the rates by time agree with differences.",
+        "hessians" => {
+            "The second derivatives in the functions for CasADi agree with differences of the Jacobians."
         }
         "guard_rates" => {
             "The rates of the switching functions agree with differences along a motion."

@@ -16,7 +16,8 @@ use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::{Certificate, Check};
 use crate::certify::{
-    self, CSource, Emitted, EmittedFunction, ScaledRates, Subject, certificate_header, certify,
+    self, CSource, CasadiSource, Emitted, EmittedFunction, ScaledRates, Subject,
+    certificate_header, certify,
 };
 use crate::derived::Derived;
 use crate::derived_outputs::DerivedOutputs;
@@ -68,6 +69,8 @@ pub struct Sources {
     pub rust: Option<String>,
     /// C, one source for each prefix.
     pub c: Vec<CSource>,
+    /// Functions for CasADi, which have outputs of their own.
+    pub casadi: Option<CasadiSource>,
 }
 
 /// Certifies an emitted Rust source of `model` with `outputs`.
@@ -82,7 +85,7 @@ pub fn certify_source(
 ) -> Result<Certificate, Error> {
     let sources = Sources {
         rust: Some(emitted),
-        c: Vec::new(),
+        ..Sources::default()
     };
     certify_sources(model, orders, outputs, &sources)
 }
@@ -159,6 +162,10 @@ fn with_subject<R>(
     };
     let emitted = emitted_source(model, outputs, sources);
     let program = build_program(model, order, &parameters, outputs);
+    let casadi_program = match &sources.casadi {
+        Some(casadi) => build_program(model, order, &parameters, &casadi.outputs()),
+        None => Err("no functions for CasADi were emitted".to_owned()),
+    };
     let inputs: Vec<String> = model
         .inputs
         .iter()
@@ -176,6 +183,7 @@ fn with_subject<R>(
         emitted: emitted.ok_or_else(|| "no Rust was emitted".to_owned()),
         program: program.as_ref().ok(),
         c_sources: &sources.c,
+        casadi: (sources.casadi.as_ref()).map(|casadi| (casadi, &casadi_program)),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
             Err(reason) => Err(reason.clone()),
@@ -192,7 +200,8 @@ pub fn unchecked_certificate(
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let emitted = emitted_source(model, outputs, sources);
-    let about = certificate_header(model, order, &parameters, (emitted.as_ref(), &sources.c));
+    let sources = (emitted.as_ref(), &*sources.c, sources.casadi.as_ref());
+    let about = certificate_header(model, order, &parameters, sources);
     Ok(Certificate::new(about, None, Vec::new()))
 }
 

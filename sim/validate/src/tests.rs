@@ -36,6 +36,7 @@ fn certify_model(
         emitted,
         program: None,
         c_sources: &[],
+        casadi: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })
@@ -87,6 +88,7 @@ fn certify_preload(kernel: &str, derivative: bool) -> Certificate {
         emitted: Err("not emitted".into()),
         program: None,
         c_sources: &[],
+        casadi: None,
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
             input_fields: Vec::new(),
@@ -402,6 +404,7 @@ fn certify_faulty_outputs(wrong: &'static str) -> Certificate {
         emitted: Err("not emitted".into()),
         program: None,
         c_sources: &[],
+        casadi: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })

@@ -3,6 +3,7 @@
 mod bare_metal;
 mod bare_metal_gain;
 mod bench_of_a_model;
+mod casadi;
 mod checked_in_variants;
 mod closed_loop;
 mod families;

@@ -72,14 +72,18 @@ impl CCompiler {
     }
 
     /// Compiles an empty file, which any usable compiler can.
-    fn probe(&self, folder: &Path) -> Result<(), String> {
+    pub(super) fn probe(&self, folder: &Path) -> Result<(), String> {
         let probe = folder.join("probe.c");
         write(&probe, "typedef int probe;\n")?;
         let output = self.compile(folder, &["-c", "-o", "probe.o", "probe.c"])?;
         require_success("the C compiler", output).map(drop)
     }
 
-    fn compile(&self, folder: &Path, arguments: &[&str]) -> Result<compiler::Output, String> {
+    pub(super) fn compile(
+        &self,
+        folder: &Path,
+        arguments: &[&str],
+    ) -> Result<compiler::Output, String> {
         let mut command = Command::new(&self.program);
         run(
             command

@@ -15,8 +15,8 @@ use crate::sampler::Sample;
 const SEED: u64 = 0x1a7e_0f0c;
 /// Number of parameter sets, with that of the specification.
 const PARAMETER_SETS: usize = 4;
-/// Number of states in the domain for each set.
-const STATES: usize = 5;
+/// Number of states in the domain for each set, first of its calls.
+pub const STATES: usize = 5;
 /// Number of functions of every emitted source: rates, observables, energy, power, guards and mass matrix.
 pub const USUAL_FUNCTIONS: usize = 6;
 /// Factor of states far outside the usual range, exact in any precision.
@@ -105,6 +105,12 @@ impl<'p> Calls<'p> {
             format_bits(&[&call.parameters[..], &[*time], state, inputs].concat()) + "\n"
         };
         self.calls.iter().map(line).collect()
+    }
+
+    /// Returns parameters and point of each call.
+    pub fn points(&self) -> impl Iterator<Item = (&[f64], &Sample)> {
+        let calls = self.calls.iter();
+        calls.map(|call| (&*call.parameters, &call.sample))
     }
 
     /// Counts the lines of `found` that differ from those of the program: those of the interface if `with_names`, then
@@ -212,7 +218,7 @@ fn argument(place: usize) -> f64 {
 }
 
 /// Returns `count` numbers of an argument.
-fn arguments(count: usize) -> Vec<f64> {
+pub fn arguments(count: usize) -> Vec<f64> {
     (0..count).map(argument).collect()
 }
 

@@ -7,6 +7,7 @@
 //! - [`outputs`]: requested outputs;
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
 //! - [`emitted_c`]: emitted C; `interface` compares names, conversions, parameters and precisions of both;
+//! - [`casadi`]: emitted functions for CasADi;
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!
@@ -14,6 +15,7 @@
 //! 1e-12 is therefore available to the variant under test.
 
 pub mod balance;
+pub mod casadi;
 pub mod emitted;
 pub mod emitted_c;
 pub mod exact;

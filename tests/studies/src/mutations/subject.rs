@@ -146,10 +146,11 @@ impl Subject {
                         .collect(),
                     compiler: CCompiler::default(),
                 }],
+                casadi: None,
             },
             false => Sources {
                 rust: Some(files[0].text.clone()),
-                c: Vec::new(),
+                ..Sources::default()
             },
         };
         let checks = check_sources(&self.model, &self.orders, &self.outputs, &sources);
