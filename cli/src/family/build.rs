@@ -24,7 +24,7 @@ use crate::test_vectors;
 use crate::trace_file::{self, TRACE};
 
 /// Name of a certificate.
-const CERTIFICATE: &str = "certificate.json";
+pub const CERTIFICATE: &str = "certificate.json";
 
 /// Emitted files of a variant.
 pub struct Built {

@@ -61,12 +61,17 @@ impl Findings {
         self.0.push((kind, text.into()));
     }
 
+    /// Returns the paths of the files that were changed by hand.
+    pub fn edited_files(&self) -> impl Iterator<Item = String> {
+        let edited = self.0.iter().filter(|(kind, _)| *kind == Kind::Edited);
+        edited.map(|(_, path)| path.clone())
+    }
+
     pub fn to_json(&self) -> Vec<Value> {
         let finding = |(kind, text): &(Kind, String)| json!({"kind": kind.name(), "text": text});
         self.0.iter().map(finding).collect()
     }
 
-    /// Returns the kinds, each once.
     /// Returns the state of the variant after the command.
     fn state(&self, is_written: bool) -> String {
         let mut names: Vec<&str> = Vec::new();

@@ -7,7 +7,7 @@ use std::path::Path;
 use eomgen_model_spec::source::sha256;
 use serde_json::{Value, json};
 
-use super::build::Built;
+use super::build::{Built, CERTIFICATE};
 use super::description::{Family, Variant};
 use crate::document::SCHEMA;
 use crate::error::{Error, Result};
@@ -115,6 +115,18 @@ impl Manifest {
             "verdict": built.verdict,
         });
         self.variants.insert(variant.name.clone(), entry);
+    }
+
+    /// Takes hash and verdict from an earlier manifest, if `path` is a certificate.
+    pub fn keep_certificate(&mut self, earlier: &Self, path: &str) {
+        let Some((name, CERTIFICATE)) = path.split_once('/') else {
+            return;
+        };
+        let entries = (self.variants.get_mut(name), earlier.entry(name));
+        if let (Some(entry), Some(earlier)) = entries {
+            entry["files"][path] = earlier["files"][path].clone();
+            entry["verdict"] = earlier["verdict"].clone();
+        }
     }
 
     /// Returns the text as read; empty without a file.

@@ -550,6 +550,28 @@ fn embedded_files_are_verified_and_faults_are_found() {
 }
 
 #[test]
+fn comparison_names_edited_certificate() {
+    for (from, to) in [
+        ("\"value\": 0.0", "\"value\": 1.0"),
+        ("\"order\": 1", "\"order\": 2"),
+    ] {
+        let copy = copy();
+        edit(
+            &copy.path().join("models/beam_1/certificate.json"),
+            from,
+            to,
+        );
+        let (status, said) = family(copy.path(), &["--check"]);
+        assert_eq!(status, Some(1), "{said}");
+        assert!(
+            said.contains("beam_1: edited: beam_1/certificate.json")
+                && said.contains("error: 1 file differ: beam_1/certificate.json;"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn wrong_files_are_not_verified() {
     let copy = copy();
     let models = copy.path().join("models");
