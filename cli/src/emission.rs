@@ -92,6 +92,7 @@ pub fn c_source(
     let names = outputs.iter().map(|output| output.name().to_owned());
     CSource {
         name: name.to_owned(),
+        file: format!("{name}.c"),
         source,
         header,
         outputs: names.collect(),
@@ -108,7 +109,10 @@ pub fn header_only_source(
     compiler: CCompiler,
 ) -> CSource {
     let source = format!("#define {name}_IMPLEMENTATION\n{header}");
-    c_source(name, (source, header), outputs, compiler)
+    CSource {
+        file: format!("{name}.h"),
+        ..c_source(name, (source, header), outputs, compiler)
+    }
 }
 
 /// Bounds the functions of emitted C with a cross compiler.

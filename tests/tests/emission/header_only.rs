@@ -120,6 +120,12 @@ fn family_with_headers_is_certified_compared_verified_and_identified() {
     assert!(said.contains("swing: edited: swing/swing.h"), "{said}");
     let said = expect(folder, 1, &verify);
     assert!(said.contains("hash: DIFFERENT"), "{said}");
+    std::fs::write(swing.join("swing.h"), read("swing.h") + "no C\n").expect("written");
+    let said = expect(folder, 1, &verify);
+    assert!(
+        said.contains("(swing.h: the emitted source failed"),
+        "{said}"
+    );
 }
 
 #[test]

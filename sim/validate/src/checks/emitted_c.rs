@@ -21,7 +21,9 @@ const NAME: &str = "emitted_c";
 pub struct CSource {
     /// Prefix of its names, and name of the header.
     pub name: String,
-    /// Text of `NAME.c`.
+    /// Name of the file with the functions: `NAME.c`, or `NAME.h` if it is one header.
+    pub file: String,
+    /// Text that compiles the functions.
     pub source: String,
     /// Text of `NAME.h`.
     pub header: String,
@@ -135,7 +137,7 @@ pub fn check(
             .map(|program| check_interface(folder.path(), source, &Calls::new(program, &samples)));
         let compared = compared.and_then(|compared| Ok(compared.with(interface.transpose()?)));
         let compared = compared.unwrap_or_else(|message| {
-            Worst::from_deviation(f64::INFINITY, format!("{}.c: {message}", source.name))
+            Worst::from_deviation(f64::INFINITY, format!("{}: {message}", source.file))
         });
         worst = Some(compared.with(worst));
     }

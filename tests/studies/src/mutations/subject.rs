@@ -137,6 +137,7 @@ impl Subject {
                 rust: None,
                 c: vec![CSource {
                     name: self.name.clone(),
+                    file: self.files[0].name.clone(),
                     source: files[0].text.clone(),
                     header: files[1].text.clone(),
                     outputs: self
