@@ -5,8 +5,10 @@ use eomgen_codegen::program::{Output, Program};
 use eomgen_codegen::rust;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::sha256;
+use eomgen_targets::archive::unpack;
 use eomgen_targets::emit;
-use eomgen_validate::certify::{CCompiler, CSource, CasadiSource};
+use eomgen_validate::certify::{CCompiler, CSource, CasadiSource, UnitSource};
 use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::Sources;
 
@@ -58,7 +60,7 @@ pub fn sources(
     target: Target,
     files: &[(String, Vec<u8>)],
     outputs: &[Output],
-) -> Sources {
+) -> Result<Sources> {
     let text = |place: usize| {
         let file = files.get(place);
         file.map(|(_, contents)| String::from_utf8_lossy(contents).into_owned())
@@ -77,9 +79,27 @@ pub fn sources(
             let compiler = CCompiler::default();
             sources.casadi = Some(casadi_source(name, source, outputs, compiler));
         }
+        (Target::Fmu2 | Target::Fmu3, ..) => {
+            if let Some((_, contents)) = files.first() {
+                sources.unit = Some(unit_source(name, contents, CCompiler::default())?);
+            }
+        }
         (_, source, _) => sources.rust = source,
     }
-    sources
+    Ok(sources)
+}
+
+/// Returns a functional mock-up unit with the compiler of the program that loads it.
+///
+/// # Errors
+/// A file that is no archive.
+pub fn unit_source(name: &str, contents: &[u8], compiler: CCompiler) -> Result<UnitSource> {
+    Ok(UnitSource {
+        name: name.to_owned(),
+        sha256: sha256(contents),
+        files: unpack(contents)?,
+        compiler,
+    })
 }
 
 /// Returns emitted C in a source file and its header, with the compiler that checks it.
@@ -141,10 +161,13 @@ pub fn casadi_source(
 /// # Errors
 /// An option that the target does not support.
 pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Output>> {
-    let has_certificate = matches!(target, Target::Rust | Target::C99 | Target::Casadi);
+    let has_certificate = matches!(
+        target,
+        Target::Rust | Target::C99 | Target::Casadi | Target::Fmu2 | Target::Fmu3
+    );
     if certify && !has_certificate {
         return Err(Error::input(
-            "--certify needs --target rust, c99 or casadi: CUDA C++ and functional mock-up units have no certificate",
+            "--certify needs another target than cuda: CUDA C++ has no certificate",
         ));
     }
     if with.contains(&Extra::Bench) && target != Target::Rust {

@@ -53,6 +53,7 @@ pub fn certify_outputs(model: &Model, subject: &Model, outputs: &[Output]) -> Ce
         program: None,
         c_sources: &[],
         casadi: None,
+        unit: None,
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),
     })

@@ -198,8 +198,8 @@ pub struct Family {
 /// Options of `verify`.
 #[derive(Args)]
 pub struct Verify {
-    /// Emitted source: Rust (`.rs`), C (`.c`) with its header in the same folder, a header with the functions (`.h`), or
-    /// functions for CasADi (`NAME_casadi.c`).
+    /// Emitted source: Rust (`.rs`), C (`.c`) with its header in the same folder, a header with the functions (`.h`),
+    /// functions for CasADi (`NAME_casadi.c`), or a functional mock-up unit (`.fmu`).
     pub file: PathBuf,
     /// Certificate of the source.
     pub certificate: PathBuf,

@@ -74,7 +74,7 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let form = (options.target, options.packaging);
     let mut emitted = emission::files(&model, &variant, form)?;
     let name = &variant.program.name;
-    let sources = emission::sources(name, options.target, &emitted, &outputs);
+    let sources = emission::sources(name, options.target, &emitted, &outputs)?;
     emitted.extend(test_vectors::files(
         &model,
         &orders,

@@ -7,7 +7,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::{Source, sha256};
 use eomgen_targets::parse_output;
-use eomgen_validate::certificate::{CSourceHashes, CasadiHash};
+use eomgen_validate::certificate::{CSourceHashes, CasadiHash, UnitHash};
 use eomgen_validate::certify::{CCompiler, CasadiSource};
 use eomgen_validate::instructions::InstructionBounds;
 use eomgen_validate::model_certificate::{Sources, certify_sources};
@@ -16,17 +16,21 @@ use serde_json::{Value, json};
 use crate::arguments::Verify;
 use crate::certification::summary;
 use crate::document::SCHEMA;
-use crate::emission::{c_source, casadi_source, header_only_source, instructions};
+use crate::emission::{c_source, casadi_source, header_only_source, instructions, unit_source};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::progress::Note;
 
 pub fn run(options: &Verify) -> Result {
     let certificate = Certificate::read(&options.certificate)?;
-    let text = read(&options.file)?;
-    let (sources, expected) = sources(options, &certificate, text.clone())?;
-    let found = sha256(&text);
+    let contents = std::fs::read(&options.file);
+    let contents = contents.map_err(|error| Error::file("read", &options.file, &error))?;
+    let (sources, expected) = sources(options, &certificate, &contents)?;
+    let found = sha256(&contents);
     // A header with the functions is the file itself.
-    let mut with_header = sources.c.iter().filter(|source| source.header != text);
+    let mut with_header = sources
+        .c
+        .iter()
+        .filter(|source| source.header.as_bytes() != contents);
     let is_header_same = with_header.all(|source| {
         let certified = certificate.c_source(&source.name);
         certified.is_some_and(|certified| certified.header_sha256 == sha256(&source.header))
@@ -90,6 +94,7 @@ struct Certificate {
     source_sha256: String,
     c_sources: Vec<CSourceHashes>,
     casadi: Option<CasadiHash>,
+    unit: Option<UnitHash>,
 }
 
 impl Certificate {
@@ -152,6 +157,10 @@ impl Certificate {
             Value::Null => None,
             casadi => Some(casadi_hash(casadi).ok_or_else(|| missing("casadi"))?),
         };
+        let unit = match &document["unit"] {
+            Value::Null => None,
+            unit => Some(unit_hash(unit).ok_or_else(|| missing("unit"))?),
+        };
         let settings = settings.iter().map(|(name, value)| match value.as_f64() {
             Some(value) => Ok((name.as_str(), value)),
             None => Err(Error::input(format!(
@@ -171,6 +180,7 @@ impl Certificate {
             source_sha256: string("source_sha256")?,
             c_sources,
             casadi,
+            unit,
             document,
         })
     }
@@ -272,6 +282,14 @@ impl Certificate {
     }
 }
 
+fn unit_hash(document: &Value) -> Option<UnitHash> {
+    let of = |key: &str| document[key].as_str().map(str::to_owned);
+    Some(UnitHash {
+        name: of("name")?,
+        sha256: of("sha256")?,
+    })
+}
+
 fn casadi_hash(document: &Value) -> Option<CasadiHash> {
     let of = |key: &str| document[key].as_str().map(str::to_owned);
     let with = document["with"].as_array()?.iter();
@@ -290,10 +308,33 @@ fn specification_has_tables(source: &Source) -> bool {
 }
 
 /// Returns the source to check and the hash that the certificate states for its language.
-fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<(Sources, String)> {
+fn sources(
+    options: &Verify,
+    certificate: &Certificate,
+    contents: &[u8],
+) -> Result<(Sources, String)> {
     let path = &options.file;
     let shown = path.display();
     let extension = path.extension().and_then(|ending| ending.to_str());
+    let compiler = match &options.cc {
+        None => CCompiler::default(),
+        Some(command) => CCompiler::from_command(command)
+            .ok_or_else(|| Error::input("--cc is blank: give a command such as \"gcc -O2\""))?,
+    };
+    if extension == Some("fmu") {
+        let unit = certificate.unit.as_ref().ok_or_else(|| {
+            Error::input(format!(
+                "{shown}: the certificate covers no functional mock-up unit; give the certificate that was written with the file"
+            ))
+        })?;
+        let sources = Sources {
+            unit: Some(unit_source(&unit.name, contents, compiler)?),
+            ..Sources::default()
+        };
+        return Ok((sources, unit.sha256.clone()));
+    }
+    let text = String::from_utf8(contents.to_vec())
+        .map_err(|error| Error::input(format!("cannot read {shown}: {error}")))?;
     match extension {
         Some("rs") if options.cc.is_some() => Err(Error::input(format!(
             "--cc is for C; {shown} is Rust, which `rustc` or the program in RUSTC compiles"
@@ -310,12 +351,6 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
                 .file_stem()
                 .and_then(|name| name.to_str())
                 .unwrap_or_default();
-            let compiler = match &options.cc {
-                None => CCompiler::default(),
-                Some(command) => CCompiler::from_command(command).ok_or_else(|| {
-                    Error::input("--cc is blank: give a command such as \"gcc -O2\"")
-                })?,
-            };
             let casadi = certificate.casadi.as_ref();
             if let Some(certified) = casadi.filter(|c| name == format!("{}_casadi", c.name)) {
                 let sources = Sources {
@@ -357,7 +392,7 @@ fn sources(options: &Verify, certificate: &Certificate, text: String) -> Result<
             Ok((sources, expected))
         }
         _ => Err(Error::input(format!(
-            "{shown} is neither Rust nor C: give a file that ends in .rs, .c or .h"
+            "{shown} is neither Rust nor C nor a unit: give a file that ends in .rs, .c, .h or .fmu"
         ))),
     }
 }

@@ -159,7 +159,7 @@ impl Emitted {
             let outputs = emission::outputs(Target::Casadi, &of_casadi, false)?;
             let derived = derive(&outputs)?;
             let files = emission::files(model, &derived, (Target::Casadi, None))?;
-            let sources = emission::sources(&variant.prefix, Target::Casadi, &files, &outputs);
+            let sources = emission::sources(&variant.prefix, Target::Casadi, &files, &outputs)?;
             this.sources.casadi = sources.casadi;
             this.files.extend(files);
         }

@@ -1,9 +1,9 @@
 //! ZIP archives. Equal contents give equal bytes: all entries have the same time.
 
-use std::io::{Cursor, Write};
+use std::io::{Cursor, Read, Write};
 
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::error::{EmissionError, Result};
 
@@ -29,4 +29,35 @@ pub fn pack(files: Vec<(String, Vec<u8>)>) -> Result<Vec<u8>> {
     }
     let archive = archive.finish().map_err(|error| failed(&error))?;
     Ok(archive.into_inner())
+}
+
+/// Largest size of an unpacked archive, in bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// Returns names and contents of the files in an archive.
+///
+/// # Errors
+/// Bytes that are no archive, and an archive that is too large.
+pub fn unpack(archive: &[u8]) -> Result<Vec<(String, Vec<u8>)>> {
+    let failed =
+        |error: &dyn std::fmt::Display| EmissionError::Request(format!("cannot unpack: {error}"));
+    let mut archive = ZipArchive::new(Cursor::new(archive)).map_err(|error| failed(&error))?;
+    let mut files = Vec::new();
+    let mut rest = MAX_BYTES;
+    for place in 0..archive.len() {
+        let file = archive.by_index(place).map_err(|error| failed(&error))?;
+        if file.is_dir() {
+            continue;
+        }
+        let name = file.name().map_err(|error| failed(&error))?.into_owned();
+        let mut contents = Vec::new();
+        let length = file.take(rest).read_to_end(&mut contents);
+        let length = length.map_err(|error| failed(&error))? as u64;
+        rest -= length;
+        if rest == 0 {
+            return Err(failed(&"it is larger than 1 GiB"));
+        }
+        files.push((name, contents));
+    }
+    Ok(files)
 }

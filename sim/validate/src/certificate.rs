@@ -29,6 +29,9 @@ pub struct Certificate {
     /// Emitted functions for CasADi, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub casadi: Option<CasadiHash>,
+    /// Functional mock-up unit, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<UnitHash>,
     /// Hashes of the sources in their identities, as `eomgen identify` prints them.
     pub identities: Vec<String>,
     /// Requested outputs, by their names in `--with`.
@@ -77,6 +80,15 @@ pub struct CasadiHash {
     pub source_sha256: String,
     /// Requested outputs, by their names in `--with`.
     pub with: Vec<String>,
+}
+
+/// Hash of a functional mock-up unit.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UnitHash {
+    /// Name: the file is `NAME.fmu`.
+    pub name: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
 }
 
 /// Result of all checks together.
@@ -169,6 +181,8 @@ pub struct CertificateHeader {
     pub c_sources: Vec<CSourceHashes>,
     /// Emitted functions for CasADi, if any.
     pub casadi: Option<CasadiHash>,
+    /// Functional mock-up unit, if any.
+    pub unit: Option<UnitHash>,
     /// Hashes of the sources in their identities.
     pub identities: Vec<String>,
     /// Parameters that were set, in their declared units.
@@ -209,6 +223,7 @@ impl Certificate {
             source_sha256: about.source_sha256,
             c_sources: about.c_sources,
             casadi: about.casadi,
+            unit: about.unit,
             identities: about.identities,
             settings: about.settings,
             specification: about.specification,

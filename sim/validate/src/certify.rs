@@ -1,12 +1,13 @@
 //! Runs all checks of a model at one order and writes the certificate.
 
 use super::certificate::{
-    CSourceHashes, CasadiHash, Certificate, CertificateHeader, Check, Coverage, SkipKind, Worst,
+    CSourceHashes, CasadiHash, Certificate, CertificateHeader, Check, Coverage, SkipKind, UnitHash,
+    Worst,
 };
 use super::checks::outputs::CheckContext;
 use super::checks::{
     MASS_TOLERANCE, ROW_TOLERANCE, balance, casadi, emitted, emitted_c, exact, nesting, outputs,
-    regimes, states, zeros,
+    regimes, states, unit, zeros,
 };
 use super::derived_outputs::DerivedOutputs;
 use super::oracle::{Oracle, OracleError};
@@ -23,6 +24,7 @@ pub use super::checks::emitted_c::{CCompiler, CSource};
 pub use super::checks::exact::{Derivative, ScaledRates};
 pub use super::checks::linked_program::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
+pub use super::checks::unit::UnitSource;
 
 /// Reason for a skipped comparison of two orders.
 const SMALLER_MISSING: &str = "the model names single modes, which the smaller order does not have";
@@ -60,6 +62,8 @@ pub struct Subject<'s> {
     pub c_sources: &'s [CSource],
     /// Emitted functions for CasADi with their program, or the reason for its absence.
     pub casadi: Option<(&'s CasadiSource, &'s Result<Program, String>)>,
+    /// Functional mock-up unit with its program and the default inputs.
+    pub unit: Option<(&'s UnitSource, &'s Result<Program, String>, &'s [f64])>,
     /// Emitted source with kernels of regimes, or the reason for its absence.
     pub regimes: Result<Emitted, String>,
     /// State derivative of the exact solver, or the reason for its absence.
@@ -76,7 +80,8 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
     });
     let emitted = subject.emitted.as_ref().ok();
     let casadi = subject.casadi.map(|(source, _)| source);
-    let sources = (emitted, subject.c_sources, casadi);
+    let unit = subject.unit.map(|(unit, ..)| unit);
+    let sources = (emitted, subject.c_sources, casadi, unit);
     let about = certificate_header(subject.model, subject.order, subject.parameters, sources);
     Certificate::new(about, Some(coverage), checks)
 }
@@ -86,7 +91,12 @@ pub fn certificate_header(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    (rust, c, casadi): (Option<&Emitted>, &[CSource], Option<&CasadiSource>),
+    (rust, c, casadi, unit): (
+        Option<&Emitted>,
+        &[CSource],
+        Option<&CasadiSource>,
+        Option<&UnitSource>,
+    ),
 ) -> CertificateHeader {
     let rust_hash = rust.map(|emitted| sha256(&emitted.source));
     let c_sources = c.iter().map(|emitted| CSourceHashes {
@@ -112,9 +122,16 @@ pub fn certificate_header(
         model: model.name.clone(),
         order,
         specification_sha256: model.hash(),
-        source_sha256: rust_hash.or(first_c).or(of_casadi),
+        source_sha256: rust_hash
+            .or(first_c)
+            .or(of_casadi)
+            .or(unit.map(|unit| unit.sha256.clone())),
         c_sources,
         casadi: casadi_hash,
+        unit: unit.map(|unit| UnitHash {
+            name: unit.name.clone(),
+            sha256: unit.sha256.clone(),
+        }),
         identities: emitted
             .flat_map(|source| find(source.as_bytes()))
             .map(|identity| identity.source)
@@ -160,6 +177,10 @@ fn source_checks(
     }
     if let Some(emitted) = subject.casadi {
         checks.extend(casadi::check(oracle, emitted).map_err(describe_error)?);
+    }
+    if let Some((emitted, program, inputs)) = subject.unit {
+        let judged = (subject.model, program, inputs);
+        checks.extend(unit::check(oracle, judged, emitted).map_err(describe_error)?);
     }
     Ok(checks)
 }

@@ -45,6 +45,8 @@ pub fn describe(name: &str) -> Option<String> {
         "emitted_casadi" => {
             "The compiled functions for CasADi give the same bits as the equations."
         }
+        "unit_description" => "The description of the unit has the variables of the specification.",
+        "unit_library" => "The library in the unit has the rates and observables of the equations.",
         "f32" => "In single precision, the compiled Rust stays within the bound of its rounding.",
         "regime_kernels" => {
             "The compiled code of each regime gives the same bits as the equations."

@@ -16,7 +16,7 @@ use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::{Certificate, Check};
 use crate::certify::{
-    self, CSource, CasadiSource, Emitted, EmittedFunction, ScaledRates, Subject,
+    self, CSource, CasadiSource, Emitted, EmittedFunction, ScaledRates, Subject, UnitSource,
     certificate_header, certify,
 };
 use crate::derived::Derived;
@@ -71,6 +71,8 @@ pub struct Sources {
     pub c: Vec<CSource>,
     /// Functions for CasADi, which have outputs of their own.
     pub casadi: Option<CasadiSource>,
+    /// Functional mock-up unit.
+    pub unit: Option<UnitSource>,
 }
 
 /// Certifies an emitted Rust source of `model` with `outputs`.
@@ -166,6 +168,9 @@ fn with_subject<R>(
         Some(casadi) => build_program(model, order, &parameters, &casadi.outputs()),
         None => Err("no functions for CasADi were emitted".to_owned()),
     };
+    let unit_program = build_program(model, order, &parameters, &[]);
+    let default_inputs = model.typical_inputs(0.0);
+    let default_inputs = default_inputs.unwrap_or_else(|_| vec![0.0; model.inputs.len()]);
     let inputs: Vec<String> = model
         .inputs
         .iter()
@@ -184,6 +189,7 @@ fn with_subject<R>(
         program: program.as_ref().ok(),
         c_sources: &sources.c,
         casadi: (sources.casadi.as_ref()).map(|casadi| (casadi, &casadi_program)),
+        unit: (sources.unit.as_ref()).map(|unit| (unit, &unit_program, &*default_inputs)),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
             Err(reason) => Err(reason.clone()),
@@ -200,7 +206,8 @@ pub fn unchecked_certificate(
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let emitted = emitted_source(model, outputs, sources);
-    let sources = (emitted.as_ref(), &*sources.c, sources.casadi.as_ref());
+    let (casadi, unit) = (sources.casadi.as_ref(), sources.unit.as_ref());
+    let sources = (emitted.as_ref(), &*sources.c, casadi, unit);
     let about = certificate_header(model, order, &parameters, sources);
     Ok(Certificate::new(about, None, Vec::new()))
 }

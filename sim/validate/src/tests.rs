@@ -37,6 +37,7 @@ fn certify_model(
         program: None,
         c_sources: &[],
         casadi: None,
+        unit: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })
@@ -89,6 +90,7 @@ fn certify_preload(kernel: &str, derivative: bool) -> Certificate {
         program: None,
         c_sources: &[],
         casadi: None,
+        unit: None,
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
             input_fields: Vec::new(),
@@ -405,6 +407,7 @@ fn certify_faulty_outputs(wrong: &'static str) -> Certificate {
         program: None,
         c_sources: &[],
         casadi: None,
+        unit: None,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })

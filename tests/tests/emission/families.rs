@@ -592,7 +592,7 @@ fn wrong_files_are_not_verified() {
             &[],
             "has no `specification`",
         ),
-        (&other, &certificate, &[], "neither Rust nor C"),
+        (&other, &certificate, &[], "neither Rust nor C nor a unit"),
         (&rust, &certificate, &["--cc", "gcc"], "--cc is for C"),
         (
             &models.join("beam_1/beam_1.c"),

@@ -17,3 +17,4 @@ mod routes;
 mod settings;
 mod single_precision;
 mod trace_file;
+mod units;

@@ -134,7 +134,6 @@ impl Subject {
     pub fn judge(&self, files: &[File]) -> Result<Verdict, String> {
         let sources = match self.is_c() {
             true => Sources {
-                rust: None,
                 c: vec![CSource {
                     name: self.name.clone(),
                     file: self.files[0].name.clone(),
@@ -147,7 +146,7 @@ impl Subject {
                         .collect(),
                     compiler: CCompiler::default(),
                 }],
-                casadi: None,
+                ..Sources::default()
             },
             false => Sources {
                 rust: Some(files[0].text.clone()),
