@@ -345,7 +345,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         let surfaces: Vec<usize> = guards
             .filter(|guard| surfaces.contains(guard) || self.system.has_energy_jump(*guard))
             .collect();
-        self.project_along(&surfaces, (&y.to_vec(), -length), t, y);
+        let start = y.to_vec();
+        self.project_along(&surfaces, (&start, -length), t, y);
     }
 
     /// Projects a state. If the projection is not on one side of the surfaces, or does not stay there, replaces the state
