@@ -8,7 +8,7 @@
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
 //! - [`emitted_c`]: emitted C; `interface` compares names, conversions, parameters and precisions of both;
 //! - [`casadi`]: emitted functions for CasADi;
-//! - [`unit`]: functional mock-up units;
+//! - [`mod@unit`]: functional mock-up units;
 //! - [`regimes`]: emitted kernels of regimes;
 //! - [`exact`]: state derivative of the exact solver.
 //!
