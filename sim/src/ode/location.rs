@@ -146,7 +146,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             let is_near = slope < 0.0 && newton.abs() <= longest.max(MIN_DISTANCE * length);
             if is_near || beyond - near <= longest {
                 let offset = if is_near { newton } else { 0.0 };
-                return Ok(self.cross_on(line, (offset, length), &crossing.guards));
+                return Ok(self.cross_on(line, (offset, slope), length, &crossing.guards));
             }
             let next = after + newton;
             after = match slope < 0.0 && near < next && next < beyond {
@@ -182,12 +182,23 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
-    /// of `length` s.
-    fn cross_on(&self, line: Line, (offset, length): (f64, f64), guards: &[usize]) -> Located {
+    /// of `length` s. The lowest of the guards has the `slope` (per s) there.
+    fn cross_on(
+        &self,
+        line: Line,
+        (offset, slope): (f64, f64),
+        length: f64,
+        guards: &[usize],
+    ) -> Located {
         let begin = self.run.stepper.current_point().t;
         let shortest = self.shortest_step();
         let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * shortest);
-        let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
+        // A slow motion leads beyond the rounding of a surface in a longer time.
+        let roundings = self.watched.guard_roundings(line.point.t, &line.point.y);
+        let rounding = guards.iter().map(|guard| roundings[*guard]);
+        let until_beyond = rounding.fold(0.0, f64::max) / slope.abs();
+        let longest = (MAX_EXTRAPOLATION * length).max(distance);
+        let longest = GROWTH * longest.max(until_beyond.min(length));
         let lowest = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
         let mut found = Located::Touched(line.point.clone());
         while distance <= longest {

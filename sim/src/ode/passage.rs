@@ -19,6 +19,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let located = self.locate(crossing, guess, length)?;
         let guard = crossing.guards.first().copied();
         let has_crossed = matches!(located, Located::Crossed(..));
+        let recorded = self.trajectory.events.len();
         match located {
             Located::Crossed(near, mut beyond) => {
                 let crossed = self.crossed_guards(&beyond);
@@ -37,6 +38,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             Located::Touched(_) | Located::Failed => {
                 self.run.stepper.restart(start, SHORTENED * length);
             }
+        }
+        // Ways to a surface without an event must lead on, too.
+        let is_unrecorded = self.trajectory.events.len() == recorded;
+        if let Some(guard) = guard.filter(|_| is_unrecorded) {
+            self.check_switch_rate(self.run.stepper.current_point().t, guard)?;
         }
         self.check_approaches(guard, has_crossed)
     }

@@ -1036,3 +1036,34 @@ stop = { when = "d - a", restitution = 0 }
         }
     }
 }
+
+/// Two bodies that friction holds together hit a stop again and again: each time both go on with 0.15 of the speed, so that
+/// they come to rest at the stop after 0.33 s.
+#[test]
+fn bodies_held_together_come_to_rest_at_a_stop() {
+    let text = r#"
+[model]
+name = "together"
+[parameters]
+m = { value = 1, unit = "kg" }
+F_c = { value = 4, unit = "N" }
+e = { value = 0.7, unit = "1" }
+d = { value = 0.05, unit = "m" }
+[coordinates]
+a = { unit = "m", initial_rate = 0.5 }
+b = { unit = "m", initial = 0.02 }
+[kinetic]
+T = "1/2*m*(dot(a)^2 + dot(b)^2)"
+[forces]
+friction = { on = "a - b", value = "-F_c*sign(dot(a) - dot(b))" }
+[impacts]
+stop = { when = "d - b", restitution = "e" }
+"#;
+    let model = CompiledModel::from_text("together.toml", text, Orders::Declared).unwrap();
+    let run = model.with_declared_parameters().unwrap();
+    for motion in simulate_with_all_solvers(&model, run.initial_state(), &[0.0, 0.35]) {
+        let state = &motion.trajectory.states[1];
+        assert!((state[1] - 0.05).abs() < 1e-9, "{state:?}");
+        assert!(state[2].abs() < 1e-6 && state[3].abs() < 1e-6, "{state:?}");
+    }
+}
