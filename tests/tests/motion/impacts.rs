@@ -1037,7 +1037,7 @@ stop = { when = "d - a", restitution = 0 }
     }
 }
 
-/// Two bodies that friction holds together hit a stop again and again: each time both go on with 0.15 of the speed, so that
+/// Two bodies that friction holds together hit a stop again and again: each time both continue with 0.15 of the speed, so that
 /// they come to rest at the stop after 0.33 s.
 #[test]
 fn bodies_held_together_come_to_rest_at_a_stop() {
