@@ -207,6 +207,10 @@ pub struct Verify {
     /// `-std=c99 -O2 -ffp-contract=off`.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     pub cc: Option<String>,
+    /// Cross compiler with its options: computes the certificate's bounds of instructions and stack with it again. Commands in
+    /// a certificate are not run. Repeatable.
+    #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
+    pub instructions: Vec<String>,
     #[command(flatten)]
     pub output: Json,
 }

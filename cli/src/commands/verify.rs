@@ -44,7 +44,7 @@ pub fn run(options: &Verify) -> Result {
     let mut document =
         serde_json::to_value(&repeated).map_err(|error| Error::input(error.to_string()))?;
     certificate.compare_statements(&document, &options.certificate)?;
-    let bounds = certificate.repeat_bounds(&sources)?;
+    let bounds = certificate.repeat_bounds(&sources, &options.instructions)?;
     if options.output.json {
         document["schema"] = json!(SCHEMA);
         document["file"] = json!(options.file.display().to_string());
@@ -190,18 +190,30 @@ impl Certificate {
         self.c_sources.iter().find(|source| source.name == name)
     }
 
-    /// Compiles the C again with the compilers of the certificate's bounds of instructions and stack, and compares.
+    /// Compiles the C again with those of the `allowed` compilers with which the certificate states bounds of instructions
+    /// and stack, and compares. Other commands of the certificate are not run: it may be anybody's file.
     ///
     /// # Errors
-    /// Bounds that differ although the compiler is the same.
-    fn repeat_bounds(&self, sources: &Sources) -> Result<RepeatedBounds> {
+    /// Bounds that differ although the compiler is the same, and a compiler without bounds in the certificate.
+    fn repeat_bounds(&self, sources: &Sources, allowed: &[String]) -> Result<RepeatedBounds> {
         let mut repeated = RepeatedBounds::default();
         let stated = match &self.document["instructions"] {
-            Value::Null => return Ok(repeated),
+            Value::Null => Ok(Vec::new()),
             stated => serde_json::from_value::<Vec<InstructionBounds>>(stated.clone()),
         };
         let stated = stated
             .map_err(|error| Error::input(format!("`instructions` of the certificate: {error}")))?;
+        let is_same = |one: &str, other: &str| one.split_whitespace().eq(other.split_whitespace());
+        for command in allowed {
+            if !stated
+                .iter()
+                .any(|stated| is_same(&stated.command, command))
+            {
+                return Err(Error::input(format!(
+                    "--instructions {command:?}: the certificate states no bounds with this command"
+                )));
+            }
+        }
         for stated in stated {
             let InstructionBounds {
                 source,
@@ -212,6 +224,9 @@ impl Certificate {
             } = stated;
             let mut given = sources.c.iter();
             let found = match given.find(|given| format!("{}.c", given.name) == source) {
+                Some(_) if !allowed.iter().any(|allowed| is_same(allowed, &command)) => {
+                    Err("give this command as --instructions".to_owned())
+                }
                 Some(given) => instructions(given, &command),
                 None => Err(format!("the bounds are those of {source}")),
             };

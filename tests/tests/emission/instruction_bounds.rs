@@ -414,17 +414,19 @@ fn certificate_states_bounds_that_verify_repeats() {
     let bounds = &certificate["instructions"][0];
     assert_eq!(
         (&bounds["command"], &bounds["source"]),
-        (&command.into(), &"pendulum.c".into())
+        (&command.as_str().into(), &"pendulum.c".into())
     );
-    let verify = || {
+    let verify = |instructions: &[&str]| {
         let source = folder.path().join("pendulum.c");
         eomgen()
             .arg("verify")
             .args([&source, &path])
+            .args(instructions)
             .output()
             .expect("eomgen")
     };
-    let output = verify();
+    let allowed = ["--instructions", &command];
+    let output = verify(&allowed);
     assert!(output.status.success());
     assert!(
         String::from_utf8_lossy(&output.stdout).contains("instructions and stack: as certified")
@@ -438,7 +440,17 @@ fn certificate_states_bounds_that_verify_repeats() {
         rates.expect("the rates")["instructions"]
     );
     std::fs::write(&path, text.replace(&stated, "\"instructions\": 1,")).expect("written");
-    let output = verify();
+    let output = verify(&allowed);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("are not those of the certificate"));
+    // A certificate of somebody else must not run programs.
+    let mark = folder.path().join("mark");
+    let other = text.replace(&command, &format!("touch {}", mark.display()));
+    assert_ne!(other, text);
+    std::fs::write(&path, other).expect("written");
+    let output = verify(&[]);
+    assert!(output.status.success());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("NOT RUN (give this command"));
+    assert!(!mark.exists());
+    assert_eq!(verify(&allowed).status.code(), Some(2));
 }
