@@ -161,11 +161,7 @@ pub fn casadi_source(
 /// # Errors
 /// An option that the target does not support.
 pub fn outputs(target: Target, with: &[Extra], certify: bool) -> Result<Vec<Output>> {
-    let has_certificate = matches!(
-        target,
-        Target::Rust | Target::C99 | Target::Casadi | Target::Fmu2 | Target::Fmu3
-    );
-    if certify && !has_certificate {
+    if certify && target == Target::Cuda {
         return Err(Error::input(
             "--certify needs another target than cuda: CUDA C++ has no certificate",
         ));

@@ -203,11 +203,11 @@ impl HeldInputs {
         found.is_ok()
     }
 
-    /// Sets prescribed motion at `t` and functions at `beside`, in s, among held inputs.
-    fn complete(&self, mut inputs: Vec<f64>, t: f64, beside: f64) -> Vec<f64> {
+    /// Adds prescribed motion at `t` and functions at `function_time`, in s, to held inputs.
+    fn complete(&self, mut inputs: Vec<f64>, t: f64, function_time: f64) -> Vec<f64> {
         for given in &self.functions {
             let places = given.place..given.place + given.count;
-            given.function.write(beside, &mut inputs[places]);
+            given.function.write(function_time, &mut inputs[places]);
         }
         for (place, spline) in &self.prescribed {
             inputs[*place..*place + 3].copy_from_slice(&spline.evaluate(t));

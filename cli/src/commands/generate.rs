@@ -90,7 +90,7 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
     let mut certificate = None;
     if options.certify {
         let instructions = instruction_bounds(&sources, &options.instructions)?;
-        // Functions for CasADi have outputs of their own.
+        // The check of functions for CasADi derives their outputs itself.
         let shared = match sources.casadi {
             Some(_) => &[][..],
             None => &outputs,

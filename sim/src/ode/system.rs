@@ -92,7 +92,7 @@ pub trait System {
         0
     }
 
-    /// Forgets what the last call of [`System::project`] noted beside its result, because the motion does not pass there.
+    /// Discards the notes of the last call of [`System::project`]: the motion does not pass the projected state.
     fn forget_projection(&self) {}
 
     /// Returns the next time after `t` at which the right-hand side is not smooth in time, for

@@ -69,7 +69,7 @@ pub struct Sources {
     pub rust: Option<String>,
     /// C, one source for each prefix.
     pub c: Vec<CSource>,
-    /// Functions for CasADi, which have outputs of their own.
+    /// Functions for CasADi, whose outputs are not among the requested ones.
     pub casadi: Option<CasadiSource>,
     /// Functional mock-up unit.
     pub unit: Option<UnitSource>,

@@ -1,6 +1,6 @@
 //! Functional mock-up units: the description compared with the specification (names, causalities, initial values, ranges,
 //! units of measurement, derivatives), and the library in the unit compared with the program. A program that the check
-//! compiles loads the library in a process of its own, sets time, state, inputs and parameters by the names of the
+//! compiles loads the library in a separate process, sets time, state, inputs and parameters by the names of the
 //! description, and reads rates and observables.
 //!
 //! `description` reads the description, `expected` compares it.
