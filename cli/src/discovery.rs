@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::error::{Error, Result, warn};
 use crate::model::{load, orders};
-use crate::output::write_file;
+use crate::output::{file_place, write_file};
 
 /// Files and seed of a comparison or a discovery.
 pub struct Task<'a> {
@@ -27,6 +27,7 @@ pub struct Task<'a> {
 pub fn compare(task: &Task<'_>) -> Result<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(task)?;
+    check_outputs(task, &["comparison.json", "report.html"])?;
     let path = task.spec.display().to_string();
     let specification = Specification {
         path: &path,
@@ -47,6 +48,7 @@ pub fn compare(task: &Task<'_>) -> Result<Value> {
 pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> Result<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(task)?;
+    check_outputs(task, &["extended.toml", "report.html", "discovery.json"])?;
     let effects = catalogue::load_effects(effects).map_err(Error::Specification)?;
     let path = task.spec.display().to_string();
     let specification = Specification {
@@ -71,6 +73,14 @@ pub fn discover(task: &Task<'_>, limit: Option<f64>, effects: Option<&Path>) -> 
     }
     write_json(&out.join("discovery.json"), &document)?;
     Ok(document)
+}
+
+/// Checks before the work that the output files can be written.
+fn check_outputs(task: &Task<'_>, names: &[&str]) -> Result {
+    for name in names {
+        file_place(&task.out.join(name))?;
+    }
+    Ok(())
 }
 
 /// Parses a time limit in s.

@@ -114,7 +114,7 @@ fn minimal(compiled: &CompiledModel, linear: &LinearModel) -> Result<Option<Allo
     if held.is_empty() {
         return Ok(None);
     }
-    let allowed = AllowedMotions::new(&held, found.rates.len())
+    let allowed = AllowedMotions::new(&held, compiled.typical_sizes())
         .map_err(|error| Error::input(error.to_string()))?;
     let (inputs, _) = inputs(compiled);
     let a = allowed.reduce_state_matrix(&found.a);

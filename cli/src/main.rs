@@ -20,6 +20,7 @@ mod family;
 mod field_shapes;
 mod figures;
 mod history;
+mod input_file;
 mod instruction_table;
 mod linearisation;
 mod mode_figure;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
             error.exit()
         }
     };
+    input_file::register_arguments();
     let is_check = matches!(arguments.command, Command::Check(_));
     let result: Result = match arguments.command {
         Command::Check(options) => commands::check::run(&options),

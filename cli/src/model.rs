@@ -7,10 +7,26 @@ use eomgen_model_spec::Checked;
 use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, print_diagnostics, warn};
+use crate::input_file::register_input;
 
 /// Reads and checks a specification and prints its warnings.
 pub fn load(path: &Path) -> Result<Checked> {
     let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
+    let source = &checked.model.source;
+    source
+        .files()
+        .into_iter()
+        .map(Path::new)
+        .for_each(register_input);
+    let tables = checked
+        .model
+        .fields
+        .iter()
+        .filter_map(|field| field.basis.table());
+    for table in tables {
+        let folder = source.folder.as_deref().unwrap_or(Path::new(""));
+        register_input(&folder.join(&table.file));
+    }
     if !checked.warnings.is_empty() {
         print_diagnostics(&checked.warnings);
     }

@@ -60,25 +60,30 @@ fn found<T>(result: std::result::Result<T, Failure>) -> Result<T> {
 fn report_equilibrium(found: &Equilibrium) {
     if !found.nonzero_rates.is_empty() {
         let rates = found.nonzero_rates.join(", ");
+        let verb = if found.nonzero_rates.len() == 1 {
+            "is"
+        } else {
+            "are"
+        };
         warn(&format!(
-            "note: the equilibrium is a steady motion, not rest: {rates} are constant"
+            "note: the equilibrium is a steady motion, not rest: {rates} {verb} constant"
         ));
     }
     if found.depends_on_time {
         warn(&format!(
-            "warning: the forces depend on time: the state is an equilibrium at t = {} s only",
+            "warning: the forces depend on time, or prescribed motion moves: the state is an equilibrium at t = {} s only",
             found.point.t
         ));
     }
 }
 
-/// Returns whether a point is an equilibrium, and warns if it is not.
-pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
+/// Returns whether a point is an equilibrium, and warns with a consequence if it is not.
+pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint, consequence: &str) -> Result<bool> {
     let found = run.find_departure(at)?;
     if !found.is_none() {
         warn(&format!(
-            "warning: this state is no equilibrium: {}; the linearisation holds for a short time only; \
-             give another state with --state NAME=EXPR, or --state trim",
+            "warning: this state is no equilibrium: {}; {consequence}; give another state with --state NAME=EXPR, or \
+             --state trim",
             describe(&found)
         ));
     }
@@ -89,6 +94,7 @@ pub fn is_equilibrium(run: &Instance<'_>, at: &OperatingPoint) -> Result<bool> {
 fn describe(found: &Departure) -> String {
     let parts = [
         ("the machine moves", &found.moving_rates, "is not 0"),
+        ("prescribed motion moves", &found.moving_inputs, "is not 0"),
         (
             "the machine accelerates",
             &found.accelerating_rates,

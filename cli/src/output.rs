@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result, print_bytes, print_text, warn};
+use crate::input_file::check_is_no_input;
 
 /// Destination of a command's output file.
 pub enum Destination {
@@ -141,16 +142,19 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     let folder = folder_of(path);
     std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
-    let mut file = NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
+    // The message of the error itself has the path of the temporary file.
+    let mut file = NamedTempFile::new_in(folder)
+        .map_err(|error| failed(&std::io::Error::from(error.kind())))?;
     file.write_all(contents).map_err(|error| failed(&error))?;
     make_readable(file.as_file()).map_err(|error| failed(&error))?;
     file.persist(path).map_err(|error| failed(&error.error))?;
     Ok(())
 }
 
-/// Resolves the path of an existing file, through links, or of a new one. Devices and pipes are rejected, because
-/// the file would replace them.
+/// Resolves the path of an existing file, through links, or of a new one. Inputs of the command, devices and pipes are
+/// rejected, because the file would replace them.
 pub fn file_place(path: &Path) -> Result<PathBuf> {
+    check_is_no_input(path)?;
     let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     match std::fs::metadata(path) {
         Ok(found) if found.is_file() => std::fs::canonicalize(path).map_err(|error| failed(&error)),

@@ -5,7 +5,7 @@ use std::fmt;
 use eomgen_compiled_model::{Instance, OperatingPoint};
 use serde_json::{Value, json};
 
-use crate::error::Result;
+use crate::error::{Result, warn};
 
 /// Side of a switching surface.
 pub struct Side {
@@ -86,6 +86,22 @@ pub fn regime(run: &Instance<'_>, at: &OperatingPoint) -> Result<Vec<Side>> {
     Ok(sides
         .map(|(formula, value)| Side { formula, value })
         .collect())
+}
+
+/// Prints a note on the surfaces of a regime that are zero, for a linearisation of one side.
+pub fn note_surfaces(regime: &[Side]) {
+    let mut on: Vec<String> = (regime.iter())
+        .filter(|side| side.sign() == '=')
+        .map(|side| format!("`{}`", side.formula))
+        .collect();
+    on.dedup();
+    let listed: Vec<String> = on.iter().take(MAX_SURFACES).cloned().collect();
+    warn(&format!(
+        "note: the state lies where {} {} zero: the linearisation there is that of one side. A state on either side, \
+         given with --state, selects its side",
+        listed.join(", "),
+        if on.len() == 1 { "is" } else { "are" }
+    ));
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! Inputs of a simulation, and the times of its rows.
 
+use eomgen_compiled_model::list_undriven_inputs;
 use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::arguments::Simulate;
 use crate::error::{Error, Result, warn};
-use crate::settings::warn_of_inputs;
+use crate::input_file::register_input;
 
 /// Largest number of values in a table, rows times columns: a few GB of memory.
 const MAX_VALUES: f64 = 1e8;
@@ -18,17 +19,20 @@ const DEFAULT_INTERVALS: f64 = 1000.0;
 pub fn inputs(options: &Simulate, model: &Model, driven: &[&str]) -> Result<HeldInputs> {
     match &options.inputs.record {
         Some(dataset) => {
-            let (inputs, warnings) =
-                read_inputs(dataset, &options.inputs.record_name, model).map_err(Error::records)?;
-            for warning in warnings {
+            let record = read_inputs(dataset, &options.inputs.record_name, (model, driven))
+                .map_err(Error::records)?;
+            record.files.iter().for_each(|path| register_input(path));
+            for warning in record.warnings {
                 warn(&format!("warning: {warning}"));
             }
-            Ok(inputs)
+            Ok(record.inputs)
         }
         None => {
             let values =
                 (model.typical_inputs(0.0)).map_err(|error| Error::model(&model.source, error))?;
-            warn_of_inputs(model, driven);
+            for warning in list_undriven_inputs(model, driven) {
+                warn(&format!("warning: {warning}"));
+            }
             Ok(HeldInputs::constant(values))
         }
     }
@@ -57,9 +61,15 @@ fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
     if end.is_finite() && (end - start) / DEFAULT_INTERVALS >= f64::MIN_POSITIVE {
         return Ok((start, end));
     }
+    let shortest = match end > start && end.is_finite() {
+        true => format!(
+            ", by at least {:e} s",
+            DEFAULT_INTERVALS * f64::MIN_POSITIVE
+        ),
+        false => String::new(),
+    };
     Err(Error::input(format!(
-        "--until {end:?}: expected a time in s after {start:?}, by at least {:?} s",
-        DEFAULT_INTERVALS * f64::MIN_POSITIVE
+        "--until {end:?}: expected a finite time in s after {start:?}{shortest}"
     )))
 }
 
@@ -95,7 +105,12 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
         )));
     }
     let steps = (whole / step * (1.0 + 1e-12)).floor();
-    check_size(steps.min(MAX_VALUES * 2.0) as usize, 1)?;
+    if steps > MAX_VALUES {
+        return Err(Error::input(format!(
+            "too many rows: {whole:?} s have {steps:.1e} intervals of {step:?} s, the limit is {MAX_VALUES:e} values (rows \
+             times columns); give an earlier --until or a longer --interval"
+        )));
+    }
     let decimals = decimals(start).max(decimals(step));
     Ok((0..=steps as usize)
         .map(|row| round_to_decimals(start + row as f64 * step, decimals).min(end))
@@ -151,6 +166,21 @@ mod tests {
         assert_eq!(times[2], 0.102);
         let longest = times.iter().map(|t| decimals(*t)).max();
         assert_eq!(longest, Some(3));
+    }
+
+    #[test]
+    fn long_times_name_both_options() {
+        let Err(Error::Input(message)) = even_times((0.0, 1e100), Some(0.01)) else {
+            panic!("too many rows");
+        };
+        assert!(
+            message.contains("1e100 s have 1.0e102 intervals of 0.01 s"),
+            "{message}"
+        );
+        assert!(
+            message.contains("an earlier --until or a longer --interval"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -17,6 +17,14 @@ pub const DELAY_PRIOR_SAMPLES: f64 = 0.5;
 /// not show near the prior.
 pub const INITIAL_STATE_PRIOR_IN_RANGES: f64 = 0.02;
 
+/// Ratio of two ranges of a state above which the larger one is used. The ratio is not measured; it ends
+/// the repeated fits of first states.
+pub const MUCH_LARGER_RANGE: f64 = 2.0;
+
+/// Maximum number of fits of first states for the ranges of the states. The free decay of a drive from a
+/// twisted shaft needs two.
+pub const MAX_RANGE_FITS: usize = 6;
+
 /// Range of a state that nothing excites: the change that moves the outputs by this fraction of the
 /// noise.
 pub const UNMOVED_STATE_IN_NOISE: f64 = 1e-3;
@@ -65,6 +73,10 @@ pub const MAX_FLOOR_RATIO_AT_FLOOR: f64 = 1.1;
 /// Quantile of the normal distribution for the probability of 1 % that the residual of a correct model
 /// exceeds the limit of its training records; likewise for its test records.
 pub const FALSE_ALARM_QUANTILE: f64 = 2.326;
+
+/// Similarity of the response of an undeclared parameter or of an input to that of the named effect above which it is fitted.
+/// Along the motion of a wrong model, the gains of a sensor and of an input of one linear oscillator had 0.69.
+pub const MIN_SIMILARITY_TO_FIT: f64 = 0.5;
 
 /// Similarity of two responses above which both candidates are fitted.
 pub const MIN_SIMILARITY_OF_RIVALS: f64 = 0.95;

@@ -281,7 +281,7 @@ mod tests {
         let warnings = checked(&text).warnings.records();
         let shown = format_on_one_line(&warnings[0]);
         assert!(
-            shown.starts_with("p.toml:10:1: the input `u` is not used; "),
+            shown.starts_with("p.toml:10:1: the specification does not use the input `u`; "),
             "{shown}"
         );
         assert!(!shown.contains('\n'));

@@ -93,7 +93,10 @@ impl Diagnostic {
     pub fn unused(kind: DeclarationKind, name: &str, span: Span) -> Self {
         Self {
             unused: Some(kind),
-            ..Self::warning(format!("the {} `{name}` is not used", kind.name()))
+            ..Self::warning(format!(
+                "the specification does not use the {} `{name}`",
+                kind.name()
+            ))
         }
         .with_span(span, "nothing refers to it")
         .with_help("remove it, or use it where it was meant")
@@ -280,17 +283,17 @@ impl Diagnostics {
         let spans: Vec<Span> = unused
             .filter_map(|found| found.primary.as_ref().map(|label| label.span))
             .collect();
-        let (ending, verb) = match spans.len() {
+        let ending = match spans.len() {
             0 => return None,
-            1 => ("", "is"),
-            _ => ("s", "are"),
+            1 => "",
+            _ => "s",
         };
         let name = |span: &Span| {
             self.source.text[clamp(&self.source.text, *span)].trim_matches(['"', '\''])
         };
         let names: Vec<&str> = spans.iter().map(name).collect();
         Some(format!(
-            "the {}{ending} `{}` {verb} not used ({})",
+            "the specification does not use the {}{ending} `{}` ({})",
             kind.name(),
             names.join("`, `"),
             self.places(&spans)

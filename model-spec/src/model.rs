@@ -26,6 +26,9 @@ pub const MAX_ORDER: usize = 128;
 /// Name of the parameter for the decay rate of constraint residuals in emitted equations, 1/s.
 pub const STABILISATION_RATE: &str = "stabilisation_rate";
 
+/// Origin of a parameter of value 1 that gives a unit to the numbers of a prescribed input.
+pub const UNIT_FACTOR_ORIGIN: &str = "unit of a number in a prescribed input";
+
 /// Prefix of the observable for the multiplier of a constraint.
 pub const MULTIPLIER: &str = "lambda_";
 
@@ -157,6 +160,13 @@ pub struct Parameter {
     pub uncertainty: Option<Uncertainty>,
     /// Position of the name in the text.
     pub span: Span,
+}
+
+impl Parameter {
+    /// Returns true if the parameter only gives a unit to the numbers of a prescribed input.
+    pub fn is_unit_factor(&self) -> bool {
+        self.origin == UNIT_FACTOR_ORIGIN
+    }
 }
 
 /// Uncertainty of a parameter.
@@ -662,6 +672,26 @@ impl Model {
         let (mut has_time, mut has_others) = (false, false);
         self.visit_time(expr, &mut has_time, &mut has_others);
         has_time && !has_others
+    }
+
+    /// Returns true if an expression contains the motion, directly or in a definition: coordinates, states, fields and
+    /// multipliers.
+    pub fn contains_motion(&self, expr: &Expr) -> bool {
+        let mut contains = false;
+        expr.visit(&mut |part| match &part.kind {
+            ExprKind::Coordinate(_)
+            | ExprKind::State(_)
+            | ExprKind::Field(_)
+            | ExprKind::ModeCoordinate(_)
+            | ExprKind::SingleMode { .. }
+            | ExprKind::Multiplier(_)
+            | ExprKind::Residual(_) => contains = true,
+            ExprKind::Definition(index) => {
+                contains |= self.contains_motion(&self.definitions[*index].value);
+            }
+            _ => {}
+        });
+        contains
     }
 
     fn visit_time(&self, expr: &Expr, has_time: &mut bool, has_others: &mut bool) {

@@ -157,9 +157,17 @@ impl Model {
         let half = self.coordinates.len() + modes;
         let mut state = vec![0.0; 2 * half + self.states.len()];
         for (index, coordinate) in self.coordinates.iter().enumerate() {
-            let given = [&coordinate.initial, &coordinate.initial_rate];
-            for (expr, place) in given.into_iter().zip([index, half + index]) {
-                state[place] = initial_value(&coordinate.name, expr.as_ref(), &parameters)?;
+            let name = &coordinate.name;
+            let given = [
+                (index, name.clone(), &coordinate.initial),
+                (
+                    half + index,
+                    format!("{name}_dot"),
+                    &coordinate.initial_rate,
+                ),
+            ];
+            for (place, name, expr) in given {
+                state[place] = initial_value(&name, expr.as_ref(), &parameters)?;
             }
         }
         for (first_order, place) in self.states.iter().zip(2 * half..) {

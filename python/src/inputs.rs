@@ -72,8 +72,18 @@ fn is_refused(py: Python<'_>, error: &PyErr) -> Option<bool> {
     error.is_instance_of::<RefusedType>(py).then_some(false)
 }
 
-pyo3::create_exception!(eomgen, RefusedValue, PyException);
-pyo3::create_exception!(eomgen, RefusedType, PyException);
+pyo3::create_exception!(
+    eomgen,
+    RefusedValue,
+    PyException,
+    "Rejected value that a function returned."
+);
+pyo3::create_exception!(
+    eomgen,
+    RefusedType,
+    PyException,
+    "Rejected type that a function returned."
+);
 
 /// Python function of time that returns an input.
 struct PythonFunction {
@@ -117,7 +127,64 @@ impl InputFunction for PythonFunction {
     }
 }
 
+/// Largest change of a continuous position between neighbouring numbers, relative to the position.
+const MAX_CONTINUOUS_CHANGE: f64 = 1e-9;
+
+/// Number of bisections of an interval between samples, after which its ends are neighbouring numbers.
+const BISECTIONS: usize = 64;
+
+/// Returns the exception for a prescribed motion that jumps at a time, s.
+fn jump_error(input: &str, t: f64, (before, after): (f64, f64)) -> PyErr {
+    PyValueError::new_err(format!(
+        "the input {input} at t = {t}: the prescribed motion jumps from {before} to {after}, so that its rate is infinite: \
+         give a continuous motion, or an expression such as \"{after}*above(t - {t})\" if the model has no forces by the rate"
+    ))
+}
+
 impl PythonFunction {
+    /// Returns the first of `count` values at a time, s; NaN after a failure, which is recorded.
+    fn first_value(&self, t: f64, count: usize) -> f64 {
+        let mut values = [0.0; MAX_VALUES];
+        self.write(t, &mut values[..count]);
+        values[0]
+    }
+
+    /// Returns the time (s) of a jump between samples, and the values before and after it. Only the interval with the
+    /// largest deviation from its neighbours is bisected.
+    fn find_jump(&self, times: &[f64], values: &[f64]) -> Option<(f64, f64, f64)> {
+        let changes: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let neighbours = |k: usize| match k {
+            0 => changes[1],
+            k if k + 1 == changes.len() => changes[k - 1],
+            k => 0.5 * (changes[k - 1] + changes[k + 1]),
+        };
+        let deviation = |k: &usize| (changes[*k] - neighbours(*k)).abs();
+        let largest = (0..changes.len()).max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
+        let size = values
+            .iter()
+            .fold(0.0_f64, |size, value| size.max(value.abs()));
+        if deviation(&largest) <= MAX_CONTINUOUS_CHANGE * size {
+            return None;
+        }
+        let slope = neighbours(largest) / (times[largest + 1] - times[largest]);
+        let mut before = (times[largest], values[largest]);
+        let mut after = (times[largest + 1], values[largest + 1]);
+        for _ in 0..BISECTIONS {
+            let t = 0.5 * (before.0 + after.0);
+            if t <= before.0 || t >= after.0 {
+                break;
+            }
+            let middle = (t, self.first_value(t, 1));
+            let part = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1 - slope * (b.0 - a.0)).abs();
+            match part(before, middle) > part(middle, after) {
+                true => after = middle,
+                false => before = middle,
+            }
+        }
+        let is_jump = (after.1 - before.1).abs() > 0.5 * deviation(&largest);
+        is_jump.then_some((after.0, before.1, after.1))
+    }
+
     /// Returns whether the function returns several numbers. An exception is ignored: the next call raises it again.
     fn is_several(&self, py: Python<'_>, t: f64) -> bool {
         let found = self.function.bind(py).call1((t,));
@@ -205,12 +272,28 @@ pub fn with_functions(
             if let Some(raised) = failures.take(py) {
                 return Err(raised);
             }
+            if let Some((t, before, after)) = given.find_jump(&times, &values) {
+                return Err(jump_error(&given.input, t, (before, after)));
+            }
             if let Some(spline) = CubicSpline::fit(times, values) {
                 inputs = inputs.with_prescribed(place, spline);
             }
             continue;
         }
         let count = if has_rates { MAX_VALUES } else { 1 };
+        if has_rates {
+            let inside = breaks.iter().filter(|t| (begin..=end).contains(*t));
+            for t in inside {
+                let [before, after] =
+                    [t.next_down(), t.next_up()].map(|t| given.first_value(t, count));
+                if let Some(raised) = failures.take(py) {
+                    return Err(raised);
+                }
+                if (after - before).abs() > MAX_CONTINUOUS_CHANGE * before.abs().max(after.abs()) {
+                    return Err(jump_error(&given.input, *t, (before, after)));
+                }
+            }
+        }
         inputs = inputs.with_function(place, count, Arc::new(given));
     }
     Ok((inputs.with_jump_times(breaks), failures))

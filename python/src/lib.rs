@@ -26,6 +26,8 @@ mod sweeping;
 /// Python module.
 #[pymodule]
 mod _native {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::certification::validate;
     #[pymodule_export]
@@ -45,6 +47,8 @@ mod _native {
     #[pymodule_export]
     use crate::gradient::RecordedMotion;
     #[pymodule_export]
+    use crate::inputs::{RefusedType, RefusedValue};
+    #[pymodule_export]
     use crate::linearisation::{discretise, linearise};
     #[pymodule_export]
     use crate::model::{Model, nearest};
@@ -62,4 +66,12 @@ mod _native {
     /// Highest order of a field.
     #[pymodule_export]
     const MAX_ORDER: usize = eomgen_model_spec::model::MAX_ORDER;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // Exceptions without samples.
+        module
+            .getattr("SimulationError")?
+            .setattr("trajectory", module.py().None())
+    }
 }

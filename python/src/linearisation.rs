@@ -51,6 +51,7 @@ pub fn linearise(
         d,
         rates,
         observables,
+        ..
     } = found.map_err(error::model)?;
     Ok((a, b, c, d, rates, observables))
 }

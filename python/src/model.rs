@@ -258,6 +258,14 @@ impl Model {
         driven.map(|(_, input)| &*input.name).collect()
     }
 
+    /// Names of the inputs that are prescribed motion, and of their rates.
+    #[getter]
+    fn prescribed_inputs(&self) -> Vec<&str> {
+        let inputs = self.compiled.model().inputs.iter();
+        let prescribed = inputs.filter(|input| input.rate.is_some() || input.rate_of.is_some());
+        prescribed.map(|input| &*input.name).collect()
+    }
+
     /// Names and units of the states of the controllers.
     #[getter]
     fn controller_states(&self) -> Vec<(&str, &str)> {

@@ -34,7 +34,10 @@ pub fn modes(
     if point.state.len() != program.states() || point.inputs.len() != program.inputs.len() {
         return Err(PyValueError::new_err("state or inputs of another model"));
     }
-    let found = py.detach(|| model.instance()?.natural_modes(point));
+    let found = py.detach(|| {
+        let run = model.instance()?;
+        run.natural_modes(&run.linearise(point)?, point)
+    });
     let found = found.map_err(error::model)?;
     let modes = found.iter().map(describe_mode).collect();
     Ok((model.compiled().amplitudes(), modes))

@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
-    Audit, Error, Instance, LoggedEvent, Motion, Overlap, RecordedMotion as Recorded, Request,
-    SampledController, Solver, SolverChoice, split_assignments, with_input_functions,
+    Audit, Error, FunctionInputs, Instance, LoggedEvent, Motion, Overlap,
+    RecordedMotion as Recorded, Request, SampledController, Solver, SolverChoice,
+    split_assignments,
 };
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
@@ -13,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::controller::{ControllerEntry, PythonController};
-use crate::error;
+use crate::error::{self, SimulationError};
 use crate::gradient::RecordedMotion;
 use crate::inputs::{Failures, InputEntry, with_functions};
 use crate::interruption::{Connection, interruptible};
@@ -24,7 +25,7 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Solver and the reason for its selection; time and reason of a stop before the end; times, states and
 /// observables, a row for each sample; events; warnings; names and values of the states of controllers; the motion for
-/// gradients, if requested.
+/// gradients, if requested; the exception of a function that stopped the motion.
 type SimulationTuple<'py> = (
     &'static str,
     Option<String>,
@@ -37,6 +38,7 @@ type SimulationTuple<'py> = (
     Vec<String>,
     Bound<'py, PyArray2<f64>>,
     Option<RecordedMotion>,
+    Option<Py<PyAny>>,
 );
 
 /// Time (s), surface, kind, modes before and after, and the jump of each rate; empty without a jump.
@@ -116,9 +118,18 @@ pub fn simulate<'py>(
         true => record(model, &request, line),
         false => follow(model, &request, controller, line),
     })?;
-    if let Some(raised) = failures.take(py) {
-        return Err(raised);
-    }
+    let raised = failures.take(py);
+    // A motion that a function stopped has samples, unless the value or its type is rejected.
+    let raised = match (raised, &found) {
+        (Some(raised), Ok(found))
+            if found.motion.early_stop.is_some()
+                && raised.is_instance_of::<SimulationError>(py) =>
+        {
+            Some(raised.into_value(py).into_any())
+        }
+        (Some(raised), _) => return Err(raised),
+        (None, _) => None,
+    };
     let Found {
         motion,
         observables,
@@ -149,6 +160,7 @@ pub fn simulate<'py>(
         motion.controller_states.names,
         controller_states,
         recorded.map(RecordedMotion::new),
+        raised,
     ))
 }
 
@@ -168,7 +180,9 @@ fn with_expressions(
         .iter()
         .map(|(name, value)| (&**name, *value));
     let settings: Vec<(&str, f64)> = settings.collect();
-    with_input_functions(inputs, model.compiled().model(), &given, &settings).map_err(error::model)
+    let given = FunctionInputs::new(model.compiled().model(), &given);
+    let added = given.and_then(|given| given.add_to(inputs, &settings));
+    added.map_err(error::model)
 }
 
 /// Returns the solver of a name.
@@ -287,7 +301,7 @@ fn describe_choice(choice: &SolverChoice) -> String {
     }
 }
 
-/// Replaces prescribed motion without rates by a spline through its samples, which has rates.
+/// Replaces prescribed motion by a spline through its samples, which has rates.
 fn with_splines(
     model: &Model,
     mut inputs: HeldInputs,
@@ -300,11 +314,8 @@ fn with_splines(
             continue;
         }
         let column = |place: usize| values.iter().skip(place).step_by(known.len());
-        let has_rates = column(place + 1)
-            .chain(column(place + 2))
-            .any(|rate| *rate != 0.0);
         let moves = column(place).any(|value| *value != values[place]);
-        if has_rates || !moves {
+        if !moves {
             continue;
         }
         let samples = column(place).copied().collect();

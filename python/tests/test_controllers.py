@@ -99,8 +99,10 @@ def test_controller_is_called_at_each_sample_with_values_before_it():
     [
         (lambda t, x, y: float("nan") if t > 0.5 else 0.0, ValueError, "the controller at t = 0.6.*: nan|NaN"),
         (lambda t, x, y: "1", TypeError, "the controller at t = 0"),
-        (lambda t, x, y: {"v": 1.0}, eomgen.SimulationError, "the controller at t = 0.*no controlled input `v`"),
-        (lambda t, x, y: [1.0, 2.0], eomgen.SimulationError, "2 values, expected 1 for u"),
+        (lambda t, x, y: {"v": 1.0}, ValueError, "the controller at t = 0: .*no controlled input `v`"),
+        (lambda t, x, y: {}, ValueError, "^the controller at t = 0: it returned no value for u$"),
+        (lambda t, x, y: [1.0, 2.0], ValueError, "^the controller at t = 0: it returned 2 values, expected 1 for u$"),
+        (lambda t, x, y: None, TypeError, "^the controller at t = 0: it returned None, expected values for u$"),
         (lambda t, x, y: 1 / (t - 0.3 > 1e-9 or 0) if t > 0.25 else 0.0, eomgen.SimulationError, "at t = 0.3"),
     ],
 )
@@ -110,6 +112,32 @@ def test_failures_name_the_controller_and_the_time(controller, error, said):
         m.simulate(until=1, inputs={"r": 0.0}, controller=controller, period=0.1)
     if error is eomgen.SimulationError:
         assert raised.value.__cause__ is not None
+        assert 0.28 < raised.value.trajectory.t[-1] <= 0.3
+
+
+def test_period_with_too_many_samples_is_refused():
+    m = eomgen.load(MASS)
+    with pytest.raises(ValueError, match="the period of a controller, 1e-12 s, needs 1.0e12 samples"):
+        m.simulate(until=1, inputs={"r": 0.0}, controller=lambda t, x, y: 0.0, period=1e-12)
+    declared = MASS + '[controllers.p]\nperiod = 1e-12\noutputs = { u = "0*u" }\n'
+    s = eomgen.load(declared).simulation()
+    with pytest.raises(ValueError, match="1e-12 s, needs 1.0e12 samples"):
+        s.advance(1)
+
+
+def test_controller_drives_no_prescribed_motion():
+    text = (
+        '[model]\nname = "base"\n[parameters]\nm = { value = 2, unit = "kg" }\nk = { value = 8, unit = "N/m" }\n'
+        '[coordinates]\nx = { unit = "m" }\n[inputs]\nu = { unit = "N" }\ns = { unit = "m", rates = 2 }\n'
+        '[kinetic]\nmass = "1/2*m*(dot(x) + dot(s))^2"\n[potential]\nspring = "1/2*k*x^2"\n'
+        '[forces]\npush = { on = "x", value = "u" }\n'
+    )
+    m = eomgen.load(text)
+    r = m.simulate(until=1, controller=lambda t, x, y: {"u": 3.0}, period=0.1)
+    # The first sample acts from 0 on: x = F/k (1 - cos(w t)), w = 2 rad/s.
+    assert abs(r["x"][-1] - 3 / 8 * (1 - np.cos(2.0))) < 1e-8
+    with pytest.raises(ValueError, match="s is prescribed motion"):
+        m.simulate(until=1, controller=lambda t, x, y: 1.0, period=0.1, controls=["s"])
 
 
 @pytest.mark.parametrize(
@@ -138,7 +166,7 @@ def test_second_controller_of_an_input_is_rejected():
 def test_ctrl_c_interrupts_a_controlled_simulation(interrupt):
     m = eomgen.load(MASS)
     with pytest.raises(KeyboardInterrupt), interrupt(0.5):
-        m.simulate(until=1e5, interval=1e3, inputs={"r": 0.0}, controller=pd, period=1e-3)
+        m.simulate(until=1e4, interval=1e3, inputs={"r": 0.0}, controller=pd, period=1e-3)
 
 
 STEP = 'u_step = { value = 0.5, unit = "N" }\n'

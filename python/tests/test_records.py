@@ -38,6 +38,13 @@ def test_matlab_files_are_converted(tmp_path):
     assert (numbers[:, 1] == ARRAYS["u"]).all()
 
 
+def test_arrays_without_real_samples_are_named(tmp_path):
+    np.savez(tmp_path / "run.npz", t=T, response=np.exp(1j * T), words=np.array(["a", "b"]))
+    with pytest.warns(UserWarning, match=r"no real samples: response \(complex128\), words"):
+        names = eomgen.record_to_csv(tmp_path / "run.npz", tmp_path / "run.csv")
+    assert names == ["t"]
+
+
 def test_invalid_records_are_rejected_without_output(tmp_path):
     np.savez(tmp_path / "run.npz", t=T, short=T[:7], words=np.array(["a", "b"]))
     np.savez(tmp_path / "none.npz", rate=np.array(100.0))

@@ -154,6 +154,8 @@ def test_input_exceptions_are_chained(cart):
     with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0.3") as raised:
         cart.simulate(until=1, inputs={name: lambda t: 1 / 0 if t > 0.3 else 0.0})
     assert isinstance(raised.value.__cause__, ZeroDivisionError)
+    so_far = raised.value.trajectory
+    assert 0.1 < so_far.t[-1] <= 0.3 and np.isfinite(so_far.states).all()
     with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0 ") as raised:
         cart.simulate(until=1, inputs={name: lambda t: {}["missing"]})
     assert isinstance(raised.value.__cause__, KeyError)
@@ -342,6 +344,57 @@ def test_other_threads_run_during_a_simulation(endless):
     while thread.is_alive():
         turns += 1
     assert worked[0] > 1000
+
+
+PIVOT = """
+[model]
+name = "pivot"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+th = { unit = "rad", initial = 0.3 }
+[inputs]
+s = { unit = "m", rates = 2 }
+[definitions]
+p = ["s + l*sin(th)", "-l*cos(th)"]
+[kinetic]
+a = "1/2*m*dot(dot(p),dot(p))"
+[potential]
+v = "m*g*p.y"
+"""
+
+
+def test_rates_beside_prescribed_motion_are_refused():
+    m = eomgen.load(PIVOT)
+    for name in ("s_dot", "s_ddot"):
+        for value in (5.0, np.ones(11), lambda t: 5.0, "5"):
+            with pytest.raises(ValueError, match=f"the input {name} is a rate of the prescribed motion s"):
+                m.simulate(until=1, interval=0.1, inputs={"s": lambda t: 0.1 * np.sin(6 * t), name: value})
+
+
+def test_prescribed_motion_that_jumps_is_refused():
+    m = eomgen.load(PIVOT)
+    at = 0.2512
+    for step in (lambda t: 0.1 * (t >= at), lambda t: 0.1 * (t > at) + np.sin(3 * t)):
+        for until in (1.0, 2.0, 4.0):
+            for breaks in (None, [at]):
+                with pytest.raises(ValueError, match="the input s at t = 0.251.*jumps from"):
+                    m.simulate(until=until, interval=0.5, inputs={"s": step}, breaks=breaks)
+    with pytest.raises(ValueError, match="the input s at t = 0.2512: .*jumps from 0.0 to 0.1|jumps from 0 to 0.1"):
+        m.simulate(until=1, inputs={"s": lambda t: (0.1 * (t > at), 0.0, 0.0)}, breaks=[at])
+    # Continuous motions with a corner, a steep slope, rounding errors or rest.
+    for motion in (
+        lambda t: abs(t - 0.3),
+        lambda t: 0.1 * np.tanh(200 * (t - 0.3)),
+        lambda t: np.sqrt(max(t - 0.3, 0.0)),
+        lambda t: 1e3 + 1e-3 * np.sin(t),
+        lambda t: 0.0,
+    ):
+        assert np.isfinite(m.simulate(until=1, interval=0.1, inputs={"s": motion})["th"]).all()
+    moving = lambda t: (np.sin(t), np.cos(t), -np.sin(t))  # noqa: E731
+    assert np.isfinite(m.simulate(until=1, inputs={"s": moving}, breaks=[0.5])["th"]).all()
 
 
 def test_prescribed_motion_has_spline_rates():

@@ -27,6 +27,24 @@ pub fn target() -> (PathBuf, String) {
     (target.to_owned(), profile.to_owned())
 }
 
+/// Returns the newest library of a crate among those compiled with the running test.
+pub fn compiled_library(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("the running test has a path");
+    let folder = test.parent().expect("target/PROFILE/deps");
+    let start = format!("lib{name}-");
+    let is_library = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(&start) && name.ends_with(".rlib")
+    };
+    let files = std::fs::read_dir(folder).expect("a folder").flatten();
+    let libraries = files.map(|file| file.path()).filter(is_library);
+    let newest = libraries.max_by_key(|path| {
+        let file = path.metadata().expect("a library");
+        file.modified().expect("a time")
+    });
+    newest.unwrap_or_else(|| panic!("{name} is not in {}", folder.display()))
+}
+
 /// Returns a `cargo` command in the project's folder that builds like the tests.
 pub fn cargo() -> std::process::Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

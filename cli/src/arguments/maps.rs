@@ -43,7 +43,7 @@ pub struct Sweep {
     pub seed: u64,
     /// Quantities to compute. `lyapunov`: the largest Lyapunov exponent. `poincare` or `poincare:NAME`: the
     /// first or another coordinate or rate, once per forcing period or on --section. `max:NAME`, `rms:NAME`,
-    /// `final:NAME`: maximum, RMS or final value of an observable, coordinate or rate.
+    /// `final:NAME`: maximum, RMS or final value of an observable, coordinate or rate over the entire motion.
     #[arg(
         long,
         value_name = "NAME[,NAME...]",

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::arguments::Identify;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_json, print_text, warn};
+use crate::input_file::read_file;
 
 /// Name of a certificate.
 const CERTIFICATE: &str = "certificate.json";
@@ -16,9 +17,7 @@ const CERTIFICATE: &str = "certificate.json";
 const MAX_DEPTH: usize = 8;
 
 pub fn run(options: &Identify) -> Result {
-    let bytes = std::fs::read(&options.image)
-        .map_err(|error| Error::file("read", &options.image, &error))?;
-    let identities = find(&bytes);
+    let identities = find(&read_file(&options.image)?);
     let certificates = match &options.certificates {
         Some(folder) if !folder.is_dir() => {
             return Err(Error::input(format!(

@@ -8,6 +8,7 @@ use crate::error::{Result, print_bytes};
 use crate::linearisation::{LinearModel, arrays, document};
 use crate::operating_point::{is_equilibrium, model, point};
 use crate::output::Destination;
+use crate::regime::{note_surfaces, regime};
 
 pub fn run(options: &Linearise) -> Result {
     let destination = options
@@ -18,8 +19,12 @@ pub fn run(options: &Linearise) -> Result {
     let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
-    let is_equilibrium = is_equilibrium(&run, &at)?;
+    let is_equilibrium =
+        is_equilibrium(&run, &at, "the linearisation holds for a short time only")?;
     let found = run.linearise(at.point())?;
+    if found.is_one_sided {
+        note_surfaces(&regime(&run, &at)?);
+    }
     let found = LinearModel::new(&compiled, found, options.discrete)?;
     let text = || {
         document(&compiled, (&at, is_equilibrium), &found).map(|document| format!("{document:#}\n"))

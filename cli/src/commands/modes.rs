@@ -12,7 +12,11 @@ use crate::error::{Result, print_json, print_text};
 use crate::mode_figure::figure;
 use crate::operating_point::{head, is_equilibrium, model, point, values_by_name};
 use crate::output::Destination;
-use crate::regime::{Side, regime, summary};
+use crate::regime::{Side, note_surfaces, regime, summary};
+
+/// Consequence of a state that is no equilibrium: other coordinates change the second derivatives of the motion there.
+const OFF_EQUILIBRIUM: &str =
+    "the modes hold for a short time only, and they depend on the choice of coordinates";
 
 pub fn run(options: &Modes) -> Result {
     let drawing = options.plot.as_deref();
@@ -21,9 +25,13 @@ pub fn run(options: &Modes) -> Result {
     let compiled = model(&options.model, &options.parameters)?;
     let run = compiled.with_declared_parameters()?;
     let at = point(&run, &options.point.state)?;
-    let is_equilibrium = is_equilibrium(&run, &at)?;
-    let modes = run.natural_modes(at.point())?;
+    let is_equilibrium = is_equilibrium(&run, &at, OFF_EQUILIBRIUM)?;
+    let linear = run.linearise(at.point())?;
     let regime = regime(&run, &at)?;
+    if linear.is_one_sided {
+        note_surfaces(&regime);
+    }
+    let modes = run.natural_modes(&linear, at.point())?;
     if let Some(drawing) = &drawing {
         drawing.write(figure(&run, &regime, &modes)?.as_bytes())?;
     }

@@ -1,12 +1,11 @@
 //! `eomgen simulate`: a trajectory as CSV or Parquet.
 
 use eomgen_compiled_model::{
-    CompiledModel, DEFAULT_TOLERANCE, Motion, Request, StepInputs, split_assignments,
-    with_input_functions, with_prescribed_inputs,
+    CompiledModel, DEFAULT_TOLERANCE, ExpressionInputs, InputTreatment, Motion, Request,
+    split_assignments,
 };
 use eomgen_controller_library::{ControllerLibrary, LibraryError};
 use eomgen_model_spec::assignment::Assignment;
-use eomgen_model_spec::model::Model;
 use eomgen_sim::inputs::HeldInputs;
 use serde_json::json;
 
@@ -97,50 +96,38 @@ fn event_log_destination(options: &Simulate) -> Result<Option<Destination>> {
     Destination::for_events(path, &others).map(Some)
 }
 
-/// Returns the model and its inputs. Inputs with steps are held between these if the exact solver applies then;
-/// other inputs of `--input` become definitions, or functions of time if inputs must remain inputs.
+/// Returns the model, its inputs, and the library of `--controller`.
 fn driven_model(
     options: &Simulate,
 ) -> Result<(CompiledModel, HeldInputs, Option<ControllerLibrary>)> {
     let declared = load(&options.model.spec)?.model;
-    let derive_with_orders = |model: Model| {
-        let model = with_settings(model, &options.parameters.set)?;
-        let orders = orders(&model, options.model.order.text())?;
-        derive(model, &orders)
-    };
     // Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
-    let keeps_inputs = !declared.controllers.is_empty()
+    let remain = !declared.controllers.is_empty()
         || options.controller.is_some()
         || options.integration.solver == Solver::Fixed;
     let may_hold = options.inputs.record.is_none()
-        && (keeps_inputs || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
+        && (remain || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
     let prescribed = split_assignments("--input", &options.inputs.input)?;
     let settings = settings(&declared, &options.parameters.set)?;
     let settings = as_borrowed(&settings);
-    let steps = match may_hold {
-        true => StepInputs::find(&declared, &prescribed, &settings)?,
-        false => None,
-    };
-    if let Some(steps) = steps {
-        let compiled = derive_with_orders(declared.clone())?;
-        if keeps_inputs || compiled.piecewise_linear().is_ok() {
-            let library = library(options, &compiled, &prescribed)?;
-            return Ok((compiled, steps.held(&settings)?, library));
-        }
-    }
-    if keeps_inputs {
-        let compiled = derive_with_orders(declared.clone())?;
-        let library = library(options, &compiled, &prescribed)?;
-        let controlled = library.iter().flat_map(ControllerLibrary::inputs);
-        let mut names: Vec<&str> = controlled.map(String::as_str).collect();
-        names.extend(prescribed.iter().map(|given| given.name()));
-        let inputs = inputs(options, compiled.model(), &names)?;
-        let inputs = with_input_functions(inputs, &declared, &prescribed, &settings)?;
-        return Ok((compiled, inputs, library));
-    }
-    let compiled = derive_with_orders(with_prescribed_inputs(declared, &prescribed)?)?;
-    let inputs = inputs(options, compiled.model(), &[])?;
-    Ok((compiled, inputs, None))
+    let treatment = InputTreatment { remain, may_hold };
+    let (compiled, given) = ExpressionInputs::derive(
+        declared,
+        &prescribed,
+        (treatment, &settings),
+        |model| -> Result<CompiledModel> {
+            let model = with_settings(model, &options.parameters.set)?;
+            let orders = orders(&model, options.model.order.text())?;
+            derive(model, &orders)
+        },
+    )?;
+    let library = library(options, &compiled, &prescribed)?;
+    let controlled = library.iter().flat_map(ControllerLibrary::inputs);
+    let mut driven: Vec<&str> = controlled.map(String::as_str).collect();
+    driven.extend(prescribed.iter().map(Assignment::name));
+    let others = || inputs(options, compiled.model(), &driven);
+    let inputs = given.at(&settings, others)?;
+    Ok((compiled, inputs, library))
 }
 
 /// Opens the library of `--controller`.

@@ -18,12 +18,12 @@ use crate::certification::summary;
 use crate::document::SCHEMA;
 use crate::emission::{c_source, casadi_source, header_only_source, instructions, unit_source};
 use crate::error::{Error, Result, print_json, print_text, warn};
+use crate::input_file::read_file;
 use crate::progress::Note;
 
 pub fn run(options: &Verify) -> Result {
     let certificate = Certificate::read(&options.certificate)?;
-    let contents = std::fs::read(&options.file);
-    let contents = contents.map_err(|error| Error::file("read", &options.file, &error))?;
+    let contents = read_file(&options.file)?;
     let (sources, expected) = sources(options, &certificate, &contents)?;
     let found = sha256(&contents);
     // A header with the functions is the file itself.
@@ -251,6 +251,16 @@ impl Certificate {
         Ok(repeated)
     }
 
+    /// Returns true if the certificate is about a Rust file: its source is not one of the other files.
+    fn covers_rust(&self) -> bool {
+        let c = self.c_sources.iter().map(|c| &c.source_sha256);
+        let casadi = self.casadi.iter().map(|c| &c.source_sha256);
+        let unit = self.unit.iter().map(|unit| &unit.sha256);
+        !c.chain(casadi)
+            .chain(unit)
+            .any(|hash| *hash == self.source_sha256)
+    }
+
     /// Returns the names of the emitted C files.
     fn c_files(&self) -> String {
         let files = self.c_sources.iter().map(|c| format!("{}.c", c.name));
@@ -354,6 +364,10 @@ fn sources(
         Some("rs") if options.cc.is_some() => Err(Error::input(format!(
             "--cc is for C; {shown} is Rust, which `rustc` or the program in RUSTC compiles"
         ))),
+        Some("rs") if !certificate.covers_rust() => Err(Error::input(format!(
+            "{shown}: the certificate covers {}, no Rust; give the certificate that was written with the file",
+            certificate.c_files()
+        ))),
         Some("rs") => Ok((
             Sources {
                 rust: Some(text),
@@ -425,5 +439,5 @@ fn certified_casadi(
 }
 
 fn read(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|error| Error::file("read", path, &error))
+    String::from_utf8(read_file(path)?).map_err(|error| Error::file("read", path, &error))
 }

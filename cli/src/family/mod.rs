@@ -4,6 +4,7 @@
 //! counts, `comparison` lists differences, `write` replaces files.
 
 mod build;
+mod collisions;
 mod comparison;
 mod description;
 mod hashes;
@@ -47,6 +48,7 @@ pub fn run(options: &Options<'_>) -> Result {
         .filter(|index| is_chosen(&findings[*index]))
         .collect();
     let built = build_all(&family, &chosen, options)?;
+    collisions::check_declarations(&family, &built, options.out)?;
     let mut result = manifest.clone();
     result.begin(&family);
     for (index, built) in chosen.iter().zip(&built) {

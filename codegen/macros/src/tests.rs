@@ -321,7 +321,8 @@ fn unused_input_gives_a_warning() {
     let text = format!("{SOUND} inputs {{ u: {{ unit: N }} }}");
     let tokens = expanded(&text);
     assert!(
-        tokens.contains("deprecated") && tokens.contains("the input `u` is not used"),
+        tokens.contains("deprecated")
+            && tokens.contains("the specification does not use the input `u`"),
         "{tokens}"
     );
     assert!(!expanded(SOUND).contains("deprecated"));

@@ -115,8 +115,9 @@ pub(super) fn header(
     Ok(text + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
 }
 
-/// Macros of `<complex.h>`, which a caller can include before this header.
-const COMPLEX_MACROS: [&str; 3] = ["I", "complex", "imaginary"];
+/// Macros of standard headers, which a caller can include before this header, with names as parameters have them.
+const STANDARD_MACROS: &str = "I complex imaginary BUFSIZ EOF HUGE_VAL INFINITY NAN RAND_MAX M_1_PI M_2_PI M_2_SQRTPI \
+    M_E M_LN10 M_LN2 M_LOG10E M_LOG2E M_PI M_PI_2 M_PI_4 M_SQRT1_2 M_SQRT2";
 
 /// Returns the macros with the name of a field.
 pub(super) fn hidden_macros(file: &File<'_>) -> Vec<&'static str> {
@@ -130,9 +131,10 @@ pub(super) fn hidden_macros(file: &File<'_>) -> Vec<&'static str> {
         .chain(inputs)
         .chain(file.field_names.values())
         .collect();
-    let mut names = COMPLEX_MACROS.to_vec();
-    names.retain(|name| fields.iter().any(|field| *field == name));
+    let names = STANDARD_MACROS.split_whitespace();
     names
+        .filter(|name| fields.iter().any(|field| field == name))
+        .collect()
 }
 
 /// Returns the lines that hide macros of the caller, and those that restore them.

@@ -194,14 +194,19 @@ fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
         .is_some_and(|(factor, _)| factor.value() < 0.0)
 }
 
-/// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
-/// function, or depends only on inputs, which can be constant.
-pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
+/// Returns true if a switching function depends on the state or the time.
+pub(crate) fn depends_on_motion(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)
         .join(Dependence::STATE)
         .join(Dependence::TIME);
-    if !graph.dependence(id).has(moves) {
+    graph.dependence(id).has(moves)
+}
+
+/// Returns true if a switching function can be constant in a whole regime: if it contains a piecewise
+/// function, or depends only on inputs, which can be constant.
+pub(crate) fn can_be_constant(graph: &Graph, id: NodeId) -> bool {
+    if !depends_on_motion(graph, id) {
         return true;
     }
     graph.reachable(&[id]).into_iter().any(|part| {

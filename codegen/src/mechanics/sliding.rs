@@ -23,7 +23,7 @@ use eomgen_model_spec::model::Function;
 
 use crate::mechanics::discs::{divides_by_speed, find_discs};
 use crate::mechanics::equations::Equations;
-use crate::mechanics::forces::can_be_constant;
+use crate::mechanics::forces::{can_be_constant, depends_on_motion};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::outputs::{Side, SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
@@ -221,13 +221,15 @@ fn guards_that_may_hold(equations: &Equations) -> Vec<(usize, usize)> {
             guard.function,
             Function::Sign | Function::Abs | Function::Above | Function::Max | Function::Min
         );
-        is_single && graph.dependence(guard.value).has(moves)
+        is_single
+            && graph.dependence(guard.value).has(moves)
+            && !can_be_constant(graph, guard.value)
     });
     found
 }
 
-/// Returns the guards that are no vectors over modes and cannot be constant in a regime, each with its index among all
-/// guard values. A guard that is zero in a regime, such as max(x, 0), has no side there.
+/// Returns the guards that are no vectors over modes and depend on the motion, each with its index among all guard
+/// values. A guard that is zero in a regime, such as max(x, 0), has no side there: it follows from the state.
 fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
     let graph = &equations.graph;
     let mut found = Vec::new();
@@ -236,7 +238,7 @@ fn scalar_guards(equations: &Equations) -> Vec<(usize, usize)> {
         match graph.shape(guard.value) {
             Shape::Vector(space) => place += graph.size(space),
             _ => {
-                if !can_be_constant(graph, guard.value) {
+                if depends_on_motion(graph, guard.value) {
                     found.push((index, place));
                 }
                 place += 1;

@@ -40,7 +40,25 @@ pub struct RoundingBound {
 /// Bounds the rounding errors of mass matrix, velocity terms, forces and rates at all points in `ranges`, which has an
 /// entry for each component of a [point](Program::point_place).
 pub fn bound_quantities(program: &Program, format: Format, ranges: &Ranges) -> Vec<RoundingBound> {
-    let quantities = quantities(program);
+    bound_all(program, quantities(program), format, ranges)
+}
+
+/// Bounds the rounding errors of the accelerations, then of the rates of first-order states, at all points in `ranges`, in
+/// double precision.
+///
+/// # Errors
+/// The reason for which one of them has no bound.
+pub fn bound_rates(program: &Program, ranges: &Ranges) -> Result<Vec<f64>, String> {
+    let bounds = bound_all(program, quantities::rates(program), Format::Double, ranges);
+    bounds.into_iter().map(|bounded| bounded.bound).collect()
+}
+
+fn bound_all(
+    program: &Program,
+    quantities: Vec<Quantity>,
+    format: Format,
+    ranges: &Ranges,
+) -> Vec<RoundingBound> {
     let roots: Vec<_> = quantities.iter().map(|quantity| quantity.value).collect();
     let scalars = Scalars::record(program, &roots, format);
     let bound = |quantity: &Quantity| {

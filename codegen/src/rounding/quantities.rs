@@ -27,29 +27,13 @@ pub fn quantities(program: &Program) -> Vec<Quantity> {
     let per_row = |row: usize| joule?.divide(rows.dimensions[row]?);
     all.extend(rows.entries("velocity_terms", &program.velocity_terms, per_row));
     all.extend(rows.entries("forces", &program.forces, per_row));
-    let acceleration = |row: usize| {
-        let per_second = dimension("1/s")?;
-        rows.dimensions[row]?
-            .multiply(per_second)?
-            .multiply(per_second)
-    };
-    let mut rates = rows.entries("rates", &program.accelerations, acceleration);
-    for (rate, name) in rates.iter_mut().zip(&rows.names) {
-        rate.name = format!("rates[{name}_dot]");
-    }
-    all.extend(rates);
-    let first_order = program.first_order.iter().zip(&program.first_order_rates);
-    all.extend(first_order.map(|(state, value)| {
-        Quantity {
-            name: format!("rates[{}]", state.name),
-            unit: dimension(&state.unit)
-                .and_then(|unit| unit.multiply(dimension("1/s")?))
-                .map(|unit| unit.to_string()),
-            value: *value,
-            index: 0,
-        }
-    }));
+    all.extend(rows.rates(program));
     all
+}
+
+/// Returns the accelerations and the rates of the first-order states.
+pub(super) fn rates(program: &Program) -> Vec<Quantity> {
+    Rows::new(program).rates(program)
 }
 
 fn dimension(unit: &str) -> Option<Dimension> {
@@ -102,6 +86,30 @@ impl Rows {
                 index,
             })
             .collect()
+    }
+
+    fn rates(&self, program: &Program) -> Vec<Quantity> {
+        let per_second = dimension("1/s");
+        let acceleration = |row: usize| {
+            let unit = self.dimensions[row]?;
+            unit.multiply(per_second?)?.multiply(per_second?)
+        };
+        let mut rates = self.entries("rates", &program.accelerations, acceleration);
+        for (rate, name) in rates.iter_mut().zip(&self.names) {
+            rate.name = format!("rates[{name}_dot]");
+        }
+        let first_order = program.first_order.iter().zip(&program.first_order_rates);
+        rates.extend(first_order.map(|(state, value)| {
+            Quantity {
+                name: format!("rates[{}]", state.name),
+                unit: dimension(&state.unit)
+                    .and_then(|unit| unit.multiply(per_second?))
+                    .map(|unit| unit.to_string()),
+                value: *value,
+                index: 0,
+            }
+        }));
+        rates
     }
 
     fn mass_matrix(&self, program: &Program) -> Vec<Quantity> {

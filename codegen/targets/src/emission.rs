@@ -27,7 +27,7 @@ pub fn emit(
     let name = &program.name;
     if let (Target::Casadi, Some(controller)) = (target, model.controllers.first()) {
         warn(&format!(
-            "note: the controllers of the model (`{}`) are not emitted: the functions are those of the machine without them",
+            "note: the functions for CasADi do not sample the controllers of the model (`{}`): they are those of the machine alone",
             controller.name
         ));
     }

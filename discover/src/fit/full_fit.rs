@@ -85,7 +85,7 @@ pub fn complete_fit(
     } = iterate_to_convergence(problem, &mut all, near, preliminary.max_rms);
     // A start that is known from the window before depends on these unknowns: it would keep the estimate in
     // place and make it too certain.
-    let mut loose = prior.without_preceding();
+    let mut loose = prior.without_preceding(&train.estimate.initial_states);
     let derivatives = if is_far {
         compute_derivatives(&all, &train.estimate)
     } else {
@@ -102,6 +102,10 @@ pub fn complete_fit(
             all.prior_weight = weight;
         }
     };
+    if !train.failed_windows.is_empty() {
+        // A stop that interrupted motions is no property of the fit.
+        problem.stop.check_not_stopped()?;
+    }
     let prior_weight = all.prior_weight;
     let estimate = &train.estimate;
     // Tangents through impacts grow without bound, secants of motions that ended in other folds are

@@ -95,6 +95,40 @@ pub fn estimate_best(
     Ok(best.collect())
 }
 
+/// Fits the first state of each training record to its first window, with the prior of these ranges.
+pub fn fit_first_states(
+    problem: &EstimationProblem<'_>,
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    ranges: &[f64],
+) -> Vec<Vec<f64>> {
+    let windows = shooting.windows;
+    let firsts: Vec<Vec<f64>> = (windows.records.iter())
+        .map(|record| problem.estimate_first_state(shooting.model, record))
+        .collect();
+    let chain = Chain {
+        shooting,
+        known: Known {
+            firsts: &firsts,
+            sd: &prior_sd(ranges),
+            sources: &sources(problem, windows),
+        },
+        horizons: &thresholds::INITIAL_STATE_HORIZONS,
+    };
+    let mut fitted = firsts.clone();
+    for (place, window) in windows.windows.iter().enumerate() {
+        if window.follows.is_none() {
+            let followed = chain.follow(theta, WindowId::range(place..place + 1), None);
+            fitted[window.record] = followed
+                .into_iter()
+                .map(|of| of.state)
+                .next()
+                .unwrap_or_default();
+        }
+    }
+    fitted
+}
+
 /// Returns a function that estimates initial states for given unknowns, with this number of
 /// horizons.
 pub fn estimate_for_unknowns<'f>(

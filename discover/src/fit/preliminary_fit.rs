@@ -4,7 +4,7 @@ use crate::error::DiscoverError;
 use crate::fit::continuation::run_continuation;
 use crate::fit::fit_result::Fit;
 use crate::fit::gauss_newton::{run_damped_gauss_newton, sum_of_squares};
-use crate::fit::initial_states::{self, estimate_for_unknowns, prior_sd};
+use crate::fit::initial_states::{self, estimate_for_unknowns, fit_first_states, prior_sd};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::shooting::Shooting;
 use crate::model::estimation_model::EstimationModel;
@@ -12,6 +12,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
+use eomgen_records::dataset::Initial;
 
 /// Specification fitted to the beginnings of the windows.
 pub struct PreliminaryFit {
@@ -58,7 +59,7 @@ pub fn fit_beginnings(
     guesses: &[Vec<f64>],
 ) -> Result<PreliminaryFit, DiscoverError> {
     let model = problem.compile_model(&texts.full, Some(&texts.linear))?;
-    let ranges = problem.compute_state_ranges(&model, &model.values);
+    let ranges = find_state_ranges(problem, &model, &unknowns);
     let shooting = Shooting::new(problem, &model, &problem.train, &unknowns, &ranges);
     let (found, is_converged) = if problem.estimates_initial_states() {
         let shooting = Shooting {
@@ -102,7 +103,8 @@ pub fn fit_beginnings(
     };
     model.work.check()?;
     // Ranges of states may depend on the result: a more compliant joint moves farther.
-    let ranges = problem.compute_state_ranges(&model, &shooting.parameter_values(&found.theta));
+    let values = shooting.parameter_values(&found.theta);
+    let ranges = keep_larger(estimate_state_ranges(problem, &model, &values), &ranges);
     Ok(PreliminaryFit {
         cost: found.cost,
         whole_window_prior: None,
@@ -146,7 +148,10 @@ pub fn start_from_fit(
     };
     let initial_states = mapped(&fit.train.estimate.initial_states);
     let theta = first_near(&bare, guesses, &initial_states, fit);
-    let ranges = problem.compute_state_ranges(&model, &bare.parameter_values(&theta));
+    let ranges = keep_larger(
+        estimate_state_ranges(problem, &model, &bare.parameter_values(&theta)),
+        &fit.map_state(&model, &fit.ranges),
+    );
     let prior = InitialStatePrior {
         mean: mapped(&fit.prior.mean),
         sd: match fit.prior.sd.is_empty() {
@@ -168,6 +173,56 @@ pub fn start_from_fit(
         unknowns,
         ranges,
     })
+}
+
+/// Returns the range of each state from the first states that records show without a fit.
+fn estimate_state_ranges(
+    problem: &EstimationProblem<'_>,
+    model: &EstimationModel,
+    values: &[f64],
+) -> Vec<f64> {
+    let records = problem.dataset.train.iter();
+    let firsts = records.map(|record| problem.estimate_first_state(model, record));
+    problem.compute_state_ranges(model, values, &firsts.collect::<Vec<Vec<f64>>>())
+}
+
+/// Returns the range of each state at the values of the specification. A record may start from states
+/// that its channels do not show, as a free decay does: first states are then fitted with the ranges
+/// found so far, until the motion from them stays within these ranges.
+fn find_state_ranges(
+    problem: &EstimationProblem<'_>,
+    model: &EstimationModel,
+    unknowns: &[Unknown],
+) -> Vec<f64> {
+    let mut ranges = estimate_state_ranges(problem, model, &model.values);
+    if !problem.estimates_initial_states() || problem.dataset.initial != Initial::Estimate {
+        return ranges;
+    }
+    let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+    for _ in 0..thresholds::MAX_RANGE_FITS {
+        let shooting = Shooting::new(problem, model, &problem.train, unknowns, &ranges);
+        let firsts = fit_first_states(problem, &shooting, &theta, &ranges);
+        let fitted = problem.compute_state_ranges(model, &model.values, &firsts);
+        let larger = keep_larger(ranges.clone(), &fitted);
+        if larger == ranges {
+            break;
+        }
+        ranges = larger;
+    }
+    ranges
+}
+
+/// Returns these ranges, with others that are much larger in their place.
+fn keep_larger(ranges: Vec<f64>, others: &[f64]) -> Vec<f64> {
+    let pairs = ranges.into_iter().zip(others);
+    pairs
+        .map(
+            |(range, other)| match *other > thresholds::MUCH_LARGER_RANGE * range {
+                true => *other,
+                false => range,
+            },
+        )
+        .collect()
 }
 
 /// The first of some unknowns that leave not many times what a fit does, or else those that leave least:

@@ -57,17 +57,21 @@ impl InitialStatePrior {
         }
     }
 
-    /// Returns the prior without means from preceding windows. They are valid at the present
-    /// unknowns only and would add information that the records do not contain.
-    pub fn without_preceding(&self) -> Self {
-        let unknown = |source: &PriorSource| match source {
-            PriorSource::Dataset => PriorSource::Dataset,
-            PriorSource::PrecedingWindow | PriorSource::FirstSamples => PriorSource::FirstSamples,
-        };
-        Self {
-            sources: self.sources.iter().map(unknown).collect(),
-            ..self.clone()
+    /// Returns the prior without means from preceding windows, which are valid at the present unknowns only and
+    /// would add information that the records do not contain. The first states of records are known to about
+    /// their range around these initial states: first samples do not show all states, and a mean with the others
+    /// at 0 may lie far from any motion.
+    pub fn without_preceding(&self, initial_states: &[Vec<f64>]) -> Self {
+        let mut prior = self.clone();
+        let all = prior.sources.iter_mut().zip(&mut prior.mean);
+        for ((source, mean), state) in all.zip(initial_states) {
+            match source {
+                PriorSource::Dataset => {}
+                PriorSource::PrecedingWindow => *source = PriorSource::FirstSamples,
+                PriorSource::FirstSamples => mean.clone_from(state),
+            }
         }
+        prior
     }
 
     /// Returns the standard deviation of each state of a window.

@@ -1,8 +1,12 @@
 //! Check of the columns of a dataset against the model, simulated over the beginning of a training
 //! record. An error is a column that follows the model with the opposite sign, with a unit factor,
-//! or that follows another channel. A missing effect causes none of these.
+//! or that follows another channel. A missing effect causes none of these. Neither do initial states
+//! that the record does not show: the motions that they cause are removed from both sides.
 
+use crate::model::estimation_model::EstimationModel;
+use crate::model::first_state::find_measured_states;
 use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::ExpectedSensor;
 use crate::thresholds;
 use eomgen_records::Refusal;
 
@@ -23,6 +27,12 @@ const FACTORS: [(f64, &str, &str); 6] = [
         ", the factor from degrees to radians",
     ),
 ];
+
+/// Change of an unknown first state that gives its free motion, relative to its typical size.
+const FREE_MOTION_FRACTION: f64 = 1e-3;
+
+/// Least part of a free motion, relative to its length, that the other free motions do not explain.
+const MIN_INDEPENDENT_PART: f64 = 1e-9;
 
 /// Returns a description of a factor between two units, relative to `expected`; `None` for other
 /// factors.
@@ -46,18 +56,40 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
     let first = problem.estimate_first_state(&model, record);
     let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
     let times = &record.times[..samples];
-    let run = model
-        .create_simulation(&model.values)
-        .and_then(|mut simulation| simulation.simulate_outputs(&first, times, &record.inputs));
-    // A model that cannot be run so far is tested by its fit.
-    let Ok(run) = run else { return Ok(notes) };
     let channels = &problem.dataset.channels;
-    let count = channels.len();
-    let expected: Vec<Vec<f64>> = (0..count)
-        .map(|channel| {
-            let column = (0..samples).map(|sample| run.values[sample * count + channel]);
-            column.collect()
-        })
+    // A model that cannot be run so far is tested by its fit.
+    let simulate = |first: &[f64]| -> Option<Vec<Vec<f64>>> {
+        let mut simulation = model.create_simulation(&model.values).ok()?;
+        let run = simulation
+            .simulate_outputs(first, times, &record.inputs)
+            .ok()?;
+        let column = |channel: usize| {
+            run.values
+                .chunks(channels.len())
+                .map(move |row| row[channel])
+        };
+        Some(
+            (0..channels.len())
+                .map(|channel| column(channel).collect())
+                .collect(),
+        )
+    };
+    let Some(expected) = simulate(&first) else {
+        return Ok(notes);
+    };
+    let mut free = vec![Vec::new(); channels.len()];
+    for state in find_unknown_states(problem, &model) {
+        let mut moved = first.clone();
+        moved[state] += FREE_MOTION_FRACTION * model.typical_sizes()[state];
+        let Some(motion) = simulate(&moved) else {
+            return Ok(notes);
+        };
+        for ((free, moved), expected) in free.iter_mut().zip(motion).zip(&expected) {
+            free.push(moved.iter().zip(expected).map(|(a, b)| a - b).collect());
+        }
+    }
+    let expected: Vec<Expectation> = (expected.into_iter().zip(free).zip(&model.sensors))
+        .map(|((values, free), sensor)| Expectation { values, free }.apply_sensor(sensor))
         .collect();
     for (own_index, channel) in channels.iter().enumerate() {
         let measured = &record.channels[own_index][..samples];
@@ -108,7 +140,37 @@ pub fn check_channels(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec
     Ok(notes)
 }
 
-/// Correlation of a column with its expectation after removing a line from both.
+/// Returns the states whose first values the record does not show.
+fn find_unknown_states(problem: &EstimationProblem<'_>, model: &EstimationModel) -> Vec<usize> {
+    if !problem.estimates_initial_states() {
+        return Vec::new();
+    }
+    let measured = find_measured_states(model, &problem.dataset.channels);
+    let all = 0..model.state_count();
+    all.filter(|state| !measured.contains(state)).collect()
+}
+
+/// Values of a channel by the model, at the samples.
+struct Expectation {
+    values: Vec<f64>,
+    /// Changes of the values by each unknown first state.
+    free: Vec<Vec<f64>>,
+}
+
+impl Expectation {
+    /// Returns the values that a sensor shows. Its delay hardly changes the correlation.
+    fn apply_sensor(mut self, sensor: &ExpectedSensor) -> Self {
+        for value in &mut self.values {
+            *value = sensor.gain * *value + sensor.bias;
+        }
+        for change in self.free.iter_mut().flatten() {
+            *change *= sensor.gain;
+        }
+        self
+    }
+}
+
+/// Correlation of a column with its expectation after removing a line and free motions from both.
 struct Correspondence {
     correlation: f64,
     factor: f64,
@@ -117,24 +179,31 @@ struct Correspondence {
 }
 
 impl Correspondence {
-    fn of(times: &[f64], expected: &[f64], measured: &[f64], noise: f64) -> Self {
+    fn of(times: &[f64], expected: &Expectation, measured: &[f64], noise: f64) -> Self {
         let none = Self {
             correlation: 0.0,
             factor: 0.0,
             shows: false,
         };
         let known: Vec<usize> = (0..times.len())
-            .filter(|i| measured[*i].is_finite() && expected[*i].is_finite())
+            .filter(|i| measured[*i].is_finite() && expected.values[*i].is_finite())
             .collect();
         if 2 * known.len() < times.len() {
             return none;
         }
-        let of = |column: &[f64]| {
-            let pairs: Vec<(f64, f64)> = known.iter().map(|i| (times[*i], column[*i])).collect();
-            without_line(&pairs)
-        };
-        let (a, b) = (of(expected), of(measured));
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let select = |column: &[f64]| known.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+        let line = [vec![1.0; times.len()], times.to_vec()];
+        let removed: Vec<Vec<f64>> = line
+            .iter()
+            .chain(&expected.free)
+            .map(|c| select(c))
+            .collect();
+        let basis = orthonormal_basis(removed);
+        let [a, b] = [&expected.values[..], measured].map(|column| {
+            let mut values = select(column);
+            remove_components(&mut values, &basis);
+            values
+        });
         let (aa, ab, bb) = (dot(&a, &a), dot(&a, &b), dot(&b, &b));
         let shows =
             (bb / known.len() as f64).sqrt() > thresholds::MIN_CHECKED_MOTION_IN_NOISE * noise;
@@ -149,20 +218,40 @@ impl Correspondence {
     }
 }
 
-/// Values with the line that fits them best taken out.
-fn without_line(pairs: &[(f64, f64)]) -> Vec<f64> {
-    let count = pairs.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-    let (t, x) = (mean(&|p| p.0), mean(&|p| p.1));
-    let square = mean(&|p| (p.0 - t).powi(2));
-    let slope = mean(&|p| (p.0 - t) * (p.1 - x)) / square;
-    let value = |p: &(f64, f64)| p.1 - x - slope * (p.0 - t);
-    pairs.iter().map(value).collect()
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Returns an orthonormal basis of columns, by the Gram-Schmidt method with a second pass.
+fn orthonormal_basis(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for mut column in columns {
+        let before = dot(&column, &column).sqrt();
+        for _ in 0..2 {
+            remove_components(&mut column, &basis);
+        }
+        let length = dot(&column, &column).sqrt();
+        if length.is_finite() && length > MIN_INDEPENDENT_PART * before {
+            column.iter_mut().for_each(|value| *value /= length);
+            basis.push(column);
+        }
+    }
+    basis
+}
+
+/// Removes the components along orthonormal columns.
+fn remove_components(values: &mut [f64], basis: &[Vec<f64>]) {
+    for column in basis {
+        let component = dot(values, column);
+        for (value, part) in values.iter_mut().zip(column) {
+            *value -= component * part;
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Correspondence, describe_unit_factor, without_line};
+    use super::{Correspondence, Expectation, describe_unit_factor};
 
     #[test]
     fn a_factor_between_units_is_known_and_no_other() {
@@ -178,16 +267,20 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_taken_out_and_nothing_else() {
-        let wave = |t: f64| (7.0 * t).sin();
+    fn lines_and_free_motions_are_removed() {
         let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.01).collect();
-        let line: Vec<(f64, f64)> = times.iter().map(|t| (*t, 3.0 - 2.0 * t)).collect();
-        assert!(without_line(&line).iter().all(|v| v.abs() < 1e-12));
-        let expected: Vec<f64> = times.iter().map(|t| wave(*t)).collect();
-        let measured: Vec<f64> = times.iter().map(|t| 5.0 * t - 2.0 * wave(*t)).collect();
-        let correspondence = Correspondence::of(&times, &expected, &measured, 1e-3);
-        assert!(
-            (correspondence.factor + 2.0).abs() < 1e-9 && correspondence.correlation < -0.999_999
-        );
+        let column = |value: &dyn Fn(f64) -> f64| times.iter().map(|t| value(*t)).collect();
+        let wave = |t: f64| (7.0 * t).sin();
+        let free = |t: f64| (-t).exp() * (3.0 * t).cos();
+        let expected = Expectation {
+            values: column(&wave),
+            free: vec![column(&free), column(&|t| 2.0 * free(t))],
+        };
+        let measured: Vec<f64> = column(&|t| 5.0 * t - 2.0 * wave(t) + 9.0 * free(t));
+        let found = Correspondence::of(&times, &expected, &measured, 1e-3);
+        assert!((found.factor + 2.0).abs() < 1e-9 && found.correlation < -0.999_999);
+        let only_free: Vec<f64> = column(&|t| 3.0 - 2.0 * t - free(t));
+        let found = Correspondence::of(&times, &expected, &only_free, 1e-3);
+        assert!(!found.shows, "{}", found.correlation);
     }
 }

@@ -35,6 +35,27 @@ pub fn estimate_first_state(
     }
 }
 
+/// Returns the indices of the states whose first values channels measure.
+pub fn find_measured_states(model: &EstimationModel, channels: &[Channel]) -> Vec<usize> {
+    let degrees = model.degrees_of_freedom();
+    let measured = channels.iter();
+    let measured = measured.flat_map(|channel| measured_states(channel.quantity, degrees));
+    measured.flatten().collect()
+}
+
+/// Returns the states that value and slope of a quantity measure.
+fn measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
+    match quantity {
+        Quantity::Coordinate(coordinate) => [Some(coordinate), Some(degrees + coordinate)],
+        Quantity::Rate(coordinate) => [Some(degrees + coordinate), None],
+        Quantity::State(first_order) => [Some(2 * degrees + first_order), None],
+        Quantity::Observable(_)
+        | Quantity::ObservedRate(_)
+        | Quantity::Acceleration(_)
+        | Quantity::Input(_) => [None, None],
+    }
+}
+
 /// Replaces parts of a state by the measurements at the beginning of a record.
 fn apply_measurements(
     model: &EstimationModel,
@@ -45,17 +66,11 @@ fn apply_measurements(
     let degrees = model.degrees_of_freedom();
     for (channel, column) in channels.iter().zip(&record.channels) {
         let (value, slope) = fit_first_samples(&record.times, column);
-        match channel.quantity {
-            Quantity::Coordinate(coordinate) => {
-                state[coordinate] = value;
-                state[degrees + coordinate] = slope;
+        let places = measured_states(channel.quantity, degrees);
+        for (place, number) in places.into_iter().zip([value, slope]) {
+            if let Some(place) = place {
+                state[place] = number;
             }
-            Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
-            Quantity::State(first_order) => state[2 * degrees + first_order] = value,
-            Quantity::Observable(_)
-            | Quantity::ObservedRate(_)
-            | Quantity::Acceleration(_)
-            | Quantity::Input(_) => {}
         }
     }
     // Noise may put what is measured beyond where the model lives.
@@ -81,25 +96,25 @@ fn fit_first_samples(times: &[f64], column: &[f64]) -> (f64, f64) {
     fitted.map_or((0.0, 0.0), |fitted| (fitted[0], fitted[1] / span))
 }
 
-/// Returns the range of each state in the motion due to the recorded inputs, SI: the RMS about the
-/// mean. `values`: parameters of the model, which may have a strong influence; `noise`: standard
+/// Returns the range of each state in the motion from a first state of each record, SI: the RMS about
+/// the mean. `values`: parameters of the model, which may have a strong influence; `noise`: standard
 /// deviation of each channel, SI.
 pub fn compute_state_ranges(
     model: &EstimationModel,
     values: &[f64],
     records: &[Record],
-    initial: &[f64],
+    firsts: &[Vec<f64>],
     noise: &[f64],
 ) -> Vec<f64> {
     let Ok(mut simulation) = model.create_simulation(values) else {
         return vec![1.0; model.state_count()];
     };
-    let moved = measure_ranges(&mut simulation, records, initial);
+    let moved = measure_ranges(&mut simulation, records, firsts);
     // A state that no channel depends on is given a range of one unit.
     let mut of = |(state, range): (usize, f64)| match range > 0.0 {
         true => range,
-        false => (records.first())
-            .and_then(|record| find_unmoved(&mut simulation, record, initial, noise, state))
+        false => (records.first().zip(firsts.first()))
+            .and_then(|(record, first)| find_unmoved(&mut simulation, record, first, noise, state))
             .unwrap_or(1.0),
     };
     moved.into_iter().enumerate().map(&mut of).collect()
@@ -110,26 +125,30 @@ pub fn compute_state_ranges(
 fn measure_ranges(
     simulation: &mut Simulation<'_>,
     records: &[Record],
-    initial: &[f64],
+    firsts: &[Vec<f64>],
 ) -> Vec<f64> {
     for halving in 0..=thresholds::MAX_RECORD_HALVINGS {
-        let motions = records.iter().filter_map(|record| {
+        let motions = records.iter().zip(firsts).filter_map(|(record, first)| {
             let count = record.times.len() >> halving;
             let times = &record.times[..count];
             simulation
-                .simulate_states(initial, times, &record.inputs)
+                .simulate_states(first, times, &record.inputs)
                 .ok()
         });
         // Every tenth sample is enough for a range.
         let states = motions.flat_map(|states| states.into_iter().step_by(10));
         let states: Vec<Vec<f64>> = states.collect();
         let of = |state: usize| root_mean_square(states.iter().map(|values| values[state]));
-        let found: Vec<f64> = (0..initial.len()).map(of).collect();
+        let found: Vec<f64> = (0..count_states(firsts)).map(of).collect();
         if !states.is_empty() && found.iter().all(|range| range.is_finite()) {
             return found;
         }
     }
-    vec![0.0; initial.len()]
+    vec![0.0; count_states(firsts)]
+}
+
+fn count_states(firsts: &[Vec<f64>]) -> usize {
+    firsts.first().map_or(0, Vec::len)
 }
 
 /// The root mean square of values around their mean.

@@ -149,15 +149,19 @@ impl<'d> EstimationProblem<'d> {
         self.dataset.start == StartSource::Estimate && !self.dataset.gives_motion()
     }
 
-    /// Returns the range of each state in the training records. The range of a coordinate that a
-    /// candidate adds is multiplied by a factor because its motion is unknown.
-    pub fn compute_state_ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
-        let first = self.estimate_first_state(model, &self.dataset.train[0]);
+    /// Returns the range of each state in the training records, from these first states of the records. The range
+    /// of a coordinate that a candidate adds is multiplied by a factor because its motion is unknown.
+    pub fn compute_state_ranges(
+        &self,
+        model: &EstimationModel,
+        values: &[f64],
+        firsts: &[Vec<f64>],
+    ) -> Vec<f64> {
         let mut ranges = first_state::compute_state_ranges(
             model,
             values,
             &self.dataset.train,
-            &first,
+            firsts,
             &self.noise,
         );
         for (range, state) in ranges.iter_mut().zip(&model.states) {

@@ -26,6 +26,7 @@ use crate::report::discovery::{
 };
 use crate::report::experiment::draw_experiments;
 use crate::report::held_input::note_held_input;
+use crate::report::initial_states::describe_contradicted_initial_states;
 use crate::report::location::describe_location;
 use crate::report::motion_noise::note_motion_noise;
 use crate::report::origin::{Origin, Specification};
@@ -317,14 +318,15 @@ fn size(fit: &Fit, id: UnknownId, floor: f64) -> String {
     )
 }
 
-/// Finds records that contradict each other, and reports the progress.
+/// Finds records that contradict the stated initial state or each other, and reports the progress.
 fn contradicting(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     floor: f64,
     progress: &Progress<'_>,
 ) -> Vec<String> {
-    let found = describe_contradictions(problem, fit, floor, progress);
+    let mut found = describe_contradicted_initial_states(problem, &fit.model);
+    found.extend(describe_contradictions(problem, fit, floor, progress));
     for sentence in &found {
         progress(&format!("note: {sentence}"));
     }

@@ -73,9 +73,8 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
                 {
                     match is_resolved(frequencies, peak) {
                         true => format!(
-                            "{text}, most of it near {:.3} Hz with an amplitude of {}",
-                            frequencies.arguments[peak],
-                            in_unit(frequencies.values[peak], equation.force_unit())
+                            "{text}, most of it near {} Hz",
+                            in_resolution(frequencies.arguments[peak], frequencies.arguments[0])
                         ),
                         false => format!(
                             "{text}, most of it below the frequency resolution of windows of this length"
@@ -86,6 +85,13 @@ fn describe_shape(force: &ResidualForce, kind: &ForceKind) -> String {
             }
         }
     }
+}
+
+/// Formats a frequency with the digits that a resolution shows. The amplitude of the force at a frequency does not
+/// follow from the profile, because initial states of windows imitate a part of the motion.
+fn in_resolution(frequency: f64, resolution: f64) -> String {
+    let decimals = (-resolution.log10()).ceil().max(0.0) as usize;
+    format!("{frequency:.decimals$}")
 }
 
 /// Returns true if a wave of a profile over the frequency has enough periods in a window to be

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::error::DiscoverError;
 use crate::ids::ResponseId;
 use rayon::prelude::*;
 
@@ -46,7 +47,7 @@ pub fn run_preliminary_fits(
         let preliminary = hypothesis::fit_preliminary(pool, &hypothesis);
         let left = match &preliminary {
             Ok(fit) => format!("{:.1} % of the {of} remains", 100.0 * fit.cost / alone),
-            Err(error) => error.to_string(),
+            Err(error) => describe_failure(error),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
         (pool.context.progress)(&format!("  {label}: {left}"));
@@ -72,13 +73,20 @@ pub fn run_full_fits(
         let tested = new.map(|new| test_fit(pool, &hypothesis, new, held_out.as_ref()));
         let outcome = match &tested {
             Ok(fitted) => fitted.to_string(),
-            Err(error) => error.to_string(),
+            Err(error) => describe_failure(error),
         };
         let label = hypothesis::describe_hypothesis(pool, &hypothesis);
         (pool.context.progress)(&format!("  {label}: {outcome}"));
         tested.ok()
     };
     preliminaries.into_par_iter().filter_map(fitted).collect()
+}
+
+/// Describes a failed fit in one line, without the place in the candidate's specification.
+fn describe_failure(error: &DiscoverError) -> String {
+    let message = error.to_string();
+    let line = message.lines().next().unwrap_or_default();
+    format!("not fitted: {}", line.trim_start_matches("error: "))
 }
 
 /// A hypothesis judged by its fit in full.
@@ -91,14 +99,19 @@ fn test_fit(
     let own = list_effect_unknowns(pool, hypothesis);
     let p_value = held_out.and_then(|of| of.compute_p_value(&fit, &own));
     pool.context.problem.tested_hypotheses.increment();
-    let verdict = test_acceptance(pool.context.fit, &fit, &own);
+    let is_interrupted =
+        !fit.test.failed_windows.is_empty() && pool.context.problem.stop.is_requested();
+    let verdict = match is_interrupted {
+        true => Err(Rejection::Interrupted),
+        false => test_acceptance(pool.context.fit, &fit, &own),
+    };
     let verdict = verdict.map(|statistics| TestStatistics {
         p_value,
         ..statistics
     });
     FittedHypothesis {
         responses: hypothesis.responses.clone(),
-        explains_records: test_explanation(pool.context.fit, &fit, &own).is_ok(),
+        explains_records: !is_interrupted && test_explanation(pool.context.fit, &fit, &own).is_ok(),
         effect_unknowns: own,
         fit,
         verdict,
@@ -109,6 +122,12 @@ fn test_fit(
 impl fmt::Display for FittedHypothesis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (train, test) = (self.fit.train.rms, self.fit.test.rms);
+        if let Err(rejection @ Rejection::Interrupted) = &self.verdict {
+            return write!(
+                f,
+                "a residual of {train:.2} standard deviations of the noise in training records; {rejection}"
+            );
+        }
         write!(
             f,
             "residuals of {train:.2} (training) and {test:.2} (test) standard deviations of the noise; "

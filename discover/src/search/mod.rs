@@ -161,7 +161,7 @@ impl Search<'_> {
                 is_first_round,
             };
             let mut tested = round.test_pairs(singles);
-            let so_far = describe_unfinished(&tested);
+            let so_far = describe_unfinished(&tested, !found.accepted.is_empty());
             if problem.stop.is_time_over() {
                 found.unfinished = Some(so_far);
                 break;

@@ -22,6 +22,8 @@ pub enum Rejection {
     },
     /// The relative reduction of the test gap is too small.
     HeldOut(f64),
+    /// A stop or the time limit came before the comparison with the test records.
+    Interrupted,
     /// The reduction in standard errors is too small.
     StandardErrors(f64),
     /// The information gain in the training records is too small.
@@ -76,6 +78,7 @@ impl fmt::Display for Rejection {
                     100.0 * thresholds::MIN_HELD_OUT_REDUCTION
                 )
             }
+            Self::Interrupted => f.write_str("stopped before the comparison with the test records"),
             Self::StandardErrors(errors) => write!(
                 f,
                 "the improvement of the test records may be chance: {errors:.1} standard errors, {} are required",

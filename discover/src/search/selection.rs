@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fit_result::Fit;
+use crate::fit::residuals::Residuals;
 use crate::model::unknowns::UnknownKind;
 use crate::search::acceptance::{EffectUnknown, compute_test_statistics};
 use crate::search::context::RoundContext;
@@ -81,7 +82,7 @@ pub fn select_hypothesis(
         |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
     let indistinguishable = others.iter().filter(|fitted| {
         let similarity = similarity(&candidates, &screening, own, fitted.responses[0]);
-        is_indistinguishable(fit, &fitted.fit, similarity)
+        is_indistinguishable(&selected.hypothesis, fitted, similarity)
     });
     let undeclared: Vec<Candidate> = indistinguishable.map(|fitted| of(fitted).clone()).collect();
     let equivalent = [&selected.equivalents[0][..], &undeclared].concat();
@@ -270,7 +271,7 @@ fn indistinguishable_half(
         .filter(|own| other.responses.contains(own));
     let is_all_else = shared.count() + 1 == fitted.responses.len();
     let similarity = similarity(candidates, screening, fitted.responses[half], response);
-    (is_all_else && is_indistinguishable(&fitted.fit, &other.fit, similarity)).then_some(
+    (is_all_else && is_indistinguishable(fitted, other, similarity)).then_some(
         IndistinguishableHalf {
             effect: EffectId::new(half),
             response,
@@ -295,11 +296,15 @@ fn similarity(
     }
 }
 
-/// Returns true if records cannot distinguish the hypotheses of two fits: the responses are
-/// similar, and the other fit is no worse on the test records. Except for two names of one change,
-/// it is also no worse on the training records. The other fit may be better, but not so clearly
+/// Returns true if records cannot distinguish two fitted hypotheses: the responses are similar or the
+/// fits leave the same, and the other fit is no worse on the test records. Except for two names of one
+/// change, it is also no worse on the training records. The other fit may be better, but not so clearly
 /// that it is selected instead.
-fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
+fn is_indistinguishable(one: &FittedHypothesis, other: &FittedHypothesis, similarity: f64) -> bool {
+    let leave_same = one.effect_unknowns.len() == other.effect_unknowns.len()
+        && leaves_same_residuals(&one.fit.train, &other.fit.train)
+        && leaves_same_residuals(&one.fit.test, &other.fit.test);
+    let (one, other) = (&one.fit, &other.fit);
     let statistics = compute_test_statistics(one, other, &[]);
     let (part, errors) = (
         -statistics.held_out_reduction,
@@ -313,7 +318,19 @@ fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
         && statistics.information_gain < -thresholds::MIN_INFORMATION_GAIN;
     let is_same = similarity > thresholds::MIN_SIMILARITY_OF_SAME_EFFECT
         && part < thresholds::MIN_HELD_OUT_REDUCTION;
-    similarity > thresholds::MIN_SIMILARITY_OF_RIVALS && (is_same || (as_good && !is_told))
+    let is_rival = similarity > thresholds::MIN_SIMILARITY_OF_RIVALS || leave_same;
+    is_rival && (is_same || (as_good && !is_told))
+}
+
+/// Returns true if the squared residuals of two fits differ by less than [`thresholds::MAX_CLASS_DIFFERENCE`], block by
+/// block. The first-order responses of one change can differ along the motion of a wrong model: a gain of a sensor and
+/// one of an input are the same for a linear model only once they are fitted.
+fn leaves_same_residuals(one: &Residuals, other: &Residuals) -> bool {
+    let blocks = || one.block_squares.iter().zip(&other.block_squares);
+    let difference: f64 = blocks().map(|(a, b)| (a - b).abs()).sum();
+    let whole: f64 = blocks().map(|(a, b)| a.max(*b)).sum();
+    one.block_squares.len() == other.block_squares.len()
+        && difference < thresholds::MAX_CLASS_DIFFERENCE * whole
 }
 
 /// Returns the half of a pair that was accepted by itself, with its test gap, as an intermediate

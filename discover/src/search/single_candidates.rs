@@ -60,19 +60,31 @@ pub fn fit_singles(pool: &CandidatePool<'_>, from: CandidateId) -> Vec<FittedHyp
 }
 
 /// Fits candidates similar to one of them with a sufficient prediction, the most similar first; at
-/// most [`thresholds::MAX_FULL_FITS_PER_ROUND`].
+/// most [`thresholds::MAX_FULL_FITS_PER_ROUND`]. Less similar ones are fitted if their preliminary fit is as good.
 pub fn fit_similar(pool: &CandidatePool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
     let similarity = |other: &ResponseId| pool.screening.compute_similarity(response, *other);
+    let is_rival = |other: &ResponseId| similarity(other) > thresholds::MIN_SIMILARITY_OF_RIVALS;
     let mut similar = pool.rank_responses();
     similar.retain(|other| {
-        *other != response && similarity(other) > thresholds::MIN_SIMILARITY_OF_RIVALS
+        let is_plain = pool.candidate(*other).angle_order.is_none();
+        let is_fitted = is_plain && similarity(other) > thresholds::MIN_SIMILARITY_TO_FIT;
+        *other != response && (is_rival(other) || is_fitted)
     });
     similar.sort_by(|a, b| similarity(b).total_cmp(&similarity(a)));
     similar.truncate(thresholds::MAX_FULL_FITS_PER_ROUND);
-    run_full_fits(
-        pool,
-        run_preliminary_fits(pool, choose_hypotheses(pool, &similar)),
-    )
+    let are_rivals = similar.iter().all(is_rival);
+    let own = (!are_rivals).then_some(response);
+    let hypotheses = choose_hypotheses(pool, &similar.into_iter().chain(own).collect::<Vec<_>>());
+    let mut preliminaries = run_preliminary_fits(pool, hypotheses);
+    let fitted = preliminaries
+        .iter()
+        .find(|(hypothesis, _)| hypothesis.responses[0] == response);
+    let most = thresholds::MAX_RIVAL_COST_RATIO * fitted.map_or(0.0, |(_, own)| own.cost);
+    preliminaries.retain(|(hypothesis, preliminary)| {
+        let other = &hypothesis.responses[0];
+        *other != response && (is_rival(other) || preliminary.cost < most)
+    });
+    run_full_fits(pool, preliminaries)
 }
 
 /// Selects the candidates for a preliminary fit. Candidates that repeat with an angle are so many

@@ -119,6 +119,8 @@ impl Assignment {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::model::Model;
     use crate::unit::Unit;
@@ -159,7 +161,6 @@ kept = "a + d/l"
 
     #[test]
     fn numbers_expressions_and_units_are_read() {
-        use std::f64::consts::PI;
         for (text, unit, right) in [
             ("theta=0.5", "rad", 0.5),
             ("theta = -1e-3", "rad", -1e-3),
@@ -216,6 +217,11 @@ kept = "a + d/l"
             ("l=1/3", "mm", &["--state:1:3", "1/3 mm"]),
             ("x=nan", "m", &["finite"]),
             ("x=1/0", "m", &["finite"]),
+            ("x=1e-400", "m", &["--state:1:3", "too small"]),
+            ("x=-1e-400 mm", "m", &["--state:1:4", "too small"]),
+            ("x=1e-320 um", "m", &["--state:1:3", "too small"]),
+            ("l=1e-322", "mm", &["--state:1:3", "too small"]),
+            ("x=1e400", "m", &["--state:1:3", "too large"]),
             ("x=theta", "m", &["--state:1:3", "a coordinate"]),
             ("x=1=2", "m", &["--state:1:4"]),
             ("x=3 (2)", "m", &["--state:1:5"]),
@@ -230,14 +236,48 @@ kept = "a + d/l"
         }
     }
 
+    fn settings(texts: &[&str]) -> Result<Vec<(String, f64)>, Diagnostics> {
+        let given = texts.iter().map(|text| Assignment::split("--set", text));
+        let given: Vec<Assignment> = given.map(|given| given.expect("an assignment")).collect();
+        model().read_settings(&given)
+    }
+
     #[test]
-    fn settings_use_earlier_settings() {
+    fn settings_do_not_depend_on_their_order() {
+        // d = l/r is declared: r = 5*d/l refers to l by it, and to its own declared value 3.
+        for texts in [
+            ["l=1 m", "m=2*m", "a=d/l", "r=6*d/l"],
+            ["r=6*d/l", "a=d/l", "m=2*m", "l=1 m"],
+            ["a=d/l", "l=1 m", "r=6*d/l", "m=2*m"],
+        ] {
+            let found = settings(&texts).expect("settings");
+            for (name, right) in [("l", 1000.0), ("m", 4.0), ("r", 2.0), ("a", 90.0 / PI)] {
+                let value = found.iter().find(|(known, _)| known == name);
+                let (_, value) = value.expect("a value");
+                assert!(
+                    (value / right - 1.0).abs() < 1e-14,
+                    "{texts:?}: {name} = {value}"
+                );
+            }
+            assert!(
+                found
+                    .iter()
+                    .zip(texts)
+                    .all(|((name, _), text)| text.starts_with(name))
+            );
+        }
+        for texts in [["l=2*d", "d=l/4"], ["d=l/4", "l=2*d"]] {
+            let error = settings(&texts).expect_err("a cycle").to_string();
+            assert!(
+                error.contains("refer to each other") && error.contains("`d`"),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn unknown_settings_are_rejected_with_a_suggestion() {
         let model = model();
-        let given = ["l=1 m", "m=2*m", "d=l/4", "l=d"].map(|text| Assignment::split("--set", text));
-        let given = given.map(|given| given.expect("an assignment"));
-        let found = model.read_settings(&given).expect("settings");
-        let values: Vec<f64> = found.iter().map(|(_, value)| *value).collect();
-        assert_eq!(values, [1000.0, 4.0, 250.0, 250.0]);
         let wrong = Assignment::split("--set", "ll=1").expect("an assignment");
         let error = model
             .read_settings(&[wrong])

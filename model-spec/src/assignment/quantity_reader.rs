@@ -50,24 +50,16 @@ impl<'m> QuantityReader<'m> {
     /// finite, with the position in the option.
     pub fn read(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostics> {
         let value = self.value(given, unit);
-        let finite = value.and_then(|value| match value.is_finite() {
-            true => Ok(value),
-            false => {
-                let message = format!("{}: `{}` evaluates to {value}", given.text(), given.name());
-                Err(Diagnostic::error(message)
-                    .with_span(given.value, "")
-                    .with_help("expected a finite number"))
-            }
-        });
-        finite.map_err(|wrong| Diagnostics::from_one(given.source.clone(), wrong))
+        let checked = value.and_then(|value| check_magnitude(given, value, unit));
+        checked.map_err(|wrong| Diagnostics::from_one(given.source.clone(), wrong))
     }
 
     fn value(&self, given: &Assignment, unit: &Unit) -> Result<f64, Diagnostic> {
         let text = given.value();
+        let all = tokenize(text, |start, end| given.place(start, end))?;
         if let Ok(number) = text.parse::<f64>() {
             return Ok(number);
         }
-        let all = tokenize(text, |start, end| given.place(start, end))?;
         let split = find_unit_start(&all);
         let (expression, own) = all.split_at(split);
         let end = own
@@ -126,11 +118,34 @@ impl<'m> QuantityReader<'m> {
                 .with_span(written_place, "another kind of quantity")
                 .with_help(format!("give a unit of the same dimension as {unit}")));
         }
-        Ok(match own == *unit {
-            true => number,
-            false => unit.from_si(own.to_si(number)),
-        })
+        if own == *unit {
+            return Ok(number);
+        }
+        let converted = unit.from_si(own.to_si(number));
+        match converted == 0.0 && number != 0.0 {
+            true => Err(underflow_error(given)),
+            false => Ok(converted),
+        }
     }
+}
+
+/// Rejects a value that is not finite, or that is 0 in SI by underflow only.
+fn check_magnitude(given: &Assignment, value: f64, unit: &Unit) -> Result<f64, Diagnostic> {
+    if !value.is_finite() {
+        let message = format!("{}: `{}` evaluates to {value}", given.text(), given.name());
+        return Err(Diagnostic::error(message)
+            .with_span(given.value, "")
+            .with_help("expected a finite number"));
+    }
+    match value != 0.0 && unit.to_si(value) == 0.0 {
+        true => Err(underflow_error(given)),
+        false => Ok(value),
+    }
+}
+
+fn underflow_error(given: &Assignment) -> Diagnostic {
+    Diagnostic::error(format!("the value of `{}` is too small", given.name()))
+        .with_span(given.value, "below 4.9e-324 in SI, it would be read as 0")
 }
 
 /// Converts an expression without an explicit unit, which is in SI.

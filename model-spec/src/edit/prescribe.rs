@@ -8,11 +8,15 @@ use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section}
 use crate::assignment::find_unit_start;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
 use crate::lexer::{Token, TokenKind, tokenize};
+use crate::model::UNIT_FACTOR_ORIGIN;
+use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
 
 pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
+    let with_input = document.clone();
     let (unit, has_rates) = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
         section: "inputs".to_owned(),
         name: edit.name.clone(),
@@ -20,43 +24,33 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     let (given, own_unit) = split_unit(edit, &unit)?;
     let tree = syntax(given)?;
     reject_motion(document, edit, &tree)?;
-    if own_unit.is_some() && !has_only_numbers(&tree) {
-        let help = "remove the unit: parameters have units";
-        let label = ("an expression with a unit", help);
-        return Err(rejected(
-            edit,
-            tree.span,
-            "this value already has a unit",
-            label,
-        ));
+    let (of_numbers, is_timed) = (has_only_numbers(&tree), mentions_time(&tree));
+    if !of_numbers {
+        check_value(with_input, edit, (given, own_unit), (&tree, &unit))?;
     }
-    let value = if has_only_numbers(&tree) {
-        // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
-        // unit of the input, supply the units.
-        let (second, one) = (
-            unused_name(document, "one_second"),
-            unused_name(document, "one_unit"),
-        );
-        let timed = replaced(given, "t", &format!("t/{second}"))?;
-        if timed.is_some() {
-            parameter(document, &unit_parameter(&second, "s"))?;
-        }
-        parameter(document, &unit_parameter(&one, own_unit.unwrap_or(&unit)))?;
-        format!("({})*{one}", timed.as_deref().unwrap_or(given))
-    } else {
-        given.to_owned()
+    // Numbers are dimensionless, and units are checked: parameters of value 1, a second and a
+    // unit of the input, supply the units.
+    let needs_second = if is_timed { of_numbers } else { has_rates };
+    let second = match needs_second {
+        true => Some(add_unit_factor(document, "one_second", "s")?),
+        false => None,
     };
+    let timed = match &second {
+        Some(second) if is_timed => replaced(given, "t", &format!("t/{second}"))?,
+        _ => None,
+    };
+    let mut value = timed.unwrap_or_else(|| given.to_owned());
+    if let Some(own) = own_unit.or(of_numbers.then_some(&unit)) {
+        let one = add_unit_factor(document, "one_unit", own)?;
+        value = format!("({value})*{one}");
+    }
     if !has_rates {
         return define(document, &edit.name, value);
     }
     // The factor depends on the time, so that the definition has a rate.
-    let value = if mentions_time(&tree) {
-        value
-    } else {
-        let second = unused_name(document, "one_second");
-        parameter(document, &unit_parameter(&second, "s"))?;
-        format!("({value})*(1 + 0*t/{second})")
-    };
+    if let Some(second) = second.filter(|_| !is_timed) {
+        value = format!("({value})*(1 + 0*t/{second})");
+    }
     define(document, &edit.name, value)?;
     let [rate, second] = ["dot", "ddot"].map(|suffix| format!("{}_{suffix}", edit.name));
     let has_second = contains_name(document, &second);
@@ -67,6 +61,65 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
         define(document, &second, format!("dot({rate})"))?;
     }
     Ok(())
+}
+
+/// Checks that an expression of parameters and definitions does not depend on the motion, and that it has the unit of
+/// the input, or none if a unit follows it. Other errors are left to the check of the edited specification.
+fn check_value(
+    mut document: DocumentMut,
+    edit: &PrescribeInput,
+    (given, own_unit): (&str, Option<&str>),
+    (tree, unit): (&Syntax, &str),
+) -> Result<(), EditError> {
+    let name = unused_name(&document, "value_of_input");
+    define(&mut document, &name, given.to_owned())?;
+    let Ok(checked) = crate::check(Source::new("", document.to_string())) else {
+        return Ok(());
+    };
+    let model = &checked.model;
+    let find = |name: &str| model.definitions.iter().find(|own| own.name == name);
+    let (Some(value), Ok(unit)) = (find(&name), Unit::parse(unit)) else {
+        return Ok(());
+    };
+    let mut moving = None;
+    tree.visit(&mut |part| {
+        if let SyntaxKind::Name(name) = &part.kind
+            && find(name).is_some_and(|own| model.contains_motion(&own.value))
+        {
+            moving.get_or_insert((part.span, format!("definition `{name}`")));
+        }
+    });
+    if let Some((span, what)) = moving {
+        return Err(motion_error(
+            edit,
+            span,
+            &format!("the {what} depends on the motion"),
+        ));
+    }
+    let is_number = value.unit.dimension == Dimension::DIMENSIONLESS;
+    let (message, help) = match own_unit {
+        Some(own) if !is_number => (
+            format!("this value already has a unit, {}", value.unit),
+            format!("remove `{own}`"),
+        ),
+        None if value.unit.dimension != unit.dimension && is_number => (
+            format!(
+                "`{}` is in {unit}, but this value is a pure number",
+                edit.name
+            ),
+            format!("end with a unit: {given} {unit}"),
+        ),
+        None if value.unit.dimension != unit.dimension => (
+            format!(
+                "`{}` is in {unit}, but this value is in {}",
+                edit.name, value.unit
+            ),
+            format!("write an expression in {unit}"),
+        ),
+        _ => return Ok(()),
+    };
+    let label = ("the value of the input", help.as_str());
+    Err(rejected(edit, tree.span, &message, label))
 }
 
 /// Splits a value into an expression and the unit after it, for example `5` and `kN`.
@@ -140,12 +193,16 @@ fn reject_motion(
     let Some((span, name, kind)) = wrong else {
         return Ok(());
     };
+    Err(motion_error(edit, span, &format!("`{name}` is a {kind}")))
+}
+
+/// Returns the error of an input that depends on the motion, for a reason.
+fn motion_error(edit: &PrescribeInput, span: Span, reason: &str) -> EditError {
     let input = &edit.name;
-    let message =
-        format!("`{name}` is a {kind}: the input `{input}` is an expression of t and parameters");
+    let message = format!("{reason}: the input `{input}` is an expression of t and parameters");
     let help = "write a force that depends on the motion under [forces], and a feedback under [controllers]";
     let label = "not known before the motion";
-    Err(rejected(edit, span, &message, (label, help)))
+    rejected(edit, span, &message, (label, help))
 }
 
 fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), EditError> {
@@ -212,12 +269,20 @@ fn unused_name(document: &DocumentMut, name: &str) -> String {
     unused
 }
 
-fn unit_parameter(name: &str, unit: &str) -> NewParameter {
-    NewParameter {
-        name: name.to_owned(),
+/// Adds a parameter of value 1 in a unit. Returns its name.
+fn add_unit_factor(
+    document: &mut DocumentMut,
+    name: &str,
+    unit: &str,
+) -> Result<String, EditError> {
+    let name = unused_name(document, name);
+    let factor = NewParameter {
+        name: name.clone(),
         value: NewValue::Number(1.0),
         unit: unit.to_owned(),
         doc: String::new(),
-        source: String::new(),
-    }
+        source: UNIT_FACTOR_ORIGIN.to_owned(),
+    };
+    parameter(document, &factor)?;
+    Ok(name)
 }

@@ -329,7 +329,7 @@ fn unused_parameters_take_one_line() {
     let shown = warnings.render(false);
     assert_eq!(shown.lines().count(), 1, "{shown}");
     assert!(
-        shown.starts_with("warning: the parameters `g`, `h_2` are not used ("),
+        shown.starts_with("warning: the specification does not use the parameters `g`, `h_2` ("),
         "{shown}"
     );
     assert!(shown.ends_with(":5:1, 6:1)"), "{shown}");
@@ -411,9 +411,9 @@ fn unused_names_give_warnings() {
         .map(|record| record.message.as_str())
         .collect();
     let expected = [
-        "the parameter `g` is not used",
-        "the input `v` is not used",
-        "the definition `sum_of_angles` is not used",
+        "the specification does not use the parameter `g`",
+        "the specification does not use the input `v`",
+        "the specification does not use the definition `sum_of_angles`",
     ];
     assert_eq!(messages, expected);
     assert!(

@@ -16,6 +16,8 @@ class SimulationError(RuntimeError):
     trajectory: object
 
 class DiscoveryError(RuntimeError): ...
+class RefusedValue(Exception): ...
+class RefusedType(Exception): ...
 
 class Simulation:
     def __init__(
@@ -169,6 +171,7 @@ def simulate(
     List[str],
     _Array,
     Optional[RecordedMotion],
+    Optional[BaseException],
 ]: ...
 def discover(
     model: Model, dataset: str, seed: int, progress: Callable[[str], object]

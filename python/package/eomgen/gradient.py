@@ -18,6 +18,7 @@ class Gradient:
     state: by the initial state, (states,), SI; None if friction holds the motion from the start. parameters: names of the
     parameters that are given by numbers to the derivatives by them, in declared units, at constant initial state. inputs:
     names of the inputs that are numbers or arrays to the derivatives, SI: a number, or an array with one for each sample.
+    Prescribed motion has no derivatives.
     """
 
     def __init__(

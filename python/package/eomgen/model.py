@@ -403,7 +403,7 @@ class Model:
         controller: function of (t, x, y) that is called at the times offset + k period (s), with the time, the state and
         the observables before the sample. It returns the inputs `controls`, as a mapping of names to numbers, as a
         sequence or as one number. They act `delay` (s) later and are held until the next ones act. Default of `controls`:
-        all inputs that nothing else drives. Controllers of the specification run too.
+        all inputs that nothing else drives, except prescribed motion. Controllers of the specification run too.
 
         gradients: True to keep the steps for `Trajectory.gradient`, with the solver "rk". Models with controllers
         have no gradients.

@@ -33,6 +33,7 @@ def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = No
         if name not in arrays:
             raise ValueError(f"{source} has no array {name!r}; it has {', '.join(arrays)}")
     rows: Dict[str, NDArray[np.float64]] = {}
+    unreadable: List[str] = []
     for name in wanted:
         column = _samples(arrays[name])
         if column is not None:
@@ -42,6 +43,10 @@ def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = No
             raise ValueError(
                 f"{source}: {name!r} holds {array.dtype} of shape {array.shape}; expected real samples"
             )
+        elif arrays[name].size > 1:
+            unreadable.append(f"{name} ({arrays[name].dtype})")
+    if unreadable:
+        warnings.warn(f"{source}: skipped, because they hold no real samples: {', '.join(unreadable)}", stacklevel=2)
     longest = max((len(column) for column in rows.values()), default=0)
     if longest < 2:
         raise ValueError(f"{source} holds no arrays of samples; it has {', '.join(arrays) or 'none'}")

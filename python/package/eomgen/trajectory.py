@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from decimal import Decimal
-from typing import TYPE_CHECKING, Any, Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,7 +178,8 @@ def simulate(
     if gradients and control[0] is not None:
         raise ValueError("no gradient of the trajectory: a controller drives the motion")
     native, names, given, expressions = prescribe(model, given, keep)
-    entry = controller_entry(names, {**given, **dict(expressions)}, model._native.controlled_inputs, control)
+    declared = (model._native.controlled_inputs, model._native.prescribed_inputs)
+    entry = controller_entry(names, {**given, **dict(expressions)}, declared, control)
     driven_names = [names[place] for place in entry[1]] if entry is not None else []
     others = (*driven_names, *model._native.controlled_inputs)
     known = {**{name: 0.0 for name in others}, **given, **{name: 0.0 for name, _ in expressions}}
@@ -204,12 +205,12 @@ def simulate(
         warnings.warn(warning, stacklevel=3)
     if gradients:
         columns = {name: np.size(given.get(name, 0.0)) for name in names if not callable(given.get(name))}
-        found = (*found[:10], (found[10], native, names, columns))
+        found = (*found[:10], (found[10], native, names, columns), found[11])
     names = (model.states, model.observable_names)
     trajectory = Trajectory(names, model.units, found)
     stopped = found[2]
     if stopped is not None:
-        error = _native.SimulationError(stopped[1])
+        error = _native.SimulationError(stopped[1]) if found[11] is None else found[11]
         error.trajectory = trajectory
         raise error
     return trajectory
@@ -218,10 +219,12 @@ def simulate(
 def controller_entry(
     names: Sequence[str],
     given: Mapping[str, Any],
-    declared: Sequence[str],
+    declared: Tuple[Sequence[str], Sequence[str]],
     control: Tuple[Any, Any, Any, Any, Any],
 ) -> Any:
-    """Returns function, indices of the driven inputs and times of a controller, or None."""
+    """Returns function, indices of the driven inputs and times of a controller, or None. declared: inputs that
+    controllers of the specification drive, and prescribed motion."""
+    controlled, prescribed = declared
     function, period, offset, delay, controls = control
     if function is None:
         if period is not None or controls is not None:
@@ -241,26 +244,35 @@ def controller_entry(
         if time < 0.0:
             raise ValueError(f"{what} = {time}: expected a time in s of 0 or more")
     if controls is None:
-        driven = [name for name in names if name not in given and name not in declared]
+        others = (*given, *controlled, *prescribed)
+        driven = [name for name in names if name not in others]
     else:
         driven = [controls] if isinstance(controls, str) else list(controls)
         _arguments.check_names("input", driven, names)
     for name in driven:
-        if name in given or name in declared:
+        if name in prescribed:
+            raise ValueError(f"the input {name} is prescribed motion, which moves between samples: give it in inputs")
+        if name in given or name in controlled:
             other = "inputs" if name in given else "a controller of the specification"
             raise ValueError(f"the input {name} is driven by the controller and by {other}")
 
     def sampled(t: float, x: Array, y: Array) -> List[Any]:
         found = function(t, x, y)
         if isinstance(found, Mapping):
-            _arguments.check_names("controlled input", found, driven)
+            for name in found:
+                if name not in driven:
+                    raise _native.RefusedValue(_arguments.unknown("controlled input", name, driven))
             missing = [name for name in driven if name not in found]
             if missing:
-                raise ValueError(f"no value for {', '.join(missing)}")
+                raise _native.RefusedValue(f"it returned no value for {', '.join(missing)}")
             return [found[name] for name in driven]
+        if found is None and driven:
+            raise _native.RefusedType(f"it returned None, expected values for {', '.join(driven)}")
         values = list(np.atleast_1d(found))
         if len(values) != len(driven):
-            raise ValueError(f"{len(values)} values, expected {len(driven)} for {', '.join(driven)}")
+            raise _native.RefusedValue(
+                f"it returned {len(values)} values, expected {len(driven)} for {', '.join(driven)}"
+            )
         return values
 
     return sampled, [list(names).index(name) for name in driven], schedule
@@ -327,6 +339,7 @@ def prescribe(
             else "inputs: the model has none"
         )
     _arguments.check_names("input", given, names)
+    check_no_rates(given, model._native.prescribed_inputs)
     expressions = [(name, value) for name, value in given.items() if isinstance(value, str)]
     if not expressions:
         return model._native, names, given, []
@@ -335,6 +348,18 @@ def prescribe(
         return model._native, names, others, expressions
     native = model._native.with_inputs(expressions)
     return native, tuple(name for name, _ in native.inputs), others, []
+
+
+def check_no_rates(given: Iterable[str], prescribed: Sequence[str]) -> None:
+    """Raises ValueError for a rate of prescribed motion, which is computed from the motion."""
+    rates = {f"{name}_{order}": name for name in prescribed for order in ("dot", "ddot")}
+    for name in given:
+        if name in prescribed and name in rates:
+            motion = rates[name]
+            raise ValueError(
+                f"the input {name} is a rate of the prescribed motion {motion}: remove it; a function of t for {motion} "
+                f"may return ({motion}, {motion}', {motion}'')"
+            )
 
 
 def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tuple[Array, Array, Any]:

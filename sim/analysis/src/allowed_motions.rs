@@ -15,12 +15,13 @@ pub struct AllowedMotions {
 }
 
 impl AllowedMotions {
-    /// Computes the motions with H x = 0 for `states` states. `held` is H row by row; the scale of
-    /// a row is arbitrary.
+    /// Computes the motions with H x = 0. `held` is H row by row; the scale of a row is arbitrary. `sizes` are typical sizes
+    /// of the states, in which an entry of H far below the others of its row is rounding.
     ///
     /// # Errors
-    /// A number of entries that is not a multiple of `states`; entries that are not finite.
-    pub fn new(held: &[f64], states: usize) -> Result<Self, AnalysisError> {
+    /// A number of entries that is not a multiple of that of the states; entries that are not finite.
+    pub fn new(held: &[f64], sizes: &[f64]) -> Result<Self, AnalysisError> {
+        let states = sizes.len();
         if states == 0 || !held.len().is_multiple_of(states) {
             let (expected, given) = (states, held.len());
             return Err(AnalysisError::LengthMismatch { expected, given });
@@ -28,11 +29,22 @@ impl AllowedMotions {
         if let Some(sample) = held.iter().position(|entry| !entry.is_finite()) {
             return Err(AnalysisError::NotFinite { sample });
         }
-        let held = DMatrix::from_row_slice(held.len() / states, states, held);
-        let rows = equilibrate_rows(held);
-        let basis = null_space(&(rows.transpose() * &rows));
-        let basis = basis.ok_or_else(|| AnalysisError::not_converged(&rows))?;
-        Ok(Self { basis })
+        let mut rows = DMatrix::from_row_slice(held.len() / states, states, held);
+        for (mut column, size) in rows.column_iter_mut().zip(sizes) {
+            column *= *size;
+        }
+        let rows = equilibrate_rows(rows);
+        let scaled = null_space(&(rows.transpose() * &rows));
+        let mut basis = scaled.ok_or_else(|| AnalysisError::not_converged(&rows))?;
+        if sizes.iter().all(|size| *size == 1.0) || basis.is_empty() {
+            return Ok(Self { basis });
+        }
+        for (mut row, size) in basis.row_iter_mut().zip(sizes) {
+            row *= *size;
+        }
+        Ok(Self {
+            basis: basis.qr().q(),
+        })
     }
 
     /// Returns the number of independent motions.
@@ -84,7 +96,7 @@ mod tests {
             [0.0, 0.0, 0.0, 0.0],
         ];
         let held = [[0.0, 3e5, 0.0, 0.0], [0.0, 0.0, 0.0, 1e-3]];
-        let allowed = AllowedMotions::new(held.as_flattened(), 4).unwrap();
+        let allowed = AllowedMotions::new(held.as_flattened(), &[1.0; 4]).unwrap();
         assert_eq!(allowed.count(), 2);
         let reduced = DMatrix::from_row_slice(2, 2, &allowed.reduce_state_matrix(a.as_flattened()));
         assert!((reduced.determinant() - 9.0).abs() < 1e-12 && reduced.trace().abs() < 1e-12);
@@ -102,9 +114,27 @@ mod tests {
     }
 
     #[test]
+    fn units_of_states_and_rounding_add_no_motion() {
+        // x = 0 and y = 0 in other units; the entries of the free z are rounding.
+        for unit in [2.0_f64.powi(-30), 1.0, 2.0_f64.powi(30)] {
+            let held = [[1.0, 0.0, 1e-17], [1.0, -unit, 1e-16]];
+            let allowed = AllowedMotions::new(held.as_flattened(), &[1.0, 1.0 / unit, 1.0]);
+            let allowed = allowed.unwrap();
+            assert_eq!(allowed.count(), 1, "{unit}");
+            assert!(
+                (allowed.basis()[(2, 0)].abs() - 1.0).abs() < 1e-12,
+                "{unit}"
+            );
+        }
+    }
+
+    #[test]
     fn malformed_constraint_matrices_are_rejected() {
-        assert!(AllowedMotions::new(&[1.0, 0.0, 0.0], 2).is_err());
-        assert!(AllowedMotions::new(&[1.0, f64::NAN], 2).is_err());
-        assert_eq!(AllowedMotions::new(&[0.0, 0.0], 2).unwrap().count(), 2);
+        assert!(AllowedMotions::new(&[1.0, 0.0, 0.0], &[1.0; 2]).is_err());
+        assert!(AllowedMotions::new(&[1.0, f64::NAN], &[1.0; 2]).is_err());
+        assert_eq!(
+            AllowedMotions::new(&[0.0, 0.0], &[1.0; 2]).unwrap().count(),
+            2
+        );
     }
 }

@@ -14,13 +14,12 @@
 //! - [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //!   [`poincare`] describes a stroboscopic section, and [`exponent`] averages logarithmic growth.
 //!   [`classify`] combines them by one rule.
-//! - [`modes`] finds the dominant mode of a flexible body. [`time_history`] reduces a time history to a
-//!   number, and [`statistics`] describes samples of values.
+//! - [`modes`] finds the dominant mode of a flexible body, and [`statistics`] describes samples of values.
 //! - [`natural_modes`] computes the modes of a linearised machine, and [`constrained_modes`] those
-//!   of a machine with constraints, from its [`allowed_motions`]. [`qr_iteration`] finds
-//!   eigenvalues after `balancing`, for each group in `block_eigenvalues` and each of the
-//!   `independent_parts`. `inverse_iteration` finds their shapes in a `pencil`, and `null_space`
-//!   the rigid motions.
+//!   of a machine with constraints, from its `independent_states`. [`allowed_motions`] are an
+//!   orthonormal basis of its small motions. [`qr_iteration`] finds eigenvalues after `balancing`,
+//!   for each group in `block_eigenvalues` and each of the `independent_parts`. `inverse_iteration`
+//!   finds their shapes in a `pencil`, and `null_space` the rigid motions.
 //! - [`discretisation`] computes the discrete form of a linearised machine with held inputs.
 
 #[cfg(feature = "full")]
@@ -42,6 +41,8 @@ pub mod exponent;
 #[cfg(feature = "full")]
 mod independent_parts;
 #[cfg(feature = "full")]
+mod independent_states;
+#[cfg(feature = "full")]
 mod inverse_iteration;
 #[cfg(feature = "full")]
 pub mod modes;
@@ -55,11 +56,12 @@ mod pencil;
 pub mod poincare;
 pub mod qr_iteration;
 #[cfg(feature = "full")]
+mod rounding;
+#[cfg(feature = "full")]
 pub mod spectrum;
 #[cfg(feature = "full")]
 pub mod statistics;
 #[cfg(feature = "full")]
-pub mod time_history;
 #[cfg(feature = "full")]
 pub mod zero_one;
 

@@ -27,8 +27,8 @@ pub struct Section<'a> {
 /// Properties of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Smallest n, at most 64, for which each point is within the tolerance of the point n periods
-    /// before; `None` if there is none.
+    /// Smallest n, at most 64, for which each point is within the tolerance of one of the first n
+    /// points, the one a multiple of n periods before; `None` if there is none.
     pub period: Option<usize>,
     /// Number of clusters of points; `None` for more than 64.
     pub clusters: Option<usize>,
@@ -45,8 +45,8 @@ impl Section<'_> {
     /// its scale.
     ///
     /// With d(i, k) the greatest difference of the coordinates of points i and k, each divided by
-    /// its scale, the period is the smallest n with d(k, k+n) <= tolerance for all k, if there are
-    /// at least n such pairs. Clusters are counted in order of time: a point farther than the
+    /// its scale, the period is the smallest n with d(k mod n, k) <= tolerance for all k, if there
+    /// are at least 2n points. A slow drift is therefore no period. Clusters are counted in order of time: a point farther than the
     /// tolerance from the first point of every cluster begins another.
     ///
     /// The dimension is that of P. Grassberger and I. Procaccia (Physica D 9 (1983) 189-208): with
@@ -151,8 +151,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 fn period(points: &[&[f64]], tolerance: f64) -> Option<usize> {
     let longest = LONGEST_PERIOD.min(points.len() / 2);
     (1..=longest).find(|n| {
-        let later = points.iter().skip(*n);
-        let mut pairs = points.iter().zip(later);
+        let mut pairs = points[..*n].iter().cycle().zip(points);
         pairs.all(|(a, b)| distance(a, b) <= tolerance)
     })
 }
@@ -207,6 +206,23 @@ mod tests {
         assert_eq!(shape(&logistic(3.835, 400), &[1.0]).period, Some(3));
         let chaos = shape(&logistic(4.0, 2000), &[1.0]);
         assert_eq!((chaos.period, chaos.clusters), (None, None));
+    }
+
+    #[test]
+    fn slow_drift_is_no_period() {
+        // Three periods turn by nearly a circle.
+        let points = circle(1.0 / 3.0 + 1e-4, 0.0, 300);
+        let section = Section {
+            points: &points,
+            scale: &[1.0],
+        };
+        assert_eq!(section.shape(2e-3).unwrap().period, None);
+        let points = circle(1.0 / 3.0 + 1e-7, 0.0, 300);
+        let section = Section {
+            points: &points,
+            scale: &[1.0],
+        };
+        assert_eq!(section.shape(2e-3).unwrap().period, Some(3));
     }
 
     #[test]

@@ -4,12 +4,14 @@
 //! A displacement q + s n along a cyclic direction n changes no acceleration, for any s. A
 //! coordinate that the equations do not contain is a cyclic direction; two wheels that roll on
 //! each other share one. The candidates span the null space of the derivatives of the
-//! accelerations with respect to the coordinates. Finite displacements confirm each candidate.
+//! accelerations with respect to the coordinates. Finite displacements from the state and from a
+//! neighbour confirm each candidate.
 
 use eomgen_codegen::independence::vectors::max_magnitude;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::dimension::Dimension;
 
+use crate::displacements::generic_weight;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::operating_point::OperatingPoint;
@@ -21,7 +23,29 @@ const MIN_PIVOT: f64 = 1e-10;
 const MAX_UNCHANGED_FRACTION: f64 = 1e-9;
 
 /// Displacements along a candidate, relative to the scale of its coordinate.
-const DISPLACEMENTS: [f64; 3] = [0.37, 1.0, -2.6];
+/// They cover a turn of an angle.
+const DISPLACEMENTS: [f64; 12] = [
+    0.37, 0.8, 1.2, 1.57, 2.0, 2.5, 3.0, -0.4, -0.9, -1.5, -2.0, -2.6,
+];
+
+/// Displacement of the state at which cyclic directions are confirmed, relative to natural scales or typical sizes.
+const NEIGHBOUR_FRACTION: f64 = 0.1;
+
+/// Accelerations and rates of first-order states at a state.
+struct SizedRates {
+    rates: Vec<f64>,
+    /// Derivatives by the coordinates.
+    rows: Vec<Vec<f64>>,
+    /// Largest term of each rate, without those that a displacement adds.
+    sizes: Vec<f64>,
+}
+
+impl SizedRates {
+    fn is_finite(&self) -> bool {
+        let all = self.rows.iter().flatten().chain(&self.rates);
+        all.into_iter().all(|entry| entry.is_finite())
+    }
+}
 
 impl Instance<'_> {
     /// Finds the independent cyclic directions at a state. Each direction has one entry per
@@ -32,62 +56,97 @@ impl Instance<'_> {
     pub fn find_cyclic_directions(&self, at: &OperatingPoint) -> Result<Vec<Vec<f64>>, Error> {
         let degrees = self.model().program().degrees_of_freedom();
         let scales = self.natural_scales()?;
-        let mut rates = self.accelerations(&mut self.interpreter()?, at);
+        let here = self.sized_rates(at, &scales)?;
+        if !here.is_finite() {
+            return Ok(Vec::new());
+        }
+        let mut found = null_space_basis(&here.rows, degrees);
+        if found.is_empty() {
+            return Ok(found);
+        }
+        // At a symmetric state, a coordinate may drop out of equations that contain it.
+        let mut moved = at.clone();
+        for (value, part) in moved.state.iter_mut().zip(self.generic_direction()?) {
+            *value += NEIGHBOUR_FRACTION * part;
+        }
+        let there = self.sized_rates(&moved, &scales)?;
+        let mut points = vec![(at, here)];
+        if there.is_finite() {
+            points.push((&moved, there));
+        }
+        let mut evaluator = self.interpreter()?;
+        found.retain(|direction| {
+            let mut points = points.iter();
+            points.all(|(at, rates)| self.is_cyclic(&mut evaluator, at, rates, direction, &scales))
+        });
+        Ok(found)
+    }
+
+    /// Returns a direction of states, each part 0.5 to 1.5 times its natural scale or typical size, that is parallel to
+    /// no surface in simple coordinates.
+    ///
+    /// # Errors
+    /// Invalid parameter values.
+    pub(crate) fn generic_direction(&self) -> Result<Vec<f64>, Error> {
+        let scales = self.natural_scales()?;
+        let sizes = self.model().typical_sizes().iter().enumerate();
+        let part = |(place, size): (usize, &f64)| {
+            generic_weight(place) * scales.get(place).copied().flatten().unwrap_or(*size)
+        };
+        Ok(sizes.map(part).collect())
+    }
+
+    /// Returns the rates at a state with their derivatives and sizes.
+    fn sized_rates(
+        &self,
+        at: &OperatingPoint,
+        scales: &[Option<f64>],
+    ) -> Result<SizedRates, Error> {
+        let degrees = self.model().program().degrees_of_freedom();
+        let rates = self.accelerations(&mut self.interpreter()?, at);
         let matrix = self.state_space_evaluator()?.evaluate(at.point())?.a;
         let states = at.state.len();
         let row = |row: usize| &matrix[(degrees + row) * states..][..states];
         let rows: Vec<Vec<f64>> = (0..rates.len())
             .map(|r| row(r)[..degrees].to_vec())
             .collect();
-        if !rows
-            .iter()
-            .flatten()
-            .chain(&rates)
-            .all(|entry| entry.is_finite())
-        {
-            return Ok(Vec::new());
-        }
-        // Size of each rate without the terms that a displacement adds.
-        let sizes: Vec<f64> = (0..rates.len())
-            .map(|r| {
-                let terms = row(r)
-                    .iter()
-                    .zip(&at.state)
-                    .map(|(entry, value)| (entry * value).abs());
-                // In symmetric positions all terms may vanish; the derivatives times the scales do
-                // not.
-                let scaled = rows[r].iter().zip(&scales);
-                let scaled = scaled.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
-                terms.chain(scaled).fold(rates[r].abs(), f64::max)
+        let sizes = (0..rates.len()).map(|r| {
+            let terms = row(r).iter().zip(&at.state);
+            let terms = terms.map(|(entry, value)| (entry * value).abs());
+            // In symmetric positions all terms may vanish; the derivatives times the scales do not.
+            let scaled = rows[r].iter().zip(scales);
+            let scaled = scaled.map(|(entry, scale)| (entry * scale.unwrap_or(0.0)).abs());
+            terms.chain(scaled).fold(rates[r].abs(), f64::max)
+        });
+        let sizes = sizes.collect();
+        Ok(SizedRates { rates, rows, sizes })
+    }
+
+    /// Returns true if displacements along a direction change no rate.
+    fn is_cyclic(
+        &self,
+        evaluator: &mut Evaluator,
+        at: &OperatingPoint,
+        here: &SizedRates,
+        direction: &[f64],
+        scales: &[Option<f64>],
+    ) -> bool {
+        let first = direction.iter().position(|speed| *speed == 1.0);
+        let first = first.unwrap_or(0);
+        DISPLACEMENTS.iter().all(|part| {
+            let way = part * scales[first].unwrap_or(1.0);
+            let mut moved = at.clone();
+            for (value, speed) in moved.state.iter_mut().zip(direction) {
+                *value += way * speed;
+            }
+            let there = self.accelerations(evaluator, &moved);
+            (0..there.len()).all(|r| {
+                let added = here.rows[r].iter().zip(direction);
+                let added = added.map(|(entry, speed)| (entry * way * speed).abs());
+                let size = added.fold(here.sizes[r], f64::max);
+                (here.rates[r] - there[r]).abs() <= MAX_UNCHANGED_FRACTION * size
             })
-            .collect();
-        let mut evaluator = self.interpreter()?;
-        let mut is_cyclic = |direction: &Vec<f64>| {
-            let first = direction
-                .iter()
-                .position(|speed| *speed == 1.0)
-                .unwrap_or(0);
-            DISPLACEMENTS.iter().all(|part| {
-                let way = part * scales[first].unwrap_or(1.0);
-                let mut moved = at.clone();
-                for (value, speed) in moved.state.iter_mut().zip(direction) {
-                    *value += way * speed;
-                }
-                let there = self.accelerations(&mut evaluator, &moved);
-                let pairs = rates.iter_mut().zip(&there).enumerate();
-                pairs.into_iter().all(|(r, (here, there))| {
-                    let added = rows[r]
-                        .iter()
-                        .zip(direction)
-                        .map(|(entry, speed)| (entry * way * speed).abs());
-                    let size = added.fold(sizes[r], f64::max);
-                    (*here - there).abs() <= MAX_UNCHANGED_FRACTION * size
-                })
-            })
-        };
-        let mut found = null_space_basis(&rows, degrees);
-        found.retain(|direction| is_cyclic(direction));
-        Ok(found)
+        })
     }
 
     /// Returns true if a full turn of a coordinate changes no rate at these points.
@@ -267,6 +326,23 @@ pendulum = "1/2*J*dot(theta)^2"
 contact = "1/2*k*(r_1*phi_1 - r_2*phi_2)^2"
 weight = "-w*cos(theta)"
 "#;
+
+    #[test]
+    fn coordinate_that_drops_out_at_one_state_is_not_cyclic() {
+        // The stiffness depends on the angle; at x = 0 no rate does.
+        let text = "[model]\nname = \"mathieu\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                    J = { value = 1000, unit = \"kg m^2\" }\nk = { value = 100, unit = \"N/m\" }\n\
+                    [coordinates]\nx = { unit = \"m\" }\na = { unit = \"rad\", initial_rate = 10 }\n\
+                    b = { unit = \"rad\" }\n\
+                    [kinetic]\nT = \"1/2*m*dot(x)^2 + 1/2*J*(dot(a)^2 + dot(b)^2)\"\n\
+                    [potential]\nV = \"1/2*k*(1 + 0.5*cos(2*a))*x^2\"\n";
+        let model = CompiledModel::from_text("mathieu.toml", text, Orders::Declared);
+        let model = model.expect("a model");
+        let run = model.with_declared_parameters().expect("an instance");
+        let at = run.operating_point(&[]).expect("a point");
+        let found = run.find_cyclic_directions(&at).expect("directions");
+        assert_eq!(found, [[0.0, 0.0, 1.0]]);
+    }
 
     #[test]
     fn coupled_wheels_and_free_rack_are_cyclic_directions() {

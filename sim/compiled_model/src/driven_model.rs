@@ -11,12 +11,17 @@ use eomgen_sim::ode::{
     ObservedStep, Surface, SurfaceKind, SurfaceMode, System, jacobian_by_differences,
 };
 
-use crate::audit::{Audit, Auditor, EnergyAndPower};
+use crate::audit::{Auditor, EnergyAndPower};
 use crate::contacts::Contacts;
 use crate::corners::{CornerEnergy, Corners};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
+use crate::observers::{Observers, Results};
 use crate::projection::Projection;
+use crate::statistics::Meters;
 use crate::sticking::{SidedModel, SurfaceStates};
+
+/// Largest number of alternating decisions of surfaces and contacts at an event.
+const MAX_REVISIONS: usize = 20;
 
 /// A compiled model with its inputs, as the solvers' system; it owns or borrows both. The mass
 /// matrix must be positive definite at the evaluator's parameters.
@@ -29,6 +34,7 @@ pub struct DrivenModel<E, I> {
     corners: Option<RefCell<Corners>>,
     sliding: Option<RefCell<SurfaceStates>>,
     auditor: Option<RefCell<Auditor>>,
+    meters: RefCell<Meters>,
     /// Typical sizes of the states; empty if all are 1.
     typical_sizes: Vec<f64>,
 }
@@ -45,6 +51,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             corners: None,
             sliding: None,
             auditor: None,
+            meters: RefCell::default(),
             typical_sizes: Vec::new(),
         }
     }
@@ -55,14 +62,23 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self
     }
 
-    pub(crate) fn with_auditor(mut self, auditor: Option<Auditor>) -> Self {
-        self.auditor = auditor.map(RefCell::new);
-        self
+    /// Sets the observers of the motion, and returns those before.
+    pub(crate) fn replace_observers(&mut self, observers: Observers) -> Observers {
+        let auditor = observers.auditor.map(RefCell::new);
+        let before = std::mem::replace(&mut self.auditor, auditor);
+        Observers {
+            auditor: before.map(RefCell::into_inner),
+            meters: self.meters.replace(observers.meters),
+        }
     }
 
-    pub(crate) fn audit(&self) -> Option<Audit> {
-        let auditor = self.auditor.as_ref()?;
-        Some(auditor.borrow().audit().clone())
+    /// Returns the results of the observers so far.
+    pub(crate) fn results(&self) -> Results {
+        let auditor = self.auditor.as_ref();
+        Results {
+            audit: auditor.map(|auditor| auditor.borrow().audit()),
+            measured: self.meters.borrow().results(),
+        }
     }
 
     /// Writes the observables at a time (s) and a state, with the forces during sticking.
@@ -232,18 +248,29 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             return false;
         };
         let (contacts, mut sliding) = (contacts.borrow(), sliding.borrow_mut());
-        let closed = contacts.closed();
-        let is_known = !contacts.has_friction() && sliding.disc_count() == 0;
-        sliding.set_closed_contacts((is_known || closed.is_empty()).then_some(closed))
+        let closed = contacts.closed_modes();
+        let is_known = sliding.disc_count() == 0;
+        sliding.set_closed_contacts((is_known || closed.is_empty()).then_some(&closed))
     }
 
-    /// Decides the effect of the surfaces anew if the closed contacts changed.
-    fn follow_contacts(&self, at: (f64, &[f64]), inputs: &[f64]) {
-        if self.update_closed_contacts()
-            && let Some(sliding) = &self.sliding
-        {
-            sliding.borrow_mut().decide_again(at, inputs);
+    /// Decides the effect of the surfaces anew if the closed contacts or their modes changed, and revises the modes of the
+    /// contacts after each decision, until both agree.
+    fn settle_modes(&self, (t, state): (f64, &[f64]), inputs: &[f64]) {
+        let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
+            return;
+        };
+        for _ in 0..MAX_REVISIONS {
+            if self.update_closed_contacts() {
+                sliding.borrow_mut().decide_again((t, state), inputs);
+            }
+            if !sliding.borrow_mut().take_decided() {
+                return;
+            }
+            self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.revise_modes(own, Point { t, state, inputs });
+            });
         }
+        contacts.borrow_mut().refuse_modes();
     }
 
     /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
@@ -265,15 +292,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     }
 
     /// Returns the states of the surfaces if they determine rates and observables: while sides are fixed or surfaces hold
-    /// the motion. Forces of closed contacts with friction are those of the side of the state.
+    /// the motion.
     fn surface_states(&self) -> Option<&RefCell<SurfaceStates>> {
-        let contacts = self.contacts.as_ref();
-        let has_unknown = contacts.is_some_and(|contacts| {
-            let contacts = contacts.borrow();
-            contacts.has_friction() && !contacts.closed().is_empty()
-        });
-        let decides = self.is_sticking_active() && !has_unknown;
-        self.sliding.as_ref().filter(|_| decides)
+        self.sliding.as_ref().filter(|_| self.is_sticking_active())
     }
 
     /// Returns true if sides are fixed or surfaces hold the motion, so that the signs of the switching functions do
@@ -404,7 +425,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let mut has_own_sides = true;
         if let Some(sliding) = &self.sliding {
             let mut sliding = sliding.borrow_mut();
-            if !sliding.is_free() {
+            if !sliding.is_free() && !self.has_closed_contacts() {
                 let given = (&inputs[..], &self.typical_sizes()[..]);
                 return sliding.write_jacobian((t, y), given, out);
             }
@@ -452,6 +473,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
             sliding.borrow_mut().write_guards((t, y), inputs, out);
+            if self.contacts.is_some() && sliding.borrow().has_decided() {
+                // The motion has started.
+                self.settle_modes((t, y), inputs);
+                self.guards(t, y, out);
+            }
         }
     }
 
@@ -523,12 +549,19 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             evaluations += self.with_contacts(contacts, (t, &arrived), |contacts, own, inputs| {
                 contacts.correct_state(own, (t, inputs), y)
             });
-            self.follow_contacts((t, y), inputs);
+            self.settle_modes((t, y), inputs);
         }
         if let Some(sliding) = &self.sliding {
             evaluations += sliding.borrow_mut().correct_state(t, inputs, y);
         }
         evaluations
+    }
+
+    fn mark_corrected(&self, is_corrected: &mut [bool]) {
+        if let Some(contacts) = &self.contacts {
+            let (coordinates, rates) = is_corrected.split_at_mut(self.degrees_of_freedom());
+            contacts.borrow().mark_corrected(coordinates, rates);
+        }
     }
 
     fn forget_projection(&self) {
@@ -559,11 +592,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let has_changed = self.update_closed_contacts();
         if let Some(sliding) = &self.sliding {
             let inputs = &self.inputs.borrow().evaluate(t);
-            match jumps || has_changed {
-                // Rates that jump over a surface do not arrive on it.
-                true => sliding.borrow_mut().decide_again((t, y), inputs),
-                false => sliding.borrow_mut().apply_crossing(inputs, before, t, y),
+            let mut states = sliding.borrow_mut();
+            let others = states.release_other_sides();
+            // Rates that jump over a surface do not arrive on it.
+            if !jumps {
+                states.apply_crossing(inputs, before, t, y);
             }
+            if jumps || has_changed && !states.has_decided() {
+                states.decide_again((t, y), inputs);
+            }
+            drop(states);
+            self.settle_modes((t, y), inputs);
+            sliding.borrow_mut().restore_other_sides(others);
         }
         jumps
     }
@@ -614,6 +654,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(corners) = &self.corners {
             corners.borrow_mut().update((t, y), &given.evaluate(t));
         }
+        if let Some(sliding) = &self.sliding {
+            // The caller fixes them again in the new regime.
+            sliding.borrow_mut().release_other_sides();
+        }
         if let Some(contacts) = &self.contacts {
             self.with_contacts(contacts, (t, y), |contacts, evaluator, inputs| {
                 let point = Point {
@@ -623,12 +667,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 };
                 contacts.update_modes(evaluator, point);
             });
-            self.follow_contacts((t, y), &given.evaluate(t));
+            self.settle_modes((t, y), &given.evaluate(t));
         }
         if let Some(sliding) = &self.sliding {
             let (earlier, inputs) = (given.evaluate(t.next_down()), given.evaluate(t));
-            let mut sliding = sliding.borrow_mut();
-            sliding.update((t, y), (earlier.as_ref(), inputs.as_ref()));
+            let inputs = inputs.as_ref();
+            sliding
+                .borrow_mut()
+                .update((t, y), (earlier.as_ref(), inputs));
+            self.settle_modes((t, y), inputs);
         }
     }
 
@@ -653,10 +700,28 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     }
 
     fn is_observing(&self) -> bool {
-        self.auditor.is_some()
+        self.auditor.is_some() || !self.meters.borrow().is_empty()
     }
 
     fn observe_step(&self, step: &mut ObservedStep<'_>) {
+        self.measure_step(step);
+        self.audit_step(step);
+    }
+
+    fn next_breakpoint(&self, t: f64) -> Option<f64> {
+        self.inputs.borrow().next_change(t)
+    }
+}
+
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
+    fn measure_step(&self, step: &mut ObservedStep<'_>) {
+        let mut meters = self.meters.borrow_mut();
+        meters.observe_step(step, &mut |t, state, out| {
+            self.write_observables((t, state), out);
+        });
+    }
+
+    fn audit_step(&self, step: &mut ObservedStep<'_>) {
         let Some(auditor) = &self.auditor else {
             return;
         };
@@ -673,6 +738,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             auditor.raise_to_roundings(&rates, length);
         }
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+        if let Some(length) = auditor.suspected_crossing() {
+            let errors = self.find_errors_of_crossing(length, step.start);
+            auditor.judge_crossing(&errors, energies);
+        }
         match auditor.driven_contacts().map(str::to_owned) {
             Some(reason) if self.has_closed_contacts() => {
                 auditor.exclude_step(step, energies, &reason)
@@ -681,8 +750,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
-    fn next_breakpoint(&self, t: f64) -> Option<f64> {
-        self.inputs.borrow().next_change(t)
+    /// Returns the errors of a step of `length` s across a surface to this time (s) and state: it extrapolates along the
+    /// rates of the near side.
+    fn find_errors_of_crossing(&self, length: f64, (t, state): (f64, &[f64])) -> Vec<f64> {
+        let mut errors = vec![0.0; state.len()];
+        self.rates(t, state, &mut errors);
+        for error in &mut errors {
+            *error = error.abs() * length;
+        }
+        errors
     }
 }
 

@@ -9,7 +9,8 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{EarlyStop, StopCause};
 
-/// Largest distance of a time from the nearest step, as a fraction of the step: far above rounding errors of times.
+/// Largest distance of a time from the nearest step, as a fraction of the step or of the time since the start: far
+/// above rounding errors of times.
 const GRID_TOLERANCE: f64 = 1e-6;
 
 /// Motion with fixed steps from a start: step k begins at start + k step.
@@ -158,7 +159,9 @@ impl FixedSteps {
         let steps = ((time - self.start) / self.step).round();
         let distance = (time - self.time_after(steps as u64)).abs();
         let rounding = 8.0 * f64::EPSILON * time.abs();
-        match distance <= rounding.max(GRID_TOLERANCE * self.step) {
+        // A time before the first step is not the start, however long the step is.
+        let span = self.step.min((time - self.start).abs());
+        match distance <= rounding.max(GRID_TOLERANCE * span) {
             true => Ok(steps as u64),
             false => Err(Error::Request(format!(
                 "t = {time:?} s lies between two steps of {:?} s: with the solver fixed, the times of rows, of samples and \

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::general_run::GeneralRun;
 use crate::motion::{EarlyStop, Solver, SolverChoice, StopCause};
 use crate::motion_model::MotionModel;
+use crate::observers::Observers;
 use crate::projection::InitialChange;
 use crate::solver_options::{SolverOptions, general_method};
 
@@ -41,6 +42,11 @@ impl GeneralMotion {
         let changes = std::mem::take(&mut run.initial_changes);
         let (run, simulation) = (Box::new(run), Box::new(simulation));
         Ok((Self { run, simulation }, changes))
+    }
+
+    /// Sets the observers of the motion, and returns those before.
+    pub fn replace_observers(&mut self, observers: Observers) -> Observers {
+        self.run.system.replace_observers(observers)
     }
 
     pub fn run(&self) -> &GeneralRun {

@@ -7,7 +7,6 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, Settings, SolveError, Surface};
 
-use crate::audit::Auditor;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::motion::{EarlyStop, Solver, StopCause};
@@ -71,11 +70,6 @@ impl dyn MotionModel + '_ {
 }
 
 impl GeneralRun {
-    pub fn with_auditor(mut self, auditor: Option<Auditor>) -> Self {
-        self.system = self.system.with_auditor(auditor);
-        self
-    }
-
     /// Returns time, cause and cure of an error. The motion began at a time (s) and reached a state.
     pub fn early_stop(
         &self,

@@ -11,6 +11,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::contacts::Start;
+use crate::displacements::generic_weight;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::labels::{ConstraintLabel, Labels};
@@ -236,11 +237,21 @@ impl dyn MotionModel + '_ {
             row.iter_mut().for_each(|entry| *entry /= length);
         }
         let mut combinations = dependent_combinations(&all, MIN_INDEPENDENT_FRACTION);
-        if combinations.len() <= self.labels().constraint_excess {
-            return Ok(None);
-        }
-        let Some(parts) = combinations.pop() else {
-            return Ok(None);
+        let parts = match combinations.len() > self.labels().constraint_excess {
+            true => combinations.pop(),
+            false => None,
+        };
+        let Some(parts) = parts else {
+            let sizes = self.labels().typical_sizes.iter().enumerate();
+            let direction: Vec<f64> = sizes
+                .map(|(place, size)| generic_weight(place) * size)
+                .collect();
+            let found = self.describe_singular_position(point, &direction);
+            return Ok(found.map(|dependence| {
+                format!(
+                    "the initial state is a singular position: {dependence}; start at another state (--state)"
+                )
+            }));
         };
         let last = parts.iter().rposition(|part| *part != 0.0).unwrap_or(0);
         let most = parts

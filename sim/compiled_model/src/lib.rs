@@ -47,11 +47,15 @@
 #![cfg_attr(not(feature = "derive"), allow(dead_code, unused_imports))]
 
 mod audit;
+mod constraint_rank;
 mod contacts;
 mod controllers;
+#[cfg(feature = "derive")]
+mod coordinate_poles;
 mod corners;
 #[cfg(feature = "derive")]
 mod cyclic_directions;
+mod displacements;
 mod driven_model;
 #[cfg(feature = "derive")]
 mod equilibrium;
@@ -59,8 +63,12 @@ mod error;
 mod evaluation;
 #[cfg(feature = "derive")]
 mod event_log;
+#[cfg(feature = "derive")]
+mod exact_observers;
 mod exported_model;
 mod exported_motion;
+#[cfg(feature = "derive")]
+mod expression_inputs;
 #[cfg(feature = "derive")]
 mod fixed_steps;
 mod general_motion;
@@ -85,11 +93,14 @@ mod labels;
 #[cfg(feature = "derive")]
 mod linearisation;
 #[cfg(feature = "derive")]
+mod lost_terms;
+#[cfg(feature = "derive")]
 mod model;
 mod motion;
 mod motion_model;
 #[cfg(feature = "derive")]
 mod natural_modes;
+mod observers;
 #[cfg(feature = "derive")]
 mod operating_point;
 #[cfg(feature = "derive")]
@@ -105,8 +116,7 @@ mod singular_positions;
 mod solver_options;
 #[cfg(feature = "derive")]
 mod state_space;
-#[cfg(feature = "derive")]
-mod step_inputs;
+mod statistics;
 mod sticking;
 mod stop_reasons;
 #[cfg(feature = "derive")]
@@ -125,6 +135,8 @@ pub use event_log::{EventKind, LoggedEvent};
 pub use exported_model::{ExportedCode, ExportedModel};
 pub use exported_motion::ExportedMotion;
 #[cfg(feature = "derive")]
+pub use expression_inputs::{ExpressionInputs, FunctionInputs, InputTreatment, StepInputs};
+#[cfg(feature = "derive")]
 pub use gradients::{RecordedMotion, SampleWeights, TrajectoryGradient};
 #[cfg(feature = "derive")]
 pub use initial_state::StateRequest;
@@ -141,7 +153,7 @@ pub use operating_point::{OperatingPoint, Setting};
 #[cfg(feature = "derive")]
 pub use overlaps::Overlap;
 #[cfg(feature = "derive")]
-pub use prescribed_inputs::{split_assignments, with_prescribed_inputs};
+pub use prescribed_inputs::{list_undriven_inputs, split_assignments, with_prescribed_inputs};
 pub use projection::InitialChange;
 #[cfg(feature = "derive")]
 pub use resumable::Simulation;
@@ -149,7 +161,7 @@ pub use resumable::Simulation;
 pub use simulation::Request;
 pub use solver_options::{DEFAULT_TOLERANCE, SolverOptions};
 #[cfg(feature = "derive")]
-pub use step_inputs::{StepInputs, with_input_functions};
+pub use statistics::{Measurement, Quantity, Statistic};
 pub use sticking::{SidedModel, StickingMotion};
 #[cfg(feature = "derive")]
 pub use typical_sizes::TypicalSizes;

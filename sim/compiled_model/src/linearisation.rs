@@ -10,10 +10,21 @@ use eomgen_model_spec::model::RESIDUAL;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::model::CompiledModel;
+use crate::motion_model::MotionModel;
 use crate::state_space::StateSpace;
 
 /// Largest magnitude of a state or an input whose fourth power does not overflow.
 const LARGEST_VALUE: f64 = 1e75;
+
+/// Displacement of the states from a switching surface to each side, relative to their natural scales. Derivatives
+/// on one side change by a fraction of about this.
+const SIDE_DISPLACEMENT: f64 = 1e-9;
+
+/// Least growth of the difference of both sides at twice the distance if a derivative has no jump.
+const MIN_GROWTH: f64 = 1.5;
+
+/// Difference of both sides, relative to the derivative, that is rounding.
+const MAX_SIDE_DIFFERENCE: f64 = 1e-6;
 
 /// Variables listed in a message.
 const MAX_LISTED: usize = 6;
@@ -38,6 +49,8 @@ pub struct Linearisation {
     pub rates: Vec<f64>,
     /// Observables at the point, SI.
     pub observables: Vec<f64>,
+    /// True on a switching surface whose sides have different linearisations; the matrices are then those of one side.
+    pub is_one_sided: bool,
 }
 
 impl Linearisation {
@@ -94,11 +107,25 @@ impl Instance<'_> {
     /// Linearises the model about a time (s), a state and inputs, SI.
     ///
     /// # Errors
-    /// Same as [`Instance::jacobian_evaluator`], and a derivative that has no finite limit at the
-    /// point, with the place of its term.
+    /// Same as [`Instance::jacobian_evaluator`], a derivative that has no finite limit at the
+    /// point, with the place of its term, and a pole of the coordinates.
     pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
+        if let Some(coordinate) = self.find_coordinate_pole(point)? {
+            return Err(self.pole_error(&coordinate, point));
+        }
+        if let Some(dependence) = self.find_singular_position(point)? {
+            return Err(self.singular_position_error(&dependence, point));
+        }
         let mut evaluator = self.interpreter()?;
-        let StateSpace { a, b, c, d } = self.state_space_evaluator()?.evaluate(point)?;
+        let mut here = self.state_space_evaluator()?.evaluate(point)?;
+        let mut is_one_sided = false;
+        if self.is_on_surface(point)? {
+            match self.linearise_across(point)? {
+                Some(across) => here.replace_different(&across),
+                None => is_one_sided = true,
+            }
+        }
+        let StateSpace { a, b, c, d } = here;
         let mut rates = vec![0.0; evaluator.program().states()];
         evaluator.rates(point, &mut rates);
         let mut observables = vec![0.0; evaluator.program().observables.len()];
@@ -114,7 +141,57 @@ impl Instance<'_> {
             d,
             rates,
             observables,
+            is_one_sided,
         })
+    }
+
+    /// Returns the common linearisation of both sides of a point on a surface; `None` if the sides differ. The derivative
+    /// at the surface itself is that of one side, or of neither, as for a dead zone of width 0.
+    ///
+    /// # Errors
+    /// Invalid parameter values.
+    fn linearise_across(&self, point: Point<'_>) -> Result<Option<StateSpace>, Error> {
+        let direction = self.generic_direction()?;
+        let mut evaluator = self.state_space_evaluator()?;
+        let mut linearise_at = |displacement: f64| {
+            let moved = point.state.iter().zip(&direction);
+            let state: Vec<f64> = moved
+                .map(|(value, part)| value + displacement * part)
+                .collect();
+            let state = &state;
+            evaluator.evaluate(Point { state, ..point })
+        };
+        let mut matrices = Vec::new();
+        for displacement in [-1.0, 1.0, -2.0, 2.0] {
+            matrices.push(linearise_at(displacement * SIDE_DISPLACEMENT)?);
+        }
+        let across = |select: fn(&StateSpace) -> &Vec<f64>| {
+            let [below, above, far_below, far_above] = [0, 1, 2, 3].map(|k| select(&matrices[k]));
+            let entries = 0..below.len();
+            entries
+                .map(|place| {
+                    let near = (below[place], above[place]);
+                    derivative_across(near, (far_below[place], far_above[place]))
+                })
+                .collect::<Option<Vec<f64>>>()
+        };
+        let all = (
+            across(|of| &of.a),
+            across(|of| &of.b),
+            across(|of| &of.c),
+            across(|of| &of.d),
+        );
+        Ok(match all {
+            (Some(a), Some(b), Some(c), Some(d)) => Some(StateSpace { a, b, c, d }),
+            _ => None,
+        })
+    }
+
+    fn is_on_surface(&self, point: Point<'_>) -> Result<bool, Error> {
+        let mut evaluator = self.interpreter()?;
+        let mut guards = vec![0.0; evaluator.guard_count()];
+        evaluator.guards(point, &mut guards);
+        Ok(guards.contains(&0.0))
     }
 
     /// Returns the error for a point without a linearisation, with its cause.
@@ -122,6 +199,12 @@ impl Instance<'_> {
         let model = self.model().model();
         if let Some(far) = self.out_of_range(point) {
             return Error::Request(far);
+        }
+        if let Ok(Some(coordinate)) = self.find_coordinate_pole(point) {
+            return self.pole_error(&coordinate, point);
+        }
+        if let Ok(Some(dependence)) = self.find_singular_position(point) {
+            return self.singular_position_error(&dependence, point);
         }
         let found = singular_terms(model, self.model().orders(), self.values(), point);
         let found = match found {
@@ -150,6 +233,49 @@ impl Instance<'_> {
             diagnostic.with_related_span(other.span, self.singularity(other, point))
         });
         Diagnostics::from_one(model.source.clone(), diagnostic).into()
+    }
+
+    /// Lists the first coordinates with their values, SI.
+    fn list_coordinates(&self, point: Point<'_>) -> String {
+        let names = self.model().state_names();
+        let degrees = self.model().program().degrees_of_freedom();
+        let values = names.iter().zip(point.state).take(degrees.min(MAX_LISTED));
+        let values: Vec<String> = values
+            .map(|(name, value)| format!("{name} = {value:?}"))
+            .collect();
+        values.join(", ")
+    }
+
+    /// Describes the dependence of the constraints if a point is a singular position.
+    ///
+    /// # Errors
+    /// Invalid parameter values.
+    pub(crate) fn find_singular_position(&self, point: Point<'_>) -> Result<Option<String>, Error> {
+        if self.model().model().constraints.is_empty() {
+            return Ok(None);
+        }
+        let direction = self.generic_direction()?;
+        let model: &dyn MotionModel = self;
+        Ok(model.describe_singular_position(point, &direction))
+    }
+
+    fn singular_position_error(&self, dependence: &str, point: Point<'_>) -> Error {
+        Error::Request(format!(
+            "the model `{}` has no linearisation at {} (SI): this is a singular position, {dependence}. Choose another \
+             state (--state)",
+            self.model().model().name,
+            self.list_coordinates(point),
+        ))
+    }
+
+    fn pole_error(&self, coordinate: &str, point: Point<'_>) -> Error {
+        Error::Request(format!(
+            "the model `{}` has no linearisation at {} (SI): the coordinates have a pole there, at which a motion with \
+             `{coordinate}` has no inertia, as an angle about an axis has none on the axis. Describe the machine by \
+             other coordinates near this state, for example Cartesian ones, or choose another state (--state)",
+            self.model().model().name,
+            self.list_coordinates(point),
+        ))
     }
 
     /// Returns the message for a state or an input so large that its powers overflow.
@@ -208,11 +334,49 @@ impl Instance<'_> {
     }
 }
 
+/// Returns the derivative at a surface from those at a distance from it on both sides, and at twice the distance;
+/// `None` if it jumps there. Otherwise the difference of both sides grows with the distance, at least in
+/// proportion, and the mean is extrapolated to the surface.
+fn derivative_across(
+    (below, above): (f64, f64),
+    (far_below, far_above): (f64, f64),
+) -> Option<f64> {
+    let (near, far) = ((above - below).abs(), (far_above - far_below).abs());
+    let size = far_below.abs().max(far_above.abs());
+    let is_continuous = near <= MAX_SIDE_DIFFERENCE * size || far >= MIN_GROWTH * near;
+    is_continuous.then_some((below + above) - 0.5 * (far_below + far_above))
+}
+
+impl StateSpace {
+    /// Replaces the derivatives that differ from those across surfaces by more than rounding. Others keep their exact
+    /// zeros.
+    fn replace_different(&mut self, across: &Self) {
+        let pairs = [
+            (&mut self.a, &across.a),
+            (&mut self.b, &across.b),
+            (&mut self.c, &across.c),
+            (&mut self.d, &across.d),
+        ];
+        for (own, across) in pairs {
+            let largest = across
+                .iter()
+                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            for (own, across) in own.iter_mut().zip(across) {
+                let rounding = MAX_SIDE_DIFFERENCE * across.abs() + f64::EPSILON * largest;
+                if own.is_nan() || (*own - across).abs() > rounding {
+                    *own = *across;
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Jacobian;
     use crate::Orders;
+    use crate::operating_point::OperatingPoint;
 
     const DRIVEN: &str = r#"
 [model]
@@ -331,5 +495,41 @@ pull = { value = "k*x + u", unit = "N" }
         jacobians.evaluate(Jacobian::RatesByParameters, point, &mut by_parameters);
         assert_eq!(by_parameters[..3], [0.0; 3]);
         assert!((by_parameters[4] + 0.05).abs() < 1e-16); // d(-k x/m)/dk
+    }
+
+    /// Returns the stiffness of a mass of 1 kg at rest at a position, and whether the sides there differ.
+    fn stiffness(potential: &str, position: f64) -> (f64, bool) {
+        let text = format!(
+            "[model]\nname = \"mass\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             k = {{ value = 100, unit = \"N/m\" }}\nb = {{ value = 0.2, unit = \"m\" }}\n\
+             zero = {{ value = 0, unit = \"m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\n\
+             [kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"{potential}\"\n"
+        );
+        let model = CompiledModel::from_text("mass.toml", &text, Orders::Declared)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let run = model.with_declared_parameters().expect("an instance");
+        let at = OperatingPoint {
+            t: 0.0,
+            state: vec![position, 0.0],
+            inputs: Vec::new(),
+        };
+        let linear = run.linearise(at.point()).expect("a linearisation");
+        (-linear.a[2], linear.is_one_sided)
+    }
+
+    #[test]
+    fn surface_with_equal_sides_has_their_linearisation() {
+        for (potential, position, right, differ) in [
+            ("1/2*k*deadzone(x, zero)^2", 0.0, 100.0, false),
+            ("1/2*k*(max(x, 0)^2 + min(x, 0)^2)", 0.0, 100.0, false),
+            ("1/2*k*x^2*abs(x)/b", 0.0, 0.0, false),
+            ("1/2*k*max(x, 0)^2 + 1/2*k*x^2", 0.0, 100.0, true),
+            ("1/2*k*deadzone(x, b)^2", 0.2, 0.0, true),
+            ("1/2*k*deadzone(x, b)^2", 0.3, 100.0, false),
+        ] {
+            let found = stiffness(potential, position);
+            assert!((found.0 - right).abs() < 1e-9, "{potential}: {found:?}");
+            assert_eq!(found.1, differ, "{potential}");
+        }
     }
 }

@@ -10,8 +10,10 @@ use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
 use eomgen_codegen::variant::{Variant, lower_corners, lower_for_gradients, lower_with_sides};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
+use eomgen_model_spec::unit::Unit;
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::corners::Corners;
@@ -19,8 +21,9 @@ use crate::error::Error;
 use crate::evaluation::prepare_evaluator;
 use crate::jacobian_program::{ALONG_DIRECTION, ENTRY_BY_ENTRY, JacobianProgram};
 use crate::labels::{ConstraintLabel, ImpactLabel, Labels};
+use crate::statistics::Quantity;
 use crate::sticking::SidedModel;
-use crate::typical_sizes::compute_typical_sizes;
+use crate::typical_sizes::{TypicalSizes, compute_typical_sizes};
 
 /// Modal truncation orders at which a model is derived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,6 +244,18 @@ impl CompiledModel {
     pub fn observable_names(&self) -> Vec<String> {
         let observables = self.program.observables.iter();
         observables.map(|known| known.name.clone()).collect()
+    }
+
+    /// Returns the typical size of a quantity, SI; see [`TypicalSizes`].
+    pub fn typical_size(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::State(place) => self.typical_sizes()[place],
+            Quantity::Observable(place) => {
+                let unit = Unit::parse(&self.program.observables[place].unit);
+                let dimension = unit.map_or(Dimension::DIMENSIONLESS, |unit| unit.dimension);
+                TypicalSizes::new(self.model(), self.orders()).typical_size(dimension)
+            }
+        }
     }
 
     /// Returns the names of the independent parameters (those given by a number), in the order of

@@ -80,6 +80,9 @@ pub struct Motion {
     pub initial_changes: Vec<InitialChange>,
     /// Energy balance, if requested.
     pub audit: Option<Audit>,
+    /// Results of the requested `Measurement`s, in the units of their quantities; `None` for a time that the motion did
+    /// not reach.
+    pub measured: Vec<Option<f64>>,
     /// States of the controllers.
     pub controller_states: ControllerStates,
 }

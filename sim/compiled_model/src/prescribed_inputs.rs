@@ -49,6 +49,22 @@ pub fn with_prescribed_inputs(mut model: Model, given: &[Assignment]) -> Result<
     Ok(model)
 }
 
+/// Returns a warning with its value for every input that is not driven, except those of `driven`.
+pub fn list_undriven_inputs(model: &Model, driven: &[&str]) -> Vec<String> {
+    let values = model.typical_inputs(0.0).unwrap_or_default();
+    let own = model.inputs.iter().zip(values).enumerate();
+    let own = own.filter(|(place, (input, _))| {
+        input.rate_of.is_none() && !model.is_controlled(*place) && !driven.contains(&&*input.name)
+    });
+    own.map(|(_, (input, value))| {
+        let name = &input.name;
+        format!(
+            "input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."
+        )
+    })
+    .collect()
+}
+
 /// Returns the model without controllers, with one of these inputs replaced by a definition.
 ///
 /// # Errors

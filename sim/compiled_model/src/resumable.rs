@@ -3,20 +3,23 @@
 
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Method, Surface, SurfaceMode, Trajectory};
-use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator};
+use eomgen_sim::ode::{Method, ObservedStep, Surface, SurfaceMode, Trajectory};
+use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator, StepObserver};
 
 use crate::controllers::{ControlLoop, LoopRecord, SampledController};
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
 use crate::event_log::{LoggedEvent, log_events};
+use crate::exact_observers::ExactObservers;
 use crate::fixed_steps::FixedSteps;
 use crate::general_motion::GeneralMotion;
 use crate::instance::Instance;
 use crate::motion::{EarlyStop, Solver, SolverChoice};
+use crate::observers::{Observers, Results};
 use crate::projection::InitialChange;
 use crate::simulation::TIME_VARYING_INPUTS_MESSAGE;
 use crate::solver_options::{SolverOptions, general_method};
+use crate::statistics::Measurement;
 use crate::sticking::ObservedMotion;
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
@@ -77,6 +80,7 @@ enum Engine {
         propagator: Box<Propagator>,
         motion: Box<ExactMotion>,
         observed: Box<ObservedMotion>,
+        observers: Option<Box<ExactObservers>>,
     },
     General(GeneralMotion),
     Fixed(Box<FixedSteps>),
@@ -192,6 +196,7 @@ impl<'m> Instance<'m> {
             propagator: Box::new(propagator),
             motion: Box::new(motion),
             observed: Box::new(observed),
+            observers: None,
         })
     }
 }
@@ -406,10 +411,20 @@ impl Simulation<'_> {
                 propagator,
                 motion,
                 observed,
+                observers,
             } => {
                 let asked = (until, samples);
-                let ended =
-                    propagator.continue_motion(motion, asked, &self.inputs, trajectory, progress);
+                let inputs = &self.inputs;
+                let mut observer = observers.as_mut().map(|observers| {
+                    |step: &mut ObservedStep<'_>, is_held: bool| {
+                        observers.observe_step(step, is_held, inputs);
+                    }
+                });
+                let observer = observer
+                    .as_mut()
+                    .map(|observer| observer as &mut StepObserver<'_>);
+                let observer = (progress, observer);
+                let ended = propagator.continue_motion(motion, asked, inputs, trajectory, observer);
                 observed.extend(Point {
                     t: motion.time(),
                     state: motion.state(),
@@ -436,9 +451,69 @@ impl Simulation<'_> {
     fn restart_general(&mut self, solver: Solver, state: &[f64]) -> Result<(), Error> {
         let settings = self.options.settings(general_method(solver));
         let start = (self.time(), state);
-        let started = GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
-        self.engine = Engine::General(started.0);
+        let (mut motion, _) = GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
+        let mut observers = self.take_observers();
+        observers.continue_with(self.options.tolerance);
+        motion.replace_observers(observers);
+        self.engine = Engine::General(motion);
         Ok(())
+    }
+
+    /// Observes the motion from the time reached on: with the energy audit if `audits` is true, and with measurements.
+    /// Fixed steps are not observed.
+    ///
+    /// # Errors
+    /// A model whose evaluator cannot be prepared.
+    pub(crate) fn observe(
+        &mut self,
+        audits: bool,
+        measurements: &[Measurement],
+    ) -> Result<(), Error> {
+        let tolerance = match &self.engine {
+            Engine::Exact { .. } => None,
+            Engine::General(_) => Some(self.options.tolerance),
+            Engine::Fixed(_) => return Ok(()),
+        };
+        let new = self.instance.observers(tolerance, audits, measurements);
+        if new.is_empty() {
+            return Ok(());
+        }
+        let start = (self.time(), self.state().to_vec());
+        match &mut self.engine {
+            Engine::Exact { observers, .. } => {
+                let start = (start.0, &start.1[..]);
+                let exact = self.instance.exact_observers(new, start, &self.inputs)?;
+                *observers = Some(Box::new(exact));
+            }
+            Engine::General(motion) => {
+                motion.replace_observers(new);
+            }
+            Engine::Fixed(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Returns the results of the observers so far.
+    pub(crate) fn observed_results(&self) -> Results {
+        match &self.engine {
+            Engine::Exact { observers, .. } => {
+                let observers = observers.as_ref();
+                observers.map_or_else(Results::default, |own| own.results())
+            }
+            Engine::General(motion) => motion.run().system.results(),
+            Engine::Fixed(_) => Results::default(),
+        }
+    }
+
+    fn take_observers(&mut self) -> Observers {
+        match &mut self.engine {
+            Engine::Exact { observers, .. } => {
+                let observers = observers.take();
+                observers.map_or_else(Observers::default, |own| own.into_observers())
+            }
+            Engine::General(motion) => motion.replace_observers(Observers::default()),
+            Engine::Fixed(_) => Observers::default(),
+        }
     }
 
     /// Changes the inputs from the time reached on. The same inputs again change nothing. An input that a controller

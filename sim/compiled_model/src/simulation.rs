@@ -3,19 +3,21 @@
 
 use std::cell::RefCell;
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, ObservedStep, Settings, Surface, Trajectory, simulate_into};
 use eomgen_sim::piecewise_linear::{ExactError, Propagator, StepObserver};
 
-use crate::audit::{Audit, Auditor, EnergyAndPower};
+use crate::audit::Auditor;
 use crate::controllers::SampledController;
 use crate::driven_model::DrivenModel;
 use crate::error::Error;
+use crate::exact_observers::ExactObservers;
 use crate::instance::Instance;
 use crate::motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
 use crate::motion_model::MotionModel;
+use crate::observers::{Observers, Results};
 use crate::solver_options::{DEFAULT_TOLERANCE, MAX_STIFF_STEPS};
+use crate::statistics::{Measurement, Meters};
 use crate::stop_reasons::{
     describe_exact_stop, find_exact_stop_cause, may_be_supported_by_general,
 };
@@ -40,8 +42,24 @@ pub struct Request<'r> {
     /// Longest step, s; [`Solver::Exact`] ignores it, and [`Solver::Fixed`] takes steps of this length. See
     /// [`Settings::max_step`].
     pub max_step: f64,
-    /// True to compare the change of the energy with the work; see [`Audit`].
+    /// True to compare the change of the energy with the work; see [`crate::Audit`].
     pub audit: bool,
+}
+
+/// A request with measurements.
+#[derive(Clone, Copy)]
+pub(crate) struct Observed<'r> {
+    pub request: &'r Request<'r>,
+    pub measurements: &'r [Measurement],
+}
+
+impl<'r> Observed<'r> {
+    pub fn new(request: &'r Request<'r>) -> Self {
+        Self {
+            request,
+            measurements: &[],
+        }
+    }
 }
 
 impl Request<'_> {
@@ -97,11 +115,42 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        self.simulate_observed(Observed::new(request), progress)
+    }
+
+    /// Simulates like [`Instance::simulate_until_stop`] and measures quantities; see [`Motion::measured`].
+    ///
+    /// # Errors
+    /// Same as [`Instance::simulate_until_stop`]; [`Solver::Fixed`] measures nothing.
+    pub fn simulate_measured(
+        &self,
+        request: &Request<'_>,
+        measurements: &[Measurement],
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
+        if request.solver == Solver::Fixed {
+            let message =
+                "the solver fixed has no states inside its steps, so it measures no quantity";
+            return Err(Error::Request(message.to_owned()));
+        }
+        let observed = Observed {
+            request,
+            measurements,
+        };
+        self.simulate_observed(observed, progress)
+    }
+
+    fn simulate_observed(
+        &self,
+        observed: Observed<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
+        let request = observed.request;
         if request.solver == Solver::Fixed || !self.model().model().controllers.is_empty() {
             let mut declared = self.controllers()?;
             let all = declared.iter_mut();
             let mut all: Vec<_> = all.map(|own| own as &mut dyn SampledController).collect();
-            return self.simulate_controlled(request, &mut all, progress);
+            return self.simulate_with_controllers(observed, &mut all, progress);
         }
         (request.settings().check()).map_err(|error| Error::Request(error.to_string()))?;
         self.check_held_inputs(request.inputs, request.time_span())?;
@@ -111,18 +160,14 @@ impl Instance<'_> {
         };
         let exact = match request.solver {
             Solver::Rk => {
-                return self.simulate_general(
-                    request,
-                    &asked(Method::DormandPrince853),
-                    None,
-                    progress,
-                );
+                let settings = asked(Method::DormandPrince853);
+                return self.simulate_general(observed, &settings, None, progress);
             }
             Solver::Adams => {
-                return self.simulate_general(request, &asked(Method::Adams), None, progress);
+                return self.simulate_general(observed, &asked(Method::Adams), None, progress);
             }
             Solver::Radau => {
-                return self.simulate_general(request, &asked(Method::Radau), None, progress);
+                return self.simulate_general(observed, &asked(Method::Radau), None, progress);
             }
             Solver::Exact | Solver::Auto | Solver::Fixed => self.model.piecewise_linear(),
         };
@@ -131,7 +176,7 @@ impl Instance<'_> {
             let reason = TIME_VARYING_INPUTS_MESSAGE;
             return match is_free {
                 true => self.simulate_automatically(
-                    request,
+                    observed,
                     Some(SolverChoice::NotPiecewiseLinear(reason.to_owned())),
                     progress,
                 ),
@@ -141,7 +186,7 @@ impl Instance<'_> {
         if let Err(error) = exact {
             if is_free {
                 let choice = Some(SolverChoice::NotPiecewiseLinear(error.to_string()));
-                return self.simulate_automatically(request, choice, progress);
+                return self.simulate_automatically(observed, choice, progress);
             }
             return Err(error.into());
         }
@@ -149,48 +194,48 @@ impl Instance<'_> {
         // switching functions.
         let evaluator = RefCell::new(self.evaluator()?);
         let mut trajectory = Trajectory::default();
-        let mut auditor = request.audit.then(|| self.auditor(None));
+        let start = (request.time_span().0, request.initial);
+        let observers = self.observers(None, request.audit, observed.measurements);
+        let observers =
+            (!observers.is_empty()).then(|| self.exact_observers(observers, start, request.inputs));
+        let mut observers = observers.transpose()?;
         let ended = self.propagator().and_then(|mut propagator| {
-            let auditor = auditor.as_mut().map(|auditor| (auditor, &evaluator));
-            propagate(
-                &mut propagator,
-                &mut trajectory,
-                request,
-                (progress, auditor),
-            )
+            let observers = (progress as &mut dyn FnMut(f64), observers.as_mut());
+            propagate(&mut propagator, &mut trajectory, request, observers)
         });
-        let audit = auditor.map(|auditor| auditor.audit().clone());
+        let results = observers.map_or_else(Results::default, |observers| observers.results());
         let surfaces = DrivenModel::new(&evaluator, request.inputs).surfaces();
         let Err(error) = ended else {
             let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
             let found = (trajectory, surfaces);
-            return Ok(new_motion(found, request, Solver::Exact, (choice, audit)));
+            return Ok(new_motion(found, request, Solver::Exact, (choice, results)));
         };
         let reason = describe_exact_stop(self.model().labels(), &surfaces, &error);
         if is_free && may_be_supported_by_general(&error) {
             let choice = Some(SolverChoice::NotSupportedByExact(reason));
-            return self.simulate_automatically(request, choice, progress);
+            return self.simulate_automatically(observed, choice, progress);
         }
         let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
         let t = error.time();
         let cause = find_exact_stop_cause(self.model().labels(), &error, &surfaces);
         let found = (trajectory, surfaces);
-        let so_far = new_motion(found, request, Solver::Exact, (choice, audit));
+        let so_far = new_motion(found, request, Solver::Exact, (choice, results));
         with_early_stop(so_far, EarlyStop { t, reason, cause })
     }
 
     /// Simulates with the explicit solver, and again with the implicit one if the motion is stiff.
     fn simulate_automatically(
         &self,
-        request: &Request<'_>,
+        observed: Observed<'_>,
         choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        let request = observed.request;
         let explicit = Settings {
             max_steps_if_stiff: MAX_STIFF_STEPS,
             ..request.settings()
         };
-        let motion = self.simulate_general(request, &explicit, choice, progress)?;
+        let motion = self.simulate_general(observed, &explicit, choice, progress)?;
         let cause = motion.early_stop.as_ref().map(|stopped| &stopped.cause);
         let Some(StopCause::Stiff(what)) = cause else {
             return Ok(motion);
@@ -200,37 +245,40 @@ impl Instance<'_> {
             ..request.settings()
         };
         let choice = Some(SolverChoice::Stiff(what.clone()));
-        self.simulate_general(request, &implicit, choice, progress)
+        self.simulate_general(observed, &implicit, choice, progress)
     }
 
     /// Simulates with a solver that supports any model.
     fn simulate_general(
         &self,
-        request: &Request<'_>,
+        observed: Observed<'_>,
         settings: &Settings,
         choice: Option<SolverChoice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        let auditor = request.audit.then(|| self.auditor(Some(request.tolerance)));
+        let request = observed.request;
+        let tolerance = Some(request.tolerance);
+        let observers = self.observers(tolerance, request.audit, observed.measurements);
         if settings.method == Method::Adams {
             self.check_adams()?;
         }
-        let run = (self as &dyn MotionModel).prepare_general_run(
+        let mut run = (self as &dyn MotionModel).prepare_general_run(
             (request.initial, request.time_span()),
             request.inputs,
             settings,
         )?;
-        let run = run.with_auditor(auditor);
+        run.system.replace_observers(observers);
         let mut trajectory = Trajectory::default();
         let asked = (run.initial.as_slice(), request.time_span(), request.times);
         let ended = simulate_into(&mut trajectory, &run.system, asked, settings, progress);
+        let results = run.system.results();
         let so_far = Motion {
             initial_changes: run.initial_changes.clone(),
             ..new_motion(
                 (trajectory, run.surfaces.clone()),
                 request,
                 run.solver,
-                (choice, run.system.audit()),
+                (choice, results),
             )
         };
         match ended {
@@ -263,7 +311,21 @@ impl Instance<'_> {
         )))
     }
 
-    pub(crate) fn auditor(&self, tolerance: Option<f64>) -> Auditor {
+    /// Returns the observers of a motion with a relative tolerance; `None` for an exact motion.
+    pub(crate) fn observers(
+        &self,
+        tolerance: Option<f64>,
+        audits: bool,
+        measurements: &[Measurement],
+    ) -> Observers {
+        let observables = self.model().program().observables.len();
+        Observers {
+            auditor: audits.then(|| self.auditor(tolerance)),
+            meters: Meters::new(measurements, tolerance, observables),
+        }
+    }
+
+    fn auditor(&self, tolerance: Option<f64>) -> Auditor {
         let driven = self.input_driven_impact().map(|name| {
             format!(
                 "the distance or slip of the impact `{name}` depends on inputs, so the contact jumps when they jump"
@@ -273,43 +335,28 @@ impl Instance<'_> {
     }
 }
 
-/// Auditor of a motion by the exact solver, and the evaluator of its energies.
-type ExactAudit<'a> = Option<(&'a mut Auditor, &'a RefCell<Evaluator>)>;
-
 fn propagate(
     propagator: &mut Propagator,
     trajectory: &mut Trajectory,
     request: &Request<'_>,
-    (progress, auditor): (&mut dyn FnMut(f64), ExactAudit<'_>),
+    (progress, observers): (&mut dyn FnMut(f64), Option<&mut ExactObservers>),
 ) -> Result<(), ExactError> {
     let asked = (request.initial, request.time_span(), request.times);
-    let Some((auditor, evaluator)) = auditor else {
+    let Some(observers) = observers else {
         return propagator.simulate_into(trajectory, asked, request.inputs, progress);
     };
-    let mut evaluator = evaluator.borrow_mut();
-    let mut observables = vec![0.0; evaluator.program().observables.len()];
-    let mut energies = |t: f64, state: &[f64]| {
-        let inputs = &request.inputs.evaluate(t);
-        evaluator.observables(Point { t, state, inputs }, &mut observables);
-        EnergyAndPower::from_observables(&observables)
-    };
-    let mut observer = |step: &mut ObservedStep<'_>, is_held: bool| match is_held {
-        true => auditor.exclude_step(step, &mut energies, STICKING_EXCLUSION),
-        false => auditor.audit_step(step, &mut energies),
+    let mut observer = |step: &mut ObservedStep<'_>, is_held: bool| {
+        observers.observe_step(step, is_held, request.inputs);
     };
     let observer = (progress, Some(&mut observer as &mut StepObserver<'_>));
     propagator.simulate_observed(trajectory, asked, request.inputs, observer)
 }
 
-/// Reason for excluding steps during which the exact solver holds the motion on a surface.
-const STICKING_EXCLUSION: &str =
-    "during sticking, the model does not give the power of the force that holds the motion";
-
 pub(crate) fn new_motion(
     (trajectory, surfaces): (Trajectory, Vec<Surface>),
     request: &Request<'_>,
     solver: Solver,
-    (choice, audit): (Option<SolverChoice>, Option<Audit>),
+    (choice, results): (Option<SolverChoice>, Results),
 ) -> Motion {
     Motion {
         trajectory,
@@ -319,7 +366,8 @@ pub(crate) fn new_motion(
         solver_choice: choice,
         early_stop: None,
         initial_changes: Vec::new(),
-        audit,
+        audit: results.audit,
+        measured: results.measured,
         controller_states: ControllerStates::default(),
     }
 }

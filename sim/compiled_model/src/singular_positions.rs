@@ -20,6 +20,8 @@ use eomgen_codegen::program::evaluator::Point;
 use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector, Dyn, RowDVector, SymmetricEigen};
 
+use crate::constraint_rank::ConstraintRank;
+
 /// Least eigenvalue of the symmetric part of F_1 F_2^T if no direction turned by more than 60
 /// degrees.
 const MIN_TURN_EIGENVALUE: f64 = 0.5;
@@ -29,16 +31,16 @@ const MAX_HALVINGS: u32 = 40;
 /// Least singular value of the scaled rows below which constraints count as dependent.
 const SINGULAR_VALUE_LIMIT: f64 = 1e-3;
 
+/// Least singular value of the scaled rows below which accelerations have no digits: the root of
+/// the unit roundoff.
+const UNDETERMINED_VALUE_LIMIT: f64 = 1.5e-8;
+
 /// Least singular value of the scaled rows below which a motion is extrapolated to a singular
 /// position.
 const NEAR_SINGULAR_VALUE_LIMIT: f64 = 0.1;
 
 /// Maximum number of doublings of the extrapolated time, from its rounding on.
 const MAX_DOUBLINGS: i32 = 52;
-
-/// Smallest coefficient of a constraint in the dependent combination, relative to the largest, at
-/// which an error names it.
-const MIN_NAMED_COEFFICIENT: f64 = 0.1;
 
 /// Number of states kept before the present one: the starts of this step and the preceding one.
 const KEPT_STATES: usize = 2;
@@ -96,6 +98,10 @@ impl SingularityWatch {
         let Some(here) = self.watch_state(t, state.to_vec(), inputs) else {
             return false;
         };
+        if here.least <= UNDETERMINED_VALUE_LIMIT {
+            self.found = Some(self.describe_singularity(&here));
+            return true;
+        }
         if let Some(last) = self.passed.pop() {
             let path = cubic(&last, &here, self.degrees());
             let fold = self.find_singularity_between(&last, &here, &path, inputs);
@@ -154,19 +160,14 @@ impl SingularityWatch {
         if rows.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let squares = symmetric_eigen(&(&rows * rows.transpose()))?;
-        let mut order: Vec<usize> = (0..squares.eigenvalues.len()).collect();
-        order.sort_by(|a, b| squares.eigenvalues[*a].total_cmp(&squares.eigenvalues[*b]));
-        let place = *order.get(self.excess)?;
-        let least = squares.eigenvalues[place];
-        let combined = squares.eigenvectors.column(place).into_owned();
+        let rank = ConstraintRank::new(&rows, self.excess)?;
         Some(WatchedState {
             t,
             state,
-            frame: (self.excess == 0).then(|| orthonormal_rows(squares, &rows)),
+            frame: (self.excess == 0).then(|| orthonormal_rows(rank.squares, &rows)),
             rows,
-            least: least.max(0.0).sqrt(),
-            dependent_combination: combined,
+            least: rank.least,
+            dependent_combination: rank.dependent_combination,
         })
     }
 
@@ -253,7 +254,9 @@ impl SingularityWatch {
             return Some(middle);
         }
         let first = self.search((a, &middle), path, inputs, halvings - 1);
-        first.or_else(|| self.search((&middle, b), path, inputs, halvings - 1))
+        let found = first.or_else(|| self.search((&middle, b), path, inputs, halvings - 1));
+        // Errors of the coordinates replace a singular position by a fast turn next to it.
+        found.or((middle.least <= SINGULAR_VALUE_LIMIT).then_some(middle))
     }
 
     fn describe_singularity(&self, fold: &WatchedState) -> (f64, String) {
@@ -261,20 +264,7 @@ impl SingularityWatch {
     }
 
     fn reason(&self, t: f64, combined: &DVector<f64>) -> String {
-        let parts = self.names.iter().zip(combined.iter());
-        let names: Vec<String> = parts
-            .filter(|(_, part)| part.abs() > MIN_NAMED_COEFFICIENT * combined.amax())
-            .map(|(name, _)| format!("`{name}`"))
-            .collect();
-        let what = match &names[..] {
-            [one] => {
-                format!("the constraint {one} has no effect, because its derivative is zero")
-            }
-            several => format!(
-                "the constraints {} depend on each other, because their derivatives are linearly dependent",
-                several.join(", ")
-            ),
-        };
+        let what = ConstraintRank::describe(combined, self.names.iter());
         format!(
             "at t = {t:?} s the motion reaches a singular position: {what}. The accelerations are not determined there; \
              shorten the time, or avoid the position (add a stop, or choose another initial state with --state)"

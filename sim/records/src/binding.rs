@@ -1,5 +1,6 @@
 //! Binding of a dataset file to a model: names are looked up, units and numbers are checked.
 
+use crate::computed_observables::COMPUTED_OBSERVABLES;
 use crate::description::Description;
 use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
@@ -187,6 +188,12 @@ fn bind_channel(
             observables.chain(moving).chain(inputs)
         };
         let listed: Vec<&str> = known().collect();
+        let computed = (COMPUTED_OBSERVABLES.contains(&asked.as_str())).then(|| {
+            format!(
+                "`{asked}` is computed by `simulate` and is no channel; declare an observable for the measured quantity, \
+                 such as motor_power = \"u*dot(x)\""
+            )
+        });
         let listed = format!("it has {}", listed.join(", "));
         Diagnostic::error(format!(
             "the model has no {} {}",
@@ -197,7 +204,7 @@ fn bind_channel(
             quote(asked)
         ))
         .with_span(span, "not a quantity of the model")
-        .with_help(did_you_mean(asked, known()).unwrap_or(listed))
+        .with_help(computed.or_else(|| did_you_mean(asked, known())).unwrap_or(listed))
     })?;
     given_motion::check_channel(quantity, !description.motion.is_empty(), asked, span)?;
     let unit = parse_unit(&entry.column.unit, &expected)?;

@@ -5,6 +5,7 @@ use crate::description::Description;
 
 use crate::coverage::{self, MIN_VARIATION_OVER_NOISE};
 use crate::dataset::Dataset;
+use crate::gaps::describe_missing;
 use crate::record::Record;
 use crate::refusal::Refusal;
 use crate::samples::{MAX_JITTER_FRACTION, span, typical_step};
@@ -127,17 +128,6 @@ pub(crate) fn held_inputs_note<'n>(
 
 pub(crate) fn input_names(inputs: &[Input]) -> impl Iterator<Item = &str> {
     inputs.iter().map(|input| input.name.as_str())
-}
-
-/// Returns the number of missing samples and the time of the first one; `None` without any.
-fn describe_missing(times: &[f64], column: &[f64]) -> Option<String> {
-    let count = column.iter().filter(|value| !value.is_finite()).count();
-    let first = column.iter().position(|value| !value.is_finite())?;
-    let t = times.get(first)?;
-    Some(match count {
-        1 => format!("the sample at t = {t} s"),
-        count => format!("{count} samples from t = {t} s on"),
-    })
 }
 
 /// Rejects inputs so large that their powers overflow.

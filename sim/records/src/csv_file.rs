@@ -4,15 +4,21 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use csv::{ByteRecord, Position, Reader, ReaderBuilder};
+use eomgen_model_spec::hidden_characters::escape_hidden;
 use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::ColumnKey;
 use crate::description::format::{Format, Separator};
-use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples};
+use crate::header::{COMMENT, MAX_SAMPLES, Table, find_columns, too_many_samples};
+use crate::number::parse_number;
+use crate::proposal::layout::detect_layout;
 use crate::refusal::Refusal;
 
 /// Separator of cells after runs of spaces are replaced: the ASCII unit separator.
 const UNIT_SEPARATOR: u8 = 0x1f;
+
+/// Number of bytes at the beginning that show the encoding.
+const EXAMINED_BYTES: usize = 16;
 
 /// Byte order marks of UTF-16.
 const UTF_16: [&[u8]; 2] = [&[0xff, 0xfe], &[0xfe, 0xff]];
@@ -26,7 +32,14 @@ pub fn read_columns(
 ) -> Result<Table, Refusal> {
     let text = skip_lines(path, bytes, format)?;
     let mut file = TextFile::new(path, &text, format)?;
-    let places = find_columns(path, file.first_line, &file.header, wanted)?;
+    let places =
+        find_columns(path, file.first_line, &file.header, wanted).map_err(|refusal| match file
+            .header[0]
+            .starts_with(COMMENT)
+        {
+            true => refusal,
+            false => names_below(path, bytes, format, wanted).unwrap_or(refusal),
+        })?;
     let mut table = Table {
         columns: vec![Vec::new(); wanted.len()],
         lines: Vec::new(),
@@ -164,7 +177,7 @@ pub(crate) fn skip_lines<'b>(
     bytes: &'b [u8],
     format: &Format,
 ) -> Result<Cow<'b, [u8]>, Refusal> {
-    if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
+    if UTF_16.iter().any(|mark| bytes.starts_with(mark)) || has_wide_characters(bytes) {
         return Err(Refusal::file_error(
             path,
             "is UTF-16; expected UTF-8 or ASCII",
@@ -206,6 +219,44 @@ pub(crate) fn skip_lines<'b>(
     Ok(Cow::Owned(parted))
 }
 
+/// Returns true if every second byte at the beginning is zero, as in UTF-16 without a byte order mark.
+fn has_wide_characters(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(EXAMINED_BYTES)];
+    let has_pairs = |zero: usize| {
+        let mut pairs = head.chunks_exact(2);
+        pairs.all(|pair| pair[zero] == 0 && pair[1 - zero] != 0)
+    };
+    head.len() > 3 && (has_pairs(0) || has_pairs(1))
+}
+
+/// Returns the error of names that are below other lines, with the number of lines to skip.
+fn names_below(
+    path: &Path,
+    bytes: &[u8],
+    format: &Format,
+    wanted: &[&ColumnKey],
+) -> Option<Refusal> {
+    let layout = detect_layout(&String::from_utf8_lossy(bytes))?;
+    let is_there = |key: &&ColumnKey| match key {
+        ColumnKey::Name(name) => layout.names.contains(&name.text),
+        ColumnKey::Number(..) => true,
+    };
+    let found = &layout.format;
+    let differs_in_lines = found.separator == format.separator && found.skip != format.skip;
+    (differs_in_lines && format.has_names && wanted.iter().all(is_there)).then(|| {
+        let line = found.skip + 1;
+        let names = layout.names.join(", ");
+        Refusal::file_error(
+            path,
+            format!(
+                "the names of the columns, {}, are in line {line}; write skip = {} in [format]",
+                escape_hidden(&names),
+                found.skip
+            ),
+        )
+    })
+}
+
 fn read_number(
     path: &Path,
     line: u64,
@@ -236,14 +287,4 @@ fn read_number(
         line,
         format!("column {}: \"{shown}\" is not a number{help}", place + 1),
     ))
-}
-
-pub(crate) fn parse_number(cell: &str, decimal: u8) -> Option<f64> {
-    if decimal == b'.' {
-        return cell.parse().ok();
-    }
-    if cell.contains('.') {
-        return None;
-    }
-    cell.replace(',', ".").parse().ok()
 }

@@ -12,10 +12,10 @@ use crate::dataset::{Dataset, Initial, Quantity, StartSource};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
-use crate::gaps::split_at_gaps;
 use crate::given_motion::speed_notes;
 use crate::inputs::input_notes;
 use crate::record::{Record, RecordReader};
+use crate::record_parts::split_at_gaps;
 use crate::refusal::Refusal;
 use crate::rest::remove_rest;
 use crate::samples::MIN_SAMPLES;
@@ -66,7 +66,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             true => Vec::new(),
             false => model.coordinates.iter().map(|c| c.name.clone()).collect(),
         },
-        notes: input_notes(&description, model),
+        notes: input_notes(&description, (model, &[])),
     };
     let speeds = speed_notes(&bound.motion, &description);
     dataset.notes.extend(speeds);
@@ -92,9 +92,10 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         let files = files.iter().enumerate();
         let mut records = Vec::new();
         for (place, file) in files {
-            let record = columns.read_record(&format!("{kind}[{place}]"), file, &mut notes)?;
+            let (record, empty) =
+                columns.read_record(&format!("{kind}[{place}]"), file, &mut notes)?;
             check_splittable(&record, &description)?;
-            records.extend(split_at_gaps(record, &mut notes));
+            records.extend(split_at_gaps(record, empty, &mut notes)?);
         }
         Ok(records)
     };

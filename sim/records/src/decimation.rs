@@ -10,8 +10,12 @@ const RELATIVE_CUT_OFF: f64 = 0.4;
 /// fifths of the new Nyquist frequency. Above that frequency less than 1/200 remains.
 const HALF_LENGTH_SAMPLES: usize = 8;
 
-/// Fraction of the filter weights with missing samples above which a sample is missing.
-const MAX_MISSING_FRACTION: f64 = 0.5;
+/// Sum of the magnitudes of filter weights with missing samples above which a sample is missing. Weights without their
+/// counterparts on the other side shift a moving column.
+const MAX_MISSING_WEIGHT: f64 = 1e-3;
+
+/// Number of known samples on each side of a gap that determine the polynomial over it.
+const GAP_NEIGHBOURS: usize = 2;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Decimation {
@@ -52,10 +56,12 @@ impl Decimation {
     pub fn decimate_measured(&self, column: &[f64]) -> Vec<f64> {
         match &self.low_pass {
             None => self.pick_samples(column),
-            Some(weights) => (0..column.len())
-                .step_by(self.factor)
-                .map(|sample| filter_sample(column, sample, weights))
-                .collect(),
+            Some(weights) => {
+                let column = fill_short_gaps(column, self.factor);
+                let kept = (0..column.len()).step_by(self.factor);
+                kept.map(|sample| filter_sample(&column, sample, weights))
+                    .collect()
+            }
         }
     }
 
@@ -95,21 +101,56 @@ fn filter_sample(column: &[f64], sample: usize, weights: &[f64]) -> f64 {
         Ok(place) if place > last => 2.0 * column[last] - column[(2 * last).saturating_sub(place)],
         Ok(place) => column[place],
     };
-    let (mut sum, mut known, mut all) = (0.0, 0.0, 0.0);
+    let (mut sum, mut known, mut missing) = (0.0, 0.0, 0.0);
     let reach = weights.len() as isize - 1;
     for k in -reach..=reach {
         let weight = weights[k.unsigned_abs()];
-        all += weight.abs();
         let value = at(sample as isize + k);
         if value.is_finite() {
             sum += weight * value;
             known += weight;
+        } else {
+            missing += weight.abs();
         }
     }
-    if known < MAX_MISSING_FRACTION * all.min(1.0) {
+    if missing > MAX_MISSING_WEIGHT {
         return f64::NAN;
     }
     sum / known
+}
+
+/// Fills gaps of at most `longest` samples by the polynomial through the nearest known samples.
+fn fill_short_gaps(column: &[f64], longest: usize) -> Vec<f64> {
+    let mut filled = column.to_vec();
+    let is_known = |place: &usize| column[*place].is_finite();
+    let mut begin = 0;
+    while begin < column.len() {
+        let end = (begin..column.len()).find(is_known).unwrap_or(column.len());
+        if (1..=longest).contains(&(end - begin)) {
+            let before = (0..begin).rev().filter(is_known).take(GAP_NEIGHBOURS);
+            let after = (end..column.len()).filter(is_known).take(GAP_NEIGHBOURS);
+            let known: Vec<usize> = before.chain(after).collect();
+            for (value, place) in filled[begin..end].iter_mut().zip(begin..end) {
+                *value = interpolate(column, &known, place);
+            }
+        }
+        begin = end + 1;
+    }
+    filled
+}
+
+/// Returns the value at `place` of Lagrange's polynomial through the samples `known`; NaN without samples.
+fn interpolate(column: &[f64], known: &[usize], place: usize) -> f64 {
+    if known.is_empty() {
+        return f64::NAN;
+    }
+    let distance = |a: usize, b: usize| a as f64 - b as f64;
+    let terms = known.iter().map(|own| {
+        let others = known.iter().filter(|other| *other != own);
+        let factors = others.map(|other| distance(place, *other) / distance(*own, *other));
+        column[*own] * factors.product::<f64>()
+    });
+    terms.sum()
 }
 
 #[cfg(test)]
@@ -156,11 +197,35 @@ mod tests {
             largest_difference(&kept.decimate_measured(column), &kept.pick_samples(column))
         };
         assert!(pairs(&line) < 1e-9);
-        let whole = kept.pick_samples(&line);
-        line[350] = f64::NAN;
-        assert!(largest_difference(&kept.decimate_measured(&line), &whole) < 1.0);
+        for place in [0, 14, 15, 350, 998, 999] {
+            line[place] = f64::NAN;
+        }
+        line[620..627].fill(f64::NAN);
+        let filtered = kept.decimate_measured(&line);
+        for (found, sample) in filtered.iter().zip((0..1000).step_by(7)) {
+            let right = 3.0 + 0.5 * f64::from(sample);
+            assert!((found - right).abs() < 1e-9, "{sample}: {found}");
+        }
         line[200..500].fill(f64::NAN);
-        assert!(kept.decimate_measured(&line)[50].is_nan());
+        let filtered = kept.decimate_measured(&line);
+        assert!(filtered[50].is_nan() && filtered[28].is_nan() && filtered[80].is_finite());
+    }
+
+    #[test]
+    fn missing_samples_do_not_shift_a_wave() {
+        for share in [3, 10, 29] {
+            let kept = Decimation::new(10, true);
+            let whole = wave(0.1);
+            let mut column = whole.clone();
+            column
+                .iter_mut()
+                .skip(2)
+                .step_by(share)
+                .for_each(|value| *value = f64::NAN);
+            let filtered = kept.decimate_measured(&column);
+            let right = kept.decimate_measured(&whole);
+            assert!(largest_difference(&filtered, &right) < 1e-5, "{share}");
+        }
     }
 
     #[test]

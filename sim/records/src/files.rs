@@ -6,7 +6,7 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::quantity::StringValue;
 
 use crate::description::Description;
-use crate::description::records::Stretch;
+use crate::description::records::{Records, Stretch};
 
 pub fn find_record<'d>(description: &'d Description, record: &str) -> Result<&'d Stretch, String> {
     let records = &description.records;
@@ -26,6 +26,13 @@ pub fn find_record<'d>(description: &'d Description, record: &str) -> Result<&'d
     let index = rest.strip_suffix(']').and_then(|i| i.parse().ok());
     let index: usize = index.ok_or_else(none)?;
     list.get(index).ok_or_else(none)
+}
+
+/// Returns the paths of all records of a dataset file.
+pub fn list_record_files(dataset: &Path, records: &Records) -> Vec<PathBuf> {
+    let records = records.train.iter().chain(&records.test);
+    let paths = records.map(|stretch| resolve_record_path(dataset, &stretch.file));
+    paths.filter_map(Result::ok).collect()
 }
 
 /// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.

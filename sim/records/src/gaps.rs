@@ -1,66 +1,136 @@
-//! Gaps in a record. The inputs in a gap are unknown, so the parts become separate records.
+//! Gaps in a record: rows or cells that are missing. The inputs in a gap are unknown, so the parts become separate
+//! records.
 
-use crate::record::Record;
-use crate::samples::{MIN_GAP_STEPS, MIN_SAMPLES, typical_step};
+use std::ops::Range;
 
-/// Number of gaps above which a record has uneven steps and is not split.
+use crate::samples::{MIN_GAP_STEPS, typical_step};
+
+/// Number of gaps between rows above which a record has uneven steps and is not split.
 const MAX_GAPS: usize = 20;
 
-/// Splits a record at gaps, which are added to `notes`, and drops short parts.
-pub(crate) fn split_at_gaps(record: Record, notes: &mut Vec<String>) -> Vec<Record> {
-    let step = typical_step(&record.times);
-    let steps = record.times.windows(2).enumerate();
-    let gaps: Vec<usize> = steps
-        .filter(|(_, pair)| pair[1] - pair[0] > MIN_GAP_STEPS * step)
-        .map(|(before, _)| before + 1)
-        .collect();
-    if gaps.is_empty() || gaps.len() > MAX_GAPS {
-        return vec![record];
-    }
-    let ends = gaps.iter().copied().chain([record.times.len()]);
-    let begins = [0].into_iter().chain(gaps.iter().copied());
-    let parts: Vec<std::ops::Range<usize>> = begins.zip(ends).map(|(a, b)| a..b).collect();
-    if parts.iter().all(|part| part.len() < MIN_SAMPLES) {
-        return vec![record];
-    }
-    for gap in &gaps {
-        let (before, behind) = (record.times[gap - 1], record.times[*gap]);
-        notes.push(format!(
-            "{}: {:.0} samples are missing between {before:.6} s and {behind:.6} s: \
-             the parts before and after are used as separate records",
-            record.name,
-            (behind - before) / step - 1.0
-        ));
-    }
-    let mut found = Vec::with_capacity(parts.len());
-    for part in parts {
-        let begin = record.times[part.start];
-        if part.len() < MIN_SAMPLES {
-            notes.push(format!(
-                "{}: the {} samples from {begin:.6} s on are too few and are ignored",
-                record.name,
-                part.len()
-            ));
-            continue;
-        }
-        let cut = |columns: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            columns
-                .iter()
-                .map(|column| column[part.clone()].to_vec())
-                .collect()
+/// Times without a known sample, in s.
+#[derive(Clone, Debug)]
+pub(crate) struct Gap {
+    /// Name of the column of the empty cells; `None` for missing rows.
+    pub column: Option<String>,
+    /// Number of missing samples.
+    pub count: usize,
+    /// Time of the last sample before the gap; negative infinity at the beginning of a record.
+    pub before: f64,
+    /// Time of the first sample after it; infinity at the end of a record.
+    pub behind: f64,
+}
+
+impl Gap {
+    /// Describes the missing samples and their times.
+    pub fn describe(&self) -> String {
+        let column = match &self.column {
+            Some(name) => format!(" of `{name}`"),
+            None => String::new(),
         };
-        found.push(Record {
-            name: match part.start {
-                0 => record.name.clone(),
-                _ => format!("{} from {begin:.6} s on", record.name),
-            },
-            path: record.path.clone(),
-            times: record.times[part.clone()].to_vec(),
-            inputs: record.inputs.clone(),
-            input_columns: cut(&record.input_columns),
-            channels: cut(&record.channels),
-            is_continued: record.is_continued || part.start > 0,
-        });
+        let (count, before, behind) = (self.count, self.before, self.behind);
+        let place = match (before.is_finite(), behind.is_finite()) {
+            (true, true) => format!("between {before:.6} s and {behind:.6} s"),
+            (false, _) => format!("before {behind:.6} s"),
+            (true, false) => format!("after {before:.6} s"),
+        };
+        format!("{count} samples{column} are missing {place}")
     }
-    found
+
+    /// Returns true if there are samples before and after the gap.
+    pub fn is_inside(&self) -> bool {
+        self.before.is_finite() && self.behind.is_finite()
+    }
+}
+
+/// Returns the gaps between rows; none if there are so many that the steps are uneven.
+pub(crate) fn find_missing_rows(times: &[f64]) -> Vec<Gap> {
+    let step = typical_step(times);
+    let pairs = times.windows(2);
+    let long = pairs.filter(|pair| pair[1] - pair[0] > MIN_GAP_STEPS * step);
+    let gaps = long.map(|pair| Gap {
+        column: None,
+        count: ((pair[1] - pair[0]) / step - 1.0).round() as usize,
+        before: pair[0],
+        behind: pair[1],
+    });
+    let gaps: Vec<Gap> = gaps.collect();
+    if gaps.len() > MAX_GAPS {
+        return Vec::new();
+    }
+    gaps
+}
+
+/// Returns the runs of at least `fewest` empty cells of a column.
+pub(crate) fn find_empty_cells(
+    name: &str,
+    times: &[f64],
+    column: &[f64],
+    fewest: usize,
+) -> Vec<Gap> {
+    let mut gaps = Vec::new();
+    let mut begin = 0;
+    while begin < column.len() {
+        let known = column[begin..].iter().position(|value| value.is_finite());
+        let end = known.map_or(column.len(), |length| begin + length);
+        if end > begin && end - begin >= fewest {
+            let before = begin.checked_sub(1).map(|last| times[last]);
+            gaps.push(Gap {
+                column: Some(name.to_owned()),
+                count: end - begin,
+                before: before.unwrap_or(f64::NEG_INFINITY),
+                behind: times.get(end).copied().unwrap_or(f64::INFINITY),
+            });
+        }
+        begin = end + 1;
+    }
+    gaps
+}
+
+/// Returns the runs of empty cells of a column that are as long as a gap between rows.
+pub(crate) fn find_long_empty_cells(name: &str, times: &[f64], column: &[f64]) -> Vec<Gap> {
+    find_empty_cells(name, times, column, MIN_GAP_STEPS as usize)
+}
+
+/// Returns the samples from one gap to the next of a column, from the first known one to the last.
+pub(crate) fn find_contiguous_parts(times: &[f64], column: &[f64]) -> Vec<Range<usize>> {
+    let mut gaps = find_missing_rows(times);
+    gaps.extend(find_long_empty_cells("", times, column));
+    let is_known = |sample: &usize| column[*sample].is_finite();
+    let parts = split_samples(times, gaps).into_iter();
+    let trimmed = parts.filter_map(|part| {
+        let first = part.clone().find(is_known)?;
+        let last = part.rev().find(is_known)?;
+        Some(first..last + 1)
+    });
+    trimmed.collect()
+}
+
+/// Returns the samples between gaps, which may overlap.
+pub(crate) fn split_samples(times: &[f64], mut gaps: Vec<Gap>) -> Vec<Range<usize>> {
+    gaps.sort_by(|a, b| a.before.total_cmp(&b.before));
+    let mut parts = Vec::with_capacity(gaps.len() + 1);
+    let mut begin = 0;
+    for gap in gaps {
+        let end = times.partition_point(|t| *t <= gap.before);
+        if end > begin {
+            parts.push(begin..end);
+        }
+        begin = begin.max(times.partition_point(|t| *t < gap.behind));
+    }
+    if begin < times.len() {
+        parts.push(begin..times.len());
+    }
+    parts
+}
+
+/// Returns the number of missing samples and the time of the first one; `None` without any.
+pub(crate) fn describe_missing(times: &[f64], column: &[f64]) -> Option<String> {
+    let count = column.iter().filter(|value| !value.is_finite()).count();
+    let first = column.iter().position(|value| !value.is_finite())?;
+    let t = times.get(first)?;
+    Some(match count {
+        1 => format!("the sample at t = {t} s"),
+        count => format!("{count} samples from t = {t} s on"),
+    })
 }

@@ -17,7 +17,7 @@ pub struct Table {
     pub lines: Vec<u64>,
 }
 
-const COMMENT: char = '#';
+pub(crate) const COMMENT: char = '#';
 
 /// Returns the indices of the wanted columns. `line` is the line number of the names.
 pub fn find_columns(

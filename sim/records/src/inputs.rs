@@ -1,6 +1,6 @@
 //! Inputs of a record, for a simulation with these inputs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
@@ -11,17 +11,32 @@ use crate::binding;
 use crate::checks::{held_inputs_note, input_names};
 use crate::decimation::Decimation;
 use crate::description::Description;
-use crate::files::find_record;
+use crate::files::{find_record, list_record_files};
+use crate::gaps::find_missing_rows;
 use crate::record::RecordReader;
 use crate::refusal::Refusal;
 use crate::samples::MIN_INPUT_SAMPLES;
 
-/// Reads the inputs, without channels, of a record such as `train[0]`; returns warnings too.
+/// Inputs of a record.
+#[derive(Debug)]
+pub struct RecordInputs {
+    /// Inputs over time.
+    pub inputs: HeldInputs,
+    /// Warnings about columns and inputs.
+    pub warnings: Vec<String>,
+    /// Paths of all records of the dataset file.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads the inputs, without channels, of a record such as `train[0]`. `driven` are names of inputs that need no column.
+///
+/// # Errors
+/// Problems of the dataset file or of the record, with their places.
 pub fn read_inputs(
     dataset: &Path,
     record: &str,
-    model: &Model,
-) -> Result<(HeldInputs, Vec<String>), Refusal> {
+    (model, driven): (&Model, &[&str]),
+) -> Result<RecordInputs, Refusal> {
     let description = Description::read(dataset)?;
     let file = find_record(&description, record).map_err(Refusal::Record)?;
     let mut found = Diagnostics::new(description.source.clone());
@@ -49,14 +64,26 @@ pub fn read_inputs(
         decimation: &Decimation::new(description.time.every, description.time.filter),
         min_samples: MIN_INPUT_SAMPLES,
     };
-    let mut warnings = input_notes(&description, model);
-    let record = columns.read_record(record, file, &mut warnings)?;
+    let mut warnings = input_notes(&description, (model, driven));
+    let (record, _) = columns.read_record(record, file, &mut warnings)?;
+    warnings.extend(find_missing_rows(&record.times).iter().map(|gap| {
+        format!(
+            "{}: {}: the inputs in between are unknown and their last values are held, so the motion after the gap \
+             can differ from that of the machine",
+            record.name,
+            gap.describe()
+        )
+    }));
     warnings.extend(held_inputs_note(&record, input_names(&model.inputs)));
-    Ok((record.inputs, warnings))
+    Ok(RecordInputs {
+        inputs: record.inputs,
+        warnings,
+        files: list_record_files(dataset, &description.records),
+    })
 }
 
-/// Returns notes on input columns that the model does not have, and on inputs without a column.
-pub fn input_notes(description: &Description, model: &Model) -> Vec<String> {
+/// Returns notes on input columns that the model does not have, and on inputs without a column, except those of `driven`.
+pub fn input_notes(description: &Description, (model, driven): (&Model, &[&str])) -> Vec<String> {
     // Rates of prescribed motion are computed from the spline through its samples.
     let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
     let inputs = || own().map(|input| input.name.as_str());
@@ -81,7 +108,8 @@ pub fn input_notes(description: &Description, model: &Model) -> Vec<String> {
                 "a controller drives the input `{name}`: its column acts only until the first output acts"
             ));
         }
-        if input.rate_of.is_some() || is_fed || is_measured || model.is_controlled(place) {
+        let is_driven = model.is_controlled(place) || driven.contains(&&**name);
+        if input.rate_of.is_some() || is_fed || is_measured || is_driven {
             continue;
         }
         notes.push(match input.rate {

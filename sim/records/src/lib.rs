@@ -3,10 +3,10 @@
 //! Pipeline:
 //!
 //! - a [`description`] is the parsed dataset file; `bound` looks up its names and units in a model;
-//! - `files` and `columns` (text by `csv_file`, Parquet by `parquet_file`) read the numbers of a
+//! - `files` and `columns` (text by `csv_file` with its `number`s, Parquet by `parquet_file`) read the numbers of a
 //!   [`record`];
 //! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns,
-//!   `decimation` reduces samples, [`samples`] checks them, and `gaps` splits records;
+//!   `decimation` reduces samples, [`samples`] checks them, and `record_parts` splits records at `gaps`;
 //! - if the records give the motion (`given_motion`), `motion_rates` adds rates and `rest` removes
 //!   samples at rest;
 //! - a [`dataset`] contains all records; [`checks`] and `coverage` examine it, and [`windows`]
@@ -52,6 +52,7 @@
 mod binding;
 pub mod checks;
 mod columns;
+mod computed_observables;
 mod coverage;
 mod csv_file;
 pub mod dataset;
@@ -67,9 +68,11 @@ mod header;
 pub mod inputs;
 mod motion_rates;
 pub mod noise;
+mod number;
 mod parquet_file;
 pub mod proposal;
 pub mod record;
+mod record_parts;
 pub mod refusal;
 mod rest;
 pub mod samples;
@@ -81,6 +84,6 @@ mod wrap_period;
 mod wrapped_columns;
 
 pub use dataset_reader::read_dataset;
-pub use inputs::read_inputs;
+pub use inputs::{RecordInputs, read_inputs};
 pub use proposal::propose_dataset;
 pub use refusal::Refusal;

@@ -1,5 +1,7 @@
 //! Position, rate and second rate of a given motion, from its positions or its speeds.
 
+use std::ops::Range;
+
 use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
 
@@ -21,39 +23,49 @@ pub(crate) enum GivenKind {
     },
 }
 
-/// Returns samples, rates and second rates by a cubic spline; `None` without known samples.
-pub(crate) fn differentiate_position(times: &[f64], column: &[f64]) -> Option<[Vec<f64>; 3]> {
-    let samples = times.iter().zip(column);
-    let known = samples.filter(|(_, value)| value.is_finite());
-    let (at, values) = known.map(|(t, value)| (*t, *value)).unzip();
-    let spline = CubicSpline::fit(at, values)?;
-    let mut found = [const { Vec::new() }; 3];
-    for t in times {
-        for (column, value) in found.iter_mut().zip(spline.evaluate(*t)) {
-            column.push(value);
+/// Returns samples, rates and second rates by a cubic spline for each of the `parts` between gaps, NaN
+/// elsewhere; `None` without known samples.
+pub(crate) fn differentiate_position(
+    times: &[f64],
+    column: &[f64],
+    parts: &[Range<usize>],
+) -> Option<[Vec<f64>; 3]> {
+    let mut found: [Vec<f64>; 3] = std::array::from_fn(|_| vec![f64::NAN; times.len()]);
+    for part in parts {
+        let samples = times[part.clone()].iter().zip(&column[part.clone()]);
+        let known = samples.filter(|(_, value)| value.is_finite());
+        let (at, values) = known.map(|(t, value)| (*t, *value)).unzip();
+        let spline = CubicSpline::fit(at, values)?;
+        for sample in part.clone() {
+            for (column, value) in found.iter_mut().zip(spline.evaluate(times[sample])) {
+                column[sample] = value;
+            }
         }
     }
-    Some(found)
+    (!parts.is_empty()).then_some(found)
 }
 
 /// Returns positions, rates and second rates from samples of the speed; `None` without a known
-/// sample. The speed is the cubic spline through the known samples. Its integral from `initial` at
-/// the first sample is the position, its derivative the second rate.
+/// sample. The speed is the cubic spline through the known samples of `part`, before which it is constant. Its
+/// integral from `initial` at the first sample is the position, its derivative the second rate.
 pub(crate) fn integrate_speed(
     times: &[f64],
     speeds: &[f64],
+    part: Range<usize>,
     initial: f64,
 ) -> Option<[Vec<f64>; 3]> {
-    let [rates, second, bends] = differentiate_position(times, speeds)?;
-    let mut position = initial;
-    let mut positions = Vec::with_capacity(times.len());
-    positions.push(position);
-    for k in 1..times.len() {
+    let [rates, second, bends] =
+        differentiate_position(times, speeds, std::slice::from_ref(&part))?;
+    let first = part.start;
+    let mut position = initial + rates[first] * (times[first] - times[0]);
+    let mut positions = vec![f64::NAN; times.len()];
+    positions[first] = position;
+    for k in part.skip(1) {
         let h = times[k] - times[k - 1];
         // Exact integral of a cubic.
         position +=
             0.5 * h * (rates[k - 1] + rates[k]) - h.powi(3) / 24.0 * (bends[k - 1] + bends[k]);
-        positions.push(position);
+        positions[k] = position;
     }
     Some([positions, rates, second])
 }
@@ -68,7 +80,8 @@ mod tests {
         let speed = |t: f64| 2.0 + 3.0 * (4.0 * t).cos();
         let mut speeds: Vec<f64> = times.iter().map(|t| speed(*t)).collect();
         speeds[150] = f64::NAN;
-        let [positions, rates, second] = integrate_speed(&times, &speeds, 0.5).expect("a motion");
+        let [positions, rates, second] =
+            integrate_speed(&times, &speeds, 0..times.len(), 0.5).expect("a motion");
         for (k, t) in times.iter().enumerate() {
             let wanted = [
                 0.5 + 2.0 * t + 0.75 * (4.0 * t).sin(),

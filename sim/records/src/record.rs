@@ -15,6 +15,10 @@ use crate::description::Description;
 use crate::description::columns::Column;
 use crate::description::records::Stretch;
 use crate::files::resolve_record_path;
+use crate::gaps::{
+    Gap, describe_missing, find_contiguous_parts, find_empty_cells, find_long_empty_cells,
+    find_missing_rows,
+};
 use crate::header::Table;
 use crate::motion_rates::{GivenColumn, GivenKind, differentiate_position, integrate_speed};
 use crate::refusal::Refusal;
@@ -78,25 +82,31 @@ pub(crate) struct RecordReader<'d> {
 }
 
 impl RecordReader<'_> {
+    /// Reads a record, and the gaps of the inputs and of the given motion that are cells without a number.
     pub fn read_record(
         &self,
         name: &str,
         stretch: &Stretch,
         notes: &mut Vec<String>,
-    ) -> Result<Record, Refusal> {
+    ) -> Result<(Record, Vec<Gap>), Refusal> {
         let wrong = |diagnostic: Diagnostic| {
             Diagnostics::from_one(self.description.source.clone(), diagnostic)
         };
         let place = resolve_record_path(self.path, &stretch.file).map_err(wrong)?;
         let mut table = self.read_table(&place, name, stretch, notes)?;
-        self.add_rates(&place, &mut table)?;
+        self.add_rates(&place, name, stretch, &mut table, notes)?;
         let is_continued = self.cut_to_stretch(stretch, &mut table)?;
+        let mut gaps = self.find_unknown_inputs(&table);
         self.decimate(&place, &mut table)?;
         let first_motion = 1 + self.inputs.iter().flatten().count();
         let channels = (table.columns).split_off(first_motion + 3 * self.motion.len());
         let motion = table.columns.split_off(first_motion);
         let mut columns = table.columns.into_iter();
         let times = columns.next().unwrap_or_default();
+        // Shorter runs of empty cells are filled by now.
+        for (given, positions) in self.motion.iter().zip(&motion) {
+            gaps.extend(find_empty_cells(given.name, &times, positions, 1));
+        }
         let undriven = self.model.typical_inputs(0.0);
         let undriven = undriven.unwrap_or_else(|_| vec![0.0; self.inputs.len()]);
         let input_columns: Vec<Vec<f64>> = (self.inputs.iter().zip(undriven))
@@ -107,7 +117,7 @@ impl RecordReader<'_> {
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
             check_known(&place, &format!("input `{}`", input.name), column)?;
         }
-        Ok(Record {
+        let record = Record {
             name: name.to_owned(),
             inputs: self.build_inputs(&times, &input_columns, motion),
             path: place,
@@ -115,7 +125,20 @@ impl RecordReader<'_> {
             input_columns,
             channels,
             is_continued,
-        })
+        };
+        Ok((record, gaps))
+    }
+
+    /// Returns the gaps of input columns that are empty cells.
+    fn find_unknown_inputs(&self, table: &Table) -> Vec<Gap> {
+        let fed = self.model.inputs.iter().zip(self.inputs);
+        let fed = fed.filter(|(_, column)| column.is_some());
+        let columns = fed.zip(&table.columns[1..]);
+        columns
+            .flat_map(|((input, _), column)| {
+                find_long_empty_cells(&input.name, &table.columns[0], column)
+            })
+            .collect()
     }
 
     fn read_columns(&self) -> Vec<ReadColumn<'_>> {
@@ -180,20 +203,47 @@ impl RecordReader<'_> {
     }
 
     /// Appends rates and second rates to a given motion, so that a filter keeps them consistent.
-    fn add_rates(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
+    /// Short runs of empty cells are filled, and noted.
+    fn add_rates(
+        &self,
+        place: &Path,
+        name: &str,
+        stretch: &Stretch,
+        table: &mut Table,
+        notes: &mut Vec<String>,
+    ) -> Result<(), Refusal> {
         if self.motion.is_empty() {
             return Ok(());
         }
         let first = 1 + self.inputs.iter().flatten().count();
         let given = first..first + self.motion.len();
+        let (from, to) = self.stretch_ends(stretch);
         let mut rates = [const { Vec::new() }; 3];
         for (coordinate, column) in self.motion.iter().zip(&table.columns[given.clone()]) {
             check_known(place, &format!("motion of `{}`", coordinate.name), column)?;
             let times = &table.columns[0];
-            let motion = match coordinate.kind {
-                GivenKind::Position => differentiate_position(times, column),
-                GivenKind::Speed { initial } => integrate_speed(times, column, initial),
+            let parts = find_contiguous_parts(times, column);
+            let motion = match (coordinate.kind, parts.first()) {
+                (_, None) => None,
+                (GivenKind::Position, _) => differentiate_position(times, column, &parts),
+                (GivenKind::Speed { initial }, Some(first)) => {
+                    check_position_known(place, coordinate.name, (times, column), to)?;
+                    integrate_speed(times, column, first.clone(), initial)
+                }
             };
+            for part in parts {
+                let used = part.filter(|sample| (from..to).contains(&times[*sample]));
+                let used: Vec<usize> = used.collect();
+                if let (Some(first), Some(last)) = (used.first(), used.last())
+                    && let Some(filled) =
+                        describe_missing(&times[*first..=*last], &column[*first..=*last])
+                {
+                    notes.push(format!(
+                        "{name}: missing, and interpolated: {filled} of `{}`",
+                        coordinate.name
+                    ));
+                }
+            }
             let Some(found) = motion else {
                 let nothing = format!(
                     "the motion of `{}` is empty; expected numbers",
@@ -308,6 +358,29 @@ impl RecordReader<'_> {
             }
         }
         inputs
+    }
+}
+
+/// Checks that a column of speeds has no gap before a time (s), after which its integral is unknown.
+fn check_position_known(
+    place: &Path,
+    name: &str,
+    (times, speeds): (&[f64], &[f64]),
+    until: f64,
+) -> Result<(), Refusal> {
+    let mut gaps = find_missing_rows(times);
+    gaps.extend(find_long_empty_cells(name, times, speeds));
+    match gaps.iter().find(|gap| gap.behind < until) {
+        Some(gap) => Err(Refusal::file_error(
+            place,
+            format!(
+                "{}, and the position of `{name}` is integrated from its speed: it is unknown after the gap; use \
+                 only the part before it (`to`), or write the part after it to a file of its own, whose first position \
+                 is `initial` in [motion.{name}]",
+                gap.describe()
+            ),
+        )),
+        None => Ok(()),
     }
 }
 

@@ -128,9 +128,7 @@ impl Stepper for Adams {
         until: f64,
     ) -> Result<Outcome, SolveError> {
         self.begin(watched)?;
-        let limit = until - self.now.point.t;
-        let is_cut = limit <= self.step;
-        let length = if is_cut { limit } else { self.step };
+        let (length, is_cut) = self.now.point.choose_length(self.step, until);
         let mut outcome = Outcome {
             is_accepted: false,
             length,
@@ -166,6 +164,7 @@ impl Stepper for Adams {
         watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<(Point, Vec<f64>)> {
+        let length = self.now.point.exact_length(length);
         self.begin(watched).ok()?;
         let attempt = self.now.attempt(watched, length);
         let end = attempt.end.clone();

@@ -124,9 +124,7 @@ impl Stepper for DormandPrince853 {
         watched: &WatchedSystem<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
-        let limit = until - self.here.t;
-        let is_cut = limit <= self.step;
-        let length = if is_cut { limit } else { self.step };
+        let (length, is_cut) = self.here.choose_length(self.step, until);
         let mut outcome = Outcome {
             is_accepted: false,
             length,
@@ -183,6 +181,7 @@ impl Stepper for DormandPrince853 {
         watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<(Point, Vec<f64>)> {
+        let length = self.here.exact_length(length);
         self.begin(watched);
         let mut y = Vec::new();
         if !self.slopes.make_step(watched, &self.here, length, &mut y) {

@@ -61,6 +61,8 @@ struct PendingStep {
     begin: f64,
     /// True if states inside it are interpolated.
     is_interior_told: bool,
+    /// Time up to which an observer has seen it, s.
+    observed: f64,
 }
 
 impl<M: Stepper> Run<M> {
@@ -153,6 +155,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     /// Starts a motion: modes and samples at its first point.
     pub fn start(&mut self) {
         self.update_root_bands();
+        self.watched.fix_sides(true);
         self.watched.write_modes(&mut self.run.modes);
         self.take_samples_here();
     }
@@ -193,7 +196,13 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             return Ok(self.run.stepper.current_point().clone());
         };
         let y = self.state_inside(pending, self.end)?;
-        Ok(Point { t: self.end, y })
+        let end = Point { t: self.end, y };
+        self.observe_step(pending, &end)?;
+        self.run.pending = Some(PendingStep {
+            observed: end.t,
+            ..pending
+        });
+        Ok(end)
     }
 
     /// Follows a jump of the inputs at the present point.
@@ -271,21 +280,32 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
             .set_rate_roundings(&rates, length);
     }
 
-    /// Shows the last step to a system that observes steps.
-    fn observe_step(&mut self) {
-        if !self.watched.is_observing() {
-            return;
+    /// Shows the rest of the last step up to `end` to a system that observes steps.
+    fn observe_step(&mut self, step: PendingStep, end: &Point) -> Result<(), SolveError> {
+        if !self.watched.is_observing() || end.t <= step.observed {
+            return Ok(());
         }
-        let (start, end) = (
-            self.run.stepper.step_start().clone(),
-            self.run.stepper.current_point().clone(),
-        );
+        let mut start = self.run.stepper.step_start().clone();
+        if step.observed > start.t {
+            start = Point {
+                t: step.observed,
+                y: self.state_inside(step, step.observed)?,
+            };
+        }
         let (stepper, watched) = (&mut self.run.stepper, self.watched);
+        let mut is_accurate = None;
         let mut inside = |t, interior| match interior {
             Interior::Interpolated => stepper.interpolated(watched, t),
             Interior::Recomputed => stepper.inside(watched, t),
+            Interior::Accurate => {
+                match *is_accurate.get_or_insert_with(|| stepper.tells_smooth_interior(watched)) {
+                    true => stepper.interpolated(watched, t),
+                    false => stepper.inside(watched, t),
+                }
+            }
         };
-        watched.observe_step(&start, &end, &mut inside);
+        watched.observe_step(&start, end, &mut inside);
+        Ok(())
     }
 
     /// Tries a step that ends at `until` at the latest.
@@ -327,8 +347,10 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
         let here = here.y.clone();
         let moved: Vec<f64> = y.iter().zip(&here).map(|(to, from)| to - from).collect();
+        let mut is_corrected: Vec<bool> = moved.iter().map(|change| *change != 0.0).collect();
+        self.watched.mark_corrected(&mut is_corrected);
         let magnitudes = self.run.stepper.magnitudes_mut();
-        magnitudes.note_correction(&moved, &here);
+        magnitudes.note_correction(&is_corrected, &here);
         let is_near = magnitudes.allow(moved.into_iter(), &here);
         self.run.projected = Some(y);
         is_near
@@ -363,6 +385,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         let pending = PendingStep {
             begin,
             is_interior_told: self.tells_interior(),
+            observed: begin,
         };
         self.run.pending = Some(pending);
         self.take_inner_samples(pending, self.end.next_up())
@@ -376,6 +399,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.accept_with(PendingStep {
             begin,
             is_interior_told,
+            observed: begin,
         })
     }
 
@@ -384,8 +408,9 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.run.stepper.settle(self.run.projected.is_some());
         self.trajectory.statistics.steps += 1;
         self.watched.forget_later_trials();
-        self.observe_step();
-        let t = self.run.stepper.current_point().t;
+        let end = self.run.stepper.current_point().clone();
+        self.observe_step(step, &end)?;
+        let t = end.t;
         self.take_inner_samples(step, t)?;
         if let Some(y) = self.run.projected.take() {
             check_finite(step.begin, &y)?;

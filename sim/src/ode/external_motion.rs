@@ -147,8 +147,9 @@ impl<S: System> ExternalMotion<S> {
                 .filter(|guard| watched.is_beyond(*guard, guards[*guard]))
                 .collect();
             if !passed.is_empty() {
-                let (last, near) = (last.t, find_near_point(watched, (t, y), &passed, last));
-                watched.project_beyond((&passed, t - last), &near.y, t, y);
+                let near = find_near_point(watched, (t, y), &passed, last);
+                let allowed: Vec<f64> = sizes.iter().map(|size| tolerance * size).collect();
+                watched.project_beyond((&passed, &allowed), &near.y, t, y);
                 watched.apply_event((near.t, &near.y), t, y);
             }
             let mut projected = y.to_vec();

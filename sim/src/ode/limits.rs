@@ -42,12 +42,35 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let first = self.run.recent.pop_front().map_or(t, |(first, _)| first);
         if (t - first) * rate < SWITCHES_AVERAGED as f64 {
             if self.run.recent.iter().all(|(_, other)| *other == guard) {
-                return Err(SolveError::Sticking { t: first, guard });
+                return Err(self.staying_error((first, t), guard));
             }
             let guard = self.rarest();
             return Err(SolveError::TooManySwitches { t, guard, rate });
         }
         Ok(())
+    }
+
+    /// Returns the error of a motion that stayed on a surface over a time span (s). Steps of an explicit method
+    /// overshoot a surface at which rates are continuous; forces lead back to one at which they jump.
+    fn staying_error(&self, (first, t): (f64, f64), guard: usize) -> SolveError {
+        let sticking = SolveError::Sticking { t: first, guard };
+        if !M::IS_EXPLICIT {
+            return sticking;
+        }
+        let stepper = &self.run.stepper;
+        let here = stepper.current_point();
+        let allowed: Vec<f64> = stepper.magnitudes().allowed(&here.y).collect();
+        let is_continuous = (self.watched).has_continuous_rates(guard, (here.t, &here.y), &allowed);
+        if !is_continuous {
+            return sticking;
+        }
+        let within = (t - first) / SWITCHES_AVERAGED as f64;
+        SolveError::StiffAtSurface {
+            t,
+            guard,
+            within,
+            steps: (self.end - t) / within,
+        }
     }
 
     /// Returns the least frequent of the switching functions with at least a quarter of the recent

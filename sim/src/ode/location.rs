@@ -181,10 +181,18 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         None
     }
 
+    /// Evaluates the rates just ahead, so that a state without a rate there is known. If the last step ended at the end of
+    /// their domain, no trial evaluated them beyond it.
+    pub(super) fn evaluate_ahead(&self) {
+        let mut line = self.line_here();
+        let Point { t, y } = line.at(MIN_SHORTEST_STEPS * self.shortest_step());
+        self.watched.rates(t, &y, &mut line.rates);
+    }
+
     /// Finds points on both sides of the surfaces of `guards` on a line, around an `offset` (s) from its point, in a step
     /// of `length` s. The lowest of the guards has the `slope` (per s) there.
     fn cross_on(
-        &self,
+        &mut self,
         line: Line,
         (offset, slope): (f64, f64),
         length: f64,
@@ -193,14 +201,9 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let begin = self.run.stepper.current_point().t;
         let shortest = self.shortest_step();
         let mut distance = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * shortest);
-        // A slow motion leads beyond the rounding of a surface in a longer time.
-        let roundings = self.watched.guard_roundings(line.point.t, &line.point.y);
-        let rounding = guards.iter().map(|guard| roundings[*guard]);
-        let until_beyond = rounding.fold(0.0, f64::max) / slope.abs();
-        let longest = (MAX_EXTRAPOLATION * length).max(distance);
-        let longest = GROWTH * longest.max(until_beyond.min(length));
+        let longest = GROWTH * (MAX_EXTRAPOLATION * length).max(distance);
         let lowest = |point: &Point| self.watched.lowest_guard(guards, point.t, &point.y);
-        let mut found = Located::Touched(line.point.clone());
+        let mut found = None;
         while distance <= longest {
             let at = |offset: f64| {
                 let Point { t, y } = line.at(offset);
@@ -211,14 +214,103 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             if lowest(&beyond) < 0.0 && beyond.t > begin {
                 // Rounding may move the near side by more than the distance.
                 let is_near = near.t <= begin || lowest(&near) >= 0.0;
-                found = Located::Crossed(Some(near).filter(|near| near.t > begin), beyond);
+                found = Some((Some(near).filter(|near| near.t > begin), beyond));
                 if is_near {
                     break;
                 }
             }
             distance *= GROWTH;
         }
-        found
+        if let Some((near, beyond)) = found {
+            return Located::Crossed(near, beyond);
+        }
+        let roundings = self.watched.guard_roundings(line.point.t, &line.point.y);
+        let here = self.run.stepper.current_point();
+        let within = |guard: &usize| {
+            let value = self.watched.lowest_guard(&[*guard], here.t, &here.y);
+            value <= GROWTH * roundings[*guard]
+        };
+        let slow: Vec<usize> = guards.iter().copied().filter(within).collect();
+        if slow.is_empty() {
+            return Located::Touched(line.point);
+        }
+        let rounding = slow.iter().map(|guard| roundings[*guard]);
+        let until_beyond = GROWTH * rounding.fold(0.0, f64::max) / slope.abs();
+        let first = line.point.t - begin + until_beyond;
+        self.cross_slowly((first, length), &slow, line.point)
+    }
+
+    /// Goes beyond surfaces at whose rounding a step of `length` s begins, first in a step of `first` s at least. A slow
+    /// motion leads beyond the rounding of a surface in a long time. The step ends at `touched` if it passes other
+    /// surfaces first.
+    fn cross_slowly(
+        &mut self,
+        (first, length): (f64, f64),
+        guards: &[usize],
+        touched: Point,
+    ) -> Located {
+        let (mut near, mut after) = (0.0, first.max(self.shortest_step()).min(length));
+        while let Some((side, beyond)) = self.try_step(after, guards) {
+            match side {
+                TrialSide::Beyond => {
+                    return self.end_beyond((near, after), (guards, beyond), length);
+                }
+                TrialSide::Near if after < length => {
+                    near = after;
+                    after = (GROWTH * after).min(length);
+                }
+                TrialSide::Near | TrialSide::BeyondOthers => break,
+            }
+        }
+        let back = touched.t - self.run.stepper.current_point().t;
+        if back > 0.0 {
+            // The interior of the step is that of the last trial.
+            self.run.stepper.trial(self.watched, back);
+        }
+        Located::Touched(touched)
+    }
+
+    /// Returns the first point beyond surfaces that steps of `near` s do not reach and steps of `after` s pass: the rates
+    /// of this side do not apply beyond it.
+    fn end_beyond(
+        &mut self,
+        (mut near, mut after): (f64, f64),
+        (guards, mut beyond): (&[usize], Point),
+        length: f64,
+    ) -> Located {
+        let shortest = (MIN_DISTANCE * length).max(MIN_SHORTEST_STEPS * self.shortest_step());
+        let mut is_last = true;
+        while after - near > shortest {
+            let middle = 0.5 * (near + after);
+            is_last = match self.try_step(middle, guards) {
+                Some((TrialSide::Beyond, point)) => {
+                    (after, beyond) = (middle, point);
+                    true
+                }
+                _ => {
+                    near = middle;
+                    false
+                }
+            };
+        }
+        if !is_last {
+            // The interior of the step is that of the last trial.
+            self.run.stepper.trial(self.watched, after);
+        }
+        Located::Crossed(None, beyond)
+    }
+
+    /// Tries a step of `after` s and returns its end, and its side of the surfaces of `guards`.
+    fn try_step(&mut self, after: f64, guards: &[usize]) -> Option<(TrialSide, Point)> {
+        self.trajectory.statistics.trial_steps += 1;
+        let (point, _) = self.run.stepper.trial(self.watched, after)?;
+        let crossed = self.crossed_guards(&point);
+        let side = match crossed.iter().all(|guard| guards.contains(guard)) {
+            _ if crossed.is_empty() => TrialSide::Near,
+            true => TrialSide::Beyond,
+            false => TrialSide::BeyondOthers,
+        };
+        Some((side, point))
     }
 
     /// Goes to a point before a surface, `after` (s) from here, at which the rates are singular.
@@ -230,6 +322,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.run.stepper.set_step(2.0 * (1.0 - APPROACH) * after);
         near.map_or(Located::Failed, |(point, _)| Located::Touched(point))
     }
+}
+
+/// Side of surfaces on which a trial step ends.
+enum TrialSide {
+    Near,
+    /// Beyond these surfaces only.
+    Beyond,
+    BeyondOthers,
 }
 
 /// Line through a point of the motion along its rates.

@@ -18,7 +18,7 @@ pub struct Magnitudes {
     smallest: Vec<f64>,
     /// Typical size of each component.
     typical_sizes: Vec<f64>,
-    /// True for components that corrections onto constraints change.
+    /// True for components that corrections onto constraints change, also by less than their rounding.
     is_corrected: Vec<bool>,
     /// Largest magnitude of a corrected component so far, relative to its typical size.
     most: f64,
@@ -94,10 +94,10 @@ impl Magnitudes {
         self.most = relative.fold(self.most, f64::max);
     }
 
-    /// Takes note of the changes of a state `y` by a correction onto constraints.
-    pub fn note_correction(&mut self, changes: &[f64], y: &[f64]) {
-        for (is_corrected, change) in self.is_corrected.iter_mut().zip(changes) {
-            *is_corrected |= *change != 0.0;
+    /// Takes note of the components of a state `y` that a correction onto constraints changes.
+    pub fn note_correction(&mut self, changed: &[bool], y: &[f64]) {
+        for (is_corrected, is_changed) in self.is_corrected.iter_mut().zip(changed) {
+            *is_corrected |= is_changed;
         }
         self.raise_most(y);
     }
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn components_without_corrections_leave_the_others_unchanged() {
         let mut magnitudes = Magnitudes::new(&[1.0, 1e10], &[1.0, 1.0], 1e-9);
-        magnitudes.note_correction(&[1e-20, 0.0], &[1.0, 1e10]);
+        magnitudes.note_correction(&[true, false], &[1.0, 1e10]);
         magnitudes.raise(&[1.0, 1e10]);
         magnitudes.include_rounding_of_others();
         assert_eq!(magnitudes.largest, [1.0, 1e10]);
@@ -175,7 +175,7 @@ mod tests {
     fn rounding_of_others_does_not_grow_from_step_to_step() {
         for tolerance in [1e-9, 1e-13, 1e-14] {
             let mut magnitudes = Magnitudes::new(&[100.0, 1e-3], &[1.0, 1.0], tolerance);
-            magnitudes.note_correction(&[1e-20, 1e-20], &[100.0, 1e-3]);
+            magnitudes.note_correction(&[true, true], &[100.0, 1e-3]);
             let mut floors = Vec::new();
             for _ in 0..50 {
                 magnitudes.raise(&[100.0, 1e-3]);

@@ -16,20 +16,21 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let guess = self.find_interior_root(crossing);
         self.run.stepper.take_back();
         let start = self.run.stepper.current_point().clone();
-        let located = self.locate(crossing, guess, length)?;
-        let guard = crossing.guards.first().copied();
+        let (located, guards) = self.locate_first(crossing, guess, length)?;
+        let guard = guards.first().copied();
         let has_crossed = matches!(located, Located::Crossed(..));
         let recorded = self.trajectory.events.len();
         match located {
             Located::Crossed(near, mut beyond) => {
                 let crossed = self.crossed_guards(&beyond);
                 if let Some(mut near) = near {
-                    let surfaces = (&crossing.guards[..], length);
+                    let allowed = self.allowed(&near.y);
+                    let surfaces = (&guards[..], &allowed[..]);
                     self.watched.project_before(surfaces, near.t, &mut near.y);
                     self.end_step(near)?;
                 }
                 let near = self.run.stepper.current_point().clone();
-                self.apply_event((&crossed, length), &near, &mut beyond);
+                self.apply_event(&crossed, &near, &mut beyond);
                 self.run.stepper.restart(beyond, length);
                 self.project();
                 self.accept(near.t)?;
@@ -55,10 +56,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let near = self.run.stepper.current_point().clone();
         let step = self.run.stepper.step();
         let Some(mut beyond) = self.find_point_beyond() else {
+            self.evaluate_ahead();
             return Err(rejection_error(self.watched, &near, step));
         };
         let crossed = self.crossed_guards(&beyond);
-        self.apply_event((&crossed, step), &near, &mut beyond);
+        self.apply_event(&crossed, &near, &mut beyond);
         self.run.stepper.restart(beyond, step / SHORTENED);
         self.project();
         self.accept(near.t)
@@ -72,11 +74,53 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.accept(begin)
     }
 
-    /// Applies the event at the crossed surfaces between `start` and `point` in a step of given length (s), and records those
-    /// that returned the motion to its side.
-    fn apply_event(&mut self, crossed: (&[usize], f64), start: &Point, point: &mut Point) {
+    /// Locates the surfaces of `crossing` like [`Driver::locate`]. If other surfaces are passed before these, locates those.
+    /// Returns the located surfaces as well.
+    fn locate_first(
+        &mut self,
+        crossing: &Crossing,
+        guess: f64,
+        length: f64,
+    ) -> Result<(Located, Vec<usize>), SolveError> {
+        let mut located = self.locate(crossing, guess, length)?;
+        let mut guards = crossing.guards.clone();
+        for _ in 0..self.watched.sides().len() {
+            let (Located::Crossed(Some(reached), _) | Located::Touched(reached)) = &located else {
+                break;
+            };
+            let mut passed = self.crossed_guards(reached);
+            passed.retain(|guard| !guards.contains(guard));
+            let start = self.run.stepper.current_point();
+            if passed.is_empty() || reached.t <= start.t {
+                break;
+            }
+            let [from, to] =
+                [start, reached].map(|point| self.watched.lowest_guard(&passed, point.t, &point.y));
+            let after = reached.t - start.t;
+            let guess = after * (from / (from - to)).clamp(0.0, 1.0);
+            let first = Crossing {
+                near: 0.0,
+                beyond: after / length,
+                guards: passed,
+            };
+            located = self.locate(&first, guess, length)?;
+            guards = first.guards;
+        }
+        Ok((located, guards))
+    }
+
+    /// Returns the error allowed to each state.
+    fn allowed(&self, y: &[f64]) -> Vec<f64> {
+        self.run.stepper.magnitudes().allowed(y).collect()
+    }
+
+    /// Applies the event at the crossed surfaces between `start` and `point`, and records those that returned the motion to
+    /// its side.
+    fn apply_event(&mut self, crossed: &[usize], start: &Point, point: &mut Point) {
+        let allowed = self.allowed(&point.y);
+        let surfaces = (crossed, &allowed[..]);
         self.watched
-            .project_beyond(crossed, &start.y, point.t, &mut point.y);
+            .project_beyond(surfaces, &start.y, point.t, &mut point.y);
         let arrived = self.crossed_guards(point);
         let before = point.y.clone();
         let start = (start.t, &start.y[..]);
@@ -89,7 +133,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Returns the surfaces of the present regime that a point is beyond.
-    fn crossed_guards(&self, point: &Point) -> Vec<usize> {
+    pub(super) fn crossed_guards(&self, point: &Point) -> Vec<usize> {
         let guards = self.watched.evaluate_guards(point.t, &point.y);
         let values = guards.into_iter().enumerate();
         let beyond = values.filter(|(guard, value)| self.watched.is_beyond(*guard, *value));

@@ -128,9 +128,7 @@ impl Stepper for Radau {
         if std::mem::take(&mut self.is_starting) {
             self.begin(watched);
         }
-        let limit = until - self.here.t;
-        let is_cut = limit <= self.step;
-        let length = if is_cut { limit } else { self.step };
+        let (length, is_cut) = self.here.choose_length(self.step, until);
         let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
         let factors = match self.factors.take() {
             Some(factors) if factors.length == length => factors,
@@ -196,6 +194,7 @@ impl Stepper for Radau {
         watched: &WatchedSystem<'_, S>,
         length: f64,
     ) -> Option<(Point, Vec<f64>)> {
+        let length = self.here.exact_length(length);
         let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
         let factors = Factors::new(jacobian, length);
         self.tried = Stages::solve(watched, &self.here, &factors, None, &self.magnitudes);

@@ -25,6 +25,14 @@ pub fn check<S: System + ?Sized>(
     }
     check_span((begin, end), samples)?;
     settings.check()?;
+    let steps = (end - begin) / settings.max_step;
+    if steps > settings.max_steps as f64 {
+        return refuse(format!(
+            "the longest step, {:e} s, needs {steps:.1e} steps to the end; at most {:e} are taken: give a longer one, \
+             or shorten the time",
+            settings.max_step, settings.max_steps as f64
+        ));
+    }
     check_rates(system, begin, initial)
 }
 

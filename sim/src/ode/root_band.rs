@@ -87,6 +87,14 @@ impl RootBand {
         (value / self.width).clamp(-1.0, 1.0)
     }
 
+    /// Returns the state on the surface next to `y`, at which the switching function has this value.
+    pub(super) fn state_on_surface(&self, y: &[f64], value: f64) -> Vec<f64> {
+        let steps = y.iter().zip(&self.to_edge);
+        steps
+            .map(|(y, step)| y - step * value / self.width)
+            .collect()
+    }
+
     /// Returns the states at the two edges of the band, from the position of `y`.
     pub(super) fn edges(&self, y: &[f64], position: f64) -> [Vec<f64>; 2] {
         [-1.0, 1.0].map(|edge| {

@@ -72,9 +72,7 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
                 continue;
             };
             let decision = history.decision.get_or_insert_with(|| {
-                let on_surface = y.iter().zip(&band.to_edge);
-                let on_surface = on_surface.map(|(y, step)| y - step * value / band.width);
-                let on_surface: Vec<f64> = on_surface.collect();
+                let on_surface = band.state_on_surface(y, value);
                 Decision {
                     is_root: self.grow_as_root((t, &on_surface), &band.to_edge, allowed),
                     width: band.width,
@@ -85,6 +83,22 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
             }
         }
         bands
+    }
+
+    /// Returns true if the rates have no jump at the surface `guard` near `y`.
+    pub(super) fn has_continuous_rates(
+        &self,
+        guard: usize,
+        (t, y): (f64, &[f64]),
+        allowed: &[f64],
+    ) -> bool {
+        let here = self.evaluate_guards(t, y);
+        let gradients = self.guard_gradients((t, y), allowed, &here);
+        RootBand::new(guard, &gradients[guard], allowed).is_some_and(|band| {
+            let on_surface = band.state_on_surface(y, here[guard]);
+            let differences = self.rate_differences((t, &on_surface), &band.to_edge);
+            differences.iter().all(RateDifference::is_continuous)
+        })
     }
 
     /// Returns the derivatives of the switching functions by the states, from differences of the size `allowed`.

@@ -20,6 +20,8 @@ pub struct ObservedStep<'s> {
 pub enum Interior {
     /// Interpolation, without evaluations of the rates.
     Interpolated,
+    /// Interpolation if it is as accurate as samples of a smooth motion, otherwise a shorter step from the same start.
+    Accurate,
     /// A shorter step from the same start, if that is more accurate.
     Recomputed,
 }
@@ -91,6 +93,10 @@ pub trait System {
     fn project(&self, _t: f64, _y: &mut [f64]) -> u64 {
         0
     }
+
+    /// Marks the states that the last call of [`System::project`] corrects, in addition to those that it changed: a
+    /// correction may be below the rounding of a state.
+    fn mark_corrected(&self, _is_corrected: &mut [bool]) {}
 
     /// Discards the notes of the last call of [`System::project`]: the motion does not pass the projected state.
     fn forget_projection(&self) {}
@@ -189,6 +195,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
         (**self).project(t, y)
+    }
+
+    fn mark_corrected(&self, is_corrected: &mut [bool]) {
+        (**self).mark_corrected(is_corrected);
     }
 
     fn forget_projection(&self) {

@@ -177,6 +177,11 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         evaluations > 0
     }
 
+    /// Marks the states that the last projection corrects; see [`System::mark_corrected`].
+    pub fn mark_corrected(&self, is_corrected: &mut [bool]) {
+        self.system.mark_corrected(is_corrected);
+    }
+
     /// Computes the Jacobian of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         let bands = self.record.bands.borrow();
@@ -184,10 +189,13 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Finds the surfaces at `t` and `y` near which rates grow as a root, for a method with the errors `allowed` to the
-    /// states: rates are interpolated there.
+    /// states: rates are interpolated there, and no side is kept.
     pub fn update_root_bands(&self, t: f64, y: &[f64], allowed: &[f64]) {
         let histories = &mut self.record.histories.borrow_mut();
         let bands = self.find_root_bands(histories, (t, y), allowed);
+        for band in &bands {
+            self.record.regime.borrow_mut()[band.guard] = 0.0;
+        }
         self.record.bands.replace(bands);
     }
 
@@ -271,19 +279,38 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
         self.side(guard) * value < 0.0
     }
 
-    /// Sets the regime to that of `t` and `y`. A function that is exactly 0 keeps its side.
+    /// Sets the regime to that of `t` and `y`. A function that is exactly 0 keeps its side, unless it is 0 around the
+    /// point too, as max(x, 0) is.
     pub fn enter_regime(&self, t: f64, y: &[f64]) {
         let guards = self.evaluate_guards(t, y);
+        self.release_vanishing((t, y), &guards);
         let mut regime = self.record.regime.borrow_mut();
         let mut last = self.record.last_sides.borrow_mut();
         let sides = regime.iter_mut().zip(guards).enumerate();
         for (index, (side, guard)) in sides.filter(|(_, (_, guard))| guard.abs() > 0.0) {
             if has_band(&self.record.bands.borrow(), index) {
-                *side = 0.0;
                 continue;
             }
             last[index] = guard.signum();
             *side = guard.signum();
+        }
+    }
+
+    /// Releases the sides of the switching functions with these values that are 0 at a point and next to it.
+    fn release_vanishing(&self, (t, y): (f64, &[f64]), guards: &[f64]) {
+        let has_side = |guard: &usize| guards[*guard] == 0.0 && self.side(*guard) != 0.0;
+        let zeros: Vec<usize> = (0..guards.len()).filter(has_side).collect();
+        if zeros.is_empty() {
+            return;
+        }
+        let (roundings, later) = (
+            self.guard_roundings(t, y),
+            self.evaluate_guards(t.next_up(), y),
+        );
+        for guard in zeros {
+            if roundings[guard] == 0.0 && later[guard] == 0.0 {
+                self.record.regime.borrow_mut()[guard] = 0.0;
+            }
         }
     }
 
@@ -327,35 +354,35 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Projects a state just beyond surfaces onto the invariants, so that no later projection leads back over these
-    /// surfaces, in a step of `length` s. The state just before them is `near`.
+    /// surfaces. The state just before them is `near`; the state may change by the errors `allowed`.
     pub fn project_beyond(
         &self,
-        (surfaces, length): (&[usize], f64),
+        (surfaces, allowed): (&[usize], &[f64]),
         near: &[f64],
         t: f64,
         y: &mut [f64],
     ) {
-        self.project_along(surfaces, (near, length), t, y);
+        self.project_along((surfaces, allowed), (near, 1.0), t, y);
     }
 
     /// Projects a state on the near side of surfaces onto the invariants, so that no later projection leads over these
-    /// surfaces, or over one at which the energies jump, in a step of `length` s.
-    pub fn project_before(&self, (surfaces, length): (&[usize], f64), t: f64, y: &mut [f64]) {
+    /// surfaces, or over one at which the energies jump. The state may change by the errors `allowed`.
+    pub fn project_before(&self, (surfaces, allowed): (&[usize], &[f64]), t: f64, y: &mut [f64]) {
         let guards = 0..self.system.guard_count();
         let surfaces: Vec<usize> = guards
             .filter(|guard| surfaces.contains(guard) || self.system.has_energy_jump(*guard))
             .collect();
         let start = y.to_vec();
-        self.project_along(&surfaces, (&start, -length), t, y);
+        self.project_along((&surfaces, allowed), (&start, -1.0), t, y);
     }
 
     /// Projects a state. If the projection is not on one side of the surfaces, or does not stay there, replaces the state
-    /// by the nearest on the line from `start` along its rates whose projection is and stays there: up to `longest` s, beyond
-    /// the surfaces if it is positive and before them if it is negative.
+    /// by the nearest along the rates at `start` whose projection is and stays there, if there is one within the errors
+    /// `allowed`: beyond the surfaces if `direction` is 1, and before them if it is -1.
     fn project_along(
         &self,
-        surfaces: &[usize],
-        (start, longest): (&[f64], f64),
+        (surfaces, allowed): (&[usize], &[f64]),
+        (start, direction): (&[f64], f64),
         t: f64,
         y: &mut [f64],
     ) {
@@ -370,13 +397,13 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
             let mut surfaces = surfaces.iter();
             surfaces.all(|guard| {
                 let value = guards[*guard];
-                self.is_beyond(*guard, value) == (longest > 0.0)
+                self.is_beyond(*guard, value) == (direction > 0.0)
                     && value.abs() > MIN_DISTANCE_ROUNDINGS * roundings[*guard]
             })
         };
         let (mut state, mut rates) = (y.to_vec(), Vec::new());
         let mut length = t.next_up() - t;
-        while length <= longest.abs() {
+        loop {
             if !self.project(t, &mut state) {
                 return;
             }
@@ -388,8 +415,12 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
                 rates = vec![0.0; start.len()];
                 self.count_rates(t, start, &mut rates);
             }
-            for (entry, (from, rate)) in state.iter_mut().zip(start.iter().zip(&rates)) {
-                *entry = from + length.copysign(longest) * rate;
+            let mut moved = rates.iter().map(|rate| length * rate).zip(allowed);
+            if !moved.all(|(moved, allowed)| moved.abs() <= *allowed) {
+                return;
+            }
+            for (entry, (from, rate)) in state.iter_mut().zip(y.iter().zip(&rates)) {
+                *entry = from + direction * length * rate;
             }
             length *= 2.0;
         }

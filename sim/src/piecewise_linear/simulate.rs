@@ -71,7 +71,7 @@ impl Propagator {
     }
 
     /// Continues a motion to the time `until` (s), and adds the states at `samples` (s, ascending, after the time
-    /// reached), the events and the work to `trajectory`.
+    /// reached), the events and the work to `trajectory`. The progress and the steps are observed.
     ///
     /// # Errors
     /// Same as [`Propagator::simulate`].
@@ -81,11 +81,11 @@ impl Propagator {
         (until, samples): (f64, &[f64]),
         inputs: &HeldInputs,
         trajectory: &mut Trajectory,
-        progress: &mut dyn FnMut(f64),
+        observer: (&mut dyn FnMut(f64), Option<&mut StepObserver<'_>>),
     ) -> Result<(), ExactError> {
         let samples = Samples::new((motion.time(), until), samples)?;
         let request = (until, samples, None);
-        self.record_until(motion, request, inputs, (progress, None), trajectory)
+        self.record_until(motion, request, inputs, observer, trajectory)
     }
 
     fn record_until(

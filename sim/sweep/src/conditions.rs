@@ -1,31 +1,20 @@
 //! Initial state and inputs of the motions of a sweep.
 
-use eomgen_compiled_model::{Error, Instance, StateRequest, StepInputs};
+use eomgen_compiled_model::{Error, ExpressionInputs, Instance, StateRequest};
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::measure::Failure;
 
-/// Initial state and inputs of the motions of a sweep. Without requests these are the initial state of the
-/// specification and its default inputs.
-#[derive(Default)]
+/// Initial state and inputs of the motions of a sweep.
 pub struct Conditions {
     /// Requested initial state.
     pub state: StateRequest,
-    /// Requested inputs, if they are not definitions of the model.
-    pub inputs: InputSource,
-}
-
-/// Source of the inputs.
-#[derive(Default)]
-pub enum InputSource {
-    /// Default inputs of the model.
-    #[default]
-    Default,
-    /// Expressions that are constant between steps, and the parameters that are equal at all points, in
-    /// declared units.
-    Steps(StepInputs, Vec<(String, f64)>),
-    /// A record.
-    Record(HeldInputs),
+    /// Inputs given by expressions.
+    pub inputs: ExpressionInputs,
+    /// Parameters of these expressions that are equal at all points, in declared units.
+    pub settings: Vec<(String, f64)>,
+    /// Record of the other inputs. Without a record these have their default values.
+    pub record: Option<HeldInputs>,
 }
 
 /// Start of the motion at a point.
@@ -39,10 +28,7 @@ pub struct Start {
 impl Conditions {
     /// Returns the times of the record in s, if a record gives the inputs.
     pub fn record_times(&self) -> Option<&[f64]> {
-        match &self.inputs {
-            InputSource::Record(record) => Some(record.times()),
-            _ => None,
-        }
+        self.record.as_ref().map(HeldInputs::times)
     }
 
     /// Returns the start of every motion, in s.
@@ -58,7 +44,8 @@ impl Conditions {
 
     /// Returns true if inputs vary between samples, so that no motion is solved exactly.
     pub fn are_time_varying(&self) -> bool {
-        matches!(&self.inputs, InputSource::Record(record) if record.is_time_varying())
+        let record = self.record.as_ref();
+        self.inputs.are_time_varying() || record.is_some_and(HeldInputs::is_time_varying)
     }
 
     /// Returns the start of the motion at a point; `settings` are its varied parameters in declared units.
@@ -70,15 +57,14 @@ impl Conditions {
         instance: &Instance<'_>,
         settings: &[(&str, f64)],
     ) -> Result<Start, Failure> {
-        let inputs = match &self.inputs {
-            InputSource::Default => instance.default_inputs(),
-            InputSource::Steps(steps, set) => {
-                let set = set.iter().map(|(name, value)| (&**name, *value));
-                let all: Vec<(&str, f64)> = set.chain(settings.iter().copied()).collect();
-                steps.held(&all)?
-            }
-            InputSource::Record(record) => record.clone(),
+        let set = self.settings.iter();
+        let set = set.map(|(name, value)| (&**name, *value));
+        let all: Vec<(&str, f64)> = set.chain(settings.iter().copied()).collect();
+        let others = || match &self.record {
+            Some(record) => Ok::<_, Error>(record.clone()),
+            None => Ok(instance.default_inputs()),
         };
+        let inputs = self.inputs.at(&all, others)?;
         let (state, _) = instance
             .requested_state(&self.state)
             .map_err(|error| match error {

@@ -66,7 +66,7 @@ pub mod span;
 pub mod sweep;
 pub mod window;
 
-pub use conditions::{Conditions, InputSource};
+pub use conditions::Conditions;
 pub use error::SweepError;
 pub use folder::Folder;
 pub use grid::{Axis, Grid};

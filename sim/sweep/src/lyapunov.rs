@@ -87,14 +87,14 @@ impl<'a> Lyapunov<'a> {
 }
 
 impl Measure for Lyapunov<'_> {
-    fn describe(&self) -> Description {
+    fn describe(&self) -> Vec<Description> {
         let column = |(name, unit, about): (&str, &str, &str)| Column::new(name, unit, about);
         let (how, options) = self.method_and_options();
         let when = match self.times {
             Times::Until(_) => "over the second half of the time",
             Times::Periods(..) => "once per forcing period",
         };
-        Description {
+        vec![Description {
             name: "lyapunov".to_owned(),
             about: format!(
                 "largest Lyapunov exponent of the motion from the specification's initial state, by \
@@ -118,7 +118,7 @@ impl Measure for Lyapunov<'_> {
             .to_vec(),
             drawn: vec!["lambda_1".to_owned()],
             quantity: "lambda_1".to_owned(),
-        }
+        }]
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {

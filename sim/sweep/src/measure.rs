@@ -43,10 +43,10 @@ pub struct Description {
     pub quantity: String,
 }
 
-/// Measure at points of parameter space.
+/// Measures at points of parameter space, from one motion per point.
 pub trait Measure: Sync {
-    /// Returns the description, the same at every call.
-    fn describe(&self) -> Description;
+    /// Returns the descriptions, the same at every call.
+    fn describe(&self) -> Vec<Description>;
 
     /// Creates a worker, which measures on one thread.
     fn worker(&self) -> Box<dyn Worker + '_>;
@@ -55,7 +55,7 @@ pub trait Measure: Sync {
 /// Worker with its own memory. Its results must not depend on previous points.
 pub trait Worker {
     /// Measures at a point. `settings` are the varied parameters in their declared units. `out` has
-    /// one number per column of [`Description::columns`], NaN before the call.
+    /// one number per column of all descriptions, NaN before the call.
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
 }
 

@@ -1,9 +1,10 @@
-//! Measures `max:NAME`, `rms:NAME` and `final:NAME`, with the same samples as `simulate`.
+//! Measures `max:NAME` and `rms:NAME`, of the entire motion, and `final:NAME`, the last row of `simulate`.
 
 use std::collections::BTreeMap;
 
-use eomgen_analysis::time_history::{greatest, root_mean_square};
-use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
+use eomgen_compiled_model::{
+    CompiledModel, Instance, Measurement, Motion, Quantity, Request, Solver, Statistic,
+};
 use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::conditions::Conditions;
@@ -12,33 +13,36 @@ use crate::failure::finished_motion;
 use crate::measure::{Column, Description, Failure, Measure, Worker};
 use crate::window::{Times, Window};
 
-/// Number of sample intervals, the same as in `simulate`.
+/// Number of sample intervals of `final:NAME`, the same as in `simulate`.
 const SAMPLES_IN_WINDOW: usize = 1000;
 
 const TOLERANCE: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Statistic {
-    Maximum,
-    RootMeanSquare,
+enum Number {
+    Of(Statistic),
     Final,
 }
 
-impl Statistic {
-    const ALL: [Self; 3] = [Self::Maximum, Self::RootMeanSquare, Self::Final];
+impl Number {
+    const ALL: [Self; 3] = [
+        Self::Of(Statistic::Maximum),
+        Self::Of(Statistic::RootMeanSquare),
+        Self::Final,
+    ];
 
     fn name(self) -> &'static str {
         match self {
-            Self::Maximum => "max",
-            Self::RootMeanSquare => "rms",
+            Self::Of(Statistic::Maximum) => "max",
+            Self::Of(Statistic::RootMeanSquare) => "rms",
             Self::Final => "final",
         }
     }
 
     fn about(self) -> &'static str {
         match self {
-            Self::Maximum => "greatest",
-            Self::RootMeanSquare => "root mean square of",
+            Self::Of(Statistic::Maximum) => "greatest",
+            Self::Of(Statistic::RootMeanSquare) => "root mean square of",
             Self::Final => "last",
         }
     }
@@ -46,154 +50,185 @@ impl Statistic {
 
 /// Returns the names that [`OverTime::new`] accepts, with `NAME` for the quantity.
 pub fn measure_names() -> impl Iterator<Item = String> {
-    Statistic::ALL
+    Number::ALL
         .into_iter()
-        .map(|statistic| format!("{}:NAME", statistic.name()))
+        .map(|number| format!("{}:NAME", number.name()))
 }
 
-enum Quantity {
-    State(usize),
-    Observable(usize),
+/// Splits the name of a measure over time, for example `max:tip`.
+fn split_name(asked: &str) -> Option<(Number, &str)> {
+    let (number, name) = asked.split_once(':')?;
+    let mut numbers = Number::ALL.into_iter();
+    Some((numbers.find(|known| known.name() == number)?, name))
 }
 
-/// Statistic of a quantity at many parameter values.
+fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, SweepError> {
+    let Some((number, name)) = split_name(asked) else {
+        let message = format!("--measure {asked}: expected a measure over time");
+        return Err(SweepError::Request(message));
+    };
+    let (states, observables) = (model.state_names(), model.observable_names());
+    let place = |names: &[String]| names.iter().position(|known| known == name);
+    let (quantity, unit) = if let Some(place) = place(&observables) {
+        let unit = model.program().observables[place].unit.clone();
+        (Quantity::Observable(place), unit)
+    } else if let Some(place) = place(&states) {
+        (Quantity::State(place), model.state_units()[place].clone())
+    } else {
+        let known = observables.iter().chain(&states).map(String::as_str);
+        let hint = did_you_mean(name, known).unwrap_or_else(|| {
+            format!(
+                "it has {}",
+                [observables.join(", "), states.join(", ")].join(", ")
+            )
+        });
+        return Err(SweepError::Request(format!(
+            "--measure {asked}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
+            model.model().name
+        )));
+    };
+    Ok(NumberOfQuantity {
+        number,
+        quantity,
+        typical_size: model.typical_size(quantity),
+        name: name.to_owned(),
+        unit,
+    })
+}
+
+/// Numbers of quantities at many parameter values, from one motion per point.
 pub struct OverTime<'a> {
     model: &'a CompiledModel,
     conditions: &'a Conditions,
-    statistic: Statistic,
-    quantity: Quantity,
-    name: String,
-    unit: String,
+    numbers: Vec<NumberOfQuantity>,
     times: Times,
 }
 
+/// Number of a quantity.
+struct NumberOfQuantity {
+    number: Number,
+    quantity: Quantity,
+    /// Typical size of the quantity, SI.
+    typical_size: f64,
+    name: String,
+    unit: String,
+}
+
+impl NumberOfQuantity {
+    /// Returns the name on the command line.
+    fn asked(&self) -> String {
+        format!("{}:{}", self.number.name(), self.name)
+    }
+}
+
 impl<'a> OverTime<'a> {
-    /// Creates the measure `asked`, for example `max:tip`; `None` for another measure's name.
-    ///
-    /// # Errors
-    /// A quantity that the model does not have, or an invalid window.
-    pub fn new(
-        driven: (&'a CompiledModel, &'a Conditions),
-        asked: &str,
-        window: &Window,
-    ) -> Option<Result<Self, SweepError>> {
-        let (statistic, name) = asked.split_once(':')?;
-        let mut statistics = Statistic::ALL.into_iter();
-        let statistic = statistics.find(|known| known.name() == statistic)?;
-        Some(Self::build(driven, statistic, name, window))
+    /// Returns true for the name of a measure over time, for example `max:tip`.
+    pub fn accepts(asked: &str) -> bool {
+        split_name(asked).is_some()
     }
 
-    fn build(
+    /// Creates the measures with these names.
+    ///
+    /// # Errors
+    /// Another measure's name, a quantity that the model does not have, or an invalid window.
+    pub fn new(
         (model, conditions): (&'a CompiledModel, &'a Conditions),
-        statistic: Statistic,
-        name: &str,
+        asked: &[String],
         window: &Window,
     ) -> Result<Self, SweepError> {
-        let asked = format!("{}:{name}", statistic.name());
-        let (states, observables) = (model.state_names(), model.observable_names());
-        let place = |names: &[String]| names.iter().position(|known| known == name);
-        let (quantity, unit) = if let Some(place) = place(&observables) {
-            let unit = model.program().observables[place].unit.clone();
-            (Quantity::Observable(place), unit)
-        } else if let Some(place) = place(&states) {
-            (Quantity::State(place), model.state_units()[place].clone())
-        } else {
-            let known = observables.iter().chain(&states).map(String::as_str);
-            let hint = did_you_mean(name, known).unwrap_or_else(|| {
-                format!(
-                    "it has {}",
-                    [observables.join(", "), states.join(", ")].join(", ")
-                )
-            });
-            return Err(SweepError::Request(format!(
-                "--measure {asked}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
-                model.model().name
-            )));
-        };
-        let times = Times::from_window((model.model(), conditions), window, &asked, 1)?;
+        let numbers = asked.iter().map(|asked| find_number(model, asked));
+        let asked = asked.join(",");
         Ok(Self {
             model,
             conditions,
-            statistic,
-            quantity,
-            name: name.to_owned(),
-            unit,
-            times,
+            numbers: numbers.collect::<Result<_, _>>()?,
+            times: Times::from_window((model.model(), conditions), window, &asked, 1)?,
         })
     }
 
-    /// Returns the times of the samples in s, and the index of the first one in the window.
-    fn sample_times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
-        let (begin, end) = self.times.range(instance, self.conditions)?;
-        if let Some(record) = self.record_times() {
-            let times = record.iter().copied().take_while(|t| *t <= end);
-            return Ok((times.collect(), 0));
+    /// Returns the rows of `simulate` up to the end of the window, s.
+    fn row_times(&self, (begin, end): (f64, f64)) -> Vec<f64> {
+        if let (Times::Until(_), Some(record)) = (&self.times, self.conditions.record_times()) {
+            return record.iter().copied().take_while(|t| *t <= end).collect();
         }
         let start = self.conditions.start();
         let sample = |place: usize| match place {
             SAMPLES_IN_WINDOW => end,
             _ => begin + (end - begin) * place as f64 / SAMPLES_IN_WINDOW as f64,
         };
-        let looked_at = (0..=SAMPLES_IN_WINDOW).map(sample);
         let before = usize::from(begin > start);
-        let times = std::iter::repeat_n(start, before).chain(looked_at);
-        Ok((times.collect(), before))
+        let rows = (0..=SAMPLES_IN_WINDOW).map(sample);
+        std::iter::repeat_n(start, before).chain(rows).collect()
     }
 
-    /// Returns the times of a record that are sampled, as in `simulate`.
-    fn record_times(&self) -> Option<&[f64]> {
-        match self.times {
-            Times::Until(_) => self.conditions.record_times(),
-            Times::Periods(..) => None,
-        }
-    }
-
-    fn values_over_time(
-        &self,
-        instance: &Instance<'_>,
-        motion: &Motion,
-    ) -> Result<Vec<f64>, Failure> {
-        Ok(match self.quantity {
-            Quantity::State(place) => {
-                let states = motion.trajectory.states.iter();
-                states.map(|state| state[place]).collect()
-            }
-            Quantity::Observable(place) => {
-                let mut course = Vec::with_capacity(motion.trajectory.times.len());
-                instance.observe(motion, |_, _, observables| course.push(observables[place]))?;
-                course
-            }
-        })
+    /// Simulates and measures the motion at a point.
+    fn simulate(&self, settings: &[(&str, f64)]) -> Result<(Instance<'a>, Motion), Failure> {
+        let instance = self.model.with_parameters(settings)?;
+        let (begin, end) = self.times.range(&instance, self.conditions)?;
+        let start = self.conditions.start_at(&instance, settings)?;
+        let has_final = self.numbers.iter().any(|own| own.number == Number::Final);
+        let rows = match has_final {
+            true => self.row_times((begin, end)),
+            false => vec![self.conditions.start(), end],
+        };
+        let request = Request {
+            initial: &start.state,
+            times: &rows,
+            inputs: &start.inputs,
+            solver: Solver::Auto,
+            tolerance: TOLERANCE,
+            max_step: f64::INFINITY,
+            audit: false,
+        };
+        let measurements = self.numbers.iter().filter_map(|own| match own.number {
+            Number::Of(statistic) => Some(Measurement {
+                quantity: own.quantity,
+                statistic,
+                begin,
+                typical_size: own.typical_size,
+            }),
+            Number::Final => None,
+        });
+        let measurements: Vec<Measurement> = measurements.collect();
+        let motion = instance.simulate_measured(&request, &measurements, &mut |_| {});
+        Ok((instance, finished_motion(motion)?))
     }
 }
 
+/// Returns the state and the observables in the last row of a motion.
+fn last_row(instance: &Instance<'_>, motion: &Motion) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    let mut last = (Vec::new(), Vec::new());
+    instance.observe(motion, |_, state, observables| {
+        last.0.clear();
+        last.1.clear();
+        last.0.extend_from_slice(state);
+        last.1.extend_from_slice(observables);
+    })?;
+    Ok(last)
+}
+
 impl Measure for OverTime<'_> {
-    fn describe(&self) -> Description {
+    fn describe(&self) -> Vec<Description> {
         let option = |name: &str, value: String| (name.to_owned(), value);
-        let asked = format!("{}:{}", self.statistic.name(), self.name);
-        let about = format!("{} {}", self.statistic.about(), self.name);
-        let (sampled, samples) = match self.record_times() {
-            Some(_) => (
-                "at the samples of the record".to_owned(),
-                "record".to_owned(),
-            ),
-            None => (
-                format!("of {SAMPLES_IN_WINDOW} samples and one"),
-                (SAMPLES_IN_WINDOW + 1).to_string(),
-            ),
-        };
-        Description {
-            about: format!("{about}, {sampled}"),
-            options: BTreeMap::from_iter(self.times.options().into_iter().chain([
-                option("solver", Solver::Auto.name().to_owned()),
-                option("tolerance", format!("{TOLERANCE:?}")),
-                option("samples", samples),
-            ])),
-            columns: vec![Column::new(&asked, &self.unit, about)],
-            drawn: vec![asked.clone()],
-            quantity: self.name.clone(),
-            name: asked,
-        }
+        let numbers = self.numbers.iter().map(|own| {
+            let asked = own.asked();
+            let about = format!("{} {}", own.number.about(), own.name);
+            Description {
+                about: match own.number {
+                    Number::Of(_) => format!("{about}, over the entire motion"),
+                    Number::Final => about.clone(),
+                },
+                options: BTreeMap::from_iter(self.times.options().into_iter().chain([
+                    option("solver", Solver::Auto.name().to_owned()),
+                    option("tolerance", format!("{TOLERANCE:?}")),
+                ])),
+                columns: vec![Column::new(&asked, &own.unit, about)],
+                drawn: vec![asked.clone()],
+                quantity: own.name.clone(),
+                name: asked,
+            }
+        });
+        numbers.collect()
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {
@@ -203,27 +238,21 @@ impl Measure for OverTime<'_> {
 
 impl Worker for &OverTime<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let instance = self.model.with_parameters(settings)?;
-        let (times, first) = self.sample_times(&instance)?;
-        let start = self.conditions.start_at(&instance, settings)?;
-        let request = Request {
-            initial: &start.state,
-            times: &times,
-            inputs: &start.inputs,
-            solver: Solver::Auto,
-            tolerance: TOLERANCE,
-            max_step: f64::INFINITY,
-            audit: false,
+        let (instance, motion) = self.simulate(settings)?;
+        let is_final = |own: &NumberOfQuantity| own.number == Number::Final;
+        let (state, observables) = match self.numbers.iter().any(is_final) {
+            true => last_row(&instance, &motion)?,
+            false => (Vec::new(), Vec::new()),
         };
-        let motion = finished_motion(instance.simulate_until_stop(&request, &mut |_| {}))?;
-        let course = self.values_over_time(&instance, &motion)?;
-        let (times, course) = (&times[first..], &course[first..]);
-        out[0] = match self.statistic {
-            Statistic::Maximum => greatest(course),
-            Statistic::RootMeanSquare => root_mean_square(times, course),
-            Statistic::Final => course.last().copied(),
+        let mut measured = motion.measured.iter();
+        for (out, own) in out.iter_mut().zip(&self.numbers) {
+            let number = match (own.number, own.quantity) {
+                (Number::Of(_), _) => measured.next().copied().flatten(),
+                (Number::Final, Quantity::State(place)) => state.get(place).copied(),
+                (Number::Final, Quantity::Observable(place)) => observables.get(place).copied(),
+            };
+            *out = number.ok_or(Failure::Undefined)?;
         }
-        .ok_or(Failure::Undefined)?;
         Ok(())
     }
 }

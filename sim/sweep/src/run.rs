@@ -21,8 +21,12 @@ pub struct RunSummary {
     pub computed_points: usize,
 }
 
-/// Range of a measure's numbers at a point, and its worker.
-type WorkerColumns<'a> = (Range<usize>, Box<dyn Worker + 'a>);
+/// A worker with the ranges of its numbers at a point, one per description; the status follows each.
+struct WorkerColumns<'a> {
+    worker: Box<dyn Worker + 'a>,
+    ranges: Vec<Range<usize>>,
+    numbers: Vec<f64>,
+}
 
 /// Computes the missing chunks of a shard, with the plan's `measures` and `threads` threads (0: one
 /// per core). `progress` receives the numbers of computed points and of all points.
@@ -88,13 +92,21 @@ fn missing_chunks(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), 
 
 fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<WorkerColumns<'a>> {
     let mut start = 0;
-    let mut workers = Vec::with_capacity(measures.len());
-    for measure in measures {
-        let end = start + measure.describe().columns.len();
-        workers.push((start..end, measure.worker()));
-        start = end + 1;
-    }
-    workers
+    let workers = measures.iter().map(|measure| {
+        let descriptions = measure.describe().into_iter();
+        let ranges = descriptions.map(|own| {
+            let range = start..start + own.columns.len();
+            start = range.end + 1;
+            range
+        });
+        let ranges: Vec<Range<usize>> = ranges.collect();
+        WorkerColumns {
+            worker: measure.worker(),
+            numbers: vec![f64::NAN; ranges.iter().map(Range::len).sum()],
+            ranges,
+        }
+    });
+    workers.collect()
 }
 
 /// Returns the numbers of a chunk, point by point: each measure's, then its status.
@@ -108,12 +120,19 @@ fn compute_chunk(
     let mut numbers = vec![f64::NAN; points.len() * job.measured_count()];
     for (point, row) in points.zip(numbers.chunks_mut(job.measured_count())) {
         let settings = job.points().settings(point);
-        for (place, worker) in workers.iter_mut() {
-            let outcome = worker.measure(&settings, &mut row[place.clone()]);
-            if outcome.is_err() {
-                row[place.clone()].fill(f64::NAN);
+        for columns in workers.iter_mut() {
+            columns.numbers.fill(f64::NAN);
+            let outcome = columns.worker.measure(&settings, &mut columns.numbers);
+            let status = outcome.map_or_else(|failure| f64::from(failure.code()), |()| 0.0);
+            let mut found = &columns.numbers[..];
+            for range in &columns.ranges {
+                let (own, rest) = found.split_at(range.len());
+                if outcome.is_ok() {
+                    row[range.clone()].copy_from_slice(own);
+                }
+                row[range.end] = status;
+                found = rest;
             }
-            row[place.end] = outcome.map_or_else(|failure| f64::from(failure.code()), |()| 0.0);
         }
         point_is_done();
     }
@@ -131,8 +150,8 @@ mod tests {
     struct Reciprocal;
 
     impl Measure for Reciprocal {
-        fn describe(&self) -> Description {
-            job(2).plan().measures[0].clone()
+        fn describe(&self) -> Vec<Description> {
+            vec![job(2).plan().measures[0].clone()]
         }
 
         fn worker(&self) -> Box<dyn Worker + '_> {

@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use eomgen_compiled_model::{
-    CompiledModel, Error, Orders, StateRequest, StepInputs, split_assignments,
-    with_prescribed_inputs,
+    CompiledModel, Error, ExpressionInputs, InputTreatment, Orders, StateRequest,
+    list_undriven_inputs, split_assignments,
 };
+use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
-use eomgen_records::{Refusal, read_inputs};
+use eomgen_records::{RecordInputs, Refusal, read_inputs};
 
-use crate::conditions::{Conditions, InputSource};
+use crate::conditions::Conditions;
 use crate::error::SweepError;
 use crate::grid::{Axis, Grid};
 use crate::job::{Job, Plan, PlannedConditions};
@@ -89,15 +90,21 @@ impl Sweep {
         let at = |point: usize| [&set[..], &points.settings(point)].concat();
         with_parameters(declared, &at(points.count() - 1))?;
         let first = at(0);
-        let derived = |model: &Model| {
-            let orders = request.order.map_or(Orders::Declared, Orders::Uniform);
-            let model = with_parameters(model, &first)?;
-            CompiledModel::derive_without_inertia_check(model, orders)
+        let given = split_assignments("--input", &request.inputs)?;
+        let (model, inputs) = driven_model(declared, &given, &request, &first)?;
+        let driven: Vec<&str> = given.iter().map(Assignment::name).collect();
+        let (record, warnings) = match &request.record {
+            Some((dataset, name)) => {
+                let record = read_record(dataset, name, (model.model(), &driven))?;
+                (Some(record.inputs), record.warnings)
+            }
+            None => (None, list_undriven_inputs(model.model(), &driven)),
         };
-        let (model, inputs, warnings) = driven_model(declared, &request, &first, derived)?;
         let conditions = Conditions {
             state: StateRequest::parse("--state", &request.state)?,
             inputs,
+            settings: request.set.clone(),
+            record,
         };
         if let Some(until) = request.until {
             check_end(until, &conditions)?;
@@ -120,29 +127,53 @@ impl Sweep {
         })
     }
 
-    /// Returns the measures in the order of the request.
+    /// Returns the measures in the order of the request. Consecutive measures over time share the motion of each point.
     ///
     /// # Errors
     /// A measure that is unknown or not applicable.
     pub fn measures(&self) -> Result<Vec<Box<dyn Measure + '_>>, SweepError> {
-        let names = self.request.measures.iter();
-        names.map(|name| self.measure(name)).collect()
+        let mut measures: Vec<Box<dyn Measure + '_>> = Vec::new();
+        let mut names = &self.request.measures[..];
+        while let Some(name) = names.first() {
+            let over_time = names
+                .iter()
+                .take_while(|name| OverTime::accepts(name))
+                .count();
+            measures.push(match over_time {
+                0 => self.measure(name)?,
+                count => self.measure_over_time(&names[..count])?,
+            });
+            names = &names[over_time.max(1)..];
+        }
+        Ok(measures)
+    }
+
+    /// Returns the time window of a measure.
+    fn window(&self) -> Window {
+        match self.request.until.or(self.conditions.end()) {
+            Some(end) => Window::Until(end),
+            None => Window::Periods {
+                forcing: self.request.frequency.clone(),
+                span: self.request.span,
+            },
+        }
+    }
+
+    fn measure_over_time(&self, names: &[String]) -> Result<Box<dyn Measure + '_>, SweepError> {
+        let driven = (&self.model, &self.conditions);
+        Ok(Box::new(OverTime::new(driven, names, &self.window())?))
     }
 
     fn measure(&self, name: &str) -> Result<Box<dyn Measure + '_>, SweepError> {
         let lines = self.points.axes().iter();
         let lines = lines.filter(|axis| axis.count > 1).count();
-        let (span, forcing) = (self.request.span, self.request.frequency.clone());
+        let (model, conditions) = (&self.model, &self.conditions);
+        if name == "lyapunov" {
+            return Ok(Box::new(Lyapunov::new(model, conditions, &self.window())?));
+        }
         let until = self.request.until.or(self.conditions.end());
-        let window = match until {
-            Some(end) => Window::Until(end),
-            None => Window::Periods {
-                forcing: forcing.clone(),
-                span,
-            },
-        };
         let section = match (&self.request.section, until) {
-            (None, _) => Section::Forcing(forcing),
+            (None, _) => Section::Forcing(self.request.frequency.clone()),
             (Some(event), Some(until)) => Section::Crossing {
                 event: event.clone(),
                 until,
@@ -153,15 +184,8 @@ impl Sweep {
                 )));
             }
         };
-        let (model, conditions) = (&self.model, &self.conditions);
-        if name == "lyapunov" {
-            return Ok(Box::new(Lyapunov::new(model, conditions, &window)?));
-        }
-        if let Some(measure) = Poincare::new((model, conditions), name, &section, span, lines == 1)
-        {
-            return Ok(Box::new(measure?));
-        }
-        let measure = OverTime::new((model, conditions), name, &window);
+        let span = self.request.span;
+        let measure = Poincare::new((model, conditions), name, &section, span, lines == 1);
         Ok(Box::new(measure.ok_or_else(|| unknown_measure(name))??))
     }
 
@@ -171,11 +195,8 @@ impl Sweep {
     /// Repeated measures.
     pub fn job(&self, measures: &[Box<dyn Measure + '_>]) -> Result<Job, SweepError> {
         let record = self.request.record.as_ref();
-        let record = record.zip(self.conditions.record_times());
-        let record = record.map(|((_, name), _)| {
-            let InputSource::Record(inputs) = &self.conditions.inputs else {
-                return name.clone();
-            };
+        let record = record.zip(self.conditions.record.as_ref());
+        let record = record.map(|((_, name), inputs)| {
             format!("{name} {}", Source::new("", format!("{inputs:?}")).hash())
         });
         let plan = Plan::new(
@@ -185,7 +206,7 @@ impl Sweep {
             &self.request.settings(),
             columns(self.model.model(), &self.points)?,
             &self.points,
-            measures.iter().map(|measure| measure.describe()).collect(),
+            measures.iter().flat_map(|own| own.describe()).collect(),
         );
         Job::new(plan.with_conditions(PlannedConditions {
             inputs: self.request.inputs.clone(),
@@ -218,60 +239,33 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model, Err
         .map_err(|error| Diagnostics::from_one(model.source.clone(), error.diagnostic()).into())
 }
 
-/// Derives the model with its inputs, as `simulate` does: inputs with steps are held between these if all motions can
-/// be solved exactly then, or if controllers may measure them; other expressions become definitions. Returns warnings about inputs too.
+/// Derives the model with the inputs of expressions, as `simulate` does: controllers may measure the inputs.
 fn driven_model(
     declared: &Model,
+    given: &[Assignment],
     request: &SweepRequest,
     first: &[(&str, f64)],
-    derived: impl Fn(&Model) -> Result<CompiledModel, Error>,
-) -> Result<(CompiledModel, InputSource, Vec<String>), Error> {
-    let prescribed = split_assignments("--input", &request.inputs)?;
-    let steps = match request.record {
-        None => StepInputs::find(declared, &prescribed, first)?,
-        Some(_) => None,
+) -> Result<(CompiledModel, ExpressionInputs), Error> {
+    let treatment = InputTreatment {
+        remain: !declared.controllers.is_empty(),
+        may_hold: request.record.is_none(),
     };
-    if let Some(steps) = steps {
-        let model = derived(declared)?;
-        if model.piecewise_linear().is_ok() || !declared.controllers.is_empty() {
-            let set = request.set.clone();
-            return Ok((model, InputSource::Steps(steps, set), Vec::new()));
-        }
-    }
-    let model = derived(&with_prescribed_inputs(declared.clone(), &prescribed)?)?;
-    let Some((dataset, name)) = &request.record else {
-        let warnings = undriven_inputs(model.model());
-        return Ok((model, InputSource::Default, warnings));
-    };
-    let (inputs, warnings) = read_record(dataset, name, model.model())?;
-    Ok((model, InputSource::Record(inputs), warnings))
+    ExpressionInputs::derive(declared.clone(), given, (treatment, first), |model| {
+        let orders = request.order.map_or(Orders::Declared, Orders::Uniform);
+        let model = with_parameters(&model, first)?;
+        CompiledModel::derive_without_inertia_check(model, orders)
+    })
 }
 
 fn read_record(
     dataset: &Path,
     name: &str,
-    model: &Model,
-) -> Result<(eomgen_sim::inputs::HeldInputs, Vec<String>), Error> {
-    read_inputs(dataset, name, model).map_err(|refusal| match refusal {
+    (model, driven): (&Model, &[&str]),
+) -> Result<RecordInputs, Error> {
+    read_inputs(dataset, name, (model, driven)).map_err(|refusal| match refusal {
         Refusal::Description(found) => Error::Specification(found),
         Refusal::Record(message) => Error::Request(message),
     })
-}
-
-/// Returns a warning for every input that is not driven.
-fn undriven_inputs(model: &Model) -> Vec<String> {
-    let values = model.typical_inputs(0.0).unwrap_or_default();
-    let own = model.inputs.iter().zip(values);
-    let own = own
-        .enumerate()
-        .filter(|(place, (input, _))| input.rate_of.is_none() && !model.is_controlled(*place));
-    own.map(|(_, (input, value))| {
-        let name = &input.name;
-        format!(
-            "input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."
-        )
-    })
-    .collect()
 }
 
 fn unknown_measure(name: &str) -> SweepError {

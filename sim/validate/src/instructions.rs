@@ -64,6 +64,9 @@ impl InstructionBounds {
     pub fn of_file(file: &Path, command: &str) -> Result<Self, String> {
         let words: Vec<&str> = command.split_whitespace().collect();
         let (program, options) = words.split_first().ok_or("the command is blank")?;
+        if file.exists() && !file.is_file() {
+            return Err(format!("{}: it is not a file", file.display()));
+        }
         let text = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
         let file = std::path::absolute(file).map_err(|error| error.to_string())?;
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;

@@ -6,7 +6,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::mechanics::outputs::derive_outputs;
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
-use eomgen_codegen::program::lowering::lower_with_outputs;
+use eomgen_codegen::program::lowering::{lower_controllers, lower_with_outputs};
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::{Variant as DerivedVariant, derive_equations};
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -164,8 +164,10 @@ fn with_subject<R>(
     };
     let emitted = emitted_source(model, outputs, sources);
     let program = build_program(model, order, &parameters, outputs);
+    let program = program.map(|program| with_controllers(model, program));
     let casadi_program = match &sources.casadi {
-        Some(casadi) => build_program(model, order, &parameters, &casadi.outputs()),
+        Some(casadi) => build_program(model, order, &parameters, &casadi.outputs())
+            .map(|program| with_controllers(model, program)),
         None => Err("no functions for CasADi were emitted".to_owned()),
     };
     let unit_program = build_program(model, order, &parameters, &[]);
@@ -303,4 +305,11 @@ fn build_program(
     let mut equations = derive_equations(model, &orders).map_err(|error| error.message)?;
     let formed = derive_outputs(&mut equations, outputs).map_err(|error| error.to_string())?;
     Ok(lower_with_outputs(model, &equations, parameters, &formed))
+}
+
+/// Adds the controllers of a model to its program. At an order without a mode that one measures there are none, and
+/// nothing is emitted.
+fn with_controllers(model: &Model, mut program: Program) -> Program {
+    program.controllers = lower_controllers(model, &program).unwrap_or_default();
+    program
 }

@@ -7,6 +7,7 @@ mod effects_files;
 mod effects_found;
 mod effects_placed;
 mod empirical;
+mod equivalent_faults;
 mod feedback;
 mod friction_that_stops;
 mod friction_under_load;

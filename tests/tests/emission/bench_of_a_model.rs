@@ -5,10 +5,41 @@ use std::path::Path;
 use std::process::Command;
 
 use eomgen_tests::models::{path, project};
-use eomgen_tests::program::{run_accepted, text};
+use eomgen_tests::program::{compiled_library, run_accepted, text};
 
-fn run_bench(folder: &Path, options: &[&str]) -> String {
+/// Returns the version of Criterion in `Cargo.lock`.
+fn criterion_version() -> String {
+    let lock = std::fs::read_to_string(project().join("Cargo.lock")).expect("Cargo.lock");
+    let (_, entry) = lock
+        .split_once("name = \"criterion\"\nversion = \"")
+        .expect("Criterion is locked");
+    entry.split('"').next().unwrap_or_default().to_owned()
+}
+
+/// Writes a package that re-exports the compiled Criterion. Compiling Criterion with its dependencies again would take
+/// 40 s of processor time.
+fn write_criterion(folder: &Path) {
+    std::fs::create_dir_all(folder.join("src")).expect("a folder");
+    let manifest = format!(
+        "[package]\nname = \"criterion\"\nversion = \"{}\"\nedition = \"2024\"\n",
+        criterion_version()
+    );
+    std::fs::write(folder.join("Cargo.toml"), manifest).expect("written");
+    std::fs::write(
+        folder.join("src/lib.rs"),
+        "pub use compiled_criterion::*;\n",
+    )
+    .expect("written");
+}
+
+fn run_bench(folder: &Path, criterion: &Path, options: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let compiled = compiled_library("criterion");
+    let dependencies = compiled.parent().expect("a folder");
+    let flags = [
+        format!("--extern=compiled_criterion={}", compiled.display()),
+        format!("-Ldependency={}", dependencies.display()),
+    ];
     let short = [
         "--warm-up-time",
         "0.05",
@@ -16,9 +47,16 @@ fn run_bench(folder: &Path, options: &[&str]) -> String {
         "0.1",
         "--sample-size",
         "10",
+        "--nresamples",
+        "1000",
     ];
     let output = Command::new(cargo)
-        .args(["bench", "--offline", "--quiet", "--"])
+        .args(["bench", "--offline", "--quiet", "--config"])
+        .arg(format!(
+            "patch.crates-io.criterion.path={:?}",
+            criterion.display().to_string()
+        ))
+        .arg("--")
         .args(options)
         .args(short)
         .current_dir(folder)
@@ -27,6 +65,7 @@ fn run_bench(folder: &Path, options: &[&str]) -> String {
             concat!(env!("CARGO_TARGET_TMPDIR"), "/bench_of_a_model"),
         )
         .env("CRITERION_HOME", folder.join("criterion"))
+        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\u{1f}"))
         // Only the result matters here, not the speed.
         .env("CARGO_PROFILE_BENCH_OPT_LEVEL", "0")
         .output()
@@ -49,7 +88,13 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
         folder.path().join("Cargo.lock"),
     )
     .expect("a file can be copied");
-    let first = run_bench(folder.path(), &["--save-baseline", "before"]);
+    let criterion = tempfile::tempdir().expect("a folder");
+    write_criterion(criterion.path());
+    let first = run_bench(
+        folder.path(),
+        criterion.path(),
+        &["--save-baseline", "before"],
+    );
     for name in [
         "rates",
         "observables",
@@ -65,7 +110,7 @@ fn generated_benchmark_runs_and_compares_with_baseline() {
     run_accepted(&generate);
     let kept = std::fs::read_to_string(&manifest).expect("a manifest");
     assert_eq!(kept, own, "an existing manifest is not replaced");
-    let second = run_bench(folder.path(), &["--baseline", "before"]);
+    let second = run_bench(folder.path(), criterion.path(), &["--baseline", "before"]);
     assert!(second.contains("change:"), "{second}");
 }
 

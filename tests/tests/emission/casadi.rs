@@ -203,6 +203,18 @@ fn family_certifies_functions_for_casadi() {
         said.contains("the certificate covers swing_casadi.c"),
         "{said}"
     );
+    // A certificate of C is no certificate of Rust.
+    std::fs::write(folder.path().join("lib.rs"), "pub struct Both;\n").expect("written");
+    let said = expect(
+        folder.path(),
+        2,
+        &["verify", "lib.rs", "models/both/certificate.json"],
+    );
+    let cause = "the certificate covers both.c and both_casadi.c, no Rust";
+    assert!(
+        said.contains(cause) && !said.contains("was edited"),
+        "{said}"
+    );
     let file = folder.path().join("models/swing/swing_casadi.c");
     let text = std::fs::read_to_string(&file).expect("a file");
     std::fs::write(&file, text + "\n").expect("written");

@@ -431,6 +431,51 @@ fn wrong_families_are_rejected_with_their_place() {
 }
 
 #[test]
+fn variants_that_declare_the_same_name_in_c_are_rejected() {
+    let pairs = [
+        (
+            "prefix = \"arm\"\n",
+            "prefix = \"arm_default\"\n",
+            "arm_default_parameters",
+        ),
+        (
+            "prefix = \"arm\"\nwith = [\"guard_rates\"]\n",
+            "prefix = \"arm_guard\"\n",
+            "arm_guard_rates",
+        ),
+        (
+            "prefix = \"arm\"\nwith = [\"guard_rates\"]\npackaging = \"header-only\"\n",
+            "prefix = \"arm_guard\"\n",
+            "arm_guard_rates",
+        ),
+        ("prefix = \"arm\"\n", "prefix = \"arm_rigid\"\n", ""),
+    ];
+    for (first, second, name) in pairs {
+        let folder = folder();
+        let variant = |name: &str, more: &str| {
+            format!(
+                "[[variant]]\nname = \"{name}\"\nspec = \"beam.toml\"\norder = 1\ntargets = [\"c99\"]\n{more}"
+            )
+        };
+        let text = format!(
+            "[family]\nname = \"f\"\n{}{}",
+            variant("a", first),
+            variant("b", second)
+        );
+        std::fs::write(folder.path().join("family.toml"), &text).expect("written");
+        let (status, said) = family(folder.path(), &[]);
+        if name.is_empty() {
+            assert_eq!(status, Some(0), "{text}\n{said}");
+            continue;
+        }
+        assert_eq!(status, Some(2), "{text}\n{said}");
+        let expected = format!("both declare `{name}` in C; give one of them another prefix");
+        assert!(said.contains(&expected), "{text}\n{said}");
+        assert!(!folder.path().join("models").exists(), "{text}");
+    }
+}
+
+#[test]
 fn folder_of_another_family_is_kept() {
     let copy = copy();
     edit(&copy.path().join("family.toml"), "\"beams\"", "\"others\"");

@@ -63,3 +63,49 @@ fn flow_between_chambers_passes_equal_pressures() {
     }
     assert_agrees_with_scipy(flows[0], Solver::Auto);
 }
+
+/// A tank fills from a reservoir and leaks through an orifice: 2 s ds/dt = k (a - s/3) for s = sqrt(q).
+const TANK: &str = r#"
+[model]
+name = "tank"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 0.3, unit = "m^(1/2)/s" }
+h = { value = 1, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+[states]
+q = { unit = "m", rate = "k*sqrt(h) - k/3*FLOW", initial = START }
+[kinetic]
+m = "1/2*m*dot(x)^2"
+"#;
+
+#[test]
+fn tank_fills_from_empty() {
+    for flow in [
+        "sqrt(max(q, 0))",
+        "sqrt(abs(q))",
+        "sign(q)*sqrt(abs(q))",
+        "sqrt(q)*above(q)",
+    ] {
+        for start in ["0", "1e-12", "1e-5"] {
+            let text = TANK.replace("FLOW", flow).replace("START", start);
+            let model = CompiledModel::from_text("tank.toml", &text, Orders::Declared)
+                .unwrap_or_else(|error| panic!("{flow}: {error}"));
+            let run = model.with_declared_parameters().expect("parameters");
+            let inputs = run.default_inputs();
+            for solver in [Solver::Auto, Solver::Rk, Solver::Radau, Solver::Adams] {
+                let motion = run
+                    .simulate(run.initial_state(), &[0.0, 1.0], &inputs, solver)
+                    .unwrap_or_else(|error| panic!("{flow}, {start}, {solver}: {error}"));
+                let q = motion.trajectory.states[1][2];
+                let time = |q: f64| -6.0 * q.sqrt() - 18.0 * (1.0 - q.sqrt() / 3.0).ln();
+                let taken = (time(q) - time(start.parse().expect("a number"))) / 0.3;
+                assert!(
+                    (taken - 1.0).abs() < 1e-7,
+                    "{flow}, {start}, {solver}: {q} {taken}"
+                );
+            }
+        }
+    }
+}

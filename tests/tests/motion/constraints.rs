@@ -314,6 +314,112 @@ fn folding_linkage_stops_and_names_constraints() {
     }
 }
 
+/// Returns two cranks that a rod of the length of their ground connects, as one constraint.
+fn cranks_with_a_rod(angle: &str, rate: f64) -> String {
+    format!(
+        r#"
+[model]
+name = "cranks"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+l = {{ value = 1, unit = "m" }}
+d = {{ value = 2, unit = "m" }}
+[coordinates]
+p = {{ unit = "rad", initial = "{angle}", initial_rate = {rate} }}
+q = {{ unit = "rad", initial = "{angle}", initial_rate = {rate} }}
+[definitions]
+rod = "[d + l*cos(q) - l*cos(p), l*sin(q) - l*sin(p)]"
+[kinetic]
+cranks = "1/2*m*l^2*(dot(p)^2 + dot(q)^2)"
+[constraints]
+rod = {{ zero = "(dot(rod, rod) - d^2)/d" }}
+"#
+    )
+}
+
+/// Rounding separates the angles at the flat position, so that the constraint keeps its rank there
+/// and turns fast.
+#[test]
+fn rod_between_cranks_stops_motion_at_its_fold_at_any_tolerance() {
+    for rate in [-0.5, 1.0, 3.0, 8.0] {
+        let model = compile(&cranks_with_a_rod("1", rate));
+        let run = model.with_declared_parameters().expect("an instance");
+        let flat = if rate < 0.0 {
+            0.0
+        } else {
+            std::f64::consts::PI
+        };
+        for (solver, tolerance) in [
+            (Solver::Rk, 1e-4),
+            (Solver::Rk, 1e-6),
+            (Solver::Rk, 1e-9),
+            (Solver::Rk, 1e-12),
+            (Solver::Radau, 1e-4),
+            (Solver::Radau, 1e-9),
+        ] {
+            let request = Request {
+                initial: run.initial_state(),
+                times: &[0.0, 1.0, 2.0, 3.0],
+                inputs: &run.default_inputs(),
+                solver,
+                tolerance,
+                max_step: f64::INFINITY,
+                audit: false,
+            };
+            let motion = run
+                .simulate_until_stop(&request, &mut |_| {})
+                .expect("a motion");
+            let place = format!("{rate} {solver} {tolerance}");
+            let stopped = motion
+                .early_stop
+                .unwrap_or_else(|| panic!("{place}: passed"));
+            assert!(
+                stopped
+                    .reason
+                    .contains("the constraint `rod` has no effect"),
+                "{place}: {}",
+                stopped.reason
+            );
+            let t = stopped.t.expect("a time");
+            assert!((t - (flat - 1.0) / rate).abs() < 1e-5, "{place}: {t}");
+        }
+    }
+}
+
+#[test]
+fn folded_position_has_no_motion_and_no_linearisation() {
+    for angle in ["0", "pi", "3.141592653589793", "-pi", "1e-9"] {
+        let model = compile(&cranks_with_a_rod(angle, 0.0));
+        let run = model.with_declared_parameters().expect("an instance");
+        let state = run.initial_state();
+        let inputs = run.default_inputs();
+        let moved = run.simulate(state, &[0.0, 1.0], &inputs, Solver::Rk);
+        let moved = moved.err().unwrap_or_else(|| panic!("{angle}: moves"));
+        let point = Point {
+            t: 0.0,
+            state,
+            inputs: &[],
+        };
+        let linear = run.linearise(point).err();
+        let linear = linear.unwrap_or_else(|| panic!("{angle}: linear"));
+        for said in [moved.to_string(), linear.to_string()] {
+            assert!(
+                said.contains("the constraint `rod` has no effect"),
+                "{angle}: {said}"
+            );
+        }
+    }
+    let model = compile(&cranks_with_a_rod("1e-3", 0.0));
+    let run = model.with_declared_parameters().expect("an instance");
+    let state = run.initial_state();
+    let point = Point {
+        t: 0.0,
+        state,
+        inputs: &[],
+    };
+    assert!(run.linearise(point).is_ok());
+}
+
 /// The speed is high enough to step over the flat position; two such linkages fold at the same
 /// time.
 #[test]
@@ -696,8 +802,13 @@ fn bicycle_has_published_eigenvalues() {
         };
         let linear = run.linearise(point).unwrap();
         let degrees = state.len() / 2;
-        let modes =
-            constrained_modes(&linear.a, &linear.constraint_matrix(&model), degrees).unwrap();
+        let modes = constrained_modes(
+            &linear.a,
+            &linear.constraint_matrix(&model),
+            degrees,
+            model.typical_sizes(),
+        )
+        .unwrap();
         for (re, im) in expected {
             let near = modes
                 .iter()

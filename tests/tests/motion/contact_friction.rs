@@ -720,3 +720,245 @@ fn slips_match_dense_algebra_for_rigid_and_flexible_machines() {
         assert_slips_match_dense_algebra(&model.unwrap_or_else(|error| panic!("{error}")));
     }
 }
+
+/// A wheel with dry friction F_c in its bearing on a rough floor, and a torque M from t_0 on.
+const WHEEL: &str = r#"
+[model]
+name = "wheel"
+[parameters]
+m = { value = 2, unit = "kg" }
+I = { value = 0.01, unit = "kg*m^2" }
+r = { value = 0.1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+F_c = { value = 0.05, unit = "N m" }
+mu = { value = 0.5, unit = "1" }
+M = { value = 1, unit = "N m" }
+t_0 = { value = 0.1, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+phi = { unit = "rad" }
+[kinetic]
+T = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*I*dot(phi)^2"
+[potential]
+weight = "m*g*y"
+[forces]
+drive = { on = "phi", value = "M*above(t - t_0) - F_c*sign(dot(phi))" }
+[impacts]
+floor = { when = "y", restitution = 0, friction = "mu", slip = "dot(x) - r*dot(phi)" }
+"#;
+
+#[test]
+fn wheel_with_bearing_friction_rests_rolls_or_slips() {
+    let model = compile(WHEEL);
+    let (m, inertia, r, friction) = (2.0, 0.01, 0.1, 0.05);
+    for torque in [0.04, 0.051, 0.1, 1.0, 1.4, 1.6, 3.0, -1.0, -3.0_f64] {
+        for mu in [0.1, 0.5] {
+            let left = torque.signum() * (torque.abs() - friction).max(0.0);
+            let rolling = left * r / (inertia + m * r * r);
+            let limit = torque.signum() * mu * G;
+            let (a, alpha) = match rolling.abs() <= limit.abs() {
+                true => (rolling, rolling / r),
+                false => (limit, (left - limit * m * r) / inertia),
+            };
+            for solver in SOLVERS {
+                let settings = [("M", torque), ("mu", mu)];
+                let end = final_state(&model, &settings, &[0.0; 6], 1.0, solver);
+                for (value, right) in [
+                    (end[0], 0.405 * a),
+                    (end[2], 0.405 * alpha),
+                    (end[3], 0.9 * a),
+                    (end[5], 0.9 * alpha),
+                ] {
+                    let error = (value - right).abs();
+                    assert!(
+                        error < 1e-9 * (1.0 + right.abs()),
+                        "{solver} {torque} {mu}: {end:?} {right}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn dry_friction_and_contact_friction_add_their_limits() {
+    let text = |friction: &str, impact: &str| {
+        let force = format!(
+            r#"push = {{ on = "x", value = "f*sin(w*t)" }}
+friction = {{ on = "x", value = "-{friction}*sign(dot(x))" }}"#
+        );
+        let all = block(r#"x = { unit = "m" }"#, &force, impact);
+        let c = "F_c = { value = 2, unit = \"N\" }\n[coordinates]";
+        all.replace("[coordinates]", c).replace(", }", " }")
+    };
+    let both = compile(&text("F_c", r#"friction = "mu", slip = "dot(x)""#));
+    let one = compile(&text("(F_c + mu*m*g)", ""));
+    for limit in [0.5, 2.0, 6.0, 8.0] {
+        for speed in [0.0, 1.0, -0.5] {
+            let settings = [("F_c", limit), ("f", 15.0), ("w", 2.0)];
+            let initial = [0.0, 0.0, speed, 0.0];
+            for solver in SOLVERS {
+                let times: Vec<f64> = (0..=20).map(|step| f64::from(step) * 0.5).collect();
+                let [both, one] = [&both, &one]
+                    .map(|model| simulate(model, &settings, (&initial, &times), solver));
+                let states = both.trajectory.states.iter().zip(&one.trajectory.states);
+                for (both, one) in states {
+                    let gap = (both[0] - one[0]).abs().max((both[2] - one[2]).abs());
+                    assert!(gap < 1e-7, "{solver} {limit} {speed}: {both:?} {one:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A mass on a rough floor is pushed against a smooth wall, with dry friction along z; `slip` is that on the floor.
+#[test]
+fn dry_friction_at_a_smooth_wall_rests_on_a_rough_floor() {
+    let text = |slip: &str| {
+        format!(
+            r#"
+[model]
+name = "corner"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+F = {{ value = 20, unit = "N" }}
+F_c = {{ value = 3, unit = "N" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+mu = {{ value = 0.3, unit = "1" }}
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+z = {{ unit = "m" }}
+[kinetic]
+T = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
+[potential]
+weight = "m*g*y"
+[forces]
+push = {{ on = "z", value = "-F" }}
+friction = {{ on = "z", value = "-F_c*sign(dot(z))" }}
+[impacts]
+floor = {{ when = "y", restitution = 0, friction = "mu", slip = "{slip}" }}
+wall = {{ when = "z", restitution = 0 }}
+"#
+        )
+    };
+    let g_mu = 0.3 * G;
+    for (slip, along_z) in [("dot(x)", 3.0), ("dot(z)", 3.0 + g_mu)] {
+        let model = compile(&text(slip));
+        for push in [5.0, 7.0, 20.0] {
+            for z in [0.0, 0.5] {
+                let a = push - along_z;
+                // Without a wall in reach.
+                let moved = 0.5 * a.max(0.0) * 0.04;
+                for solver in SOLVERS {
+                    let initial = [0.0, 0.0, z, 0.4, 0.0, 0.0];
+                    let times = [0.0, 0.2, 2.0];
+                    let motion = simulate(&model, &[("F", push)], (&initial, &times), solver);
+                    let states = &motion.trajectory.states;
+                    let end = if a > 0.0 { 0.0 } else { z };
+                    let early = if z > 0.0 { z - moved } else { 0.0 };
+                    assert!(
+                        (states[1][2] - early).abs() < 1e-9,
+                        "{slip} {push}: {states:?}"
+                    );
+                    assert!(
+                        (states[2][2] - end).abs() < 1e-9,
+                        "{slip} {push}: {states:?}"
+                    );
+                    assert!(states[2][5].abs() < 1e-12, "{slip} {push}: {states:?}");
+                    let x = match slip {
+                        "dot(x)" => 0.16 / (2.0 * g_mu),
+                        _ => 0.8,
+                    };
+                    assert!((states[2][0] - x).abs() < 1e-9, "{slip} {push}: {states:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Blocks stick to each other on a floor that shakes sideways and slide on it together, as one block.
+#[test]
+fn stack_on_a_shaking_floor_moves_as_one_block() {
+    let text = |blocks: usize| {
+        let mut text = String::from(
+            r#"
+[model]
+name = "shaken"
+[parameters]
+h = { value = 0.1, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+mu = { value = 0.3, unit = "1" }
+b = { value = 0.005, unit = "m" }
+w = { value = 30, unit = "1/s" }
+m = { value = 1, unit = "kg" }
+[definitions]
+side = "b*sin(w*t)"
+"#,
+        );
+        let mut add = |header: &str, entry: &dyn Fn(usize) -> String| {
+            text.push_str(header);
+            (1..=blocks).for_each(|block| text.push_str(&entry(block)));
+        };
+        add("[coordinates]\n", &|i| {
+            format!(
+                "x{i} = {{ unit = \"m\" }}\ny{i} = {{ unit = \"m\", initial = \"{}*h\" }}\n",
+                i - 1
+            )
+        });
+        add("[kinetic]\n", &|i| {
+            format!("k{i} = \"1/2*m*(dot(x{i})^2 + dot(y{i})^2)\"\n")
+        });
+        add("[potential]\n", &|i| format!("w{i} = \"m*g*y{i}\"\n"));
+        add("[impacts]\n", &|i| {
+            let (when, slip) = match i {
+                1 => ("y1".to_owned(), "dot(x1) - dot(side)".to_owned()),
+                _ => (
+                    format!("y{i} - y{} - h", i - 1),
+                    format!("dot(x{i}) - dot(x{})", i - 1),
+                ),
+            };
+            format!(
+                "c{i} = {{ when = \"{when}\", restitution = 0, friction = \"{i}*mu\", slip = \"{slip}\" }}\n"
+            )
+        });
+        text
+    };
+    let one = compile(&text(1));
+    for blocks in [2, 3, 5] {
+        let stack = compile(&text(blocks));
+        for (b, mu) in [(0.005, 0.3), (0.01, 0.3), (0.01, 0.8), (0.02, 0.2)] {
+            for solver in SOLVERS {
+                for tolerance in [1e-3, 1e-9] {
+                    let end = |model: &CompiledModel| {
+                        let run = model.with_parameters(&[("b", b), ("mu", mu)]).unwrap();
+                        let inputs = run.default_inputs();
+                        let request = Request {
+                            initial: run.initial_state(),
+                            times: &[0.0, 3.0],
+                            inputs: &inputs,
+                            solver,
+                            tolerance,
+                            max_step: f64::INFINITY,
+                            audit: false,
+                        };
+                        let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
+                        let stop = motion.early_stop.as_ref().map(|stop| &stop.reason);
+                        assert!(stop.is_none(), "{solver} {blocks} {b} {mu}: {stop:?}");
+                        motion.trajectory.final_state
+                    };
+                    let (right, found) = (end(&one), end(&stack));
+                    let allowed = 1e-7_f64.max(0.1 * tolerance);
+                    for block in 0..blocks {
+                        let gap = (found[2 * block] - right[0]).abs();
+                        assert!(
+                            gap < allowed,
+                            "{solver} {blocks} {b} {mu} {tolerance}: {gap:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

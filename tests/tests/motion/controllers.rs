@@ -174,6 +174,68 @@ fn pid_on_a_mass_matches_its_recursion_in_every_solver() {
     }
 }
 
+/// A held force does the work of its value times the way between two changes; its jumps at samples do no work.
+#[test]
+fn energy_audit_of_a_controlled_motion_has_the_work_of_the_held_force() {
+    let (mut work, mut e_i, mut sample) = (0.0, 0.01, 0.0);
+    let (mut before, mut last) = (Mass::START, Mass::START);
+    follow(|mass| {
+        work += before.u * (mass.x - before.x);
+        mass.u = 30.0 * (1.0 - mass.x) - 15.0 * mass.v + 20.0 * e_i;
+        e_i += 0.05 * (1.0 - mass.x);
+        (before, last) = (*mass, *mass);
+        sample += 1.0;
+        sample * 0.05
+    });
+    for (solver, within) in SOLVERS {
+        let (_, motion) = simulate(&(MASS.to_owned() + PID), solver).expect("a motion");
+        let audit = motion.audit.expect("an audit");
+        let found = [audit.work, audit.energy_change];
+        for (found, right) in found.into_iter().zip([work, last.v * last.v]) {
+            assert!(
+                (found - right).abs() < 100.0 * within,
+                "{solver}: {audit:?}, expected {right}"
+            );
+        }
+        let nothing = (0, None, 0.0);
+        let missed = (
+            audit.fault_count,
+            &audit.exclusion_reason,
+            audit.unaudited_energy,
+        );
+        assert_eq!(
+            missed,
+            (nothing.0, &nothing.1, nothing.2),
+            "{solver}: {audit:?}"
+        );
+        assert!(audit.evaluations > 30, "{solver}: {audit:?}");
+    }
+    let without = simulate(&(MASS.to_owned() + PID), Solver::Fixed);
+    assert!(without.is_err() || without.is_ok_and(|(_, motion)| motion.audit.is_none()));
+}
+
+/// A controlled mass between a wall and dry friction: samples fall into sticking and next to impacts.
+#[test]
+fn energy_audit_of_a_controlled_motion_with_friction_and_impacts_is_silent() {
+    let plant = MASS
+        .replace("[parameters]\n", "[parameters]\nd = { value = 0.6, unit = \"m\" }\n")
+        .replace(
+            "[observables]",
+            "friction = { on = \"x\", value = \"-u_max/4*sign(dot(x))\" }\n[potential]\nspring = \"1/2*k_p*x^2\"\n\
+             [impacts]\nwall = { when = \"d - x\", restitution = 0.6 }\n[observables]",
+        );
+    for (solver, _) in &SOLVERS[1..] {
+        let (_, motion) = simulate(&(plant.clone() + PID), *solver).expect("a motion");
+        assert!(!motion.trajectory.events.is_empty());
+        let audit = motion.audit.expect("an audit");
+        assert_eq!(audit.fault_count, 0, "{solver}: {audit:?}");
+        assert!(
+            audit.unexplained_energy().abs() < 1e-6,
+            "{solver}: {audit:?}"
+        );
+    }
+}
+
 #[test]
 fn delayed_offset_quantised_loop_matches_its_recursion() {
     let controller = PID
@@ -420,6 +482,20 @@ fn output_that_is_not_finite_stops_the_motion_with_its_time() {
     );
 }
 
+#[test]
+fn period_with_too_many_samples_is_rejected() {
+    let controller = PID.replace("value = 50, unit = \"ms\"", "value = 1, unit = \"ps\"");
+    assert!(controller.contains("\"ps\""));
+    for (solver, _) in SOLVERS {
+        let error = simulate(&(MASS.to_owned() + &controller), solver).err();
+        let message = error.expect("too many samples").to_string();
+        assert!(
+            message.contains("1e-12 s, needs 1.5e12 samples to the end; at most 2e7"),
+            "{message}"
+        );
+    }
+}
+
 fn program(arguments: &[&str]) -> (Option<i32>, String) {
     let output = std::process::Command::new(program::path())
         .args(arguments)
@@ -520,7 +596,7 @@ fn commands_run_the_loop_or_say_that_they_do_not() {
         ),
         (
             vec!["generate", &spec, "--target", "casadi", "--out", &other],
-            "are not emitted",
+            "do not sample the controllers",
         ),
         (vec!["linearise", &spec], "are not part of its equations"),
     ] {

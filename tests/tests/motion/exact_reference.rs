@@ -99,10 +99,10 @@ impl Reference {
         growth
     }
 
-    /// Returns the deviations of the series in doubles: the largest of three runs.
+    /// Returns the deviations of the series in doubles: the largest of five runs.
     fn rounding(&self) -> Growth {
         let mut rounding = Growth::default();
-        for power in [10, 17, 18] {
+        for power in [10, 11, 12, 13, 14] {
             let run = Run::<f64>::simulate(self.case, &self.times, 0.5_f64.powi(power));
             assert_eq!(run.switch_counts(), self.run.switch_counts(), "switches");
             let growth = self.growth(run.states.iter().map(|state| &state.positions[..]));

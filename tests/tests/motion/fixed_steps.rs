@@ -77,6 +77,11 @@ fn models_with_events_and_times_between_steps_are_rejected() {
             "t = 0.01 s lies between two steps of 0.003 s",
         ),
         (
+            shipped("pendulum"),
+            "--step 1e7 --interval 0.5",
+            "t = 0.5 s lies between two steps of 10000000.0 s",
+        ),
+        (
             regulator,
             "--step 4e-4 --interval 0.1",
             "t = 0.001 s lies between two steps of 0.0004 s",

@@ -87,6 +87,52 @@ fn simulate_with_all_solvers(model: &CompiledModel, initial: &[f64], times: &[f6
     motions.collect()
 }
 
+/// Rounding of an impact must not take energy: some masses and speeds round up.
+#[test]
+fn elastic_bodies_keep_their_energy() {
+    for (mass, height) in [(0.17, 0.8), (1.0, 0.8), (2.3, 0.31), (1e-3, 4.7)] {
+        let text = format!(
+            r#"
+[model]
+name = "elastic_bodies"
+[parameters]
+m = {{ value = {mass}, unit = "kg" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+w = {{ value = 0.788, unit = "m" }}
+[coordinates]
+x = {{ unit = "m", initial = {height} }}
+y = {{ unit = "m", initial = 0.3, initial_rate = -1.3032 }}
+[kinetic]
+T = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+V = "m*g*x"
+[impacts]
+floor = {{ when = "x", restitution = 1 }}
+left = {{ when = "y", restitution = 1 }}
+right = {{ when = "w - y", restitution = 1 }}
+"#
+        );
+        let model = CompiledModel::from_text("elastic.toml", &text, Orders::Declared)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let times: Vec<f64> = (0..=10).map(|k| 20.0 * f64::from(k)).collect();
+        let motion = simulate_with(&model, &[], &times);
+        let (g, width) = (9.81_f64, 0.788);
+        let period = 2.0 * (2.0 * height / g).sqrt();
+        for (t, state) in times.iter().zip(&motion.trajectory.states) {
+            let since = (t + 0.5 * period) % period;
+            let x = 0.5 * g * since * (period - since);
+            let along = (0.3 - 1.3032 * t).rem_euclid(2.0 * width);
+            let y = along.min(2.0 * width - along);
+            let place = format!("{mass} {height} {t}: {state:?}, right {x} {y}");
+            assert!((state[0] - x).abs() < 1e-5 * height, "{place}");
+            assert!((state[1] - y).abs() < 1e-8, "{place}");
+            let energy = 0.5 * state[2] * state[2] + g * state[0];
+            assert!((energy - g * height).abs() < 1e-7 * g * height, "{place}");
+            assert!((state[3].abs() - 1.3032).abs() < 1e-9, "{place}");
+        }
+    }
+}
+
 #[test]
 fn ball_starting_on_floor_rests_or_bounces() {
     let model = compile_example("bouncing_ball", Orders::Declared);
@@ -1065,5 +1111,57 @@ stop = { when = "d - b", restitution = "e" }
         let state = &motion.trajectory.states[1];
         assert!((state[1] - 0.05).abs() < 1e-9, "{state:?}");
         assert!(state[2].abs() < 1e-6 && state[3].abs() < 1e-6, "{state:?}");
+    }
+}
+
+/// The force of a spring between two bodies equals the limit of the friction between them up to rounding. They move on
+/// together, and a ball beside them bounces as if it were alone.
+#[test]
+fn ball_bounces_beside_friction_at_its_limit() {
+    let text = r#"
+[model]
+name = "limit"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 70, unit = "N/m" }
+d = { value = 0.2, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+e = { value = 0.5, unit = "1" }
+[coordinates]
+a = { unit = "m" }
+b = { unit = "m", initial = "d" }
+y = { unit = "m", initial = 1 }
+[kinetic]
+T = "1/2*m*(dot(a)^2/2 + dot(b)^2 + dot(y)^2)"
+[potential]
+spring = "1/2*k*(b - a)^2"
+weight = "m*g*y"
+[forces]
+friction = { on = "b - a", value = "-k*d*sign(dot(b) - dot(a))" }
+[impacts]
+floor = { when = "y", restitution = "e" }
+"#;
+    let model = CompiledModel::from_text("limit.toml", text, Orders::Declared).unwrap();
+    let times: Vec<f64> = (0..=50).map(|step| f64::from(step) * 0.1).collect();
+    for (k, d, speed) in [(70.0, 0.2, 0.37), (100.0, 0.2, 1.0), (20.0, 0.13, 0.37)] {
+        for e in [0.35, 0.429, 0.466, 0.522, 0.668, 0.8, 0.906, 0.928] {
+            let run = model
+                .with_parameters(&[("k", k), ("d", d), ("e", e)])
+                .unwrap();
+            for solver in [Solver::Rk, Solver::Radau] {
+                let initial = [0.0, d, 1.0, speed, speed, 0.0];
+                let motion = run.simulate(&initial, &times, &run.default_inputs(), solver);
+                let motion = motion.unwrap_or_else(|error| panic!("{solver} {k} {e}: {error}"));
+                for (t, state) in times.iter().zip(&motion.trajectory.states) {
+                    let right = [speed * t, d + speed * t, height_after_drop(9.81, e, *t)];
+                    for (value, right) in state.iter().zip(right) {
+                        assert!(
+                            (value - right).abs() < 1e-8,
+                            "{solver} {k} {e} {t}: {state:?}"
+                        );
+                    }
+                }
+            }
+        }
     }
 }

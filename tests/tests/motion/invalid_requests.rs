@@ -12,6 +12,8 @@ k = { value = 10, unit = "N/m" }
 x = { unit = "m", initial = 0.1 }
 [inputs]
 u = { unit = "N" }
+[definitions]
+pull = "k*x"
 [kinetic]
 T = "1/2*m*dot(x)^2"
 [potential]
@@ -69,6 +71,13 @@ fn input_that_depends_on_the_motion_is_rejected_at_its_place() {
         );
         assert!(message.contains("[controllers]"), "{message}");
     }
+    let (status, message) = simulate(&["--input", "u=2*pull"]);
+    assert_eq!(status, Some(2), "{message}");
+    assert!(
+        message.contains("the definition `pull` depends on the motion"),
+        "{message}"
+    );
+    assert!(message.contains("--input:1:5"), "{message}");
 }
 
 #[test]
@@ -77,13 +86,23 @@ fn wrong_units_of_inputs_are_rejected_at_their_places() {
         ("u=5 mm", 5, "`u` is in N, not in mm"),
         ("u=5 foo", 5, "unknown unit `foo`"),
         ("u=(2 + 1) 2", 11, "unknown unit `2`"),
-        ("u=k*0.1 N", 3, "this value already has a unit"),
+        ("u=k*0.1 N", 3, "this value already has a unit, "),
+        ("u=2*k", 3, "`u` is in N, but this value is in "),
+        ("u=3*m/m", 3, "`u` is in N, but this value is a pure number"),
     ] {
         let (status, message) = simulate(&["--input", input]);
         assert_eq!(status, Some(2), "{input}: {message}");
         assert!(message.contains(expected), "{input}: {message}");
         let place = format!("--input:1:{column}");
         assert!(message.contains(&place), "{input}: {message}");
+    }
+}
+
+#[test]
+fn unit_after_a_pure_number_of_parameters_is_that_of_the_input() {
+    for input in ["u=2*m/m kN", "u=2e3*m/m N", "u=2 kN"] {
+        let (status, message) = simulate(&["--input", input]);
+        assert_eq!(status, Some(0), "{input}: {message}");
     }
 }
 

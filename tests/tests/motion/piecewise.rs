@@ -7,6 +7,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_codegen::variant::Variant;
+use eomgen_compiled_model::{CompiledModel, Instance, Orders, Request, Solver};
 use eomgen_model_spec::source::Source;
 use eomgen_sim::ode::Trajectory;
 use eomgen_sim::piecewise_linear::ExactError;
@@ -422,3 +423,85 @@ fn main() {
     }
 }
 "#;
+
+/// Returns a mass on a spring with a force over its position.
+fn mass_with(spring: &str, force: &str) -> CompiledModel {
+    let text = format!(
+        r#"
+[model]
+name = "mass"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+b = {{ value = 0.3, unit = "m" }}
+K = {{ value = 200, unit = "N/m" }}
+k = {{ value = 500, unit = "N/m" }}
+F = {{ value = 20, unit = "N" }}
+[coordinates]
+x = {{ unit = "m" }}
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2 + {spring}"
+[forces]
+push = {{ on = "x", value = "{force}" }}
+"#
+    );
+    CompiledModel::from_text("mass.toml", &text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The force jumps at the surface of the outer function, which steps must not see before they reach it.
+#[test]
+fn nested_functions_move_as_one_function_at_any_tolerance() {
+    let (no_spring, no_force) = ("0*k*x^2", "0*F");
+    for (nested, plain) in [
+        (
+            ("1/2*K*max(x, min(x + 5*b, b))^2", no_force),
+            ("1/2*K*max(x, b)^2", no_force),
+        ),
+        (
+            ("F*max(abs(x) - b, 0)", no_force),
+            ("F*(max(x - b, 0) + max(-x - b, 0))", no_force),
+        ),
+        (
+            (no_spring, "-F*above(min(x - b, x - b/2))"),
+            (no_spring, "-F*above(x - b)"),
+        ),
+    ] {
+        let (spring, force) = nested;
+        let [nested, plain] = [nested, plain].map(|(spring, force)| mass_with(spring, force));
+        let [nested, plain] =
+            [&nested, &plain].map(|model| model.with_declared_parameters().expect("values"));
+        let times: Vec<f64> = (0..=20).map(|k| 0.1 * f64::from(k)).collect();
+        // Some amplitudes pass the surface slowly, which enlarges errors: the plain machine has the same.
+        for amplitude in [-0.300_044_321_32, -0.301, -0.33, -0.5] {
+            for (solver, tolerance) in [
+                (Solver::Rk, 1e-6),
+                (Solver::Rk, 1e-9),
+                (Solver::Rk, 1e-12),
+                (Solver::Radau, 1e-9),
+                (Solver::Adams, 1e-9),
+            ] {
+                let motion = |run: &Instance<'_>| {
+                    let request = Request {
+                        initial: &[amplitude, 0.0],
+                        times: &times,
+                        inputs: &run.default_inputs(),
+                        solver,
+                        tolerance,
+                        max_step: f64::INFINITY,
+                        audit: true,
+                    };
+                    run.simulate_until_stop(&request, &mut |_| {})
+                        .expect("a motion")
+                };
+                let (found, right) = (motion(&nested), motion(&plain));
+                let off = difference(&found.trajectory.states, &right.trajectory.states, 1e-3);
+                let place = format!("{spring} {force} {amplitude} {solver} {tolerance}");
+                assert!(off < 1e4 * tolerance + 1e-7, "{place}: {off:e}");
+                let audit = found.audit.expect("an audit");
+                assert_eq!(audit.fault_count, 0, "{place}");
+            }
+        }
+    }
+}

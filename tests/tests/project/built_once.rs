@@ -1,4 +1,4 @@
-//! The program and the Python package build their dependencies with the same features as the tests
+//! The program, the Python package and the studies build their dependencies with the same features as the tests
 //! and benches. So `cargo run`, `cargo test --workspace` and `pip install ./python`, run in
 //! sequence by `.ci/run`, compile nothing twice.
 
@@ -23,7 +23,7 @@ fn packages(chosen: &[&str]) -> BTreeSet<String> {
     text.lines().map(line).collect()
 }
 
-const PROGRAMS: [&str; 2] = ["eomgen-cli", "eomgen-python"];
+const PROGRAMS: [&str; 3] = ["eomgen-cli", "eomgen-python", "eomgen-studies"];
 
 /// Asserts that each package, with the dependencies along these edges, has the same features as in
 /// the tests.

@@ -62,6 +62,38 @@ fn output_in_place_of_a_non_file_is_rejected() {
     assert_eq!(std::fs::read(&file).expect("the file"), b"kept");
 }
 
+#[test]
+fn inputs_are_never_replaced_by_outputs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = folder.path().join("model.toml");
+    let text = std::fs::read(spec("pendulum")).expect("a specification");
+    std::fs::write(&model, &text).expect("written");
+    let (input, out) = (path_text(&model), format!("--out={}", path_text(&model)));
+    let beside = folder.path().join(".").join("model.toml");
+    let beside = path_text(&beside);
+    let extended = folder.path().join("extended.toml");
+    std::fs::write(&extended, "[model]\nextends = \"model.toml\"\n").expect("written");
+    for arguments in [
+        &["simulate", &input, "--until", "1", "--out", &beside][..],
+        &["linearise", &input, &out],
+        &["validate", &input, "--out", &input],
+        &["linearise", &path_text(&extended), "--out", &input],
+    ] {
+        let message = run_rejected(arguments);
+        assert!(message.contains("is an input of this command"), "{message}");
+        assert_eq!(std::fs::read(&model).expect("the file"), text);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn endless_files_are_rejected() {
+    let message = run_rejected(&["identify", "/dev/zero"]);
+    assert!(message.contains("not a file"), "{message}");
+    let message = run_rejected(&["instructions", "/dev/zero", "--cc", "cc"]);
+    assert!(message.contains("not a file"), "{message}");
+}
+
 #[cfg(unix)]
 #[test]
 fn devices_pipes_and_links_are_preserved() {

@@ -312,7 +312,7 @@ fn invalid_parameter_assignments_are_rejected() {
         ("b_sp=2*b_pp", "did you mean `b_pr`"),
         ("b_sp=nan", "finite"),
         ("b_sp=inf", "finite"),
-        ("k_sp=1e400", "finite"),
+        ("k_sp=1e400", "too large"),
         ("b_sp=-1e-6", "at least 0 m"),
         ("l=0", "greater than"),
         ("z_s=0", "division by 0"),

@@ -2,6 +2,7 @@
 
 mod discovery_runs;
 mod driven_simulations;
+mod free_decays;
 mod measured_quantities;
 mod parquet;
 mod refused_records;

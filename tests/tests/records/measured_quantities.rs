@@ -3,6 +3,7 @@
 //! integrate Newton's and Coulomb's laws with small steps.
 
 use eomgen_tests::program;
+use eomgen_tests::program::run_on_dataset;
 use serde_json::Value;
 
 const OSCILLATOR: &str = r#"
@@ -219,5 +220,78 @@ fn both_encoders_of_a_joint_are_proportional_channels() {
         if effect == Some("sensor_gain") {
             assert_eq!(effects[0]["on"], "motor");
         }
+    }
+}
+
+/// Compares records of x'' = -x' - 100 x, from two positions, with the oscillator that the
+/// specification starts from 0.1 m.
+fn compare_free_vibrations(train: f64, test: f64, channel: &str, initial: &str) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    };
+    let frequency = 99.75_f64.sqrt();
+    for (name, first) in [("train.csv", train), ("test.csv", test)] {
+        let row = |sample: u32| {
+            let t = f64::from(sample) * 0.01;
+            let phase = frequency * t;
+            let shape = phase.cos() + 0.5 / frequency * phase.sin();
+            // Rounding to 0.1 mm is the noise of the sensor.
+            let y = first * (-0.5 * t).exp() * shape;
+            format!("{t:.2},{:.4}\n", y)
+        };
+        let rows: String = (0..500).map(row).collect();
+        write(name, &format!("t,y\n{rows}"));
+    }
+    write(
+        "model.toml",
+        "[model]\nname = \"oscillator\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+         k = { value = 100, unit = \"N/m\" }\nc = { value = 1, unit = \"N s/m\" }\n\
+         [coordinates]\nx = { unit = \"m\", initial = 0.1 }\n[kinetic]\nmass = \"1/2*m*dot(x)^2\"\n\
+         [potential]\nspring = \"1/2*k*x^2\"\n[dissipation]\ndamper = \"1/2*c*dot(x)^2\"\n\
+         [observables]\ny = { value = \"x\", unit = \"m\" }\n",
+    );
+    write(
+        "dataset.toml",
+        &format!(
+            "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n[time]\ncolumn = \"t\"\n\
+         unit = \"s\"\n[channels.{channel}]\ncolumn = \"y\"\nunit = \"m\"\nnoise = 3e-5\n\
+         [initial]\n{initial}\n"
+        ),
+    );
+    let paths = ["model.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
+    run_on_dataset("compare", [&paths[0], &paths[1], &paths[2]])
+}
+
+#[test]
+fn free_vibration_from_the_other_side_is_no_wrong_sign() {
+    let found = compare_free_vibrations(-0.1, -0.07, "y", "state = \"estimate\"");
+    assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
+}
+
+#[test]
+fn initial_state_that_a_record_contradicts_is_named() {
+    // (first position of the records, initial state, contradicted records)
+    let cases = [
+        ([0.1, 0.05], "state = \"rest\"", vec!["test[0]"]),
+        ([0.1, 0.1001], "state = \"rest\"", vec![]),
+        (
+            [0.05, 0.0502],
+            "state = \"given\"\nvalues = { x = 0.05 }",
+            vec![],
+        ),
+        (
+            [0.05, -0.04],
+            "state = \"given\"\nvalues = { x = 0.07 }",
+            vec!["train[0]", "test[0]"],
+        ),
+        ([0.05, -0.04], "state = \"estimate\"", vec![]),
+    ];
+    for ([train, test], initial, contradicted) in cases {
+        let found = compare_free_vibrations(train, test, "x", initial);
+        let notes = found["notes"].as_array().expect("notes").iter();
+        let notes = notes.filter_map(|note| note.as_str()?.split_once(": `x` begins at"));
+        let records: Vec<&str> = notes.map(|(record, _)| record).collect();
+        assert_eq!(records, contradicted, "{initial}: {found:#}");
     }
 }

@@ -299,6 +299,117 @@ fn columns_with_wrong_sign_or_unit_are_reported() {
 }
 
 #[test]
+fn known_gain_of_a_sensor_is_part_of_the_expected_column() {
+    let measured = Measured::stage(0.0);
+    let specification = std::fs::read_to_string(eomgen_tests::models::path("emps"));
+    let specification = specification.expect("the stage");
+    for gain in [-1.0, 57.295_779_513] {
+        let scaled = |turn: f64| -> String {
+            let text = record(0.0, turn);
+            let lines = text.lines().enumerate().map(|(place, line)| {
+                let (head, cell) = line.rsplit_once(',').expect("three cells");
+                match cell.parse::<f64>() {
+                    Ok(value) if place > 0 => format!("{head},{:?}\n", gain * value),
+                    _ => format!("{line}\n"),
+                }
+            });
+            lines.collect()
+        };
+        measured.write("train.csv", scaled(0.0).as_bytes());
+        measured.write("test.csv", scaled(1.0).as_bytes());
+        let noise = format!("noise = {:e}\n", 1e-6 * gain.abs());
+        let known = format!("{noise}gain = {{ mean = {gain}, sd = 0 }}\n");
+        let in_dataset = DESCRIPTION.replacen("noise = 1e-6\n", &known, 1);
+        measured.write("dataset.toml", in_dataset.as_bytes());
+        let (result, _) = measured.run_command("compare", "out");
+        assert_eq!(
+            result["verdict"], "no_significant_gap",
+            "{gain}: {result:#}"
+        );
+        // The same gain in the specification, and the opposite one.
+        let unstated = DESCRIPTION.replacen("noise = 1e-6\n", &noise, 1);
+        measured.write("dataset.toml", unstated.as_bytes());
+        for (sign, is_right) in [(1.0, true), (-1.0, false)] {
+            let sensors = format!("\n[sensors]\nq = {{ gain = {} }}\n", sign * gain);
+            measured.write("stage.toml", (specification.clone() + &sensors).as_bytes());
+            let mut arguments = measured.arguments("compare", "out");
+            arguments[1] = measured.file("stage.toml").display().to_string();
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let run = eomgen_tests::program::run(&arguments);
+            let said = String::from_utf8_lossy(&run.stderr);
+            assert_eq!(run.status.success(), is_right, "{gain}, {sign}: {said}");
+            assert_eq!(said.contains("has the opposite sign"), !is_right, "{said}");
+        }
+    }
+    let zero = DESCRIPTION.replacen(
+        "noise = 1e-6\n",
+        "noise = 1e-6\ngain = { mean = 0, sd = 0 }\n",
+        1,
+    );
+    measured.write("dataset.toml", zero.as_bytes());
+    let message = measured.rejection();
+    assert!(message.contains("a gain cannot be 0"), "{message}");
+    assert!(message.contains("dataset.toml:19:"), "{message}");
+}
+
+#[test]
+fn empty_cells_of_an_input_split_a_record_like_missing_rows() {
+    let measured = Measured::stage(0.0);
+    let emptied = |count: usize| {
+        change_column(1, 1, |place, cell| {
+            match (200..200 + count).contains(&place) {
+                true => String::new(),
+                false => cell.to_owned(),
+            }
+        })
+    };
+    measured.write("train.csv", emptied(30).as_bytes());
+    let (result, warned) = measured.run_command("compare", "out");
+    assert_eq!(result["verdict"], "no_significant_gap", "{result:#}");
+    let note = "train[0]: 30 samples of `force` are missing between 0.990000 s and 1.145000 s: the parts before and \
+                after are used as separate records";
+    assert!(warned.contains(note), "{warned}");
+    measured.write("train.csv", emptied(4).as_bytes());
+    let (_, warned) = measured.run_command("compare", "few");
+    assert!(warned.contains("the last known value is held"), "{warned}");
+    assert!(!warned.contains("separate records"), "{warned}");
+}
+
+#[test]
+fn simulation_across_missing_rows_of_a_record_is_warned_of() {
+    let measured = Measured::stage(0.0);
+    let text = record(0.0, 0.0);
+    let lines = text.lines().enumerate();
+    let kept = lines.filter(|(line, _)| !(200..230).contains(line));
+    let kept: String = kept.map(|(_, line)| format!("{line}\n")).collect();
+    let mut arguments = measured.arguments("simulate", "out.csv");
+    arguments[2].insert_str(0, "--record=");
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    for (rows, is_warned) in [(kept, true), (text.clone(), false)] {
+        measured.write("train.csv", rows.as_bytes());
+        let run = eomgen_tests::program::run(&arguments[..5]);
+        let said = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.success(), "{said}");
+        let warning = "30 samples are missing between 0.990000 s and 1.145000 s: the inputs in between are unknown";
+        assert_eq!(said.contains(warning), is_warned, "{said}");
+    }
+}
+
+#[test]
+fn output_folder_that_is_a_file_is_rejected_before_the_fit() {
+    let measured = Measured::stage(0.0);
+    measured.write("taken", b"kept");
+    for command in ["compare", "discover"] {
+        let arguments = measured.arguments(command, "taken");
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = eomgen_tests::program::run_rejected(&arguments);
+        assert!(message.contains("is not a folder"), "{message}");
+        assert!(!message.contains("fitting"), "{message}");
+    }
+    assert_eq!(measured.read("taken"), "kept");
+}
+
+#[test]
 fn huge_records_are_rejected_before_reading() {
     let measured = Measured::stage(0.0);
     let file = std::fs::File::create(measured.file("train.csv")).expect("a file");

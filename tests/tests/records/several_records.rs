@@ -81,7 +81,10 @@ fn search_stopped_by_time_limit_writes_partial_results() {
     program::run_accepted(&arguments);
     let found: Value = serde_json::from_str(&measured.read("cut/discovery.json")).expect("JSON");
     assert_eq!(found["verdict"], "unexplained");
-    assert_eq!(found["unfinished"], "no effect was fitted before the limit");
+    assert_eq!(
+        found["unfinished"],
+        "no fit of an effect was complete at the limit"
+    );
     let summary = found["summary"].as_str().expect("a sentence");
     assert!(summary.contains("reached its time limit"), "{summary}");
     assert!(

@@ -4,6 +4,7 @@ mod broken_specs;
 mod clipped_models;
 mod features;
 mod latex;
+mod macro_errors;
 mod ranges;
 mod reference_pages;
 mod right_models;

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use eomgen_model_spec::ids::FieldId;
-use eomgen_model_spec::model::Model;
+use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::shared::{SharedExpressions, is_leaf, own_length};
 use super::symbol::{Index, Symbol};
@@ -177,7 +177,10 @@ impl<'a> Reader<'a> {
     fn operation(&self, id: NodeId) -> Formula {
         match self.graph.operation(id) {
             Operation::Constant(bits) => Formula::Number(bits.value()),
-            Operation::Parameter(index) => Formula::from_name(&self.model.parameters[*index].name),
+            Operation::Parameter(index) => match self.unit_factor(id) {
+                Some(factor) => Formula::Number(factor),
+                None => Formula::from_name(&self.model.parameters[*index].name),
+            },
             Operation::Coordinate(index) => {
                 Formula::Symbol(self.variable(Variable::Coordinate(*index)))
             }
@@ -219,6 +222,20 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Returns the value in SI of a parameter that only gives a unit to numbers; these are shown in SI.
+    fn unit_factor(&self, id: NodeId) -> Option<f64> {
+        let Operation::Parameter(index) = self.graph.operation(id) else {
+            return None;
+        };
+        match &self.model.parameters[*index] {
+            parameter if !parameter.is_unit_factor() => None,
+            parameter => match parameter.value {
+                ParameterValue::Number(value) => Some(value),
+                ParameterValue::Expression(_) => None,
+            },
+        }
+    }
+
     fn variable(&self, variable: Variable) -> Symbol {
         let model = self.model;
         let modes = |field: FieldId| {
@@ -237,7 +254,11 @@ impl<'a> Reader<'a> {
     }
 
     fn sum(&self, terms: &[(Bits, NodeId)]) -> Formula {
-        let term = |(factor, id): &(Bits, NodeId)| match self.graph.as_constant(*id) {
+        let term = |(factor, id): &(Bits, NodeId)| match self
+            .graph
+            .as_constant(*id)
+            .or_else(|| self.unit_factor(*id))
+        {
             Some(constant) => Term {
                 factor: factor.value() * constant,
                 of: None,
@@ -252,7 +273,10 @@ impl<'a> Reader<'a> {
 
     fn product(&self, factors: &[(NodeId, i32)]) -> Formula {
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        for &(id, exponent) in factors {
+        let is_shown = |(id, _): &&(NodeId, i32)| self.unit_factor(*id) != Some(1.0);
+        let shown: Vec<_> = factors.iter().filter(is_shown).copied().collect();
+        let is_reduced = shown.len() < factors.len();
+        for (id, exponent) in shown {
             let (id, exponent) = match self.graph.operation(id) {
                 Operation::PivotReciprocal(pivot) => (*pivot, -exponent),
                 _ => (id, exponent),
@@ -266,7 +290,10 @@ impl<'a> Reader<'a> {
                 }
             });
         }
-        Formula::Quotient { above, below }
+        match is_reduced && above.len() == 1 && below.is_empty() {
+            true => above.swap_remove(0),
+            false => Formula::Quotient { above, below },
+        }
     }
 
     fn matrix_operation(&self, operation: &Operation) -> Formula {

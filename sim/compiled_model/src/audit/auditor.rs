@@ -31,6 +31,15 @@ const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 const EXACT_TOLERANCE: f64 = 1e-9;
 
+/// Work of a step, J.
+struct Balance {
+    work: f64,
+    /// Error of the quadrature, J.
+    uncertainty: f64,
+    /// Energy change that errors of the states can explain, J.
+    allowed: f64,
+}
+
 /// Energy auditor of a motion in progress.
 #[derive(Debug)]
 pub(crate) struct Auditor {
@@ -43,13 +52,27 @@ pub(crate) struct Auditor {
     sizes: Vec<f64>,
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
+    /// Power at the end of the last step, W.
+    power: f64,
     /// Energy change at impacts since that step, J.
     pending_energy: f64,
     /// Last change that errors can explain, J.
     last_allowed: f64,
     /// Length of the last step with a known interior, s.
     last_length: f64,
+    /// Energy change of the last step across a surface, if it exceeds the tolerance.
+    suspected: Option<SuspectedCrossing>,
     pub(super) audit: Audit,
+}
+
+/// Energy change of a step across a surface. The rates beyond the surface give the errors of the step, which may explain the change.
+#[derive(Clone, Debug)]
+struct SuspectedCrossing {
+    imbalance: Imbalance,
+    /// Length of the step, s.
+    length: f64,
+    /// State at its end.
+    state: Vec<f64>,
 }
 
 impl Auditor {
@@ -69,27 +92,69 @@ impl Auditor {
                 .map(|size| UNMOVED_SIZE_FRACTION * size)
                 .collect(),
             energy: None,
+            power: 0.0,
             pending_energy: 0.0,
             last_allowed: 0.0,
             last_length: 0.0,
+            suspected: None,
             audit: Audit::default(),
         }
     }
 
+    /// Continues with a solver of a relative tolerance.
+    pub fn continue_with(&mut self, tolerance: f64) {
+        (self.tolerance, self.is_exact) = (tolerance, false);
+        (self.last_allowed, self.last_length) = (0.0, 0.0);
+    }
+
     /// Returns the balance up to now.
-    pub fn audit(&self) -> &Audit {
-        &self.audit
+    pub fn audit(&self) -> Audit {
+        let mut audit = self.audit.clone();
+        if let Some(suspected) = &self.suspected {
+            audit.note(suspected.imbalance);
+        }
+        audit
+    }
+
+    /// Returns the length (s) of the last step across a surface, if its energy change exceeds the tolerance.
+    pub fn suspected_crossing(&self) -> Option<f64> {
+        self.suspected.as_ref().map(|suspected| suspected.length)
+    }
+
+    /// Records the energy change of the last step across a surface unless these errors of its state explain it.
+    pub fn judge_crossing(&mut self, errors: &[f64], energies: &mut Energies<'_>) {
+        let Some(SuspectedCrossing {
+            imbalance, state, ..
+        }) = self.suspected.take()
+        else {
+            return;
+        };
+        self.raise_to_errors(errors);
+        let Imbalance {
+            t,
+            energy_gain,
+            tolerance,
+        } = imbalance;
+        let end = [(t, &state[..])];
+        let allowed = self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &end, &[]);
+        self.record_excess(t, energy_gain, tolerance.max(allowed));
     }
 
     /// Audits a step.
     pub fn audit_step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
         let (start, end) = (step.start, step.end);
+        if let Some(suspected) = self.suspected.take() {
+            self.audit.note(suspected.imbalance);
+        }
         self.raise_sizes(start.1);
         self.raise_sizes(end.1);
         let ends = (self.evaluate(energies, start), self.evaluate(energies, end));
         if let Some(before) = self.energy.replace(ends.1.energy) {
-            self.audit_jump(start, ends.0.energy - before, energies);
+            self.audit_jump(start, (before, ends.0), energies);
         }
+        // The mode may have changed at the start of a step across a surface.
+        let powers = [self.power, ends.0.power, ends.1.power];
+        self.power = ends.1.power;
         let change = ends.1.energy - ends.0.energy - std::mem::take(&mut self.pending_energy);
         let (mut work, has_interior) = self.integrate_simpson(step, energies, ends);
         let length = end.0 - start.0;
@@ -106,53 +171,95 @@ impl Auditor {
             };
             let values = [ends.0.energy, ends.1.energy];
             let allowed = self.find_allowed_change(energies, factor, &[start, end], &values)
-                + find_uncertain_work(end.0, ends);
+                + find_uncertain_work(end.0, &powers);
             self.last_allowed = allowed;
             let judged = (ends, change);
-            let (found, tolerance) =
-                self.integrate_accurately(step, energies, judged, (factor, allowed));
-            work = found;
-            self.record_excess(end.0, change - work, tolerance);
+            let found = self.integrate_accurately(step, energies, judged, (factor, allowed));
+            work = found.work;
+            let tolerance = found.allowed + found.uncertainty;
+            if has_interior
+                && found.uncertainty > found.allowed
+                && (change - work).abs() <= tolerance
+            {
+                self.exclude_change(
+                    change,
+                    "the power changes too often in a step to be integrated",
+                );
+                return;
+            }
+            match has_interior {
+                true => self.record_excess(end.0, change - work, tolerance),
+                false => self.suspect_crossing(end, (change - work, tolerance), length),
+            }
         }
         self.audit.energy_change += change;
         self.audit.work += work;
     }
 
+    /// Excludes an energy change (J) from the audit, for a reason.
+    fn exclude_change(&mut self, change: f64, reason: &str) {
+        self.audit.energy_change += change;
+        self.audit.unaudited_energy += change;
+        let why = &mut self.audit.exclusion_reason;
+        why.get_or_insert_with(|| reason.to_owned());
+    }
+
     /// Audits an energy change between two steps, at a surface or by projection onto the
     /// constraints.
-    fn audit_jump(&mut self, start: (f64, &[f64]), change: f64, energies: &mut Energies<'_>) {
+    fn audit_jump(
+        &mut self,
+        start: (f64, &[f64]),
+        (before, after): (f64, EnergyAndPower),
+        energies: &mut Energies<'_>,
+    ) {
+        let change = after.energy - before;
         self.audit.energy_change += change;
         let is_negligible =
             change.abs() <= NEGLIGIBLE_FRACTION / ESTIMATE_FACTOR * self.last_allowed;
         if change != 0.0 && !is_negligible {
-            let values = [self.energy.unwrap_or(0.0)];
+            let values = [before, after.energy];
             let allowed =
-                self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &[start], &values);
+                self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &[start], &values)
+                    + find_uncertain_work(start.0, &[self.power, after.power]);
             self.record_excess(start.0, change, allowed);
         }
     }
 
-    /// Records an energy change that exceeds the tolerance. Energies that are not finite are reported with their rows.
-    fn record_excess(&mut self, t: f64, size: f64, tolerance: f64) {
-        if size.is_finite() && size.abs() > tolerance {
-            self.audit.note(Imbalance {
-                t,
-                energy_gain: size,
-                tolerance,
-            });
+    /// Keeps an energy change of a step of `length` s across a surface if it exceeds the tolerance.
+    fn suspect_crossing(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        (energy_gain, tolerance): (f64, f64),
+        length: f64,
+    ) {
+        let found = find_excess(t, energy_gain, tolerance);
+        self.suspected = found.map(|imbalance| SuspectedCrossing {
+            imbalance,
+            length,
+            state: state.to_vec(),
+        });
+    }
+
+    /// Records an energy change that exceeds the tolerance.
+    fn record_excess(&mut self, t: f64, energy_gain: f64, tolerance: f64) {
+        if let Some(found) = find_excess(t, energy_gain, tolerance) {
+            self.audit.note(found);
         }
     }
 
-    /// Returns the work of a step with this energy change, as accurately as needed, and the change
-    /// that errors can explain.
+    /// Returns the work of a step with this energy change, as accurately as needed.
     fn integrate_accurately(
         &mut self,
         step: &mut ObservedStep<'_>,
         energies: &mut Energies<'_>,
         (ends, change): ((EnergyAndPower, EnergyAndPower), f64),
         (factor, mut allowed): (f64, f64),
-    ) -> (f64, f64) {
-        let (mut work, mut tolerance) = (f64::NAN, f64::NAN);
+    ) -> Balance {
+        let mut best = Balance {
+            work: f64::NAN,
+            uncertainty: f64::INFINITY,
+            allowed,
+        };
         for (interior, most_panels, balances_panels) in [
             (Interior::Interpolated, MAX_PANELS, false),
             (Interior::Interpolated, MAX_BALANCED_PANELS, true),
@@ -163,21 +270,24 @@ impl Auditor {
                 most_panels,
                 balances_panels,
             };
-            let uncertainty;
-            (work, uncertainty) = self.integrate_work(step, energies, ends, (refinement, allowed));
-            tolerance = allowed + uncertainty;
-            if (change - work).abs() <= tolerance {
-                return (work, tolerance);
+            let (work, uncertainty) =
+                self.integrate_work(step, energies, ends, (refinement, allowed));
+            // A later quadrature has better states. Too few panels make it worse.
+            if uncertainty <= allowed || uncertainty < best.uncertainty {
+                (best.work, best.uncertainty) = (work, uncertainty);
+            }
+            if (change - best.work).abs() <= best.allowed + best.uncertainty {
+                return best;
             }
             // Part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
             if let Some(state) = (step.state_inside)(middle, interior) {
                 let inside = self.find_allowed_change(energies, factor, &[(middle, &state)], &[]);
                 allowed = allowed.max(inside);
-                tolerance = allowed + uncertainty;
+                best.allowed = allowed;
             }
         }
-        (work, tolerance)
+        best
     }
 
     /// Excludes a step that cannot be audited, for a reason.
@@ -195,10 +305,7 @@ impl Auditor {
         let last = self.evaluate(energies, step.end).energy;
         let change = last - first - std::mem::take(&mut self.pending_energy);
         self.energy = Some(last);
-        self.audit.energy_change += change;
-        self.audit.unaudited_energy += change;
-        let why = &mut self.audit.exclusion_reason;
-        why.get_or_insert_with(|| reason.to_owned());
+        self.exclude_change(change, reason);
     }
 
     /// Audits an impact at time `t` (s) that changes the state, at which moving contacts do this
@@ -293,8 +400,18 @@ impl Auditor {
 
     /// Raises the sizes of the states to what rounding of these rates changes in a step of `length` s.
     pub fn raise_to_roundings(&mut self, rates: &[f64], length: f64) {
-        for (size, rate) in self.sizes.iter_mut().zip(rates) {
-            *size = size.max(ROUNDING_FACTOR * length * rate / self.tolerance);
+        let roundings: Vec<f64> = (rates.iter())
+            .map(|rate| ROUNDING_FACTOR * length * rate)
+            .collect();
+        self.raise_to_errors(&roundings);
+    }
+
+    /// Raises the sizes of the states to those at which the tolerance allows these errors.
+    pub fn raise_to_errors(&mut self, errors: &[f64]) {
+        for (size, error) in self.sizes.iter_mut().zip(errors) {
+            if error.is_finite() {
+                *size = size.max(error / self.tolerance);
+            }
         }
     }
 
@@ -332,4 +449,13 @@ impl Auditor {
             .fold(0.0_f64, |most, value| most.max(value.abs()));
         factor * largest + ENERGY_ROUNDING * rounding
     }
+}
+
+/// Returns an energy change that exceeds the tolerance. Energies that are not finite are reported with their rows.
+fn find_excess(t: f64, energy_gain: f64, tolerance: f64) -> Option<Imbalance> {
+    (energy_gain.is_finite() && energy_gain.abs() > tolerance).then_some(Imbalance {
+        t,
+        energy_gain,
+        tolerance,
+    })
 }

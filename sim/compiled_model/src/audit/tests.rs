@@ -30,7 +30,7 @@ fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit
         };
         auditor.audit_step(&mut step, energies);
     }
-    auditor.audit().clone()
+    auditor.audit()
 }
 
 #[test]
@@ -81,6 +81,30 @@ fn energy_change_without_work_is_a_fault() {
         ..pushed(t, state)
     };
     assert_eq!(audited(|_| {}, &mut idle).fault_count, 40);
+}
+
+#[test]
+fn power_that_no_quadrature_resolves_is_not_audited() {
+    // (angular frequency of the power in rad/s, resolved in a step of 0.1 s)
+    for (frequency, is_resolved) in [(2e3, true), (1.1e4, true), (1e6, false), (1e9, false)] {
+        let mut pulsating = |t: f64, state: &[f64]| EnergyAndPower {
+            energy: oscillator(t, state).energy + 10.0 * (frequency * t).sin(),
+            power: 10.0 * frequency * (frequency * t).cos(),
+        };
+        let audit = audited(|_| {}, &mut pulsating);
+        assert_eq!(audit.fault_count, 0, "{frequency}: {audit:?}");
+        assert_eq!(
+            audit.exclusion_reason.is_none(),
+            is_resolved,
+            "{frequency}: {audit:?}"
+        );
+        let mut twice = |t: f64, state: &[f64]| EnergyAndPower {
+            power: 2.0 * pulsating(t, state).power,
+            ..pulsating(t, state)
+        };
+        let found = audited(|_| {}, &mut twice).fault_count > 0;
+        assert!(found || !is_resolved, "{frequency}");
+    }
 }
 
 #[test]

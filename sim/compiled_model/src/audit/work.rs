@@ -1,5 +1,7 @@
 //! Work of a step: quadrature of the power.
 
+use std::collections::VecDeque;
+
 use eomgen_sim::ode::{Interior, ObservedStep};
 
 use super::auditor::Auditor;
@@ -40,7 +42,7 @@ impl Auditor {
 
     /// Integrates the power over a step and halves panels until the change is small compared with
     /// `allowed`. Returns the work and its uncertainty, J; the latter is nonzero if the interior
-    /// is unknown.
+    /// is unknown, or if the panels do not suffice.
     pub(super) fn integrate_work(
         &mut self,
         step: &mut ObservedStep<'_>,
@@ -61,9 +63,11 @@ impl Auditor {
             return (mean * length, 0.5 * spread * length);
         };
         let most_error = MAX_QUADRATURE_ERROR_FRACTION * allowed;
-        let (mut work, mut panels) = (0.0, 1);
-        let mut open = vec![((0.0, 1.0), whole)];
-        while let Some(((from, width), whole)) = open.pop() {
+        let (mut work, mut uncertainty, mut panels) = (0.0, 0.0, 1);
+        // Wide panels first: if the panels do not suffice, those left have one width, at which their changes estimate
+        // the error.
+        let mut open = VecDeque::from([((0.0, 1.0), whole)]);
+        while let Some(((from, width), whole)) = open.pop_front() {
             let half = 0.5 * width;
             let halves = [(from, half), (from + half, half)];
             let [Some(left), Some(right)] =
@@ -73,16 +77,18 @@ impl Auditor {
                 continue;
             };
             panels += 1;
-            let is_accurate = (left + right - whole).abs() <= most_error * width
-                && !(refinement.balances_panels
-                    && find_imbalance(&mut inside, (from, width), left + right) > most_error);
-            if is_accurate || panels >= refinement.most_panels {
+            let change = (left + right - whole).abs();
+            let is_accurate = change <= most_error * width;
+            let is_balanced = !refinement.balances_panels
+                || find_imbalance(&mut inside, (from, width), left + right) <= most_error;
+            if is_accurate && is_balanced || panels >= refinement.most_panels {
                 work += left + right;
+                uncertainty += if is_accurate { 0.0 } else { change };
             } else {
                 open.extend([(halves[0], left), (halves[1], right)]);
             }
         }
-        (work, 0.0)
+        (work, uncertainty)
     }
 }
 

@@ -61,21 +61,40 @@ impl Contacts {
         CORRECTIONS as u64 + 1
     }
 
+    /// Marks the coordinates and the rates on which the corrections onto closed contacts act.
+    pub fn mark_corrected(&self, coordinates: &mut [bool], rates: &mut [bool]) {
+        let mark = |states: &mut [bool], column: &[f64]| {
+            for (is_corrected, entry) in states.iter_mut().zip(column) {
+                *is_corrected |= *entry != 0.0;
+            }
+        };
+        for place in &self.closed {
+            let contact = &self.at[*place];
+            mark(coordinates, &contact.column);
+            mark(rates, &contact.column);
+            if let Some(friction) = &contact.friction {
+                mark(rates, &friction.column);
+            }
+        }
+    }
+
     /// Forgets what the last correction of a state noted.
     pub fn forget_correction(&mut self) {
         self.overlap = None;
         self.offsets.clone_from(&self.uncorrected_offsets);
     }
 
-    /// Offsets the distances of open contacts that a correction makes negative, because the motion
-    /// has not hit them yet.
+    /// Offsets the distances of open contacts that a correction makes zero or negative, because the motion has not hit
+    /// them yet. A distance of zero has no side, and no impact would be found.
     fn keep_open_sides(&mut self, before: &[f64]) {
-        for (place, before) in before.iter().enumerate() {
-            let (distance, offset) = (self.at[place].distance, self.offsets[place]);
-            let was_open = !self.closed.contains(&place) && before + offset >= 0.0;
-            if was_open && distance + offset < 0.0 {
-                self.offsets[place] = -distance;
-            }
+        let was_passed = |place: &usize| {
+            let offset = self.offsets[*place];
+            let was_open = !self.closed.contains(place) && before[*place] + offset >= 0.0;
+            was_open && self.at[*place].distance + offset <= 0.0
+        };
+        let passed: Vec<usize> = (0..before.len()).filter(was_passed).collect();
+        for place in passed {
+            self.offsets[place] = (-self.at[place].distance).next_up();
         }
     }
 

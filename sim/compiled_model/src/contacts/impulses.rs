@@ -5,13 +5,16 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
 use super::tangents::ContactForces;
-use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS, Overlap};
+use super::{Contacts, DISTANCE_ROUNDING, MAX_CONSECUTIVE_IMPACTS};
 
-/// A flight that is this short beside the time since the start is rest.
+/// A flight shorter than this fraction of the time since the contact was closed last is rest.
 const MIN_FLIGHT_TIME_FRACTION: f64 = 1e-8;
 
 /// A rate that an impact leaves negative is wrong if it is this large beside those before.
-const MAX_UNSOLVED_RATE_FRACTION: f64 = 1e-6;
+pub(super) const MAX_UNSOLVED_RATE_FRACTION: f64 = 1e-6;
+
+/// A flight shorter than so many roundings of the time is rest.
+const MIN_FLIGHT_TIME_ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// A flight no higher than so many times the rounding of its distance is rest.
 const MIN_FLIGHT_ROUNDINGS: f64 = 1000.0;
@@ -19,13 +22,13 @@ const MIN_FLIGHT_ROUNDINGS: f64 = 1000.0;
 /// An energy that impulses add is rounding where it is this small beside what they exchange.
 pub(super) const ENERGY_GAIN_ROUNDING: f64 = 1e-12;
 
-/// Halvings in the search for a restitution that adds no energy.
-pub(super) const RESTITUTION_HALVINGS: usize = 20;
+/// Halvings in the search for a restitution that adds no energy, down to rounding.
+pub(super) const RESTITUTION_HALVINGS: usize = 52;
 
 /// Which flights after an impact are none.
 pub(super) struct Flight {
-    /// Those that are this short, s.
-    pub shortest: f64,
+    /// Those of each contact that are this short, s.
+    pub shortest: Vec<f64>,
     /// Those of each contact that are this low.
     pub lowest: Vec<f64>,
     /// Rates of each distance that are rounding.
@@ -40,7 +43,7 @@ impl Flight {
     /// Returns true if the contact `place` with this rate and acceleration does not fly, if accelerations up to
     /// `even` are rounding.
     pub fn is_none(&self, place: usize, (rate, acceleration): (f64, f64), even: f64) -> bool {
-        let is_short = 2.0 * rate <= -acceleration * self.shortest;
+        let is_short = 2.0 * rate <= -acceleration * self.shortest[place];
         let is_low = rate * rate <= -2.0 * acceleration * self.lowest[place];
         let is_together = rate <= self.rate_roundings[place] && acceleration <= even;
         acceleration < 0.0 && (is_short || is_low) || is_together
@@ -59,6 +62,7 @@ impl Contacts {
         state: &mut [f64],
     ) {
         self.impact_work = 0.0;
+        self.note_closed_until(t);
         let count = self.names.len();
         let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
         own.distances(Point { t, state, inputs }, &mut beyond);
@@ -85,22 +89,28 @@ impl Contacts {
         };
         own.distances(point, &mut near);
         own.impacts(Point { t, state, inputs }, &mut self.at);
-        let shortest = MIN_FLIGHT_TIME_FRACTION * (t - self.start.unwrap_or(t));
+        let shortest: Vec<f64> = (self.open_since.iter())
+            .map(|since| {
+                let fraction = MIN_FLIGHT_TIME_FRACTION * (t - since);
+                fraction.max(MIN_FLIGHT_TIME_ROUNDINGS * t.abs())
+            })
+            .collect();
         let roundings: Vec<f64> = (0..count)
             .map(|place| self.distance_rounding(place, (t, before)))
             .collect();
         // What touches without a speed, as a body that falls together with the one below it, is hit
         // by the jump of the other.
         let hits: Vec<usize> = (0..count).filter(|place| is_hit(place, self)).collect();
-        let collapsing = self.find_collapse(t, &hits, shortest);
+        let shortest_of_hits = hits.iter().map(|place| shortest[*place]);
+        let collapsing = self.find_collapse(t, &hits, shortest_of_hits.fold(0.0, f64::max));
         let touching: Vec<usize> = (0..count)
             .filter(|place| {
                 let impact = &self.at[*place];
-                let within = roundings[*place].max(-impact.rate * shortest);
+                let within = roundings[*place].max(-impact.rate * shortest[*place]);
                 self.closed.contains(place)
                     || hits.contains(place)
                     || collapsing.contains(place)
-                    || impact.distance + self.offsets[*place] <= within
+                    || impact.distance <= within
             })
             .collect();
         // How long ago the first of them hit.
@@ -129,9 +139,8 @@ impl Contacts {
         };
         let flight = Flight {
             shortest,
-            lowest: roundings
-                .iter()
-                .map(|rounding| MIN_FLIGHT_ROUNDINGS * rounding)
+            lowest: (0..count)
+                .map(|place| MIN_FLIGHT_ROUNDINGS * self.position_rounding(place, before))
                 .collect(),
             rate_roundings,
             acceleration_roundings: self.acceleration_roundings(own, Point { t, state, inputs }),
@@ -206,7 +215,7 @@ impl Contacts {
     /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
     /// is hit again; then none takes more restitution than the most that does not. With none it never
     /// does: twice the energy is -P W P then.
-    fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
+    pub(super) fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
         let delassus = self.delassus(touching);
         let with = |most: f64| {
             let stopped = touching.iter();
@@ -219,14 +228,13 @@ impl Contacts {
         // Of every impulse the rates before and after, which it moves against.
         let adds_energy = |impulses: &[f64]| {
             let rows = touching.iter().zip(&delassus).zip(impulses);
-            let gained = rows.map(|((place, row), impulse)| {
-                let pushed = dot(row, impulses);
-                impulse * (2.0 * self.hit_rate(*place, ago) + pushed)
-            });
-            let (sum, size) = gained.fold((0.0, 0.0), |(sum, size), gain| {
-                (sum + gain, size + gain.abs())
-            });
-            sum > ENERGY_GAIN_ROUNDING * size
+            let (mut gained, mut exchanged) = (0.0, 0.0);
+            for ((place, row), impulse) in rows {
+                let (before, pushed) = (2.0 * self.hit_rate(*place, ago), dot(row, impulses));
+                gained += impulse * (before + pushed);
+                exchanged += impulse.abs() * (before.abs() + pushed.abs());
+            }
+            gained > ENERGY_GAIN_ROUNDING * exchanged
         };
         let smooth = |normal: Vec<f64>| ContactForces {
             normal,
@@ -246,56 +254,6 @@ impl Contacts {
             part *= 0.5;
         }
         Some(smooth(found))
-    }
-
-    /// Has the rates of a state jump by the impulses of what touches and hit so long `ago` (s), and of what
-    /// this brings to touch in turn. Returns all that touched and how far rounding takes the rate of each distance
-    /// from zero.
-    fn apply_impulses(
-        &mut self,
-        own: &mut Evaluator,
-        (t, inputs): (f64, &[f64]),
-        state: &mut [f64],
-        mut touching: Vec<usize>,
-        mut ago: f64,
-    ) -> Result<(Vec<usize>, Vec<f64>), Overlap> {
-        let degrees = own.program().degrees_of_freedom();
-        let mut roundings = vec![0.0_f64; self.names.len()];
-        let drifts = self.drifts(own, Point { t, state, inputs });
-        own.impacts(Point { t, state, inputs }, &mut self.at);
-        loop {
-            let impulses = match self.has_friction() {
-                true => self.solve_friction_impulses(&touching, ago),
-                false => self.solve_impulses(&touching, ago),
-            };
-            let impulses = impulses.ok_or(Overlap::NoImpulse)?;
-            self.impact_work -= drifts.work_against(&touching, &impulses);
-            let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
-            for (place, rounding) in roundings.iter_mut().enumerate() {
-                let pushed = self.push_size(place, &touching, &impulses);
-                let most = self.rate_size(place, rates) + pushed;
-                *rounding = rounding.max(DISTANCE_ROUNDING * most);
-            }
-            self.add_forces(&touching, &impulses, rates);
-            self.add_forces(&touching, &impulses.scaled(ago), coordinates);
-            own.impacts(Point { t, state, inputs }, &mut self.at);
-            // Where a distance was located to rounding, so that this does not add up.
-            let mut below = touching.clone();
-            below.retain(|place| self.at[*place].distance < 0.0);
-            let corrections = self.solve_balance(&below, |impact| impact.distance);
-            self.add_impulses(&below, &corrections, &mut state[..degrees]);
-            own.impacts(Point { t, state, inputs }, &mut self.at);
-            let touched = |place: &usize| {
-                let distance = self.at[*place].distance + self.offsets[*place];
-                !touching.contains(place) && distance < 0.0
-            };
-            let more: Vec<usize> = (0..self.names.len()).filter(touched).collect();
-            if more.is_empty() {
-                return Ok((touching, roundings));
-            }
-            touching.extend(more);
-            ago = 0.0;
-        }
     }
 
     /// Records the `hits` of an impact and returns the contacts that hit each other without end in a finite time, if

@@ -13,6 +13,7 @@ mod correction;
 mod friction;
 mod impulses;
 mod power;
+mod sequence;
 mod start;
 mod tangents;
 
@@ -24,6 +25,7 @@ use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode, UNMOVED_SIZE_FRACTION};
 
 pub(crate) use complementarity::{solve_complementarity, solve_rows};
+pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
 pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
@@ -45,6 +47,8 @@ pub(crate) struct Contacts {
     pub names: Vec<String>,
     /// When the motion began, s.
     start: Option<f64>,
+    /// When each was closed last, or the motion began, s.
+    open_since: Vec<f64>,
     /// Those that are closed.
     closed: Vec<usize>,
     /// What is added to each distance, so that one that leaves from zero is positive.
@@ -82,6 +86,8 @@ enum Overlap {
     NoImpulse,
     /// No forces satisfy the law of friction (P. Painlevé).
     NoForces,
+    /// The modes of contacts and of dry friction were not found.
+    NoModes,
 }
 
 impl Contacts {
@@ -96,6 +102,7 @@ impl Contacts {
                 .collect(),
             sizes: vec![0.0; count],
             start: None,
+            open_since: vec![0.0; count],
             closed: Vec::new(),
             offsets: vec![0.0; count],
             uncorrected_offsets: vec![0.0; count],
@@ -225,6 +232,11 @@ impl Contacts {
                 "no impulses separate the bodies at the impact `{name}`: other impacts, constraints or \
                  prescribed motions press them together. Use a stiff spring instead of one of them"
             ),
+            Overlap::NoModes => format!(
+                "no rest or sliding was found that satisfies both the contact friction at the impact `{name}` and the \
+                 dry friction written with sign. Write one of them as a smooth law, such as tanh(v/v_0) with a small speed \
+                 v_0"
+            ),
             Overlap::NoForces => format!(
                 "no contact forces satisfy the law of friction at the impact `{name}`: friction presses the \
                  sliding bodies together faster than the contact can part them (Painlevé's paradox). Lower the \
@@ -295,9 +307,15 @@ impl Contacts {
     /// Returns the change of a distance by rounding of state and time.
     fn distance_rounding(&self, place: usize, (t, state): (f64, &[f64])) -> f64 {
         let degrees = self.at[place].row.len();
-        let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
-        let size = self.distance_size(place, coordinates);
-        f64::MIN_POSITIVE + DISTANCE_ROUNDING * (size + t.abs() * self.rate_size(place, rates))
+        let rates = &state[degrees..2 * degrees];
+        self.position_rounding(place, state)
+            + DISTANCE_ROUNDING * t.abs() * self.rate_size(place, rates)
+    }
+
+    /// Returns the change of a distance by rounding of the coordinates.
+    fn position_rounding(&self, place: usize, state: &[f64]) -> f64 {
+        let degrees = self.at[place].row.len();
+        f64::MIN_POSITIVE + DISTANCE_ROUNDING * self.distance_size(place, &state[..degrees])
     }
 
     /// Notes the magnitudes of the terms of the distances at a state.
@@ -312,6 +330,7 @@ impl Contacts {
     /// Closes the contacts that touch at rest at the start, and those assumed to be closed, if they push.
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
+        self.open_since.fill(point.t);
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
         let degrees = own.program().degrees_of_freedom();
@@ -352,6 +371,20 @@ impl Contacts {
         self.note_forces(updated);
     }
 
+    /// Keeps or changes the modes of contact friction at a point at which other forces changed.
+    pub fn revise_modes(&mut self, own: &mut Evaluator, point: Point<'_>) {
+        if self.has_friction() && !self.closed.is_empty() {
+            let revised = self.revise_friction_modes(own, point);
+            self.note_forces(revised);
+        }
+    }
+
+    /// Ends the motion, because the modes of contacts and those of dry friction contradict each other.
+    pub fn refuse_modes(&mut self) {
+        let first = self.closed.first().copied().unwrap_or(0);
+        self.note_forces(Err((first, Overlap::NoModes)));
+    }
+
     /// Opens closed contacts that no longer push, and changes the modes of friction. `located` is the point whose
     /// rounding decides where contacts open.
     ///
@@ -366,6 +399,7 @@ impl Contacts {
         if self.closed.is_empty() {
             return Ok(());
         }
+        self.note_closed_until(point.t);
         own.impacts(point, &mut self.at);
         if self.has_friction() {
             return self.change_friction_modes(own, point, located);
@@ -376,6 +410,13 @@ impl Contacts {
             self.close(&touching, (located.t, located.state));
         }
         Ok(())
+    }
+
+    /// Notes that the closed contacts are closed until now, s.
+    fn note_closed_until(&mut self, t: f64) {
+        for place in &self.closed {
+            self.open_since[*place] = t;
+        }
     }
 
     /// Writes the modes of closed contacts and of friction.
@@ -463,15 +504,10 @@ impl Contacts {
 
     /// Delassus' matrix of these contacts.
     fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
-        delassus(&self.at, places)
+        let row = |place: &usize| {
+            let entries = &self.at[*place].delassus;
+            places.iter().map(|other| entries[*other]).collect()
+        };
+        places.iter().map(row).collect()
     }
-}
-
-/// Returns Delassus' matrix of the impacts at these places.
-pub(crate) fn delassus(impacts: &[ImpactValues], places: &[usize]) -> Vec<Vec<f64>> {
-    let row = |place: &usize| {
-        let entries = &impacts[*place].delassus;
-        places.iter().map(|other| entries[*other]).collect()
-    };
-    places.iter().map(row).collect()
 }

@@ -3,8 +3,10 @@
 use std::collections::VecDeque;
 
 use eomgen_model_spec::schedule::Schedule;
+use eomgen_sim::ode::Settings;
 
 use super::memory::{NextSample, PendingOutputs};
+use crate::error::Error;
 
 /// Largest difference of times at one instant, as a fraction of the shortest period: far below any wanted difference,
 /// and above the rounding errors of the times.
@@ -45,6 +47,24 @@ impl Clock {
     pub fn tolerance(&self, t: f64) -> f64 {
         let rounding = 8.0 * f64::EPSILON * t.abs();
         rounding.max(COINCIDENCE * self.shortest)
+    }
+
+    /// Checks that the samples of each controller between two times (s) are at most as many as the steps of a solver.
+    ///
+    /// # Errors
+    /// A period that is too short for the span.
+    pub fn check_sample_count(&self, (now, until): (f64, f64)) -> Result<(), Error> {
+        let most = Settings::default().max_steps as f64;
+        let count = |schedule: &Schedule| (until - now.max(schedule.offset)) / schedule.period;
+        match self.schedules.iter().find(|one| count(one) > most) {
+            Some(schedule) => Err(Error::Request(format!(
+                "the period of a controller, {:e} s, needs {:.1e} samples to the end; at most {most:e} are taken: give a \
+                 longer period, or shorten the time",
+                schedule.period,
+                count(schedule)
+            ))),
+            None => Ok(()),
+        }
     }
 
     fn sample_time(&self, controller: usize) -> f64 {

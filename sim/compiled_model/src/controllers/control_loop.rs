@@ -152,6 +152,7 @@ impl<'c> ControlLoop<'c> {
         record: &mut LoopRecord<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
+        self.clock.check_sample_count((plant.time(), until))?;
         while let Some(next) = self.find_next(plant.time(), (until, record.rest(rows))) {
             let rest = record.rest(rows);
             let before = &rest[..rest.partition_point(|row| *row < next)];

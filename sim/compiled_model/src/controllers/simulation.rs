@@ -2,12 +2,14 @@
 
 use eomgen_sim::ode::Trajectory;
 
+use super::clock::Clock;
 use super::control_loop::LoopRecord;
 use super::controller::SampledController;
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{ControllerStates, Motion};
-use crate::simulation::{Request, with_early_stop};
+use crate::observers::Results;
+use crate::simulation::{Observed, Request, with_early_stop};
 use crate::solver_options::SolverOptions;
 
 /// Controllers in the order of their states and inputs.
@@ -15,7 +17,7 @@ pub type Controllers<'c> = [&'c mut dyn SampledController];
 
 impl Instance<'_> {
     /// Simulates a request with controllers, up to the time that the solver reaches. A row at the time of a sample has
-    /// the values after it. Calls `progress` with the time reached, s. The motion has no energy audit.
+    /// the values after it. Calls `progress` with the time reached, s. Held inputs jump at samples, which does no work.
     ///
     /// # Errors
     /// Two controllers that drive one input; same as [`Instance::simulate_until_stop`].
@@ -25,12 +27,28 @@ impl Instance<'_> {
         controllers: &mut Controllers<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
+        self.simulate_with_controllers(Observed::new(request), controllers, progress)
+    }
+
+    /// Simulates like [`Instance::simulate_controlled`], with measurements.
+    pub(crate) fn simulate_with_controllers(
+        &self,
+        Observed {
+            request,
+            measurements,
+        }: Observed<'_>,
+        controllers: &mut Controllers<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
         let (start, end) = request.time_span();
         let options = SolverOptions {
             solver: request.solver,
             tolerance: request.tolerance,
             max_step: request.max_step,
         };
+        // A solver would name its steps, which the periods limit.
+        let schedules = controllers.iter().map(|own| own.schedule()).collect();
+        Clock::new(schedules, start).check_sample_count((start, end))?;
         let controllers = controllers.iter_mut();
         let controllers =
             controllers.map(|own| Box::new(&mut **own) as Box<dyn SampledController + '_>);
@@ -39,6 +57,7 @@ impl Instance<'_> {
             options,
             controllers.collect(),
         )?;
+        simulation.observe(request.audit, measurements)?;
         let mut trajectory = Trajectory::default();
         let mut record = LoopRecord::new(&mut trajectory);
         let stop = simulation.follow((end, request.times), &mut record, progress)?;
@@ -46,6 +65,7 @@ impl Instance<'_> {
             states, changes, ..
         } = record;
         trajectory.final_state = simulation.state().to_vec();
+        let Results { audit, measured } = simulation.observed_results();
         let motion = Motion {
             surfaces: simulation.surfaces().to_vec(),
             inputs: request.inputs.with_held_steps(&changes),
@@ -53,7 +73,8 @@ impl Instance<'_> {
             solver_choice: simulation.solver_choice().cloned(),
             early_stop: None,
             initial_changes: simulation.initial_changes().to_vec(),
-            audit: None,
+            audit,
+            measured,
             controller_states: ControllerStates {
                 names: simulation.controller_state_names(),
                 rows: states,

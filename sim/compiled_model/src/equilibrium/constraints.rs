@@ -3,6 +3,8 @@
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_analysis::qr_iteration;
 use eomgen_codegen::independence::rows::ConstraintRows;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_model_spec::model::MULTIPLIER;
 use nalgebra::{DMatrix, DVector};
 
 use crate::instance::Instance;
@@ -25,6 +27,8 @@ pub(super) struct HolonomicConstraints {
     rows: ConstraintRows,
     /// Indices of the constraints.
     places: Vec<usize>,
+    /// Indices of their multipliers among the observables.
+    multipliers: Vec<usize>,
     /// State of each unknown; `None` for unknowns that the constraints do not contain.
     columns: Vec<Option<usize>>,
     /// Typical size of each coordinate and mode, SI.
@@ -48,32 +52,56 @@ impl HolonomicConstraints {
                 _ => None,
             })
             .collect();
+        let names = instance.model().observable_names();
+        let multipliers = places.iter().filter_map(|place| {
+            let constraint = &instance.model().model().constraints[*place].name;
+            let multiplier = format!("{MULTIPLIER}{constraint}");
+            names.iter().position(|name| *name == multiplier)
+        });
+        let multipliers = multipliers.collect();
         let typical = instance.model().typical_sizes();
         (!places.is_empty()).then(|| Self {
             rows,
+            multipliers,
             places,
             columns,
             sizes: typical[..degrees].to_vec(),
         })
     }
 
-    /// Returns the constraints at a point, or `None` if a number is not finite.
-    pub fn linearise(&mut self, at: &OperatingPoint) -> Option<LinearisedConstraints> {
+    /// Returns the constraints at a point, with their multipliers by the evaluator of the model, or `None` if a number is
+    /// not finite.
+    pub fn linearise(
+        &mut self,
+        at: &OperatingPoint,
+        evaluator: &mut Evaluator,
+    ) -> Option<LinearisedConstraints> {
         let degrees = self.rows.degrees_of_freedom();
         let derivatives = self.derivatives(at);
         let mut scaled = derivatives.clone();
         for (mut column, size) in scaled.column_iter_mut().zip(&self.sizes) {
             column *= *size;
         }
-        let allowed = AllowedMotions::new(&row_by_row(&scaled), degrees).ok()?;
+        let allowed = AllowedMotions::new(&row_by_row(&scaled), &vec![1.0; degrees]).ok()?;
         let mut displacements = allowed.basis().clone();
         for (mut row, size) in displacements.row_iter_mut().zip(&self.sizes) {
             row *= *size;
         }
         let mass = self.rows.mass_matrix(at.point());
+        let mass = DMatrix::from_row_slice(degrees, degrees, &mass);
+        let mut observables = vec![0.0; evaluator.program().observables.len()];
+        evaluator.observables(at.point(), &mut observables);
+        let mut accelerations = mass.clone().cholesky()?.solve(&derivatives.transpose());
+        for (mut column, multiplier) in accelerations.column_iter_mut().zip(&self.multipliers) {
+            column *= observables[*multiplier];
+        }
         Some(LinearisedConstraints {
             by_unknowns: self.by_unknowns(&derivatives),
-            mass: DMatrix::from_row_slice(degrees, degrees, &mass),
+            largest_accelerations: DVector::from_iterator(
+                degrees,
+                accelerations.row_iter().map(|row| row.amax()),
+            ),
+            mass,
             displacements,
         })
     }

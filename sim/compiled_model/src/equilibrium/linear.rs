@@ -2,10 +2,10 @@
 
 use eomgen_analysis::allowed_motions::{AllowedMotions, row_by_row};
 use eomgen_analysis::qr_iteration;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
-/// Singular values below this fraction of the largest count as 0.
-const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-12;
+/// Accelerations below this fraction of their terms have no sign.
+const MAX_SIGNLESS_FRACTION: f64 = 1e-12;
 
 /// Largest change of the accelerations' slope along a step, relative to the slope, at which the
 /// equations count as linear.
@@ -22,26 +22,52 @@ pub(super) struct LinearisedEquations {
     pub terms: DVector<f64>,
     /// The same, at all points of the search up to now: the scales of its norm.
     pub sizes: DVector<f64>,
+    /// Sum of the magnitudes of the terms that each acceleration has in the state, by its derivatives, and of the largest
+    /// constraint force.
+    pub state_terms: DVector<f64>,
+    /// Largest magnitudes of the accelerations at all points of the search up to now.
+    pub largest: DVector<f64>,
 }
 
 impl LinearisedEquations {
     /// Computes the smallest change of the unknowns that minimises the linearised accelerations and
-    /// satisfies the linearised constraints.
-    /// Each unknown is scaled by its natural scale or, without one, by its effect on the
-    /// accelerations.
-    pub fn solve_step(&self, scales: &[Option<f64>]) -> DVector<f64> {
-        let (rows, units) = self.find_scales(scales);
-        let relative = |row: usize, column: usize| self.matrix[(row, column)] / rows[row];
-        let scaled = DMatrix::from_fn(self.matrix.nrows(), self.matrix.ncols(), |row, column| {
-            relative(row, column) * units[column]
-        });
-        let wanted = -self.accelerations.component_div(&rows);
-        let step = match &self.constraints {
-            None => solve(&scaled, &wanted),
-            Some(constraints) => constraints.solve((scaled, wanted), (&rows, &units)),
+    /// satisfies the linearised constraints. Singular values below `least`, relative to the largest, count as 0.
+    pub fn solve_step(&self, scales: &[Option<f64>], least: f64) -> DVector<f64> {
+        let unknowns = self.matrix.ncols();
+        let step = || {
+            let system = self.scale(scales)?;
+            let wanted = -(&system.rows * &self.accelerations);
+            let decomposed = qr_iteration::svd(&system.matrix)?;
+            let solved = decomposed.solve(&wanted, system.least_singular_value(&decomposed, least));
+            Some(&system.changes * solved.ok()?)
         };
-        let step = step.unwrap_or_else(|| DVector::zeros(self.matrix.ncols()));
-        step.component_mul(&units)
+        step().unwrap_or_else(|| DVector::zeros(unknowns))
+    }
+
+    /// Returns the equations without units. Each unknown is scaled by its natural scale or, without one, by its effect on
+    /// the accelerations. `None` if a number is not finite.
+    pub fn scale(&self, scales: &[Option<f64>]) -> Option<ScaledSystem> {
+        let (sizes, units) = self.find_scales(scales);
+        let relative = DMatrix::from_diagonal(&sizes.map(|size| 1.0 / size));
+        let units = DMatrix::from_diagonal(&units);
+        let Some(constraints) = &self.constraints else {
+            return Some(ScaledSystem {
+                matrix: &relative * &self.matrix * &units,
+                rows: relative,
+                changes: units,
+                slope_size: 0.0,
+            });
+        };
+        let basis = constraints.allowed_changes(&units)?;
+        let rows = constraints.rows(&sizes) * relative;
+        let changes = units * basis;
+        Some(ScaledSystem {
+            matrix: &rows * &self.matrix * &changes,
+            rows,
+            changes,
+            // The scaled slopes are about 1. Forces with an extremum along a displacement have a slope of rounding.
+            slope_size: 1.0,
+        })
     }
 
     /// Returns the scales of rows and unknowns. Sizes of rows give units of unknowns by their effect; these units give the
@@ -132,7 +158,7 @@ impl LinearisedEquations {
     pub fn acceleration_sign(&self, coordinate: usize) -> f64 {
         let value = self.accelerations.get(coordinate).copied().unwrap_or(0.0);
         match self.terms.get(coordinate) {
-            Some(size) if value.abs() > MIN_SINGULAR_VALUE_FRACTION * size => value.signum(),
+            Some(size) if value.abs() > MAX_SIGNLESS_FRACTION * size => value.signum(),
             _ => 0.0,
         }
     }
@@ -155,27 +181,36 @@ pub(super) struct LinearisedConstraints {
     pub by_unknowns: DMatrix<f64>,
     /// Mass matrix.
     pub mass: DMatrix<f64>,
+    /// Largest acceleration of each coordinate by the force of one constraint. Those of several constraints may cancel.
+    pub largest_accelerations: DVector<f64>,
     /// Independent displacements of the coordinates that satisfy the linearised constraints, as columns.
     pub displacements: DMatrix<f64>,
 }
 
 impl LinearisedConstraints {
-    /// Solves the equations, whose rows are relative to `sizes`, for the change of the unknowns relative to `units` that
-    /// satisfies the linearised constraints. The accelerations count along the displacements only: across them the
-    /// constraints determine them.
-    fn solve(
-        &self,
-        (matrix, wanted): (DMatrix<f64>, DVector<f64>),
-        (sizes, units): (&DVector<f64>, &DVector<f64>),
-    ) -> Option<DVector<f64>> {
-        let columns = units.len();
-        let held = DMatrix::from_fn(self.by_unknowns.nrows(), columns, |row, column| {
-            self.by_unknowns[(row, column)] * units[column]
-        });
-        let allowed = AllowedMotions::new(&row_by_row(&held), columns).ok()?;
-        if allowed.count() == 0 {
-            return None;
-        }
+    /// Returns the part of the accelerations along the displacements, by the principle of least constraint. Across them the
+    /// constraints determine the accelerations, and the rounding of their forces remains.
+    pub fn project(&self, accelerations: &DVector<f64>) -> Option<DVector<f64>> {
+        let degrees = self.mass.nrows();
+        let mut projected = accelerations.clone();
+        let along = self.displacements.transpose() * &self.mass;
+        let inertia = (&along * &self.displacements).cholesky()?;
+        let part = &self.displacements * inertia.solve(&(along * accelerations.rows(0, degrees)));
+        projected.rows_mut(0, degrees).copy_from(&part);
+        Some(projected)
+    }
+
+    /// Returns an orthonormal basis of the changes of the unknowns, relative to `units`, that satisfy the linearised
+    /// constraints; `None` if a number is not finite.
+    fn allowed_changes(&self, units: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let held = &self.by_unknowns * units;
+        let allowed = AllowedMotions::new(&row_by_row(&held), &vec![1.0; units.ncols()]).ok()?;
+        Some(allowed.basis().clone())
+    }
+
+    /// Returns the rows of the equations for accelerations relative to `sizes`. The accelerations count along the
+    /// displacements only: across them the constraints determine them.
+    fn rows(&self, sizes: &DVector<f64>) -> DMatrix<f64> {
         let (degrees, independent) = self.displacements.shape();
         let mut along = self.displacements.transpose() * &self.mass;
         for mut row in along.row_iter_mut() {
@@ -191,16 +226,88 @@ impl LinearisedConstraints {
             .copy_from(&along);
         rows.view_mut((independent, degrees), (others, others))
             .fill_with_identity();
-        let basis = allowed.basis();
-        Some(basis * solve(&(&rows * matrix * basis), &(&rows * wanted))?)
+        rows
     }
 }
 
-/// Returns the smallest solution of least squares.
-fn solve(matrix: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<DVector<f64>> {
-    let decomposed = qr_iteration::svd(matrix)?;
-    let least = MIN_SINGULAR_VALUE_FRACTION * decomposed.singular_values.amax();
-    decomposed.solve(wanted, least).ok()
+/// Linearised equations without units, along the changes that constraints allow.
+pub(super) struct ScaledSystem {
+    /// Equations as combinations of the accelerations.
+    pub rows: DMatrix<f64>,
+    /// Changes of the unknowns for a change of 1, one column per independent change.
+    pub changes: DMatrix<f64>,
+    /// Derivatives of the equations by the independent changes.
+    pub matrix: DMatrix<f64>,
+    /// Size of regular slopes; 0 if that of the largest singular value counts.
+    slope_size: f64,
+}
+
+/// Directions of a scaled system whose slopes are not rounding.
+pub(super) struct KeptDirections {
+    /// Orthonormal combinations of the equations, one per column.
+    pub left: DMatrix<f64>,
+    /// Pseudoinverse of the system in these directions.
+    pub inverse: DMatrix<f64>,
+}
+
+impl ScaledSystem {
+    /// Returns the directions with singular values above `least` of the largest.
+    pub fn kept_directions(&self, least: f64) -> KeptDirections {
+        let (rows, columns) = self.matrix.shape();
+        let mut kept = KeptDirections {
+            left: DMatrix::zeros(rows, 0),
+            inverse: DMatrix::zeros(columns, rows),
+        };
+        let Some(decomposed) = qr_iteration::svd(&self.matrix) else {
+            return kept;
+        };
+        let least = self.least_singular_value(&decomposed, least);
+        let (Some(left), Some(right)) = (&decomposed.u, &decomposed.v_t) else {
+            return kept;
+        };
+        let values = decomposed.singular_values.iter().enumerate();
+        for (place, value) in values.filter(|(_, value)| **value > least) {
+            kept.inverse += right.row(place).transpose() * left.column(place).transpose() / *value;
+            let last = kept.left.ncols();
+            kept.left = kept.left.insert_column(last, 0.0);
+            kept.left.set_column(last, &left.column(place));
+        }
+        kept
+    }
+
+    /// Returns a change of the unknowns in directions with singular values below `least` of the largest: the part of the
+    /// accelerations of the unknowns in them. `None` if changes of the unknowns remove the accelerations.
+    pub fn free_change(
+        &self,
+        least: f64,
+        equations: &LinearisedEquations,
+        accelerations: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let kept = self.kept_directions(least);
+        let residuals = &self.rows * &equations.accelerations;
+        let left = &residuals - &kept.left * (kept.left.transpose() * &residuals);
+        if left.amax() <= MAX_SIGNLESS_FRACTION * residuals.amax() {
+            return None;
+        }
+        let units = self.changes.diagonal();
+        let scaled = accelerations.component_div(&units);
+        let along_kept = &kept.inverse * (&self.matrix * &scaled);
+        Some((scaled - along_kept).component_mul(&units))
+    }
+
+    /// Returns the row of the acceleration with the largest part in one of the equations.
+    pub fn main_acceleration(&self, row: usize, equations: &LinearisedEquations) -> usize {
+        let factors = self.rows.row(row).into_iter();
+        let parts = factors.zip(equations.accelerations.iter());
+        let parts = parts.map(|(factor, acceleration)| (factor * acceleration).abs());
+        let largest = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        largest.map_or(0, |(row, _)| row)
+    }
+
+    /// Returns the singular value below which one counts as 0, for this fraction of the largest.
+    pub fn least_singular_value(&self, decomposed: &SVD<f64, Dyn, Dyn>, fraction: f64) -> f64 {
+        fraction * decomposed.singular_values.amax().max(self.slope_size)
+    }
 }
 
 fn nonzero_or_one(size: f64) -> f64 {

@@ -5,6 +5,7 @@
 //! which any constant speed is possible. The search keeps the given speeds; if it finds no
 //! equilibrium with them, the speeds become unknowns as well.
 
+mod accuracy;
 mod constraints;
 mod linear;
 mod search;
@@ -15,6 +16,7 @@ mod unknown;
 
 use std::cell::RefCell;
 
+use eomgen_model_spec::ids::InputId;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ROUNDING_FACTOR, System};
 
@@ -48,7 +50,7 @@ pub struct Equilibrium {
     /// Names of the coordinates, rates, inputs and first-order states that were unknowns of the
     /// search.
     pub unknowns: Vec<String>,
-    /// True if the rates depend on time. If true, the point is an equilibrium at that instant
+    /// True if the rates depend on time or on prescribed motion that moves. If true, the point is an equilibrium at that instant
     /// only.
     pub depends_on_time: bool,
 }
@@ -62,6 +64,8 @@ pub struct Departure {
     pub accelerating_rates: Vec<String>,
     /// First-order states whose rates are nonzero, relative to their terms.
     pub changing_states: Vec<String>,
+    /// Nonzero rates of prescribed motion whose positions act on the machine.
+    pub moving_inputs: Vec<String>,
 }
 
 impl Departure {
@@ -102,7 +106,9 @@ impl Instance<'_> {
             false => holding.find_cyclic_directions(&at)?,
         };
         self.check_speeds(&at, &given, &directions)?;
-        self.project_rates(&mut at, &directions);
+        let [fixed, given] = [request.fixed_values, &given].map(|values| self.find_rates(values));
+        self.project_rates(&mut at, &directions, &[fixed?, given?]);
+        self.check_fixed_rates(&at, request.fixed_values)?;
         let mut search = Search::new(
             &holding,
             &directions,
@@ -135,7 +141,8 @@ impl Instance<'_> {
                 search.run(&mut at).map_err(|_| error)?
             }
         };
-        let depends_on_time = search.depends_on_time(&at);
+        let depends_on_time =
+            search.depends_on_time(&at) || !holding.find_moving_inputs(&at)?.is_empty();
         Ok(Equilibrium {
             nonzero_rates: self.nonzero_rate_names(&at),
             residual,
@@ -159,11 +166,14 @@ impl Instance<'_> {
     /// Same as [`Instance::jacobian_evaluator`].
     pub fn find_departure(&self, at: &OperatingPoint) -> Result<Departure, Error> {
         let holding = self.with_stabilisation_rate(1.0);
-        let mut found = Departure::default();
+        let mut found = Departure {
+            moving_inputs: holding.find_moving_inputs(at)?,
+            ..Departure::default()
+        };
         if !self.is_at_rest(at) {
             let directions = holding.find_cyclic_directions(at)?;
             let mut along = at.clone();
-            self.project_rates(&mut along, &directions);
+            self.project_rates(&mut along, &directions, &[]);
             found.moving_rates = self.differing_rates(at, &along);
         }
         if holding.find_held_rates(at)?.is_some() {
@@ -179,6 +189,26 @@ impl Instance<'_> {
             }
         }
         Ok(found)
+    }
+
+    /// Returns the nonzero rates of prescribed motion whose positions change a rate.
+    fn find_moving_inputs(&self, at: &OperatingPoint) -> Result<Vec<String>, Error> {
+        let inputs = &self.model().model().inputs;
+        let moving = inputs.iter().enumerate().filter_map(|(place, input)| {
+            let rate = input.rate.filter(|rate| at.inputs[rate.index()] != 0.0)?;
+            Some((place, rate))
+        });
+        let moving: Vec<(usize, InputId)> = moving.collect();
+        if moving.is_empty() {
+            return Ok(Vec::new());
+        }
+        let by_inputs = self.state_space_evaluator()?.evaluate(at.point())?.b;
+        let acts = |place: &usize| {
+            let mut rows = by_inputs.chunks_exact(inputs.len());
+            rows.any(|row| row[*place] != 0.0)
+        };
+        let acting = moving.into_iter().filter(|(place, _)| acts(place));
+        Ok(acting.map(|(_, rate)| inputs[rate].name.clone()).collect())
     }
 
     /// Returns the accelerations and the rates of first-order states, all 0 up to rounding, if friction holds the machine
@@ -208,7 +238,7 @@ impl Instance<'_> {
         moving.map(|place| names[place].clone()).collect()
     }
 
-    fn degrees(&self) -> usize {
+    pub(super) fn degrees(&self) -> usize {
         self.model().program().degrees_of_freedom()
     }
 
@@ -250,43 +280,74 @@ impl Instance<'_> {
         directions: &[Vec<f64>],
         fixed: &[(&str, f64)],
     ) -> Result<Vec<Unknown>, Error> {
-        let degrees = self.degrees();
-        let mut is_fixed = vec![false; degrees];
-        for (name, _) in fixed {
-            if let Setting::State(place) = self.model().find_setting(name)?
-                && (degrees..2 * degrees).contains(&place)
-            {
-                is_fixed[place - degrees] = true;
-            }
-        }
-        let moves_fixed = |direction: &Vec<f64>| {
-            let mut pairs = direction.iter().zip(&is_fixed);
-            pairs.any(|(speed, is_fixed)| *speed != 0.0 && *is_fixed)
-        };
+        let fixed = self.find_rates(fixed)?;
+        let moves_fixed = |direction: &Vec<f64>| fixed.iter().any(|place| direction[*place] != 0.0);
         let free = (0..directions.len()).filter(|place| !moves_fixed(&directions[*place]));
         Ok(free.map(Unknown::Speed).collect())
     }
 
-    /// Replaces the rates by those of the nearest motion along cyclic directions.
-    fn project_rates(&self, at: &mut OperatingPoint, directions: &[Vec<f64>]) {
+    /// Returns the coordinates whose rates are among these values.
+    fn find_rates(&self, values: &[(&str, f64)]) -> Result<Vec<usize>, Error> {
+        let degrees = self.degrees();
+        let mut found = Vec::new();
+        for (name, _) in values {
+            if let Setting::State(place) = self.model().find_setting(name)?
+                && (degrees..2 * degrees).contains(&place)
+            {
+                found.push(place - degrees);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Replaces the rates by those of a motion along cyclic directions. The speed along a direction is the mean of those by
+    /// the first group of coordinates that move along it, otherwise by all nonzero rates.
+    fn project_rates(
+        &self,
+        at: &mut OperatingPoint,
+        directions: &[Vec<f64>],
+        groups: &[Vec<usize>],
+    ) {
         let degrees = self.degrees();
         let given = at.state[degrees..2 * degrees].to_vec();
         let rates = &mut at.state[degrees..2 * degrees];
         rates.fill(0.0);
+        let nonzero: Vec<usize> = (0..degrees).filter(|place| given[*place] != 0.0).collect();
         for direction in directions {
-            // The mean over the coordinates with a given speed.
-            let moving = || {
-                direction
-                    .iter()
-                    .zip(&given)
-                    .filter(|(part, rate)| **part * **rate != 0.0)
+            let speeds = |group: &Vec<usize>| -> Vec<f64> {
+                let moving = group.iter().filter(|place| direction[**place] != 0.0);
+                moving
+                    .map(|place| given[*place] / direction[*place])
+                    .collect()
             };
-            let count = moving().count().max(1) as f64;
-            let speed = moving().map(|(part, rate)| rate / part).sum::<f64>() / count;
+            let mut groups = groups.iter().chain([&nonzero]).map(speeds);
+            let speeds = groups.find(|speeds| !speeds.is_empty()).unwrap_or_default();
+            let speed = speeds.iter().sum::<f64>() / speeds.len().max(1) as f64;
             for (rate, part) in rates.iter_mut().zip(direction) {
                 *rate += speed * part;
             }
         }
+    }
+
+    /// Rejects fixed rates that no steady motion has together.
+    fn check_fixed_rates(&self, at: &OperatingPoint, fixed: &[(&str, f64)]) -> Result<(), Error> {
+        let degrees = self.degrees();
+        for (name, value) in fixed {
+            let Setting::State(place) = self.model().find_setting(name)? else {
+                continue;
+            };
+            let difference = (at.state[place] - value).abs();
+            if (degrees..2 * degrees).contains(&place)
+                && difference > MAX_SPEED_DIFFERENCE_FRACTION * value.abs()
+            {
+                return Err(Error::Request(format!(
+                    "{name} = {value}: no steady motion has this rate with the other fixed rates; the nearest one has \
+                     {name} = {:?}. Fix one rate of each steady motion",
+                    at.state[place]
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Returns the names of the rates that differ between two states, relative to the largest rate

@@ -7,6 +7,7 @@
 //! point is moved onto them, so that the path is that of independent coordinates.
 
 use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_sim::ode::ROUNDING_FACTOR;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
@@ -14,6 +15,7 @@ use crate::instance::Instance;
 use crate::operating_point::{OperatingPoint, Setting};
 use crate::state_space::StateSpaceEvaluator;
 
+use super::accuracy::{Accuracy, Inaccuracy};
 use super::constraints::HolonomicConstraints;
 use super::linear::LinearisedEquations;
 use super::unknown::Unknown;
@@ -40,8 +42,43 @@ const NUDGE_FRACTION: f64 = 1.0 / 1024.0;
 
 const MAX_NUDGES: usize = 3;
 
+/// Maximum number of displacements inside a region in which a coordinate changes no acceleration, such as a play. Each is
+/// twice as long as the last; the longest is 64 natural scales.
+const MAX_FLAT_NUDGES: i32 = 17;
+
 /// Largest acceleration that counts as zero, relative to the largest term of its equation.
 const MAX_ZERO_FRACTION: f64 = 1e-10;
+
+/// Distance of a switching surface, relative to the size of an unknown, at which an equilibrium may lie on it.
+const SURFACE_FRACTION: f64 = 1e-6;
+
+/// Maximum number of steps of the secant method to a switching surface.
+const MAX_SURFACE_STEPS: usize = 5;
+
+/// Singular values below this fraction of the largest count as 0.
+const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-12;
+
+/// The same fraction for a second search, which keeps the slopes of soft parts. It is the rounding of the entries.
+const SOFT_SINGULAR_VALUE_FRACTION: f64 = 16.0 * f64::EPSILON;
+
+/// Rounding of an acceleration without a bound, relative to the largest term of its equation.
+const ROUNDING_FRACTION: f64 = ROUNDING_FACTOR * f64::EPSILON;
+
+/// Reason why a search has no result.
+enum Failure {
+    /// The accelerations remain.
+    NotFound(Error),
+    /// The accelerations are small, but the unknowns have large errors.
+    Inaccurate(Error),
+}
+
+impl Failure {
+    fn into_error(self) -> Error {
+        match self {
+            Self::NotFound(error) | Self::Inaccurate(error) => error,
+        }
+    }
+}
 
 pub(super) struct Search<'i, 'm> {
     instance: &'i Instance<'m>,
@@ -82,6 +119,9 @@ impl<'i, 'm> Search<'i, 'm> {
         let typical = |unknown: &Unknown| match (scale(unknown), unknown) {
             (Some(scale), _) => scale,
             (None, Unknown::Setting(Setting::State(place))) => sizes[*place],
+            (None, Unknown::Speed(direction)) => {
+                sizes[instance.degrees() + main_coordinate(&directions[*direction])]
+            }
             _ => 0.0,
         };
         Ok(Self {
@@ -102,19 +142,110 @@ impl<'i, 'm> Search<'i, 'm> {
         if !self.project(at) {
             return Err(unsatisfied_constraints_error());
         }
+        let start = at.clone();
+        let here = match self.attempt(at, MIN_SINGULAR_VALUE_FRACTION)? {
+            Ok(here) => here,
+            Err(first) => {
+                // A slope that counts as 0 may be that of a soft part.
+                *at = start;
+                let second = self.attempt(at, SOFT_SINGULAR_VALUE_FRACTION)?;
+                second.map_err(|second| match (&first, &second) {
+                    (Failure::NotFound(_), Failure::Inaccurate(_)) => second.into_error(),
+                    _ => first.into_error(),
+                })?
+            }
+        };
+        self.check_surfaces(at)?;
+        Ok(here.accelerations.iter().copied().collect())
+    }
+
+    /// Moves `at` to an equilibrium. Singular values below `least` of the largest count as 0.
+    fn attempt(
+        &mut self,
+        at: &mut OperatingPoint,
+        least: f64,
+    ) -> Result<Result<LinearisedEquations, Failure>, Error> {
+        let here = self.descend(at, least)?;
+        if !here.is_below(MAX_ZERO_FRACTION) {
+            return Ok(Err(Failure::NotFound(self.not_found_error(at, &here))));
+        }
+        Ok(match self.find_inaccuracy(at, &here, least) {
+            None => Ok(here),
+            Some(found) => Err(Failure::Inaccurate(self.inaccuracy_error(at, &here, found))),
+        })
+    }
+
+    /// Rejects an equilibrium on a switching surface at which a derivative has no finite limit, such as that of
+    /// `sign(p)*sqrt(abs(p))` at 0. Beside the surface, within the error of the search, its derivatives are rounding.
+    fn check_surfaces(&mut self, at: &OperatingPoint) -> Result<(), Error> {
+        let guards = self.guards(at);
+        for place in 0..self.unknowns.len() {
+            let size = self.typical[place];
+            let mut change = DVector::zeros(self.unknowns.len());
+            let mut displaced = |search: &Self, distance: f64| {
+                change[place] = distance;
+                search.move_unknowns(at, &change).0
+            };
+            let beside = displaced(self, SURFACE_FRACTION * size);
+            let beside = self.guards(&beside);
+            for (guard, (here, there)) in guards.iter().zip(beside).enumerate() {
+                let mut distance = -SURFACE_FRACTION * size * here / (there - here);
+                if *here == 0.0 || distance.is_nan() || distance.abs() > SURFACE_FRACTION * size {
+                    continue;
+                }
+                for _ in 0..MAX_SURFACE_STEPS {
+                    let on = displaced(self, distance);
+                    let value = self.guards(&on)[guard];
+                    if value == 0.0 {
+                        if self.try_linearised(&on).is_none() {
+                            return Err(self.instance.no_linearisation_error(on.point()));
+                        }
+                        break;
+                    }
+                    distance *= here / (here - value);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the switching functions at a point.
+    fn guards(&mut self, at: &OperatingPoint) -> Vec<f64> {
+        let mut guards = vec![0.0; self.evaluator.guard_count()];
+        self.evaluator.guards(at.point(), &mut guards);
+        guards
+    }
+
+    /// Moves `at` by steps that reduce the accelerations until none does. Singular values below `least` of the largest
+    /// count as 0.
+    fn descend(
+        &mut self,
+        at: &mut OperatingPoint,
+        least: f64,
+    ) -> Result<LinearisedEquations, Error> {
         let mut here = self.linearise(at)?;
-        let mut nudges = 0;
+        let (mut nudges, mut flat_nudges) = (0, 0);
         for _ in 0..MAX_STEPS {
             if here.is_below(f64::EPSILON) {
                 break;
             }
-            let step = here.solve_step(&self.scales);
+            let step = here.solve_step(&self.scales, least);
             let moved = match self.advance(at, &here, &step) {
                 // No step reduces the accelerations, which are zero up to rounding.
-                None if here.is_below(MAX_ZERO_FRACTION) || nudges == MAX_NUDGES => break,
+                None if here.is_below(MAX_ZERO_FRACTION) => break,
                 None => {
-                    nudges += 1;
-                    self.nudge(at, &here)
+                    let flat = self.find_flat_direction(&here, least);
+                    let flat = flat.filter(|_| flat_nudges < MAX_FLAT_NUDGES);
+                    if let Some(direction) = flat {
+                        flat_nudges += 1;
+                        self.nudge(at, direction * 2.0_f64.powi(flat_nudges - 1))
+                    } else if nudges < MAX_NUDGES {
+                        nudges += 1;
+                        let direction = self.acceleration_signs(&here);
+                        self.nudge(at, direction)
+                    } else {
+                        None
+                    }
                 }
                 moved => moved,
             };
@@ -122,12 +253,49 @@ impl<'i, 'm> Search<'i, 'm> {
                 break;
             };
             there.sizes = there.sizes.sup(&here.sizes);
+            there.largest = there.largest.sup(&here.largest);
             (*at, here) = (trial, there);
         }
-        if here.is_below(MAX_ZERO_FRACTION) {
-            return Ok(here.accelerations.iter().copied().collect());
+        Ok(here)
+    }
+
+    /// Returns the reason why a point is no equilibrium to the digits of its unknowns.
+    fn find_inaccuracy(
+        &self,
+        at: &OperatingPoint,
+        here: &LinearisedEquations,
+        least: f64,
+    ) -> Option<Inaccuracy> {
+        let system = here.scale(&self.scales)?;
+        let magnitudes = DVector::from_fn(self.unknowns.len(), |place, _| {
+            let value = match self.unknowns[place] {
+                Unknown::Setting(Setting::State(state)) => at.state[state].abs(),
+                Unknown::Setting(Setting::Input(input)) => at.inputs[input].abs(),
+                _ => 0.0,
+            };
+            value.max(self.typical[place])
+        });
+        let accuracy = Accuracy::new(here, &system, least);
+        let of_state = &here.state_terms * ROUNDING_FRACTION;
+        let of_terms = &here.terms * ROUNDING_FRACTION;
+        let mut found = accuracy.find_unbalanced(&of_state);
+        let mut uncertain = accuracy.find_uncertain(&of_terms, &magnitudes);
+        // Bounds of the roundings are closer, but take longer.
+        if (found.is_some() || uncertain.is_some())
+            && let Some(bounds) = self.instance.bound_rate_roundings(at.point())
+        {
+            let bounds = DVector::from_vec(bounds);
+            found = accuracy.find_unbalanced(&(&bounds + of_state));
+            uncertain = accuracy.find_uncertain(&bounds, &magnitudes);
         }
-        Err(self.not_found_error(at, &here))
+        found.or(uncertain).or_else(|| {
+            if !accuracy.has_free_motion() {
+                return None;
+            }
+            let linear = self.instance.linearise(at.point()).ok()?;
+            let lost = self.instance.find_lost_parameter(&linear, at.point());
+            lost.map(Inaccuracy::Hidden)
+        })
     }
 
     /// Returns the longest shortened step that reduces the accelerations and along which the
@@ -178,18 +346,65 @@ impl<'i, 'm> Search<'i, 'm> {
         parts.map(part).fold(1.0, f64::min)
     }
 
-    /// Returns a point displaced in the direction of the accelerations. If no step helps, forces
-    /// may have an extremum.
+    /// Returns a change of the unknowns that changes no acceleration and along which the machine accelerates, relative to
+    /// the typical sizes. With constraints, a coordinate cannot move independently.
+    fn find_flat_direction(&self, here: &LinearisedEquations, least: f64) -> Option<DVector<f64>> {
+        if self.constraints.is_some() {
+            return None;
+        }
+        let signs = self.acceleration_signs(here);
+        let columns = here.matrix.column_iter().zip(signs.iter());
+        if columns
+            .into_iter()
+            .any(|(column, sign)| column.amax() == 0.0 && *sign != 0.0)
+        {
+            return Some(signs);
+        }
+        let accelerations = DVector::from_fn(self.unknowns.len(), |place, _| {
+            let coordinate = self.accelerated_coordinate(&self.unknowns[place]);
+            let value = coordinate.and_then(|place| here.accelerations.get(place).copied());
+            value.unwrap_or(0.0)
+        });
+        let change = here
+            .scale(&self.scales)?
+            .free_change(least, here, &accelerations)?;
+        let relative = DVector::from_fn(change.len(), |place, _| match self.typical[place] {
+            0.0 => 0.0,
+            size => change[place] / size,
+        });
+        let largest = relative.amax();
+        (largest > 0.0).then(|| relative / largest)
+    }
+
+    /// Returns the coordinate whose acceleration moves an unknown.
+    fn accelerated_coordinate(&self, unknown: &Unknown) -> Option<usize> {
+        match unknown {
+            Unknown::Setting(Setting::State(state)) => {
+                Some(*state).filter(|state| *state < self.instance.degrees())
+            }
+            Unknown::Speed(direction) => Some(main_coordinate(&self.directions[*direction])),
+            Unknown::Setting(_) => None,
+        }
+    }
+
+    /// Returns the signs of the accelerations of the unknowns; 0 for rounding, and for first-order states and inputs.
+    fn acceleration_signs(&self, here: &LinearisedEquations) -> DVector<f64> {
+        let signs = self.unknowns.iter().map(|unknown| {
+            let coordinate = self.accelerated_coordinate(unknown);
+            coordinate.map_or(0.0, |place| here.acceleration_sign(place))
+        });
+        DVector::from_iterator(self.unknowns.len(), signs)
+    }
+
+    /// Returns a point displaced in a direction relative to the typical sizes. If no step helps, forces may have an
+    /// extremum or be constant.
     fn nudge(
         &mut self,
         at: &OperatingPoint,
-        here: &LinearisedEquations,
+        direction: DVector<f64>,
     ) -> Option<(OperatingPoint, LinearisedEquations)> {
-        let change = DVector::from_fn(self.unknowns.len(), |place, _| match self.unknowns[place] {
-            Unknown::Setting(Setting::State(state)) => {
-                NUDGE_FRACTION * self.typical[place] * here.acceleration_sign(state)
-            }
-            _ => 0.0,
+        let change = DVector::from_fn(direction.len(), |place, _| {
+            NUDGE_FRACTION * self.typical[place] * direction[place]
         });
         let (trial, way) = self.move_point(at, &change)?;
         let there = self.try_linearised(&trial)?;
@@ -234,6 +449,14 @@ impl<'i, 'm> Search<'i, 'm> {
         {
             return None;
         }
+        let constraints = match &mut self.constraints {
+            Some(constraints) => Some(constraints.linearise(at, &mut self.evaluator)?),
+            None => None,
+        };
+        let of_constraints = |row: usize| {
+            let constraints = constraints.as_ref()?;
+            constraints.largest_accelerations.get(row).copied()
+        };
         let sizes = DVector::from_fn(rows, |row, _| {
             let term = |(entry, value): (f64, &f64)| (entry * value).abs();
             let by_state = by_state.row(degrees + row);
@@ -244,18 +467,25 @@ impl<'i, 'm> Search<'i, 'm> {
             let of_sizes = scaled.iter().zip(&self.typical);
             let of_sizes = of_sizes.map(|(entry, size)| (entry * size).abs());
             let terms = of_states.chain(of_inputs).chain(of_sizes);
+            let terms = terms.chain(of_constraints(row));
             terms.fold(accelerations[row].abs(), f64::max)
         });
-        let constraints = match &mut self.constraints {
-            Some(constraints) => Some(constraints.linearise(at)?),
-            None => None,
+        let state = DVector::from_column_slice(&at.state);
+        let of_states = by_state.rows(degrees, rows).abs() * state.abs();
+        let forces = DVector::from_fn(rows, |row, _| of_constraints(row).unwrap_or(0.0));
+        let state_terms = of_states + forces;
+        let accelerations = match &constraints {
+            Some(constraints) => constraints.project(&accelerations)?,
+            None => accelerations,
         };
         Some(LinearisedEquations {
+            largest: accelerations.abs(),
             accelerations,
             matrix,
             constraints,
             terms: sizes.clone(),
             sizes,
+            state_terms,
         })
     }
 
@@ -272,6 +502,31 @@ impl<'i, 'm> Search<'i, 'm> {
         at: &OperatingPoint,
         change: &DVector<f64>,
     ) -> Option<(OperatingPoint, DVector<f64>)> {
+        let (mut moved, mut way) = self.move_unknowns(at, change);
+        if self.constraints.is_none() {
+            return Some((moved, way));
+        }
+        if !self.project(&mut moved) {
+            return None;
+        }
+        for (place, unknown) in self.unknowns.iter().enumerate() {
+            if let Unknown::Setting(Setting::State(state)) = *unknown {
+                let value = moved.state[state];
+                if self.ranges[place].is_some_and(|(low, high)| !(low..=high).contains(&value)) {
+                    return None;
+                }
+                way[place] = value - at.state[state];
+            }
+        }
+        Some((moved, way))
+    }
+
+    /// Returns a point moved by a change of the unknowns, inside their ranges, and the change of the unknowns.
+    fn move_unknowns(
+        &self,
+        at: &OperatingPoint,
+        change: &DVector<f64>,
+    ) -> (OperatingPoint, DVector<f64>) {
         let degrees = self.instance.model().program().degrees_of_freedom();
         let (mut moved, mut way) = (at.clone(), DVector::zeros(change.len()));
         for (place, unknown) in self.unknowns.iter().enumerate() {
@@ -296,22 +551,7 @@ impl<'i, 'm> Search<'i, 'm> {
             way[place] = there - *value;
             *value = there;
         }
-        if self.constraints.is_none() {
-            return Some((moved, way));
-        }
-        if !self.project(&mut moved) {
-            return None;
-        }
-        for (place, unknown) in self.unknowns.iter().enumerate() {
-            if let Unknown::Setting(Setting::State(state)) = *unknown {
-                let value = moved.state[state];
-                if self.ranges[place].is_some_and(|(low, high)| !(low..=high).contains(&value)) {
-                    return None;
-                }
-                way[place] = value - at.state[state];
-            }
-        }
-        Some((moved, way))
+        (moved, way)
     }
 
     /// Returns true if a rate depends on time at a point.
@@ -323,24 +563,35 @@ impl<'i, 'm> Search<'i, 'm> {
     pub fn names(&self) -> Vec<String> {
         let model = self.instance.model();
         let (states, degrees) = (model.state_names(), model.program().degrees_of_freedom());
-        let name = |unknown: &Unknown| match *unknown {
-            Unknown::Setting(Setting::Time) => "t".to_owned(),
-            Unknown::Setting(Setting::State(place)) => states[place].clone(),
-            Unknown::Setting(Setting::Input(place)) => model.model().inputs[place].name.clone(),
+        let names = |unknown: &Unknown| match *unknown {
+            Unknown::Setting(Setting::Time) => vec!["t".to_owned()],
+            Unknown::Setting(Setting::State(place)) => vec![states[place].clone()],
+            Unknown::Setting(Setting::Input(place)) => {
+                vec![model.model().inputs[place].name.clone()]
+            }
             Unknown::Speed(direction) => {
-                let mut speeds = self.directions[direction].iter();
-                let moving = speeds.position(|speed| *speed != 0.0).unwrap_or(0);
-                states[degrees + moving].clone()
+                let speeds = self.directions[direction].iter().enumerate();
+                let moving = speeds.filter(|(_, speed)| **speed != 0.0);
+                moving
+                    .map(|(place, _)| states[degrees + place].clone())
+                    .collect()
             }
         };
-        self.unknowns.iter().map(name).collect()
+        self.unknowns.iter().flat_map(names).collect()
+    }
+
+    /// Returns the name and the value of the coordinate or first-order state of a row of the equations.
+    fn row_quantity(&self, at: &OperatingPoint, row: usize) -> (String, f64) {
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        let place = if row < degrees { row } else { row + degrees };
+        let names = self.instance.model().state_names();
+        let name = names.get(place).cloned().unwrap_or_default();
+        (name, at.state.get(place).copied().unwrap_or(0.0))
     }
 
     fn not_found_error(&self, at: &OperatingPoint, here: &LinearisedEquations) -> Error {
-        let degrees = self.instance.model().program().degrees_of_freedom();
         let states = self.instance.model().state_names();
         let (row, left) = here.largest_residual();
-        let place = if row < degrees { row } else { row + degrees };
         let at_the_end = self
             .unknowns
             .iter()
@@ -357,15 +608,69 @@ impl<'i, 'm> Search<'i, 'm> {
             }
             _ => String::new(),
         };
-        let name = states.get(place).map_or("", String::as_str);
+        let (name, value) = self.row_quantity(at, row);
         let reason = format!(
-            "no equilibrium was found near the initial state: the search ended at {name} = {:e}{range}, \
+            "no equilibrium was found near the initial state: the search ended at {name} = {value:e}{range}, \
              with the acceleration or rate {left:e} (SI) of {name}; start nearer to an equilibrium (--state), or fix \
-             a coordinate (--fix) so that inputs hold it",
-            at.state.get(place).copied().unwrap_or(0.0)
+             a coordinate (--fix) so that inputs hold it"
         );
         Error::Stopped { t: None, reason }
     }
+
+    /// Returns the error of a point that is no equilibrium to the digits of its unknowns.
+    fn inaccuracy_error(
+        &self,
+        at: &OperatingPoint,
+        here: &LinearisedEquations,
+        found: Inaccuracy,
+    ) -> Error {
+        let reason = match found {
+            Inaccuracy::Unbalanced(row) => {
+                let (name, value) = self.row_quantity(at, row);
+                let left = here.accelerations[row];
+                format!(
+                    "no equilibrium was found near the initial state: the search ended at {name} = {value:e}, with the \
+                     acceleration or rate {left:e} (SI) of {name}, which is below the rounding of a stiffness beside it"
+                )
+            }
+            Inaccuracy::Uncertain(unknown, error) => {
+                let (name, value) = self.unknown_quantity(at, self.unknowns[unknown]);
+                format!(
+                    "the equilibrium near {name} = {value:e} cannot be computed to its digits: rounding of the largest \
+                     forces changes {name} by up to {error:.1e} (SI)"
+                )
+            }
+            Inaccuracy::Hidden(parameter) => format!(
+                "the equilibrium cannot be computed: the term with `{parameter}` is below the rounding of a stiffness \
+                 beside it"
+            ),
+        };
+        let reason = format!("{reason}; make the stiff part rigid, or reduce its stiffness");
+        Error::Stopped { t: None, reason }
+    }
+
+    /// Returns a name and the value of an unknown.
+    fn unknown_quantity(&self, at: &OperatingPoint, unknown: Unknown) -> (String, f64) {
+        let model = self.instance.model();
+        let degrees = model.program().degrees_of_freedom();
+        let state = |place: usize| (model.state_names()[place].clone(), at.state[place]);
+        match unknown {
+            Unknown::Setting(Setting::Time) => ("t".to_owned(), at.t),
+            Unknown::Setting(Setting::State(place)) => state(place),
+            Unknown::Setting(Setting::Input(place)) => {
+                (model.model().inputs[place].name.clone(), at.inputs[place])
+            }
+            Unknown::Speed(direction) => {
+                state(degrees + main_coordinate(&self.directions[direction]))
+            }
+        }
+    }
+}
+
+/// Returns the coordinate of a cyclic direction whose speed is that along the direction.
+fn main_coordinate(direction: &[f64]) -> usize {
+    let place = direction.iter().position(|speed| *speed == 1.0);
+    place.unwrap_or(0)
 }
 
 fn unsatisfied_constraints_error() -> Error {

@@ -40,8 +40,13 @@ impl Instance<'_> {
     pub fn classify_stability(&self, at: &OperatingPoint) -> Result<Stability, Error> {
         let linear = self.linearise(at.point())?;
         let degrees = self.model().program().degrees_of_freedom();
-        let modes = constrained_modes(&linear.a, &linear.constraint_matrix(self.model()), degrees)
-            .map_err(|error| Error::Request(error.to_string()))?;
+        let modes = constrained_modes(
+            &linear.a,
+            &linear.constraint_matrix(self.model()),
+            degrees,
+            self.model().typical_sizes(),
+        )
+        .map_err(|error| Error::Request(error.to_string()))?;
         let eigenvalues = || modes.iter().map(|mode| mode.eigenvalue);
         let largest = eigenvalues().fold(0.0, |most: f64, value| most.max(value.norm()));
         let growth = eigenvalues().fold(f64::NEG_INFINITY, |most, value| most.max(value.re));

@@ -369,3 +369,73 @@ fn search_from_far_away_ends_at_the_equilibrium() {
         assert!((x / 1e-3 - 1.0).abs() < 1e-12, "{start:e}: {x:e}");
     }
 }
+
+#[test]
+fn search_leaves_a_play() {
+    let text = "[model]\nname = \"play\"\n[parameters]\nm = { value = 2, unit = \"kg\" }\n\
+                k = { value = 300, unit = \"N/m\" }\nb = { value = 50, unit = \"mm\" }\n\
+                g = { value = 9.81, unit = \"m/s^2\" }\n[coordinates]\nx = { unit = \"m\" }\n\
+                [kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"m*g*x\"\n\
+                [forces]\nF = { on = \"x\", value = \"-k*deadzone(x, b)\" }\n";
+    for (play, half_width) in [
+        ("50, unit = \"mm\"", 0.05),
+        ("1, unit = \"um\"", 1e-6),
+        ("3, unit = \"m\"", 3.0),
+    ] {
+        let model = compiled(&text.replace("50, unit = \"mm\"", play));
+        let run = model.with_declared_parameters().expect("an instance");
+        for start in [0.0, 0.9, -0.9] {
+            let found = from(&run, &[("x", start * half_width)]).expect("an equilibrium");
+            let right = -half_width - 2.0 * 9.81 / 300.0;
+            let x = found.point.state[0];
+            assert!((x / right - 1.0).abs() < 1e-12, "{play}, {start}: {x}");
+        }
+    }
+}
+
+/// Two wheels joined by an elastic gear of ratio n, both turning at the start.
+const GEAR: &str = r#"
+[model]
+name = "gear"
+[parameters]
+J = { value = 2, unit = "kg m^2" }
+n = { value = 5 }
+k = { value = 10, unit = "N m" }
+c = { value = 0.5, unit = "N m s" }
+[coordinates]
+motor = { unit = "rad", initial_rate = 100 }
+load = { unit = "rad", initial_rate = 20 }
+[inputs]
+T = { unit = "N m" }
+[kinetic]
+wheels = "1/2*J*(dot(motor)^2 + dot(load)^2)"
+[potential]
+gear = "1/2*k*(motor/n - load)^2"
+[dissipation]
+load = "1/2*c*dot(load)^2"
+[forces]
+drive = { on = "motor", value = "T" }
+"#;
+
+#[test]
+fn fixed_rate_of_a_steady_motion_determines_the_others() {
+    let model = compiled(GEAR);
+    let run = model.with_declared_parameters().expect("an instance");
+    for values in [
+        &[("load_dot", 30.0)][..],
+        &[("motor_dot", 150.0)],
+        &[("load_dot", 30.0), ("motor_dot", 150.0)],
+    ] {
+        let found = fixed(&run, values).expect("a steady motion").point;
+        assert_eq!(found.state[2..], [150.0, 30.0], "{values:?}");
+        assert!((found.inputs[0] - 3.0).abs() < 1e-9, "{found:?}");
+    }
+    let stopped = fixed(&run, &[("load_dot", 0.0)]).expect("rest").point;
+    assert_eq!(stopped.state[2..], [0.0, 0.0]);
+    let refused = fixed(&run, &[("load_dot", 30.0), ("motor_dot", 140.0)]);
+    let message = refused.expect_err("no steady motion").to_string();
+    assert!(
+        message.contains("no steady motion has this rate"),
+        "{message}"
+    );
+}

@@ -23,6 +23,7 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::motion::{Motion, Solver};
 use crate::motion_model::MotionModel;
+use crate::observers::Results;
 use crate::simulation::{Request, new_motion, with_early_stop};
 
 use recorder::{Recorder, Recording};
@@ -106,7 +107,7 @@ impl<'m> Instance<'m> {
         let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, progress);
         let recording = recorder.finish();
         let found = (trajectory, run.surfaces.clone());
-        let motion = new_motion(found, request, Solver::Rk, (None, None));
+        let motion = new_motion(found, request, Solver::Rk, (None, Results::default()));
         let motion = match ended {
             Ok(()) => motion,
             Err(error) => {

@@ -128,6 +128,10 @@ impl System for Recorder<'_> {
         self.system.project(t, y)
     }
 
+    fn mark_corrected(&self, is_corrected: &mut [bool]) {
+        self.system.mark_corrected(is_corrected);
+    }
+
     fn forget_projection(&self) {
         self.system.forget_projection();
     }

@@ -1,54 +1,58 @@
-//! Surfaces that hold the motion while contacts are closed. The contact forces keep the distances from accelerating, so
-//! they follow from the sides: a = a_0 + W lambda = 0 with Delassus' matrix W. With these forces the rates of the
-//! switching functions are linear in the sides.
+//! Surfaces that hold the motion while contacts are closed. In given modes of the contacts their forces follow from the
+//! sides: they keep the distances, and the slips of contacts that stick, from accelerating. With these forces the rates of
+//! the switching functions are linear in the sides.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::contact_friction::ContactMode;
 
 use super::sided_model::{SidedModel, TimeAndState};
-use crate::contacts::{delassus, solve_complementarity, solve_rows};
+use crate::contacts::{contact_problem, free_accelerations, rates_and_slips};
 
 /// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
 
 impl SidedModel {
-    /// Sets the closed contacts.
-    pub(super) fn set_closed_contacts(&mut self, closed: &[usize]) {
+    /// Sets the closed contacts with their modes.
+    pub(super) fn set_closed_contacts(&mut self, closed: &[(usize, ContactMode)]) {
         self.closed_contacts.clear();
         self.closed_contacts.extend(closed);
     }
 
-    pub(super) fn closed_contacts(&self) -> &[usize] {
+    pub(super) fn closed_contacts(&self) -> &[(usize, ContactMode)] {
         &self.closed_contacts
     }
 
-    /// Closes the contacts without friction that touch, do not move and push at a state, which has rounding of these sizes
-    /// in its coordinates and rates.
+    /// Closes the contacts that touch, do not move and push at a state, which has rounding of these sizes in its coordinates
+    /// and rates.
     pub(super) fn close_resting_contacts(
         &mut self,
         (t, state): TimeAndState<'_>,
         [distance_rounding, rate_rounding]: [f64; 2],
     ) {
         self.closed_contacts.clear();
-        let impacts = &self.evaluator.program().impacts;
-        if impacts.is_empty() || impacts.iter().any(|impact| impact.friction.is_some()) {
+        if self.evaluator.program().impacts.is_empty() {
             return;
         }
         let inputs = &self.inputs;
         self.evaluator
             .impacts(Point { t, state, inputs }, &mut self.impacts);
+        let impacts = &self.impacts;
         let rests = |place: &usize| {
-            let impact = &self.impacts[*place];
+            let impact = &impacts[*place];
             impact.distance <= distance_rounding && impact.rate.abs() <= rate_rounding
         };
-        let resting: Vec<usize> = (0..self.impacts.len()).filter(rests).collect();
-        let delassus = delassus(&self.impacts, &resting);
-        let accelerations = resting
-            .iter()
-            .map(|place| self.impacts[*place].acceleration);
-        let forces = solve_complementarity(&delassus, &accelerations.collect::<Vec<f64>>());
-        let pushing = resting.iter().zip(forces).filter(|(_, force)| *force > 0.0);
+        let direction = |place: usize| {
+            let slip = impacts[place].friction.as_ref().map(|one| one.slip);
+            let slip = slip.filter(|slip| slip.abs() > rate_rounding);
+            slip.map(f64::signum)
+        };
+        let resting: Vec<usize> = (0..impacts.len()).filter(rests).collect();
+        let accelerations = free_accelerations(impacts, &resting);
+        let problem = contact_problem(impacts, &resting, direction, &accelerations);
+        let modes = problem.decide(None, &[]).map(|decision| decision.modes);
+        let closed = resting.into_iter().zip(modes.unwrap_or_default());
         self.closed_contacts
-            .extend(pushing.map(|(place, _)| *place));
+            .extend(closed.filter(|(_, mode)| *mode != ContactMode::Open));
     }
 
     /// Returns the evaluator and its inputs: those of the model and the sides.
@@ -79,36 +83,42 @@ impl SidedModel {
             inputs: &self.inputs,
         };
         self.evaluator.impacts(point, &mut self.impacts);
-        let closed = self.closed_contacts.clone();
-        let delassus = delassus(&self.impacts, &closed);
-        let rows: Vec<usize> = (0..closed.len()).collect();
-        let accelerations: Vec<f64> = (closed.iter())
-            .map(|place| self.impacts[*place].acceleration)
-            .collect();
-        let columns: Vec<Vec<f64>> = (closed.iter())
-            .map(|place| self.impacts[*place].column.clone())
-            .collect();
-        let forces = solve_rows(&delassus, &accelerations, &rows);
+        let (closed, modes): (Vec<usize>, Vec<ContactMode>) =
+            self.closed_contacts.iter().copied().unzip();
+        let accelerations = free_accelerations(&self.impacts, &closed);
         let degrees = self.degrees_of_freedom();
+        let normal = closed.iter().map(|place| &self.impacts[*place].column);
+        let normal = normal.map(|column| Some(column.clone()));
+        let tangential = closed.iter().map(|place| {
+            let friction = self.impacts[*place].friction.as_ref();
+            friction.map(|friction| friction.column.clone())
+        });
+        let columns: Vec<Option<Vec<f64>>> = normal.chain(tangential).collect();
+        let impacts = self.impacts.clone();
+        let forces_at = |rates: &[f64]| {
+            let problem = contact_problem(&impacts, &closed, |_| None, rates);
+            problem.impulses(&modes)
+        };
+        let forces = forces_at(&accelerations);
         let mut moved = state.to_vec();
         moved[degrees..2 * degrees].fill(0.0);
-        let still = self.distance_rates_and_functions(t, &moved, &closed);
-        let by_forces: Vec<Vec<f64>> = (columns.iter())
-            .map(|column| {
-                moved[degrees..2 * degrees].copy_from_slice(column);
-                let pushed = self.distance_rates_and_functions(t, &moved, &closed);
-                pushed.1.iter().zip(&still.1).map(|(a, b)| a - b).collect()
-            })
-            .collect();
-        let count = self.at.len();
-        let forces_by_sides: Vec<Vec<f64>> = (0..count)
-            .map(|side| {
-                moved[degrees..2 * degrees].copy_from_slice(&self.at[side].column[..degrees]);
-                let pushed = self.distance_rates_and_functions(t, &moved, &closed);
-                let changes: Vec<f64> = pushed.0.iter().zip(&still.0).map(|(a, b)| a - b).collect();
-                solve_rows(&delassus, &changes, &rows)
-            })
-            .collect();
+        let still = self.contact_rates_and_functions(t, &moved, &closed);
+        let mut by_forces = Vec::with_capacity(columns.len());
+        for column in columns.iter() {
+            let Some(column) = column else {
+                by_forces.push(vec![0.0; still.1.len()]);
+                continue;
+            };
+            moved[degrees..2 * degrees].copy_from_slice(column);
+            let pushed = self.contact_rates_and_functions(t, &moved, &closed);
+            by_forces.push(subtract(&pushed.1, &still.1));
+        }
+        let mut forces_by_sides = Vec::with_capacity(self.at.len());
+        for side in 0..self.at.len() {
+            moved[degrees..2 * degrees].copy_from_slice(&self.at[side].column[..degrees]);
+            let pushed = self.contact_rates_and_functions(t, &moved, &closed);
+            forces_by_sides.push(forces_at(&subtract(&pushed.0, &still.0)));
+        }
         for (row, surface) in self.at.iter_mut().enumerate() {
             let rate = |forces: &[f64]| -> f64 {
                 let terms = forces.iter().zip(&by_forces);
@@ -119,15 +129,15 @@ impl SidedModel {
                 *slot += rate(forces);
             }
             for (force, column) in forces_by_sides[row].iter().zip(&columns) {
-                for (slot, entry) in surface.column.iter_mut().zip(column) {
+                for (slot, entry) in surface.column.iter_mut().zip(column.iter().flatten()) {
                     *slot += force * entry;
                 }
             }
         }
     }
 
-    /// Returns the rates of the distances of `closed` contacts, and the switching functions of the surfaces.
-    fn distance_rates_and_functions(
+    /// Returns the rates of the distances and the slips of `closed` contacts, and the switching functions of the surfaces.
+    fn contact_rates_and_functions(
         &mut self,
         t: f64,
         state: &[f64],
@@ -137,9 +147,12 @@ impl SidedModel {
         let point = Point { t, state, inputs };
         self.evaluator.impacts(point, &mut self.impacts);
         self.evaluator.guards(point, &mut self.guards);
-        let rates = closed.iter().map(|place| self.impacts[*place].rate);
         let sliding = &self.evaluator.program().outputs.sliding;
         let functions = sliding.iter().map(|surface| self.guards[surface.guard]);
-        (rates.collect(), functions.collect())
+        (rates_and_slips(&self.impacts, closed), functions.collect())
     }
+}
+
+fn subtract(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use eomgen_codegen::mechanics::outputs::Side;
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point, SlidingValues};
+use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::friction_discs::{DiscArrival, DiscVerdict, decide_with_discs};
 use eomgen_sim::sliding_modes::{
     Arrival, Rates, Sharing, Verdict, reduce_largest, solve_least_squares,
@@ -48,8 +49,8 @@ pub struct SidedModel {
     pub(super) at: Vec<SlidingValues>,
     pub(super) guards: Vec<f64>,
     is_linear: bool,
-    /// Closed contacts, whose forces follow from the sides.
-    pub(super) closed_contacts: Vec<usize>,
+    /// Closed contacts with their modes; their forces follow from the sides.
+    pub(super) closed_contacts: Vec<(usize, ContactMode)>,
     pub(super) impacts: Vec<ImpactValues>,
     /// Effect of each surface's force on its own function without contact forces.
     pub(super) own_effects: Vec<f64>,
@@ -380,7 +381,7 @@ impl SidedModel {
         sides: &[f64],
     ) -> Vec<bool> {
         self.set_sides((t, state), inputs, sides);
-        let beside: Vec<f64> = touching.iter().map(|i| self.own_force_rate(*i)).collect();
+        let beside: Vec<f64> = touching.iter().map(|i| self.own_effects[*i]).collect();
         let mut on = state.to_vec();
         for _ in 0..CORRECTION_COUNT {
             let values = self.evaluate_functions((t, &on), inputs);
@@ -389,7 +390,7 @@ impl SidedModel {
         self.evaluate((t, &on));
         let jumps = touching.iter().zip(beside);
         jumps
-            .map(|(surface, beside)| self.own_force_rate(*surface) > MIN_JUMP_FRACTION * beside)
+            .map(|(surface, beside)| self.own_effects[*surface] > MIN_JUMP_FRACTION * beside)
             .collect()
     }
 

@@ -1,6 +1,7 @@
 //! The surfaces along a motion: the rates, observables and guards that follow from their states.
 
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator};
+use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{SurfaceMode, difference_step};
 
 use super::discs::{Disc, DiscState, norm, signs};
@@ -46,6 +47,8 @@ pub(crate) struct SurfaceStates {
     /// Fixed sides, -1 or 1, of free surfaces, independent of their functions.
     pub(super) kept: Option<Vec<f64>>,
     pub(super) known: KnownSides,
+    /// True if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
+    pub(super) has_decided: bool,
 }
 
 impl SurfaceStates {
@@ -63,6 +66,7 @@ impl SurfaceStates {
             begin: None,
             kept: None,
             known: KnownSides::Nothing,
+            has_decided: false,
             sided,
         }
     }
@@ -77,9 +81,9 @@ impl SurfaceStates {
         self.first_disc_guard = self.sided.guard_count() + count;
     }
 
-    /// Sets the closed contacts, whose forces act with those of the surfaces. With `None` forces of closed contacts are
+    /// Sets the closed contacts with their modes, whose forces act with those of the surfaces. With `None` forces of closed contacts are
     /// not known, and the motion crosses all surfaces. Returns true if the contacts changed.
-    pub fn set_closed_contacts(&mut self, closed: Option<&[usize]>) -> bool {
+    pub fn set_closed_contacts(&mut self, closed: Option<&[(usize, ContactMode)]>) -> bool {
         let may_hold = self.can_hold && closed.is_some();
         if self.may_hold && !may_hold {
             self.places.fill(SurfaceState::Free);
@@ -95,6 +99,16 @@ impl SurfaceStates {
         self.sided.set_closed_contacts(closed);
         self.known = KnownSides::Nothing;
         true
+    }
+
+    /// Returns true if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
+    pub fn has_decided(&self) -> bool {
+        self.has_decided
+    }
+
+    /// Returns true if surfaces were decided since the last call.
+    pub fn take_decided(&mut self) -> bool {
+        std::mem::take(&mut self.has_decided)
     }
 
     /// Returns the evaluator with the sides at a point, and its inputs: those of the model and the sides.

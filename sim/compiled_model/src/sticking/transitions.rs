@@ -48,6 +48,18 @@ impl SurfaceStates {
         self.decide_states(at, inputs, (&touching, &arrivals, &discs), &came_from);
     }
 
+    /// Lets the sides of surfaces that cannot hold the motion follow from the state, and returns them as they were.
+    pub fn release_other_sides(&mut self) -> Vec<(bool, f64)> {
+        self.known = KnownSides::Nothing;
+        self.sided.release_other_sides()
+    }
+
+    /// Restores sides that were released.
+    pub fn restore_other_sides(&mut self, sides: Vec<(bool, f64)>) {
+        self.known = KnownSides::Nothing;
+        self.sided.restore_other_sides(sides);
+    }
+
     /// Decides the state of all surfaces that the motion reached. `before` is on the near side of
     /// a surface, `t` and `state` just beyond it.
     pub fn apply_crossing(
@@ -60,20 +72,6 @@ impl SurfaceStates {
         if !self.may_hold {
             return;
         }
-        let fixed = self.sided.release_other_sides();
-        self.reach_surfaces(inputs, (t_before, before), t, state);
-        self.sided.restore_other_sides(fixed);
-        self.known = KnownSides::Nothing;
-    }
-
-    /// Decides like [`SurfaceStates::apply_crossing`], with the sides of other surfaces at the state.
-    fn reach_surfaces(
-        &mut self,
-        inputs: &[f64],
-        (t_before, before): (f64, &[f64]),
-        t: f64,
-        state: &mut [f64],
-    ) {
         let near = self.sided.evaluate_functions((t_before, before), inputs);
         let beyond = self.sided.evaluate_functions((t, state), inputs);
         let roundings = self.sided.function_roundings((t, state), inputs);
@@ -224,13 +222,12 @@ impl SurfaceStates {
     }
 
     /// Updates the surfaces at a point, at which inputs may jump from `earlier`: releases the
-    /// motion if an input moves a surface away or a force exceeds its limit.
+    /// motion if an input moves a surface away or a force exceeds its limit. The sides of surfaces that cannot hold the
+    /// motion must follow from the state.
     pub fn update(&mut self, at: (f64, &[f64]), (earlier, inputs): (&[f64], &[f64])) {
         if !self.may_hold {
             return;
         }
-        self.sided.fix_other_sides(None);
-        self.known = KnownSides::Nothing;
         if self.begin.is_some() && !self.is_free() {
             let functions = self.sided.evaluate_functions(at, inputs);
             let jumps: Vec<bool> = match earlier == inputs {
@@ -262,6 +259,7 @@ impl SurfaceStates {
                     self.known = KnownSides::Nothing;
                 }
             }
+            self.release_powerless(at, inputs);
             for _ in 0..=self.places.len() {
                 let overcome = self.find_overcome(at, inputs);
                 let discs = self.held_discs(at, inputs);
@@ -288,6 +286,24 @@ impl SurfaceStates {
         for disc in &mut self.discs {
             let largest = norm(disc.velocity(&self.sizes));
             disc.set_roundings(MAX_DRIFT_FRACTION * largest, self.tolerance * largest);
+        }
+    }
+
+    /// Releases the motion from surfaces whose force has vanished, as that of a brake that is lifted.
+    fn release_powerless(&mut self, at: (f64, &[f64]), inputs: &[f64]) {
+        self.find_holding_sides(at, inputs);
+        let is_powerless = |row: usize| self.sided.own_effects.get(row) == Some(&0.0);
+        for (surface, place) in self.places.iter_mut().enumerate() {
+            if matches!(place, SurfaceState::Holding { .. }) && is_powerless(surface) {
+                *place = SurfaceState::Free;
+                self.known = KnownSides::Nothing;
+            }
+        }
+        for disc in &mut self.discs {
+            if disc.is_holding() && disc.rows.clone().all(is_powerless) {
+                disc.state = DiscState::Sliding;
+                self.known = KnownSides::Nothing;
+            }
         }
     }
 
@@ -355,6 +371,7 @@ impl SurfaceStates {
         came_from: &[f64],
     ) {
         self.known = KnownSides::Nothing;
+        self.has_decided = true;
         let sides = self.current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);

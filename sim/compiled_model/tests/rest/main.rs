@@ -2,15 +2,19 @@
 //! regimes and events; its friction impulses stay within their bounds and bring the speeds as near
 //! to zero as possible), with closed forms, and with the exact solver if it supports the motion.
 
+mod collapse;
 mod constrained;
 mod discs;
 mod domain;
 mod external_motion;
 mod gradients;
+mod late_times;
+mod lifted_brakes;
 mod rows;
 mod seldom;
 mod surface_at_start;
 mod time_stepping;
+mod tipping;
 
 use std::path::Path;
 

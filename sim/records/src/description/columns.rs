@@ -244,5 +244,11 @@ fn read_prior(record: &Record<'_>, key: &str, found: &mut Diagnostics) -> Option
                 .with_span(sd.span, "expected one standard deviation, 0 or greater"),
         );
     }
+    if let Some(mean) = mean.filter(|mean| key == "gain" && mean.value == 0.0) {
+        found.push(
+            Diagnostic::error("a gain cannot be 0: the column would not depend on the quantity")
+                .with_span(mean.span, "expected a number other than 0"),
+        );
+    }
     Some(Prior { mean, sd })
 }

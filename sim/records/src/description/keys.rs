@@ -38,7 +38,7 @@ pub static FORMAT: Keys = Keys::new(&[
 pub static TIME: Keys = Keys::new(&[
     Key::new("column", "name or number", "\"t\"", "time column, which must increase").required(),
     Key::new("unit", "text", "\"s\"", "unit of the time").required(),
-    Key::new("every", "whole number", "10", "number of samples of which one is kept; 1 if absent"),
+    Key::new("every", "whole number", "10", "number of samples of which one is kept; 1 if absent. A held input is replaced by its mean over the kept samples, so keep 30 samples or more per period of the fastest motion. Gaps of at most `every` samples are filled; kept samples within 8 of a longer gap are missing"),
     Key::new("filter", "text", "\"none\"", "`\"low-pass\"` (default) or `\"none\"`").explained("Fewer samples"),
 ]);
 /// Keys of `[inputs.NAME]`.
@@ -81,7 +81,7 @@ pub static UNCERTAIN: Keys = Keys::new(&[
 /// Keys of `[windows]`.
 pub static WINDOWS: Keys = Keys::new(&[
     Key::new("length", "number or `\"record\"`", "0.5", "length of the windows in s, each with its own initial state, or `\"record\"`: one window per record").required(),
-    Key::new("start", "text", "\"smoothed\"", "source of that state: `\"fitted\"` (default), or `\"smoothed\"` (read from the smoothed record)"),
+    Key::new("start", "text", "\"smoothed\"", "source of that state: `\"fitted\"` (default), or `\"smoothed\"` (read from the smoothed record: quicker, but the errors of the rates are in the residual and may appear as a gap)"),
 ]);
 /// Keys of `[experiment]`.
 pub static EXPERIMENT: Keys = Keys::new(&[

@@ -1,7 +1,7 @@
 //! Detection of separator and decimal sign: those with the longest block of lines of numbers.
 
-use crate::csv_file::parse_number;
 use crate::description::format::{DECIMALS, Format, SEPARATORS, Separator};
+use crate::number::parse_number;
 use eomgen_model_spec::unit::Unit;
 
 /// Number of lines to examine from the start of the file.
@@ -232,6 +232,10 @@ fn split_row(line: &str, separator: Separator, count: Option<usize>) -> Vec<Stri
     let bare = |cell: &str| cell.trim().trim_matches('"').trim().to_owned();
     let mut cells: Vec<String> = match separator {
         Separator::Spaces => line.split_whitespace().map(bare).collect(),
+        Separator::Character(sign) if line.contains('"') => {
+            let cells = read_quoted_row(line, sign);
+            cells.iter().map(|cell| bare(cell)).collect()
+        }
         Separator::Character(sign) => line.split(sign as char).map(bare).collect(),
     };
     let is_open = cells.len() > 1 && cells.last().is_some_and(String::is_empty);
@@ -239,6 +243,17 @@ fn split_row(line: &str, separator: Separator, count: Option<usize>) -> Vec<Stri
         cells.pop();
     }
     cells
+}
+
+/// Splits a line whose cells may be quoted, and then contain the separator.
+fn read_quoted_row(line: &str, separator: u8) -> Vec<String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .has_headers(false)
+        .trim(csv::Trim::All)
+        .from_reader(line.trim().as_bytes());
+    let row = reader.records().next().and_then(Result::ok);
+    row.map_or_else(Vec::new, |row| row.iter().map(str::to_owned).collect())
 }
 
 fn is_unit(cell: &str) -> bool {
@@ -252,6 +267,20 @@ mod tests {
 
     fn text(head: &str, row: &str) -> String {
         head.to_owned() + &row.repeat(40)
+    }
+
+    #[test]
+    fn quoted_names_may_contain_the_separator() {
+        for (sign, separator) in [(",", b','), (";", b';')] {
+            let head = format!("\"t\"{sign}\"T{sign} motor\"{sign} \"phi\"\n");
+            let row = format!("0.1{sign}0.2{sign}0.3\n");
+            let layout = detect_layout(&text(&head, &row)).expect("a layout");
+            assert_eq!(
+                layout.names,
+                ["t".to_owned(), format!("T{sign} motor"), "phi".to_owned()]
+            );
+            assert_eq!(layout.format.separator, Separator::Character(separator));
+        }
     }
 
     #[test]

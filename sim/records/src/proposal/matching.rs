@@ -1,5 +1,6 @@
 //! Matching of a record's columns with the quantities of a model, by names and units.
 
+use crate::computed_observables::COMPUTED_OBSERVABLES;
 use eomgen_model_spec::model::{Model, ObservedRate};
 use eomgen_model_spec::suggest::nearest;
 use eomgen_model_spec::unit::Unit;
@@ -76,7 +77,7 @@ pub(crate) fn list_quantities(model: &Model) -> Vec<Quantity> {
     let inputs = own.map(|input| quantity(&input.name, &input.unit, true));
     let observables = model.observables.iter();
     let observables = observables
-        .filter(|observable| !["energy", "power"].contains(&observable.name.as_str()))
+        .filter(|observable| !COMPUTED_OBSERVABLES.contains(&observable.name.as_str()))
         .map(|observable| quantity(&observable.name, &observable.unit, false));
     let coordinates = model.coordinates.iter();
     let coordinates = coordinates.map(|c| quantity(&c.name, &c.unit, false));
@@ -109,7 +110,7 @@ fn list_observed_rates(model: &Model) -> impl Iterator<Item = ObservedRate> {
     (1..=2).flat_map(move |times| {
         let observables = model.observables.iter().enumerate();
         let differentiated = observables.filter(move |(_, observable)| {
-            !["energy", "power"].contains(&observable.name.as_str())
+            !COMPUTED_OBSERVABLES.contains(&observable.name.as_str())
                 && (times == 1 || !model.contains_rate(&observable.value))
         });
         differentiated.map(move |(observable, _)| ObservedRate { observable, times })

@@ -2,7 +2,7 @@
 //! columns, their `noise`, and the text with the reason for every guess (`written`).
 
 mod dataset_file;
-mod layout;
+pub(crate) mod layout;
 mod matching;
 
 use std::path::Path;
@@ -270,6 +270,13 @@ fn no_match_error(record: &Path, found: &DetectedRecord<'_>) -> Refusal {
             name => name.to_owned(),
         });
     let names: Vec<String> = names.collect();
+    let repeated = (names.iter().enumerate()).find(|(place, name)| names[..*place].contains(name));
+    if let Some((_, name)) = repeated {
+        return Refusal::file_error(
+            record,
+            format!("there are two columns `{name}`; rename one"),
+        );
+    }
     let measured = found.quantities.iter().filter(|q| !q.is_input);
     let measured: Vec<&str> = measured.map(|q| q.name.as_str()).collect();
     Refusal::file_error(

@@ -442,11 +442,13 @@ fn records_without_possible_proposal_are_rejected() {
             "no column is an observable, coordinate or rate",
         ),
         ("theta,other\n", "no column that can be a time increases"),
+        ("t,theta,theta\n", "there are two columns `theta`"),
     ];
     for (head, part) in cases {
         let folder = folder("", head, |t, a| match head {
             "t,elbow\n" => format!("{t:.2},{a:.6}\n"),
             "theta,other\n" => format!("{:.6},{a:.6}\n", a),
+            "t,theta,theta\n" => format!("{t:.2},{a:.6},{a:.6}\n"),
             _ => String::new(),
         });
         let message = propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum());
@@ -461,6 +463,28 @@ fn records_without_possible_proposal_are_rejected() {
         message.contains("has 90 samples; expected 125"),
         "{message}"
     );
+}
+
+#[test]
+fn names_below_other_lines_are_located() {
+    let head = "Bench 3\ndate 1.1.2020\nt,angle\n";
+    let message = refused(&folder(DESCRIPTION, head, plain));
+    let cure = "the names of the columns, t, angle, are in line 3; write skip = 2 in [format]";
+    assert!(message.contains(cure), "{message}");
+    let cured = format!("{DESCRIPTION}\n[format]\nskip = 2\n");
+    assert!(read(&folder(&cured, head, plain)).is_ok());
+}
+
+#[test]
+fn utf_16_without_byte_order_mark_is_named() {
+    let folder = folder(DESCRIPTION, "t,angle\n", plain);
+    let text = record("t,angle\n", 0.0, plain);
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let bytes: Vec<u8> = text.encode_utf16().flat_map(order).collect();
+        std::fs::write(folder.path().join("train.csv"), bytes).expect("a file");
+        let message = refused(&folder);
+        assert!(message.contains("is UTF-16; expected UTF-8"), "{message}");
+    }
 }
 
 #[test]
@@ -641,6 +665,98 @@ fn given_motion_has_rates() {
     }
 }
 
+/// Reads a dataset of a given motion whose cells of `x` between two samples, of the training record, are empty.
+fn along_with_empty(description: &str, empty: std::ops::Range<usize>) -> Result<Dataset, Refusal> {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "dataset.toml", description);
+    for (file, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
+        let lines = (0..SAMPLES).map(|sample| {
+            let (t, angle) = (STEP * sample as f64, angle(sample, turn));
+            let x = match turn == 0.0 && empty.contains(&sample) {
+                true => String::new(),
+                false => format!("{:.12}", 100.0 * (3.0 * t).sin() + angle),
+            };
+            format!("{t:.2},{x},{angle},{x}\n")
+        });
+        let text = "t,x,F,G\n".to_owned() + &lines.collect::<String>();
+        write(folder.path(), file, &text);
+    }
+    let source = eomgen_model_spec::source::Source::new("slide.toml", SLIDE);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    read_dataset(&folder.path().join("dataset.toml"), &model)
+}
+
+#[test]
+fn empty_cells_of_a_given_motion_split_a_record_and_few_are_filled() {
+    let x = |t: f64| {
+        let angle = 100.0 * (1.3 * t).cos() + 20.0 * (3.1 * t).sin();
+        let rate = 300.0 * (3.0 * t).cos() - 130.0 * (1.3 * t).sin() + 62.0 * (3.1 * t).cos();
+        (1e-3 * (100.0 * (3.0 * t).sin() + angle), 1e-3 * rate)
+    };
+    for every in [1, 3] {
+        let description =
+            ALONG.replacen("unit = \"s\"", &format!("unit = \"s\"\nevery = {every}"), 1);
+        let dataset = along_with_empty(&description, 180..210);
+        let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
+        let notes = dataset.notes.join("\n");
+        assert!(
+            notes.contains("samples of `x` are missing between 1."),
+            "{notes}"
+        );
+        assert!(!notes.contains("interpolated"), "{notes}");
+        for record in &dataset.train {
+            for (place, t) in record.times.iter().enumerate() {
+                assert!(!(1.795..2.095).contains(t), "{t}");
+                let inner = 20..record.times.len() - 20;
+                let found = (
+                    record.given_motion(0, 3)[place],
+                    record.given_motion_rate(0, 2, 3)[place],
+                );
+                let wanted = x(*t);
+                if inner.contains(&place) {
+                    assert!(
+                        (found.0 - wanted.0).abs() < 1e-4,
+                        "{t}: {found:?} {wanted:?}"
+                    );
+                    assert!(
+                        (found.1 - wanted.1).abs() < 1e-2,
+                        "{t}: {found:?} {wanted:?}"
+                    );
+                }
+            }
+        }
+    }
+    let dataset = along_with_empty(ALONG, 180..184);
+    let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert_eq!(dataset.train.len(), 1);
+    let notes = dataset.notes.join("\n");
+    let note = "train[0]: missing, and interpolated: 4 samples from t = 1.8 s on of `x`";
+    assert!(notes.contains(note), "{notes}");
+    // Nothing is known before the first position.
+    let dataset = along_with_empty(ALONG, 0..20);
+    let dataset = dataset.unwrap_or_else(|refusal| panic!("{refusal}"));
+    assert_eq!(dataset.train[0].times[0], 0.2);
+}
+
+#[test]
+fn integrated_speed_with_a_gap_is_rejected() {
+    let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
+    let speed = "[motion.y]\ncolumn = \"G\"\nunit = \"m/min\"\ninitial = 0.25\n";
+    let given = ALONG.replace(y, speed);
+    let said = along_with_empty(&given, 180..210).map(|_| ());
+    let said = said.expect_err("an unknown position").to_string();
+    let place = "30 samples of `y` are missing between 1.790000 s and 2.100000 s";
+    assert!(said.contains(place) && said.contains("train.csv"), "{said}");
+    // The part before the gap has a known position.
+    let before = given.replacen(
+        "train = [\"train.csv\"]",
+        "train = [{ file = \"train.csv\", to = 1.7 }]",
+        1,
+    );
+    assert!(along_with_empty(&before, 180..210).is_ok());
+    assert!(along_with_empty(&given, 180..184).is_ok());
+}
+
 #[test]
 fn given_speed_is_integrated_from_initial_position() {
     let y = "[motion.y]\ncolumn = \"x\"\nunit = \"m\"\n";
@@ -720,7 +836,7 @@ fn given_motion_cannot_drive_simulation_and_must_move() {
         still.is_some_and(|said| said.contains("`F`")),
         "nothing moves"
     );
-    let driven = eomgen_records::read_inputs(&path, "train[0]", &model);
+    let driven = eomgen_records::read_inputs(&path, "train[0]", (&model, &[]));
     let driven = driven.err().map(|refusal| refusal.to_string());
     let said = "the records give the motion, but no inputs to simulate it";
     assert!(driven.is_some_and(|driven| driven.contains(said)));

@@ -308,6 +308,10 @@ impl<S: System> System for SectionSystem<'_, S> {
         self.system.project(t, y)
     }
 
+    fn mark_corrected(&self, is_corrected: &mut [bool]) {
+        self.system.mark_corrected(is_corrected);
+    }
+
     fn apply_event(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) -> bool {
         let value = self.surface.next_value();
         if let Some(part) = self.surface.crossing.crossing_fraction(value, start, y) {

@@ -205,7 +205,7 @@ impl<'a> Poincare<'a> {
 }
 
 impl Measure for Poincare<'_> {
-    fn describe(&self) -> Description {
+    fn describe(&self) -> Vec<Description> {
         let (name, points) = (&self.quantity.name, self.point_columns());
         let option = |name: &str, value: String| (name.to_owned(), value);
         let general = || {
@@ -240,7 +240,7 @@ impl Measure for Poincare<'_> {
         } else {
             (points, name.clone())
         };
-        Description {
+        vec![Description {
             name: self.measure_name.clone(),
             about: format!(
                 "{name} {seen}; period and clusters also of its {}, points being equal within {MAX_RELATIVE_DISTANCE} \
@@ -257,7 +257,7 @@ impl Measure for Poincare<'_> {
             columns: self.columns(),
             drawn,
             quantity,
-        }
+        }]
     }
 
     fn worker(&self) -> Box<dyn Worker + '_> {

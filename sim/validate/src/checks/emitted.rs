@@ -82,7 +82,7 @@ fn check_interface(
     emitted: &Emitted,
     calls: &Calls<'_>,
 ) -> Result<Worst, String> {
-    let harness = rust_harness(calls.program, &emitted.source);
+    let harness = rust_harness(calls, &emitted.source);
     let harness = ("interface", &*harness);
     let found = run_linked(compiler, folder, harness, Optimization::Full, &calls.text())?;
     let mut lines = found.lines();

@@ -150,7 +150,7 @@ pub fn check(
 /// Compares the interface in double and in single precision, unless the options of the compiler choose one.
 fn check_interface(folder: &Path, emitted: &CSource, calls: &Calls<'_>) -> Result<Worst, String> {
     let CSource { name, compiler, .. } = emitted;
-    write(&folder.join("interface.c"), &c_harness(calls.program, name))?;
+    write(&folder.join("interface.c"), &c_harness(calls, name))?;
     if compiler.sets_precision() {
         return Ok(Worst::from_deviation(0.0, String::new()));
     }

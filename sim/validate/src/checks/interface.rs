@@ -6,6 +6,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Output, Program, SURFACES_OF_A_REGIME};
 use eomgen_codegen::statements::{DataElements, Indices, coefficient_values, data_arrays, indices};
 
+use super::controllers::{ControllerCalls, expected_lines};
 use super::linked_program::{count_differences, format_bits};
 use crate::certificate::Worst;
 use crate::derived_outputs::dense;
@@ -65,6 +66,7 @@ pub struct Calls<'p> {
     /// Program with the expected results.
     pub program: &'p Program,
     calls: Vec<Call>,
+    controllers: ControllerCalls<'p>,
 }
 
 impl<'p> Calls<'p> {
@@ -91,7 +93,11 @@ impl<'p> Calls<'p> {
                 });
             }
         }
-        Self { program, calls }
+        Self {
+            program,
+            controllers: ControllerCalls::new(program, calls.len()),
+            calls,
+        }
     }
 
     /// Returns the calls as lines of bits: parameters, time, state, inputs.
@@ -190,10 +196,16 @@ impl<'p> Calls<'p> {
                 definite.to_string(),
             ));
             let all = results(&mut evaluator, point, &|number| precision.round(number));
-            for (name, numbers) in all.into_iter().take(functions) {
+            let printed = |place: usize, name: &str| place < functions || name == "step";
+            let all = all.into_iter().enumerate();
+            for (_, (name, numbers)) in all.filter(|(place, (name, _))| printed(*place, name)) {
                 // The evaluator adds two numbers of a product in double precision.
                 let numbers: Vec<f64> = numbers.iter().map(round).collect();
                 lines.push((format!("{name}, call {count}"), format_bits(&numbers)));
+            }
+            if precision == Precision::Double {
+                let call = (count - 1, &call.parameters[..]);
+                lines.extend(expected_lines(&self.controllers, call));
             }
         }
     }
@@ -425,7 +437,8 @@ fn interface_lines(program: &Program, precision: Precision, lines: &mut Vec<(Str
 }
 
 /// Writes the harness for emitted C with the prefix `name`.
-pub fn c_harness(program: &Program, name: &str) -> String {
+pub fn c_harness(all: &Calls<'_>, name: &str) -> String {
+    let program = all.program;
     let mut interface = String::new();
     for size in SIZES {
         interface += &format!("    printf(\"%d\\n\", (int)NAME_{size});\n");
@@ -565,6 +578,7 @@ pub fn c_harness(program: &Program, name: &str) -> String {
             "        NAME_step(t[0], (NAME_real){STEP:?}, state, &inputs, &coefficients); show(state, {states});\n"
         );
     }
+    calls += &all.controllers.c_calls();
     let jacobians = outputs.jacobians.iter().map(|jacobian| jacobian.nonzeros());
     let room = jacobians
         .max()
@@ -585,7 +599,8 @@ pub fn c_harness(program: &Program, name: &str) -> String {
 }
 
 /// Writes the harness for emitted Rust: the interface, the calls in double precision, then those in single precision.
-pub fn rust_harness(program: &Program, emitted: &str) -> String {
+pub fn rust_harness(all: &Calls<'_>, emitted: &str) -> String {
+    let program = all.program;
     let mut interface = String::new();
     for size in SIZES {
         interface += &format!("    println!(\"{{}}\", model::{size});\n");
@@ -657,7 +672,19 @@ pub fn rust_harness(program: &Program, emitted: &str) -> String {
         numbers(program.inputs.len())
     );
     interface += &show("inputs", inputs().collect());
-    let source = include_str!("harness/interface.rs").replace("    //INTERFACE\n", &interface);
+    let step = match program.outputs.kinds.contains(&Output::Step) {
+        true => format!(
+            "    let mut state = state;\n    model::step(t, convert({STEP:?}), &mut state, &inputs, coefficients);\n    show(&state);\n"
+        ),
+        false => String::new(),
+    };
+    let source = include_str!("harness/interface.rs")
+        .replace("    //INTERFACE\n", &interface)
+        .replace("    //STEP\n", &step)
+        .replace(
+            "                //CONTROLLERS\n",
+            &all.controllers.rust_calls(),
+        );
     // A type without numbers is not generic.
     let has_coefficients = emitted.contains("pub struct Coefficients<");
     source

@@ -17,6 +17,7 @@
 
 pub mod balance;
 pub mod casadi;
+mod controllers;
 pub mod emitted;
 pub mod emitted_c;
 pub mod exact;

@@ -89,15 +89,3 @@ fn seed_fault(subjects: &[Subject], seed: u64) -> Result<(Fault, String, Verdict
     };
     Ok((fault, place, verdict))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn twenty_faults_are_noticed() {
-        let sample = Sample { count: 20, seed: 1 };
-        let report = run(&sample).unwrap_or_else(|failures| panic!("{failures}"));
-        assert!(report.contains("(100.0 %)"), "{report}");
-    }
-}

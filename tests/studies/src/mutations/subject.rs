@@ -56,8 +56,14 @@ impl fmt::Display for Subject {
     }
 }
 
-/// Models with their orders and outputs: trigonometric functions, friction, fields, backlash.
-const MODELS: [(ShippedModel, usize, &[Output]); 5] = [
+/// Carriage with a sampled controller.
+const SAMPLED_POSITION: ShippedModel = ShippedModel {
+    name: "sampled_position",
+    text: include_str!("sampled_position.toml"),
+};
+
+/// Models with their orders and outputs: trigonometric functions, friction, fields, backlash, a controller and steps.
+const MODELS: [(ShippedModel, usize, &[Output]); 6] = [
     (
         DOUBLE_PENDULUM,
         0,
@@ -67,6 +73,7 @@ const MODELS: [(ShippedModel, usize, &[Output]); 5] = [
     (EMPS, 0, &[Output::GuardRates]),
     (HUB_BEAM_TIP_MASS, 2, &[Output::Products]),
     (PLANETARY_ARM_RIG, 1, &[]),
+    (SAMPLED_POSITION, 0, &[Output::Step]),
 ];
 
 /// Emits all subjects, each in C and in Rust.

@@ -22,6 +22,8 @@ pub enum Feature {
     Play,
     /// An elastic stop of the last mass.
     ElasticStop,
+    /// A preloaded stop of the last mass to both sides: nested piecewise functions.
+    PreloadedStop,
     /// A rigid stop of the first mass with restitution.
     RigidStop,
     /// Force on the first mass with a lag behind the position of the last.
@@ -35,7 +37,7 @@ pub enum Feature {
 }
 
 impl Feature {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::Damper,
         Self::CubicSpring,
         Self::Pendulum,
@@ -43,6 +45,7 @@ impl Feature {
         Self::DryFriction,
         Self::Play,
         Self::ElasticStop,
+        Self::PreloadedStop,
         Self::RigidStop,
         Self::Lag,
         Self::Input,
@@ -221,6 +224,14 @@ impl Writer<'_> {
                 self.line(
                     "potential",
                     &format!("stop = \"1/2*k_stop*max({last} - d_stop, 0)^2\""),
+                );
+            }
+            Feature::PreloadedStop => {
+                self.parameter("F_stop", "N", (0.1, 3.0));
+                self.parameter("d_pre", "m", (0.1, 1.0));
+                self.line(
+                    "potential",
+                    &format!("preload = \"F_stop*max(abs({last}) - d_pre, 0)\""),
                 );
             }
             Feature::RigidStop => {

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use eomgen_tests::program::{run, run_accepted};
+use eomgen_tests::program::{run, run_accepted, run_rejected};
 use serde_json::Value;
 
-use super::{OSCILLATOR, columns, run_json, shipped, write_model};
+use super::{OSCILLATOR, columns, numbers, run_json, shipped, write_model};
 
 /// Pendulum with a motor at its pivot.
 const DRIVEN: &str = r#"
@@ -245,4 +245,84 @@ contact = { on = "x", value = "-h*sqrt(max(x - d, 0))*d" }
     let model = write_model(folder.path(), text);
     let printed = run_accepted(&["modes", &model]);
     assert!(printed.contains("1.591549"), "{printed}");
+}
+
+#[test]
+fn moving_base_is_no_equilibrium() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "[model]\nname = \"base\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                k = { value = 100, unit = \"N/m\" }\n[coordinates]\nx = { unit = \"m\" }\n\
+                [inputs]\ns = { unit = \"m\", rates = 2 }\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n\
+                [potential]\nV = \"1/2*k*(x - s)^2\"\n";
+    let model = write_model(folder.path(), text);
+    let moving = run(&["modes", &model, "--state", "s_dot=1"]);
+    let warned = String::from_utf8(moving.stderr).expect("text");
+    assert!(
+        warned.contains("prescribed motion moves (s_dot is not 0)"),
+        "{warned}"
+    );
+    let found = run(&["trim", &model, "--state", "s_dot=1"]);
+    let warned = String::from_utf8(found.stderr).expect("text");
+    assert!(
+        warned.contains("an equilibrium at t = 0 s only"),
+        "{warned}"
+    );
+    let still = run_json(&["linearise", &model, "--state", "s=0.2", "--state", "x=0.2"]);
+    assert_eq!(still["equilibrium"], true);
+}
+
+#[test]
+fn surfaces_of_inputs_are_named_without_their_units() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = write_model(folder.path(), OSCILLATOR);
+    let events = folder.path().join("events.csv").display().to_string();
+    let out = folder.path().join("out.csv").display().to_string();
+    for (input, surface) in [
+        ("u=10*above(t - 0.5)", "-0.5 + t"),
+        ("u=2*above(sin(3*t) - 0.25) kN", "-0.25 + sin(3*t)"),
+        ("u=max(t^2 - 1, 0)*1e-3 kN", "-1 + t^2"),
+    ] {
+        let arguments = [
+            "simulate", &model, "--until", "2", "--solver", "rk", "--input", input,
+        ];
+        let output = run(&[
+            &arguments[..],
+            &["--events", &events, "--out", &out, "--json"],
+        ]
+        .concat());
+        assert_eq!(output.status.code(), Some(0), "{input}");
+        let log = std::fs::read_to_string(&events).expect("events");
+        assert!(log.contains(surface), "{input}: {log}");
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+        for text in [log, printed, messages] {
+            assert!(!text.contains("one_"), "{input}: {text}");
+        }
+    }
+}
+
+#[test]
+fn order_of_settings_has_no_effect() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = write_model(folder.path(), OSCILLATOR);
+    for settings in [
+        ["k=m*w_0^2", "w_0=3", "m=2*m"],
+        ["m=2*m", "k=m*w_0^2", "w_0=3"],
+        ["w_0=3", "m=2*m", "k=m*w_0^2"],
+    ] {
+        let options = settings.iter().flat_map(|setting| ["--set", setting]);
+        let options: Vec<&str> = options.collect();
+        let found = run_json(&[&["linearise", &model], &options[..]].concat());
+        assert_eq!(numbers(&found["A"][1]), [-9.0, 0.0], "{settings:?}");
+        assert_eq!(numbers(&found["B"][1]), [0.25], "{settings:?}");
+    }
+    let message = run_rejected(&[
+        "linearise",
+        &model,
+        "--set",
+        "m=k/w_0^2",
+        "--set",
+        "k=m*w_0^2",
+    ]);
+    assert!(message.contains("refer to each other"), "{message}");
 }

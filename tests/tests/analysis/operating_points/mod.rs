@@ -1,12 +1,16 @@
 //! `linearise`, `modes`, `trim`, and inputs and initial states of `simulate`, against closed forms.
 
 mod bases;
+mod constrained;
 mod discrete;
 mod drawn_modes;
+mod from_rest;
 mod given;
 mod growth;
 mod lost_stiffness;
 mod nonlinear;
+mod singular;
+mod stiffness_ratios;
 mod tables;
 
 use std::f64::consts::{PI, TAU};

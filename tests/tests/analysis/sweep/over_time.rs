@@ -1,9 +1,13 @@
-//! Measures over time (`max`, `rms`, `final`) against the closed form of the response and the rows
-//! of `simulate`.
+//! Measures over time (`max`, `rms`, `final`) against closed forms of responses, impacts and pulses, and against rows of
+//! `simulate`.
 
 use std::f64::consts::SQRT_2;
 
-use eomgen_tests::models::path;
+use eomgen_compiled_model::{
+    CompiledModel, Measurement, Motion, Orders, Quantity, Request, Solver, Statistic,
+};
+use eomgen_sweep::{Sweep, SweepRequest};
+use eomgen_tests::models::{load, path};
 use eomgen_tests::program::run_accepted;
 
 use super::place::{SweepFolder, accept, column, refuse, table};
@@ -37,9 +41,8 @@ fn forced_response_has_closed_form_amplitude() {
                 "{name}: {found}, expected {right}"
             );
         };
-        // The maximum can fall between samples 1/667 of a period apart: (2 pi/667)^2/8.
-        near("max:x", expected, 2e-5);
-        near("max:x_dot", expected * omega[point], 2e-5);
+        near("max:x", expected, 1e-9);
+        near("max:x_dot", expected * omega[point], 1e-9);
         near("rms:x", expected / SQRT_2, 1e-8);
         assert_eq!(column(&table, "max:x_status")[point], 0.0);
     }
@@ -54,8 +57,76 @@ fn forced_response_has_closed_form_amplitude() {
     }
 }
 
+/// Several statistics of one motion have the bits of those measured alone, and cost one simulation.
 #[test]
-fn measures_over_time_match_rows_of_simulate() {
+fn measurements_of_one_motion_have_the_bits_of_single_ones() {
+    let model = CompiledModel::derive(load("planetary_arm"), Orders::Declared).expect("a model");
+    let run = model.with_declared_parameters().expect("values");
+    let (times, inputs) = ([0.0, 0.1], run.default_inputs());
+    let measurement = |quantity: Quantity, statistic: Statistic| Measurement {
+        quantity,
+        statistic,
+        begin: 0.02,
+        typical_size: model.typical_size(quantity),
+    };
+    let all = [
+        measurement(Quantity::State(0), Statistic::Maximum),
+        measurement(Quantity::State(0), Statistic::RootMeanSquare),
+        measurement(Quantity::Observable(0), Statistic::RootMeanSquare),
+    ];
+    for solver in [Solver::Exact, Solver::Rk] {
+        let request = Request {
+            initial: run.initial_state(),
+            times: &times,
+            inputs: &inputs,
+            solver,
+            tolerance: 1e-9,
+            max_step: f64::INFINITY,
+            audit: false,
+        };
+        let measure = |own: &[Measurement]| {
+            let motion = run.simulate_measured(&request, own, &mut |_| {});
+            motion.expect("a motion")
+        };
+        let together = measure(&all);
+        let alone = all.map(|own| measure(&[own]).measured[0].expect("a number").to_bits());
+        let found = together
+            .measured
+            .iter()
+            .map(|own| own.expect("a number").to_bits());
+        assert_eq!(found.collect::<Vec<_>>(), alone, "{solver}");
+        let work = |motion: &Motion| {
+            let work = motion.trajectory.statistics;
+            (work.steps, work.evaluations)
+        };
+        assert_eq!(work(&together), work(&measure(&all[..1])), "{solver}");
+    }
+}
+
+/// Consecutive measures over time are one measure, whose worker simulates each point once.
+#[test]
+fn measures_over_time_of_a_sweep_share_the_motion_of_a_point() {
+    let request = |measures: &[&str]| SweepRequest {
+        vary: vec!["b_sp=10e-6:50e-6:2".to_owned()],
+        measures: measures.iter().map(|name| (*name).to_owned()).collect(),
+        until: Some(0.01),
+        ..SweepRequest::default()
+    };
+    let counts = |measures: &[&str]| {
+        let sweep = Sweep::new(&load("planetary_arm"), request(measures)).expect("a sweep");
+        let found = sweep.measures().expect("measures");
+        let described = found.iter().map(|own| own.describe().len());
+        described.collect::<Vec<_>>()
+    };
+    assert_eq!(
+        counts(&["max:x_sp", "rms:x_sp", "final:x_c", "max:tip"]),
+        [4]
+    );
+    assert_eq!(counts(&["max:x_sp", "lyapunov", "rms:x_sp"]), [1, 1, 1]);
+}
+
+#[test]
+fn measures_over_time_match_fine_grid() {
     let place = SweepFolder::new();
     let arm = path("planetary_arm").display().to_string();
     let (out, rows) = (place.path_to("arm"), place.path_to("arm.csv"));
@@ -83,6 +154,8 @@ fn measures_over_time_match_rows_of_simulate() {
         "b_sp=30e-6",
         "--until",
         "0.3",
+        "--interval",
+        "1e-5",
         "--out",
         &rows,
     ]);
@@ -104,24 +177,198 @@ fn measures_over_time_match_rows_of_simulate() {
     };
     let table = table(&place.path_to("arm"));
     let found = |name: &str| column(&table, name)[1];
-    let near = |name: &str, right: f64| {
+    let near = |name: &str, right: f64, within: f64| {
         let found = found(name);
-        // The parameter differs in its last bit, and meshes open and close.
         assert!(
-            (found / right - 1.0).abs() < 1e-9,
+            (found / right - 1.0).abs() < within,
             "{name}: {found}, expected {right}"
         );
         assert!(right.abs() > 1e-6, "{name}: nothing moves");
     };
-    near("max:tip", course("tip").fold(f64::MIN, f64::max));
-    near(
-        "final:x_sp_dot",
-        course("x_sp_dot").next_back().expect("rows"),
-    );
+    near("max:tip", course("tip").fold(f64::MIN, f64::max), 1e-6);
+    let last = course("x_sp_dot").next_back().expect("rows");
+    // The parameter differs in its last bit, and meshes open and close.
+    near("final:x_sp_dot", last, 1e-9);
     let squares: Vec<f64> = course("tip").map(|x| x * x).collect();
-    let ends = 0.5 * (squares[0] + squares[1000]);
-    let rms = ((squares.iter().sum::<f64>() - ends) / 1000.0).sqrt();
-    near("rms:tip", rms);
+    let ends = 0.5 * (squares[0] + squares[30_000]);
+    let rms = ((squares.iter().sum::<f64>() - ends) / 30_000.0).sqrt();
+    near("rms:tip", rms, 1e-6);
+}
+
+/// A mass between two stiff walls; `h` excludes the exact solver.
+const STOPPED: &str = r#"
+[model]
+name = "stopped"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+k = { value = 1e8, unit = "N/m" }
+b = { value = 0.5, unit = "m" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+walls = "1/2*k*deadzone(x, b)^2"
+[observables]
+contact_force = "k*deadzone(x, b)"
+"#;
+
+const BALL: &str = r#"
+[model]
+name = "ball"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+g = { value = 10, unit = "m/s^2" }
+e = { value = 0.8, unit = "1" }
+[coordinates]
+y = { unit = "m", initial = 1.25 }
+[kinetic]
+mass = "1/2*m*dot(y)^2"
+[potential]
+weight = "m*g*y"
+[impacts]
+floor = { when = "y", restitution = "e" }
+[observables]
+fall = "-dot(y)"
+"#;
+
+const DAMPED: &str = r#"
+[model]
+name = "damped"
+[parameters]
+m = { value = 1, unit = "kg", min = 0 }
+c = { value = 0.5, unit = "N s/m" }
+k = { value = 4, unit = "N/m" }
+F = { value = 1000, unit = "N" }
+begin = { value = 1.2345, unit = "s" }
+width = { value = 1e-5, unit = "s" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+[forces]
+motor = { on = "x", value = "u" }
+[observables]
+drive = "u"
+"#;
+
+/// Returns the same model with a cubic spring of no stiffness, which only the general solvers support.
+fn general(specification: &str) -> String {
+    let declared = "[parameters]\nh = { value = 0, unit = \"N/m^3\" }";
+    let cubic = "[potential]\ncubic = \"1/4*h*x^4\"";
+    specification
+        .replace("[parameters]", declared)
+        .replace("[potential]", cubic)
+}
+
+/// Returns the columns of these measures of a specification.
+fn sweep_columns(specification: &str, options: &[&str], measures: &[&str]) -> Vec<Vec<f64>> {
+    let place = SweepFolder::new();
+    let [spec, out] = ["own.toml", "map"].map(|name| place.path_to(name).display().to_string());
+    std::fs::write(&spec, specification).expect("a specification");
+    let asked = measures.join(",");
+    let all = [
+        &["sweep", &spec, "--out", &out, "--measure", &asked],
+        options,
+    ]
+    .concat();
+    run_accepted(&all);
+    let table = table(&place.path_to("map"));
+    let columns = measures.iter().map(|name| column(&table, name).to_vec());
+    columns.collect()
+}
+
+fn assert_near(found: f64, right: f64, within: f64) {
+    assert!(
+        (found / right - 1.0).abs() < within,
+        "{found}, expected {right}"
+    );
+}
+
+#[test]
+fn velocity_just_before_an_impact_is_the_maximum() {
+    let options = ["--vary", "e=0.5:0.9:3", "--until", "1.2"];
+    let found = sweep_columns(BALL, &options, &["max:fall", "max:y_dot", "rms:fall"]);
+    for (point, e) in [0.5, 0.7, 0.9].into_iter().enumerate() {
+        // It falls for 0.5 s to 5 m/s, then rises with 5 e m/s.
+        assert_near(found[0][point], 5.0, 1e-9);
+        assert_near(found[1][point], 5.0 * e, 1e-9);
+        let mut square = 5.0_f64.powi(3) / 30.0;
+        let (mut rest, mut speed) = (0.7_f64, 5.0 * e);
+        while rest > 0.0 {
+            let flight = rest.min(0.2 * speed);
+            square += (speed.powi(3) - (speed - 10.0 * flight).powi(3)) / 30.0;
+            rest -= flight;
+            speed *= e;
+        }
+        assert_near(found[2][point], (square / 1.2).sqrt(), 1e-8);
+    }
+}
+
+#[test]
+fn force_of_a_hard_contact_is_seen_between_samples() {
+    let measures = ["max:contact_force", "rms:contact_force"];
+    let options = [
+        "--vary",
+        "b=0.3:0.5:2",
+        "--state",
+        "x_dot=1",
+        "--until",
+        "0.8",
+    ];
+    for specification in [STOPPED.to_owned(), general(STOPPED)] {
+        let found = sweep_columns(&specification, &options, &measures);
+        for (largest, rms) in found[0].iter().zip(&found[1]) {
+            // The contact is half an oscillation of 1e4 rad/s with the amplitude v sqrt(k m).
+            assert_near(*largest, 1e4, 1e-7);
+            let square = 1e8 * 0.5 * std::f64::consts::PI * 1e-4;
+            assert_near(*rms, (square / 0.8).sqrt(), 1e-7);
+        }
+        assert_eq!(found[0].len(), 2);
+    }
+}
+
+#[test]
+fn decaying_oscillation_and_narrow_pulse_have_closed_forms() {
+    let (a, until) = (0.25_f64, 5.0_f64);
+    let w = (4.0 - a * a).sqrt();
+    // x = exp(-a t) (cos(w t) + a/w sin(w t)), from x = 1.
+    let square = |t: f64| {
+        let (cosine, sine) = ((2.0 * w * t).cos(), (2.0 * w * t).sin());
+        let (p, q) = (1.0 - (a / w).powi(2), 2.0 * a / w);
+        let decay = (-2.0 * a * t).exp();
+        let mean = -(1.0 + (a / w).powi(2)) / (4.0 * a);
+        let swing = p * (w * sine - a * cosine) - q * (w * cosine + a * sine);
+        decay * (mean + swing / (4.0 * (a * a + w * w)))
+    };
+    let rms = ((square(until) - square(0.0)) / until).sqrt();
+    // The rate is largest at tan(w t) = w/a.
+    let greatest = 2.0 * (-a * (w / a).atan() / w).exp();
+    let released = ["--vary", "F=1:2:2", "--state", "x=-1", "--until", "5"];
+    let pulse = [
+        "--vary",
+        "F=1:2:2",
+        "--input",
+        "u=F*(above(t-begin)-above(t-begin-width))",
+    ];
+    let pulse = [&pulse[..], &["--until", "5"]].concat();
+    for specification in [DAMPED.to_owned(), general(DAMPED)] {
+        let found = sweep_columns(&specification, &released, &["rms:x", "max:x_dot"]);
+        assert_near(found[0][0], rms, 1e-8);
+        assert_near(found[1][0], greatest, 1e-8);
+        let found = sweep_columns(&specification, &pulse, &["max:drive", "rms:drive"]);
+        for (point, force) in [1.0, 2.0].into_iter().enumerate() {
+            assert_near(found[0][point], force, 1e-12);
+            // Jumps are located to roundings of a step, which is much longer than the pulse.
+            assert_near(found[1][point], force * (1e-5_f64 / 5.0).sqrt(), 1e-7);
+        }
+    }
 }
 
 #[test]

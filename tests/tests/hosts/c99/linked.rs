@@ -70,20 +70,26 @@ fn emitted_c_has_no_writable_static_data() {
     }
 }
 
-/// A field `I` compiles if the caller includes `<complex.h>` before the header, and the macro remains.
+/// Fields compile if the caller includes headers with macros of their names, and the macros remain.
 #[test]
-fn field_with_the_name_of_a_complex_macro_compiles() {
+fn fields_with_the_names_of_standard_macros_compile() {
     if !has_compilers() {
         return;
     }
+    for [parameter, input] in [["I", "NAN"], ["EOF", "M_PI"], ["INFINITY", "complex"]] {
+        compile_after_standard_headers(parameter, input);
+    }
+}
+
+fn compile_after_standard_headers(parameter: &str, input: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let text = pendulum("rod", "t", "d", "I", "u", "theta");
+    let text = pendulum("rod", "t", "d", parameter, input, "theta");
     let files = c::emit(&program(&text, 0, &supported_outputs())).expect("emitted");
     std::fs::write(folder.join("rod.h"), files.header).expect("written");
     std::fs::write(folder.join("rod.c"), files.source).expect("written");
-    let main = "#include <complex.h>\n#include \"rod.h\"\n\
-                int main(void) {\n    const double complex z = 2.0 * I;\n    return cimag(z) == 2.0 ? 0 : 1;\n}\n";
+    let main = "#include <complex.h>\n#include <math.h>\n#include <stdio.h>\n#include \"rod.h\"\n\
+                int main(void) {\n    const double complex z = 2.0 * I;\n    return cimag(z) == 2.0 && isinf(INFINITY) && EOF < 0 ? 0 : 1;\n}\n";
     std::fs::write(folder.join("main.c"), main).expect("written");
     run(compiler(folder).args(["-Wno-pedantic", "main.c", "rod.c", "-lm", "-o", "main"]));
     run(&mut Command::new(folder.join("main")));

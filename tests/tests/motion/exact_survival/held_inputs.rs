@@ -19,7 +19,9 @@ fn held_input(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> He
     );
     let path = folder.path().join("dataset.toml");
     std::fs::write(&path, description).expect("a file");
-    read_inputs(&path, "train[0]", model).expect("inputs").0
+    read_inputs(&path, "train[0]", (model, &[]))
+        .expect("inputs")
+        .inputs
 }
 
 #[test]

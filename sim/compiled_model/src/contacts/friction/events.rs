@@ -4,13 +4,13 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
 
 use super::super::tangents::ContactForces;
-use super::super::{Contacts, Overlap};
+use super::super::{Contacts, Overlap, solve_rows};
 
 /// Rounding of a force, relative to the forces of its contact.
 const FORCE_ROUNDING: f64 = 1e-12;
 
-/// Acceleration of a slip, relative to the effect of the contact forces, that counts as zero.
-const MAX_STILL_FRACTION: f64 = 1e-9;
+/// Part of the effect of a tangential force on its own slip, with the reactions of other contacts, that is rounding.
+const MAX_INDEPENDENT_FRACTION: f64 = 1e-8;
 
 /// Multiple of the rounding of a slip that counts as zero where other contacts stick.
 const NEAR_ROUNDINGS: f64 = 1e3;
@@ -54,6 +54,42 @@ impl Contacts {
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
         self.enter_modes(&places, &decision, &roundings, located);
+        Ok(())
+    }
+
+    /// Keeps the modes of closed contacts at a point if forces satisfy the law of friction in them, and changes them
+    /// otherwise: other forces may have changed.
+    ///
+    /// # Errors
+    /// No forces satisfy the law of friction.
+    pub(in super::super) fn revise_friction_modes(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+    ) -> Result<(), (usize, Overlap)> {
+        let roundings = self.slip_roundings(own, point);
+        let places = self.closed.clone();
+        let modes: Vec<ContactMode> = places.iter().map(|place| self.mode(*place)).collect();
+        let slipping = self.slip_directions(&roundings, &[]);
+        let problem = self.problem(&places, slipping, &self.free_accelerations(&places));
+        let decided = problem.decide(Some(&modes), &[]);
+        let decision = decided.ok_or((places[0], Overlap::NoForces))?;
+        if decision.modes != modes {
+            self.enter_modes(&places, &decision, &roundings, point);
+            return Ok(());
+        }
+        let bears = |contacts: &Self| -> Vec<bool> {
+            contacts.tangents.iter().map(|own| own.bears).collect()
+        };
+        let (before, forces) = (bears(self), self.friction_forces());
+        self.mark_bearing(&roundings);
+        let changed = before.iter().zip(bears(self)).map(|(a, b)| *a != b);
+        let changed: Vec<bool> = changed.collect();
+        for (index, place) in places.iter().enumerate() {
+            if self.tangent_index(*place).is_some_and(|own| changed[own]) {
+                self.reset_offsets(*place, index, &forces, &roundings);
+            }
+        }
         Ok(())
     }
 
@@ -138,12 +174,11 @@ impl Contacts {
             }
             if let Some(index) = self.tangent_index(*place) {
                 self.tangents[index].mode = *mode;
-                self.tangents[index].bears = false;
             }
         }
         self.offset_by_rounding(&opened, (located.t, located.state));
         let forces = self.friction_forces();
-        self.mark_bearing(&forces, roundings);
+        self.mark_bearing(roundings);
         for index in 0..self.closed.len() {
             let place = self.closed[index];
             self.allowances[place] = (-2.0 * forces.normal[index]).max(0.0);
@@ -152,25 +187,37 @@ impl Contacts {
     }
 
     /// Marks contacts at the limit of friction whose slip other contacts keep at zero, as those of a box that rests
-    /// on two edges.
-    fn mark_bearing(&mut self, forces: &ContactForces, roundings: &[f64]) {
-        let sticks = |place: &usize| self.mode(*place) == ContactMode::Sticks;
-        if !self.closed.iter().any(sticks) {
-            return;
+    /// on two edges, or of the floor under a body at a wall: their slip follows from the directions in which the others do not
+    /// move.
+    fn mark_bearing(&mut self, roundings: &[f64]) {
+        for tangent in &mut self.tangents {
+            tangent.bears = false;
         }
-        let free = self.free_accelerations(&self.closed);
-        let changes = self.rate_changes(&self.closed, forces);
         let count = self.closed.len();
+        let sticks = |index: &usize| self.mode(self.closed[*index]) == ContactMode::Sticks;
+        let sticking = (0..count).filter(sticks).map(|index| count + index);
+        let kept: Vec<usize> = (0..count).chain(sticking).collect();
+        let delassus = self.full_delassus(&self.closed);
+        let rows: Vec<Vec<f64>> = delassus
+            .chunks_exact((2 * count).max(1))
+            .map(<[f64]>::to_vec)
+            .collect();
         for index in 0..count {
             let Some(tangent) = self.tangent_index(self.closed[index]) else {
                 continue;
             };
-            let (acceleration, change) = (free[count + index], changes[count + index]);
-            let is_still = (acceleration + change).abs() <= MAX_STILL_FRACTION * change.abs();
             let slides = matches!(self.tangents[tangent].mode, ContactMode::Slides(_));
             let slip = self.slip(self.closed[index]);
-            self.tangents[tangent].bears =
-                slides && is_still && slip.abs() <= NEAR_ROUNDINGS * roundings[tangent];
+            if !slides || slip.abs() > NEAR_ROUNDINGS * roundings[tangent] {
+                continue;
+            }
+            let row = &rows[count + index];
+            let column: Vec<f64> = rows.iter().map(|row| row[count + index]).collect();
+            let balanced = solve_rows(&rows, &column, &kept);
+            let terms = kept.iter().zip(&balanced);
+            let through: f64 = terms.map(|(direction, part)| row[*direction] * part).sum();
+            let own = row[count + index];
+            self.tangents[tangent].bears = own + through <= MAX_INDEPENDENT_FRACTION * own;
         }
     }
 

@@ -137,12 +137,11 @@ impl Contacts {
             let changes = self.rate_changes(touching, impulses);
             let all = impulses.normal.iter().chain(&impulses.tangential);
             let rates = before.iter().zip(&changes);
-            let gains = all
-                .zip(rates)
-                .map(|(p, (before, change))| p * (before + 0.5 * change));
-            gains.fold((0.0, 0.0), |(sum, size), gain: f64| {
-                (sum + gain, size + gain.abs())
-            })
+            all.zip(rates)
+                .fold((0.0, 0.0), |(gained, exchanged), (p, (before, change))| {
+                    let size: f64 = p.abs() * (before.abs() + 0.5 * change.abs());
+                    (gained + p * (before + 0.5 * change), exchanged + size)
+                })
         };
         let plastic = with(0.0)?;
         let restitutions = touching.iter().map(|place| self.restitution(*place));

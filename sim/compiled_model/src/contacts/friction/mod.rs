@@ -7,13 +7,15 @@
 
 mod events;
 mod jumps;
+mod problem;
 mod resting;
 
 use eomgen_codegen::program::evaluator::{Evaluator, FrictionValues, Point};
-use eomgen_sim::contact_friction::{ContactFriction, ContactMode, ContactProblem};
+use eomgen_sim::contact_friction::{ContactMode, ContactProblem};
 
 use super::Contacts;
 use super::tangents::{ContactForces, Tangent};
+pub(crate) use problem::{contact_problem, free_accelerations, full_delassus, rates_and_slips};
 
 /// Relative change of a rate for its effect on a slip.
 const RELATIVE_CHANGE: f64 = 1e-6;
@@ -38,6 +40,12 @@ impl Contacts {
         self.tangents.iter().find(|tangent| tangent.place == place)
     }
 
+    /// Returns the closed contacts with their modes.
+    pub fn closed_modes(&self) -> Vec<(usize, ContactMode)> {
+        let closed = self.closed.iter();
+        closed.map(|place| (*place, self.mode(*place))).collect()
+    }
+
     /// Returns the mode of a closed contact.
     fn mode(&self, place: usize) -> ContactMode {
         let tangent = self.tangent(place);
@@ -54,50 +62,23 @@ impl Contacts {
             .map_or(0.0, |friction| friction.slip)
     }
 
-    /// Returns the problem of some contacts with the slip directions `direction`, of which only those with
-    /// friction have one. The rates are those of the distances, then of the slips.
+    /// Returns the problem of some contacts with the slip directions `direction`; see [`contact_problem`].
     fn problem(
         &self,
         places: &[usize],
         direction: impl Fn(usize) -> Option<f64>,
         rates: &[f64],
     ) -> ContactProblem {
-        let friction = places.iter().map(|place| match self.friction_at(*place) {
-            Some(friction) => ContactFriction {
-                coefficient: friction.coefficient,
-                direction: direction(*place),
-            },
-            None => ContactFriction::NONE,
-        });
-        ContactProblem::new(friction.collect(), &self.full_delassus(places), rates)
+        contact_problem(&self.at, places, direction, rates)
     }
 
-    /// Returns Delassus' matrix of the normal and the tangential directions, row by row.
     fn full_delassus(&self, places: &[usize]) -> Vec<f64> {
-        let impacts = self.names.len();
-        let normal = places.iter().map(|place| Some(*place));
-        let tangents = places.iter().map(|place| self.tangent_index(*place));
-        let columns: Vec<Option<usize>> = normal
-            .chain(tangents.map(|index| index.map(|index| impacts + index)))
-            .collect();
-        let normal = places.iter().map(|place| Some(&self.at[*place].delassus));
-        let tangents = places.iter().map(|place| self.friction_at(*place));
-        let rows = normal.chain(tangents.map(|one| one.map(|friction| &friction.delassus)));
-        let entries = rows.flat_map(|row| {
-            let columns = columns.iter();
-            columns.map(move |column| row.zip(*column).map_or(0.0, |(row, column)| row[column]))
-        });
-        entries.collect()
+        full_delassus(&self.at, places)
     }
 
     /// Returns the accelerations of distances and slips without contact forces.
     fn free_accelerations(&self, places: &[usize]) -> Vec<f64> {
-        let normal = places.iter().map(|place| self.at[*place].acceleration);
-        let tangential = places.iter().map(|place| {
-            let friction = self.friction_at(*place);
-            friction.map_or(0.0, |friction| friction.acceleration)
-        });
-        normal.chain(tangential).collect()
+        free_accelerations(&self.at, places)
     }
 
     /// Returns the forces of the closed contacts in their modes.
@@ -134,9 +115,7 @@ impl Contacts {
     }
 
     fn impulses_to_stop(&self, places: &[usize], modes: &[ContactMode]) -> ContactForces {
-        let normal = places.iter().map(|place| self.at[*place].rate);
-        let slips = places.iter().map(|place| self.slip(*place));
-        let rates: Vec<f64> = normal.chain(slips).collect();
+        let rates = rates_and_slips(&self.at, places);
         let problem = self.problem(places, |_| None, &rates);
         ContactForces::from_directions(problem.impulses(modes))
     }

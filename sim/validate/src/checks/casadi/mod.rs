@@ -141,7 +141,7 @@ fn run_harness(
     let functions = include_str!("../harness/casadi.c")
         .replace("/*FUNCTIONS*/", &names.collect::<Vec<_>>().join(", "))
         .replace("NAME_", &format!("{name}_"));
-    let interface = c_harness(calls.program, name);
+    let interface = c_harness(calls, name);
     let interface = interface.replacen("int main(void)", "static int print_interface(void)", 1);
     write(&folder.join("harness.c"), &(interface + &functions))?;
     let arguments = ["-I.", "-o", "harness", "harness.c", "-lm"];

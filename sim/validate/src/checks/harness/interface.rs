@@ -29,6 +29,7 @@ fn results<T: model::Scalar + Into<f64>>(
     show(&[model::power(t, &state, &inputs, coefficients)]);
     show(&model::guards(t, &state, &inputs, coefficients));
     show(model::mass_matrix(t, &state, &inputs, coefficients).as_flattened());
+    //STEP
 }
 
 fn main() {
@@ -41,15 +42,17 @@ fn main() {
         })
         .collect();
     for is_single in [false, true] {
-        for numbers in &lines {
+        for (call, numbers) in lines.iter().enumerate() {
             let (numbers, point) = numbers.split_at(model::PARAMETERS);
             let parameters: [f64; model::PARAMETERS] = std::array::from_fn(|i| numbers[i]);
-            let coefficients = model::Coefficients::prepare(&model::Parameters::from(parameters));
+            let parameters = &model::Parameters::from(parameters);
+            let coefficients = model::Coefficients::prepare(parameters);
             println!("{}", i32::from(coefficients.positive_definite));
             if is_single {
                 results::<f32>(point, &coefficients/*CAST*/, |x| x as f32);
             } else {
                 results::<f64>(point, &coefficients, |x| x);
+                //CONTROLLERS
             }
         }
     }

@@ -1,5 +1,5 @@
-//! Inputs given by expressions that are constant between steps, such as `0.2*above(t - 0.1)`. The exact solver
-//! holds them between these times.
+//! Inputs given by expressions of time and parameters. Those that are constant between steps, such as
+//! `0.2*above(t - 0.1)`, are held between these times, also by the exact solver.
 
 use std::sync::Arc;
 
@@ -10,22 +10,36 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
 use eomgen_sim::inputs::{HeldInputs, InputFunction};
 
 use crate::error::Error;
-use crate::prescribed_inputs::with_one_prescribed_input;
+use crate::model::CompiledModel;
+use crate::prescribed_inputs::{with_one_prescribed_input, with_prescribed_inputs};
 
 /// Inputs that are constant between the times of their steps, at any parameter values.
 pub struct StepInputs {
     /// One entry per input of the model, in its order; `None` if a controller drives it.
-    inputs: Vec<Option<StepInput>>,
+    inputs: Vec<Option<ExpressionInput>>,
 }
 
-struct StepInput {
+struct ExpressionInput {
     /// Model in which the input is a definition.
     driven: Model,
     /// Function of time.
     value: Expr,
 }
 
-impl StepInput {
+impl ExpressionInput {
+    /// Returns an input with its place among those of the model; `None` if its name is no longer that of a definition.
+    fn new(model: &Model, given: &Assignment) -> Result<Option<(usize, Self)>, Error> {
+        let driven = with_one_prescribed_input(model, given)?;
+        let name = given.name();
+        let place = model.inputs.iter().position(|input| input.name == name);
+        let definition = driven.definitions.iter().find(|own| own.name == name);
+        let (Some(place), Some(definition)) = (place, definition) else {
+            return Ok(None);
+        };
+        let value = definition.value.clone();
+        Ok(Some((place, Self { driven, value })))
+    }
+
     /// Returns the values of the parameters of the function, SI.
     fn parameters(&self, settings: &[(&str, f64)]) -> Result<Vec<f64>, Error> {
         let refused = |error| Error::from_model_error(&self.driven, error);
@@ -45,18 +59,12 @@ impl StepInputs {
         given: &[Assignment],
         settings: &[(&str, f64)],
     ) -> Result<Option<Self>, Error> {
-        let mut found: Vec<Option<StepInput>> = model.inputs.iter().map(|_| None).collect();
+        let mut found: Vec<Option<ExpressionInput>> = model.inputs.iter().map(|_| None).collect();
         let mut has_step = false;
         for given in given {
-            let driven = with_one_prescribed_input(model, given)?;
-            let name = given.name();
-            let place = model.inputs.iter().position(|input| input.name == name);
-            let definition = driven.definitions.iter().find(|own| own.name == name);
-            let (Some(place), Some(definition)) = (place, definition) else {
+            let Some((place, input)) = ExpressionInput::new(model, given)? else {
                 return Ok(None);
             };
-            let value = definition.value.clone();
-            let input = StepInput { driven, value };
             let is_repeated = found[place].is_some();
             let has_rate = model.inputs[place].rate.is_some();
             let (Ok(parameters), false, false) =
@@ -113,55 +121,136 @@ impl StepInputs {
     }
 }
 
-/// Input given by an expression of parameters and time.
+/// Input given by an expression of time, at parameter values.
 #[derive(Debug)]
-struct ExpressionInput {
+struct InputAtParameters {
     value: Expr,
     /// Values of the parameters of `value`, SI.
     parameters: Vec<f64>,
 }
 
-impl InputFunction for ExpressionInput {
+impl InputFunction for InputAtParameters {
     fn write(&self, t: f64, out: &mut [f64]) {
         out.fill(value_at(&self.value, t, &self.parameters));
     }
 }
 
-/// Adds inputs given by expressions to others, so that controllers can measure them; `settings` are parameters in
-/// declared units.
-///
-/// # Errors
-/// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs), and prescribed motion, whose rates an expression does not give here.
-pub fn with_input_functions(
-    mut inputs: HeldInputs,
-    model: &Model,
-    given: &[Assignment],
-    settings: &[(&str, f64)],
-) -> Result<HeldInputs, Error> {
-    for given in given {
-        let driven = with_one_prescribed_input(model, given)?;
-        let name = given.name();
-        let place = model.inputs.iter().position(|input| input.name == name);
-        let definition = driven.definitions.iter().find(|own| own.name == name);
-        let (Some(place), Some(definition)) = (place, definition) else {
-            continue;
-        };
-        if model.inputs[place].rate.is_some() {
-            let reason =
-                "prescribed motion by an expression is not supported in a model with controllers";
-            return Err(given.name_error(reason.to_owned(), None).into());
+/// Inputs that remain inputs of the model and are functions of time, at any parameter values.
+pub struct FunctionInputs {
+    /// Place of each input among those of the model, and its expression.
+    inputs: Vec<(usize, ExpressionInput)>,
+}
+
+impl FunctionInputs {
+    /// Returns the inputs of a model that `given` prescribes.
+    ///
+    /// # Errors
+    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs), and prescribed motion, whose rates an
+    /// expression does not give here.
+    pub fn new(model: &Model, given: &[Assignment]) -> Result<Self, Error> {
+        let mut inputs = Vec::with_capacity(given.len());
+        for given in given {
+            let Some((place, input)) = ExpressionInput::new(model, given)? else {
+                continue;
+            };
+            if model.inputs[place].rate.is_some() {
+                let reason = "prescribed motion by an expression is not supported in a model with controllers";
+                return Err(given.name_error(reason.to_owned(), None).into());
+            }
+            inputs.push((place, input));
         }
-        let input = StepInput {
-            value: definition.value.clone(),
-            driven,
-        };
-        let function = ExpressionInput {
-            parameters: input.parameters(settings)?,
-            value: input.value,
-        };
-        inputs = inputs.with_function(place, 1, Arc::new(function));
+        Ok(Self { inputs })
     }
-    Ok(inputs)
+
+    /// Adds these inputs to others, at parameter values in declared units.
+    ///
+    /// # Errors
+    /// Inadmissible parameter values.
+    pub fn add_to(
+        &self,
+        mut others: HeldInputs,
+        settings: &[(&str, f64)],
+    ) -> Result<HeldInputs, Error> {
+        for (place, input) in &self.inputs {
+            let function = InputAtParameters {
+                parameters: input.parameters(settings)?,
+                value: input.value.clone(),
+            };
+            others = others.with_function(*place, 1, Arc::new(function));
+        }
+        Ok(others)
+    }
+}
+
+/// Treatment of inputs that are given by expressions. Inputs that do not remain inputs become definitions of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputTreatment {
+    /// They remain inputs, because controllers measure them or fixed steps hold them.
+    pub remain: bool,
+    /// They may be held between their steps, because no record gives other inputs. Without `remain` they are held only if
+    /// every motion can be solved exactly then.
+    pub may_hold: bool,
+}
+
+/// Inputs given by expressions of time and parameters, at any parameter values.
+pub enum ExpressionInputs {
+    /// They are definitions of the model.
+    Definitions,
+    /// They are constant between steps.
+    Steps(StepInputs),
+    /// They are functions of time.
+    Functions(FunctionInputs),
+}
+
+impl ExpressionInputs {
+    /// Derives a model with the inputs that `given` prescribes, and returns both. `settings` are parameters in declared units.
+    ///
+    /// # Errors
+    /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs) and `derive`.
+    pub fn derive<E: From<Error>>(
+        declared: Model,
+        given: &[Assignment],
+        (treatment, settings): (InputTreatment, &[(&str, f64)]),
+        derive: impl Fn(Model) -> Result<CompiledModel, E>,
+    ) -> Result<(CompiledModel, Self), E> {
+        let steps = match treatment.may_hold {
+            true => StepInputs::find(&declared, given, settings)?,
+            false => None,
+        };
+        if let Some(steps) = steps {
+            let model = derive(declared.clone())?;
+            if treatment.remain || model.piecewise_linear().is_ok() {
+                return Ok((model, Self::Steps(steps)));
+            }
+        }
+        if treatment.remain {
+            let functions = FunctionInputs::new(&declared, given)?;
+            return Ok((derive(declared)?, Self::Functions(functions)));
+        }
+        let model = derive(with_prescribed_inputs(declared, given)?)?;
+        Ok((model, Self::Definitions))
+    }
+
+    /// Returns true if inputs vary between steps, so that no motion is solved exactly.
+    pub fn are_time_varying(&self) -> bool {
+        matches!(self, Self::Functions(functions) if !functions.inputs.is_empty())
+    }
+
+    /// Returns these inputs at parameter values in declared units. `others` returns the inputs that no expression gives.
+    ///
+    /// # Errors
+    /// Inadmissible parameter values, and the errors of `others`.
+    pub fn at<E: From<Error>>(
+        &self,
+        settings: &[(&str, f64)],
+        others: impl FnOnce() -> Result<HeldInputs, E>,
+    ) -> Result<HeldInputs, E> {
+        match self {
+            Self::Definitions => others(),
+            Self::Steps(steps) => Ok(steps.held(settings)?),
+            Self::Functions(functions) => Ok(functions.add_to(others()?, settings)?),
+        }
+    }
 }
 
 /// Returns the times at which an expression steps; `None` if it also varies between them, or depends on

@@ -1,0 +1,105 @@
+//! Impacts at one instant. Contacts that are hit together receive their impulses together. A contact that leaves and is
+//! hit again is hit in turn: the distances of impacts that follow each other can fall below rounding long before their
+//! speeds do. Without end, these impacts stop the bodies (inelastic collapse; S. McNamara and W. R. Young, Phys. Fluids A
+//! 4, 1992).
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::impulses::MAX_UNSOLVED_RATE_FRACTION;
+use super::tangents::ContactForces;
+use super::{Contacts, DISTANCE_ROUNDING, Overlap};
+
+/// Number of impacts at one instant after which the bodies move on together. Speeds that shrink by 1 % in two impacts are
+/// rounding after 6500.
+const MAX_IMPACTS_AT_ONE_INSTANT: usize = 10_000;
+
+impl Contacts {
+    /// Changes the rates of a state by the impulses of contacts that touch and hit so long `ago` (s), and of
+    /// those that these bring to touch in turn. Returns all that touched and the rounding of the rate of each distance.
+    pub(super) fn apply_impulses(
+        &mut self,
+        own: &mut Evaluator,
+        (t, inputs): (f64, &[f64]),
+        state: &mut [f64],
+        mut touching: Vec<usize>,
+        mut ago: f64,
+    ) -> Result<(Vec<usize>, Vec<f64>), Overlap> {
+        let degrees = own.program().degrees_of_freedom();
+        let mut roundings = vec![0.0_f64; self.names.len()];
+        let drifts = self.drifts(own, Point { t, state, inputs });
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        for count in 0..=MAX_IMPACTS_AT_ONE_INSTANT {
+            self.has_restitution &= count < MAX_IMPACTS_AT_ONE_INSTANT;
+            let (hit, impulses) = self.solve_hit_together(&touching, ago)?;
+            self.impact_work -= drifts.work_against(&hit, &impulses);
+            let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
+            let pushes: Vec<f64> = (0..self.names.len())
+                .map(|place| self.push_size(place, &hit, &impulses))
+                .collect();
+            for (place, rounding) in roundings.iter_mut().enumerate() {
+                let most = self.rate_size(place, rates) + pushes[place];
+                *rounding = rounding.max(DISTANCE_ROUNDING * most);
+            }
+            self.add_forces(&hit, &impulses, rates);
+            self.add_forces(&hit, &impulses.scaled(ago), coordinates);
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            // Distances are located to rounding, which must not add up.
+            let mut below = touching.clone();
+            below.retain(|place| self.at[*place].distance < 0.0);
+            let corrections = self.solve_balance(&below, |impact| impact.distance);
+            self.add_impulses(&below, &corrections, &mut state[..degrees]);
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            let touched = |place: &usize| {
+                let distance = self.at[*place].distance + self.offsets[*place];
+                !touching.contains(place) && distance < 0.0
+            };
+            let more: Vec<usize> = (0..self.names.len()).filter(touched).collect();
+            let approaches = |place: &usize| {
+                let unsolved = MAX_UNSOLVED_RATE_FRACTION * pushes[*place];
+                self.at[*place].rate < -unsolved.max(roundings[*place])
+            };
+            // The rate of a closed contact is rounding, as is one that needs no impulse.
+            let mut open = touching.iter().filter(|place| !self.closed.contains(place));
+            let has_pushed = impulses.normal.iter().any(|impulse| *impulse > 0.0);
+            if more.is_empty() && !(has_pushed && open.any(approaches)) {
+                break;
+            }
+            touching.extend(more);
+            ago = 0.0;
+        }
+        Ok((touching, roundings))
+    }
+
+    /// Returns the contacts that are hit together, and their impulses. A contact that leaves is not among them.
+    ///
+    /// # Errors
+    /// No impulses keep the bodies apart.
+    fn solve_hit_together(
+        &self,
+        touching: &[usize],
+        ago: f64,
+    ) -> Result<(Vec<usize>, ContactForces), Overlap> {
+        let mut together = touching.to_vec();
+        loop {
+            let impulses = match self.has_friction() {
+                true => self.solve_friction_impulses(&together, ago),
+                false => self.solve_impulses(&together, ago),
+            };
+            let impulses = impulses.ok_or(Overlap::NoImpulse)?;
+            let count = together.len();
+            let mut normal = impulses.normal.iter();
+            let all = together.clone();
+            together.retain(|place| {
+                let is_pushed = normal.next().is_some_and(|impulse| *impulse > 0.0);
+                let push = MAX_UNSOLVED_RATE_FRACTION * self.push_size(*place, &all, &impulses);
+                let leaves = self.has_restitution
+                    && !self.closed.contains(place)
+                    && self.hit_rate(*place, ago) > push;
+                !(is_pushed && leaves)
+            });
+            if together.len() == count {
+                return Ok((together, impulses));
+            }
+        }
+    }
+}

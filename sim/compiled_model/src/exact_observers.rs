@@ -1,0 +1,116 @@
+//! Observers of the steps of the exact solver.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{ObservedStep, Trajectory};
+
+use crate::audit::{Auditor, EnergyAndPower};
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::observers::{Observers, Results};
+use crate::statistics::Meters;
+use crate::sticking::ObservedMotion;
+
+/// Reason for excluding steps during which the exact solver holds the motion on a surface.
+const STICKING_EXCLUSION: &str =
+    "during sticking, the model does not give the power of the force that holds the motion";
+
+/// Observers of an exact motion with the energies and observables of its states.
+pub(crate) struct ExactObservers {
+    observers: Observers,
+    /// Evaluator of the energies; `None` without audit.
+    energies: Option<Evaluator>,
+    /// Observables of the measured motion; `None` without meters.
+    observed: Option<ObservedMotion>,
+}
+
+impl Instance<'_> {
+    /// Returns observers of an exact motion from a time (s) and a state.
+    ///
+    /// # Errors
+    /// A model whose evaluator cannot be prepared.
+    pub(crate) fn exact_observers(
+        &self,
+        observers: Observers,
+        (t, state): (f64, &[f64]),
+        inputs: &HeldInputs,
+    ) -> Result<ExactObservers, Error> {
+        let observed = || {
+            let start = Trajectory {
+                times: vec![t],
+                states: vec![state.to_vec()],
+                ..Trajectory::default()
+            };
+            let (evaluator, holding) = (self.evaluator()?, self.holding_model()?);
+            Ok::<_, Error>(ObservedMotion::new(evaluator, holding, &start, inputs))
+        };
+        let energies = observers.auditor.as_ref().map(|_| self.evaluator());
+        let observed = (!observers.meters.is_empty()).then(observed);
+        Ok(ExactObservers {
+            energies: energies.transpose()?,
+            observed: observed.transpose()?,
+            observers,
+        })
+    }
+}
+
+impl ExactObservers {
+    /// Observes a step, during which the inputs are constant. `is_held` is true if a surface holds the motion.
+    pub fn observe_step(
+        &mut self,
+        step: &mut ObservedStep<'_>,
+        is_held: bool,
+        inputs: &HeldInputs,
+    ) {
+        let Self {
+            observers,
+            energies,
+            observed,
+        } = self;
+        let inputs = &inputs.evaluate(0.5 * (step.start.0 + step.end.0));
+        if let (Some(auditor), Some(energies)) = (&mut observers.auditor, energies) {
+            audit_step(auditor, step, is_held, (energies, inputs));
+        }
+        if let Some(observed) = observed {
+            measure_step(&mut observers.meters, step, (observed, inputs));
+        }
+    }
+
+    pub fn results(&self) -> Results {
+        self.observers.results()
+    }
+
+    pub fn into_observers(self) -> Observers {
+        self.observers
+    }
+}
+
+fn audit_step(
+    auditor: &mut Auditor,
+    step: &mut ObservedStep<'_>,
+    is_held: bool,
+    (evaluator, inputs): (&mut Evaluator, &[f64]),
+) {
+    let mut observables = vec![0.0; evaluator.program().observables.len()];
+    let mut energies = |t: f64, state: &[f64]| {
+        evaluator.observables(Point { t, state, inputs }, &mut observables);
+        EnergyAndPower::from_observables(&observables)
+    };
+    match is_held {
+        true => auditor.exclude_step(step, &mut energies, STICKING_EXCLUSION),
+        false => auditor.audit_step(step, &mut energies),
+    }
+}
+
+fn measure_step(
+    meters: &mut Meters,
+    step: &mut ObservedStep<'_>,
+    (observed, inputs): (&mut ObservedMotion, &[f64]),
+) {
+    for (t, state) in [step.start, step.end] {
+        observed.extend(Point { t, state, inputs });
+    }
+    meters.observe_step(step, &mut |t, state, out| {
+        observed.observables(Point { t, state, inputs }, out);
+    });
+}

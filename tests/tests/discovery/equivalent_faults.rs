@@ -1,0 +1,124 @@
+//! Faults of a sensor and of an input that a linear model cannot tell apart form one class.
+
+use eomgen_tests::program;
+use serde_json::Value;
+
+const OSCILLATOR: &str = r#"
+[model]
+name = "oscillator"
+[parameters]
+m = { value = 1.3, unit = "kg" }
+k = { value = 210, unit = "N/m" }
+c = { value = 1.1, unit = "N s/m" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+F = { unit = "N" }
+[kinetic]
+body = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+[forces]
+drive = { on = "x", value = "F" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+[time]
+column = "t"
+unit = "s"
+[inputs.F]
+column = "F"
+unit = "N"
+[channels.x]
+column = "x"
+unit = "m"
+noise = 2e-4
+[windows]
+length = 1.0
+"#;
+
+/// Standard deviation of uniform noise, m.
+const NOISE: f64 = 2e-4;
+
+/// Returns a record of the oscillator with a force of `gain` times the recorded one, and an `offset` (m) of the sensor.
+fn record(gain: f64, offset: f64, shift: f64) -> String {
+    let (m, k, c) = (1.3, 210.0, 1.1);
+    let force = |t: f64| {
+        4.0 * (3.1 * t + shift).sin() + 3.0 * (7.3 * t - shift).sin() + 2.0 * (15.7 * t).cos()
+    };
+    let (mut x, mut v, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.31 + 0.1 * shift);
+    let mut text = "t,F,x\n".to_owned();
+    for sample in 0..800 {
+        let t = 0.01 * f64::from(sample);
+        noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
+        let shown = x + offset + NOISE * 2.8 * (noise - 0.5);
+        text += &format!("{t:.2},{:.9},{shown:.9}\n", force(t));
+        // Velocity Verlet with the force interpolated between samples, as `discover` does.
+        let steps = 200;
+        let h = 0.01 / f64::from(steps);
+        for step in 0..steps {
+            let part = |s: f64| {
+                let s = s / f64::from(steps);
+                gain * ((1.0 - s) * force(t) + s * force(t + 0.01))
+            };
+            let acceleration = |x: f64, v: f64, s: f64| (part(s) - c * v - k * x) / m;
+            let s = f64::from(step);
+            let middle = v + 0.5 * h * acceleration(x, v, s);
+            let between = x + 0.5 * h * v;
+            x += h * middle;
+            v += h * acceleration(between, middle, s + 0.5);
+        }
+    }
+    text
+}
+
+/// Returns the effects of the answer, the named one first.
+fn find_class(gain: f64, offset: f64) -> Vec<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    for (name, text) in [
+        ("oscillator.toml", OSCILLATOR.to_owned()),
+        ("dataset.toml", DATASET.to_owned()),
+        ("train.csv", record(gain, offset, 0.0)),
+        ("test.csv", record(gain, offset, 1.0)),
+    ] {
+        std::fs::write(file(name), text).expect("a file");
+    }
+    let paths = ["oscillator.toml", "dataset.toml", "out"].map(file);
+    let document = program::run_on_dataset("discover", paths.each_ref());
+    let effects = document["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{document:#}");
+    assert_eq!(effects[0]["status"], "class", "{document:#}");
+    let others = effects[0]["equivalent"].as_array().expect("a list");
+    let named = |of: &Value| format!("{} on {}", of["effect"], of["on"]).replace('"', "");
+    let mut names: Vec<String> = std::iter::once(&effects[0])
+        .chain(others)
+        .map(named)
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn gains_of_a_sensor_and_of_an_input_form_a_class() {
+    for gain in [1.15, 0.85] {
+        assert_eq!(
+            find_class(gain, 0.0),
+            ["input_gain on F", "sensor_gain on x"],
+            "{gain}"
+        );
+    }
+}
+
+#[test]
+fn offsets_of_a_sensor_and_of_a_force_form_a_class() {
+    for offset in [0.02, -0.015] {
+        let expected = ["force_offset on x", "input_bias on F", "sensor_bias on x"];
+        assert_eq!(find_class(1.0, offset), expected, "{offset}");
+    }
+}
