@@ -145,6 +145,18 @@ impl LinearisedEquations {
         above.map(|(row, _)| row).collect()
     }
 
+    /// Returns the magnitude of an unknown that balances the largest acceleration of the search in one row; 0 if it changes
+    /// none.
+    pub fn balancing_size(&self, unknown: usize) -> f64 {
+        let effects = self.matrix.column(unknown).into_iter();
+        let rows = effects
+            .zip(self.largest.iter())
+            .filter(|(effect, _)| **effect != 0.0);
+        rows.map(|(effect, largest)| largest / effect.abs())
+            .min_by(f64::total_cmp)
+            .unwrap_or(0.0)
+    }
+
     /// Returns the row of the largest acceleration relative to its terms, and its value, SI.
     pub fn largest_residual(&self) -> (usize, f64) {
         let worst = self

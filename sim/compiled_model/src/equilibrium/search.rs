@@ -270,7 +270,10 @@ impl<'i, 'm> Search<'i, 'm> {
         let magnitudes = DVector::from_fn(self.unknowns.len(), |place, _| {
             let value = match self.unknowns[place] {
                 Unknown::Setting(Setting::State(state)) => at.state[state].abs(),
-                Unknown::Setting(Setting::Input(input)) => at.inputs[input].abs(),
+                Unknown::Setting(Setting::Input(input)) => {
+                    // An input has no typical size; one that balances nothing is rounding.
+                    at.inputs[input].abs().max(here.balancing_size(place))
+                }
                 _ => 0.0,
             };
             value.max(self.typical[place])

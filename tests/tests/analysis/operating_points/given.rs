@@ -326,3 +326,21 @@ fn order_of_settings_has_no_effect() {
     ]);
     assert!(message.contains("refer to each other"), "{message}");
 }
+
+#[test]
+fn free_inputs_are_zero_where_nothing_is_to_be_balanced() {
+    let cart = shipped("cart_two_arms");
+    for input in ["0", "0.3", "-2", "1e-9", "1e6"] {
+        for others in [&[][..], &["--fix", "x_dot=0"], &["--state", "theta_2=0.7"]] {
+            let start = format!("u={input}");
+            let request = ["trim", &cart, "--fix", "theta_1=0", "--state", &start];
+            let found = run_json(&[&request, others].concat());
+            let place = format!("u = {input}, {others:?}");
+            let steady = found["steady_rates"].as_array().expect("names");
+            assert!(steady.is_empty(), "{place}: {steady:?}");
+            for name in ["u", "theta_2"] {
+                assert!(number(&found, name).abs() < 1e-12, "{place}: {found}");
+            }
+        }
+    }
+}
