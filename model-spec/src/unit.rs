@@ -243,8 +243,12 @@ fn parse_factor(text: &str) -> Result<Parsed, UnitError> {
     let (dimension, scale) = parse_symbol(symbol)?;
     let scale = if exponent.is_integer() {
         scale.raise(exponent.to_integer())
+    } else if scale == Scale::ONE {
+        Some(scale)
     } else {
-        (scale == Scale::ONE).then_some(scale)
+        let message = format!("`{text}` has no exact factor to SI");
+        let help = format!("raise the unit without a prefix: {dimension}^({exponent})");
+        return Err(UnitError::new(message, Some(help)));
     };
     dimension
         .raise(exponent)
@@ -257,22 +261,31 @@ fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
         .strip_prefix('(')
         .and_then(|t| t.strip_suffix(')'))
         .unwrap_or(text);
-    let (numerator, denominator) = bare.split_once('/').unwrap_or((bare, "1"));
-    let parsed = numerator
-        .parse::<i32>()
-        .ok()
-        .zip(denominator.parse::<i32>().ok());
-    match parsed {
-        Some((n, d)) if n.abs() <= MAX_EXPONENT && (1..=MAX_EXPONENT).contains(&d) => {
-            Ok(Ratio::new(n, d))
-        }
-        _ => {
-            let help =
-                "write an exponent as a whole number up to 12 or a fraction: m^2, s^-1, m^(1/2)";
+    let parsed = match bare.split_once('/') {
+        Some((numerator, denominator)) => numerator.parse().ok().zip(denominator.parse().ok()),
+        None => parse_decimal(bare),
+    };
+    let bounds = -MAX_EXPONENT..=MAX_EXPONENT;
+    parsed
+        .filter(|(_, denominator)| *denominator > 0)
+        .map(|(numerator, denominator): (i32, i32)| Ratio::new(numerator, denominator))
+        .filter(|found| bounds.contains(found.numer()) && *found.denom() <= MAX_EXPONENT)
+        .ok_or_else(|| {
+            let help = "write an exponent as a whole number up to 12, a fraction or a decimal: m^2, s^-1, m^(1/2), m^1.5";
             let message = format!("`{text}` is not a valid exponent");
-            Err(UnitError::new(message, Some(help.to_owned())))
-        }
+            UnitError::new(message, Some(help.to_owned()))
+        })
+}
+
+/// Parses a number such as `2` or `1.5` to a numerator and a power of ten.
+fn parse_decimal(text: &str) -> Option<(i32, i32)> {
+    let (whole, decimals) = text.split_once('.').unwrap_or((text, ""));
+    if text.contains('.') && decimals.is_empty() || decimals.contains(['+', '-']) {
+        return None;
     }
+    let power = 10_i32.checked_pow(u32::try_from(decimals.len()).ok()?)?;
+    let numerator = format!("{whole}{decimals}").parse().ok()?;
+    Some((numerator, power))
 }
 
 fn parse_symbol(symbol: &str) -> Result<Parsed, UnitError> {
@@ -351,6 +364,10 @@ mod tests {
             ("N m s^2", "kg m^2"),
             ("m s^-2", "m/s^2"),
             ("N/m^(3/2)", "kg/(m^(1/2) s^2)"),
+            ("N/m^1.5", "kg/(m^(1/2) s^2)"),
+            ("m^-0.50", "1/m^(1/2)"),
+            ("m^(2.0)", "m^2"),
+            ("N s^.5", "kg m/s^(3/2)"),
         ] {
             assert_eq!(dimension(text), expected, "{text}");
         }
@@ -392,6 +409,12 @@ mod tests {
             ("µm", "unknown unit", "um"),
             ("m^x", "not a valid exponent", "m^2"),
             ("m^99", "not a valid exponent", "up to 12"),
+            ("m^1.", "not a valid exponent", "m^1.5"),
+            ("m^1.-5", "not a valid exponent", "m^1.5"),
+            ("m^0.33", "not a valid exponent", "m^(1/2)"),
+            ("m^(3/0)", "not a valid exponent", "m^(1/2)"),
+            ("m^1.00000000000000000000", "not a valid exponent", "m^1.5"),
+            ("N/mm^1.5", "`mm^1.5` has no exact factor", "m^(3/2)"),
             ("/s", "needs a unit on both sides", "1/s"),
             ("m/", "needs a unit on both sides", "1/s"),
             ("2 m", "unknown unit `2`", "SI units"),
