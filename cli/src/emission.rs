@@ -75,7 +75,7 @@ pub fn sources(
             let compiler = CCompiler::default();
             sources.c = vec![header_only_source(name, header, outputs, compiler)];
         }
-        (Target::Casadi, Some(source), _) => {
+        (Target::Casadi | Target::Acados, Some(source), _) => {
             let compiler = CCompiler::default();
             sources.casadi = Some(casadi_source(name, source, outputs, compiler));
         }

@@ -52,6 +52,8 @@ pub enum Target {
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
     /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
     Casadi,
+    /// The same with the Python module `NAME_acados.py`, which builds the model for acados.
+    Acados,
     /// A functional mock-up unit (FMI 2.0) for model exchange and co-simulation: `NAME.fmu` with
     /// the specification and the library that moves it, for this machine.
     Fmu2,
@@ -66,6 +68,7 @@ impl From<Target> for eomgen_targets::Target {
             Target::C99 => Self::C99,
             Target::Cuda => Self::Cuda,
             Target::Casadi => Self::Casadi,
+            Target::Acados => Self::Acados,
             Target::Fmu2 => Self::Fmu2,
             Target::Fmu3 => Self::Fmu3,
         }

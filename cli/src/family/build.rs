@@ -92,8 +92,14 @@ impl Emitted {
         let hessians = Extra::Output(Output::Hessians);
         let (of_casadi, others): (Vec<Extra>, Vec<Extra>) =
             variant.with.iter().partition(|extra| **extra == hessians);
-        if !of_casadi.is_empty() && !variant.has(Target::Casadi) {
-            return Err(Error::input("`hessians` needs the target `casadi`"));
+        let for_optimisers = [Target::Acados, Target::Casadi];
+        let for_optimisers = for_optimisers
+            .into_iter()
+            .find(|target| variant.has(*target));
+        if !of_casadi.is_empty() && for_optimisers.is_none() {
+            return Err(Error::input(
+                "`hessians` needs the target `casadi` or `acados`",
+            ));
         }
         let derive = |outputs: &[Output]| {
             let derived = Derived::derive_with_trace(model, orders, outputs);
@@ -155,11 +161,11 @@ impl Emitted {
             let trace = trace_file::document(program, sources)?;
             this.files.insert(TRACE.to_owned(), trace.into_bytes());
         }
-        if variant.has(Target::Casadi) {
-            let outputs = emission::outputs(Target::Casadi, &of_casadi, false)?;
+        if let Some(target) = for_optimisers {
+            let outputs = emission::outputs(target, &of_casadi, false)?;
             let derived = derive(&outputs)?;
-            let files = emission::files(model, &derived, (Target::Casadi, None))?;
-            let sources = emission::sources(&variant.prefix, Target::Casadi, &files, &outputs)?;
+            let files = emission::files(model, &derived, (target, None))?;
+            let sources = emission::sources(&variant.prefix, target, &files, &outputs)?;
             this.sources.casadi = sources.casadi;
             this.files.extend(files);
         }

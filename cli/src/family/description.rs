@@ -361,14 +361,11 @@ impl Reader<'_> {
     }
 
     fn targets(&mut self, words: &[StringValue]) -> Option<Vec<Target>> {
-        let known = "expected \"rust\", \"c99\", \"cuda\" or \"casadi\"";
+        let known = "expected \"rust\", \"c99\", \"cuda\", \"casadi\" or \"acados\"";
         let mut targets = Vec::new();
         for word in words {
             let target = Target::from_str(&word.text, false).ok();
             match target {
-                Some(target @ (Target::Rust | Target::C99 | Target::Cuda | Target::Casadi)) => {
-                    targets.push(target)
-                }
                 Some(Target::Fmu2 | Target::Fmu3) => {
                     let message = "a functional mock-up unit contains machine code of this computer, so its \
                                    bytes are not reproducible";
@@ -377,6 +374,7 @@ impl Reader<'_> {
                         .push(error.with_help("use `eomgen generate --target fmu2`"));
                     return None;
                 }
+                Some(target) => targets.push(target),
                 None => {
                     let error = Diagnostic::error(format!("unknown target {}", quote(&word.text)));
                     self.found.push(error.with_span(word.span, known));

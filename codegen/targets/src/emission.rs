@@ -7,6 +7,7 @@ use eomgen_codegen::rust::{self, Packaging};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 
+use crate::acados;
 use crate::error::{EmissionError, Result};
 use crate::file::EmittedFile;
 use crate::fmu::{self, Version};
@@ -25,7 +26,9 @@ pub fn emit(
 ) -> Result<Vec<EmittedFile>> {
     let program = &variant.program;
     let name = &program.name;
-    if let (Target::Casadi, Some(controller)) = (target, model.controllers.first()) {
+    if target.has_casadi_functions()
+        && let Some(controller) = model.controllers.first()
+    {
         warn(&format!(
             "note: the functions for CasADi do not sample the controllers of the model (`{}`): they are those of the machine alone",
             controller.name
@@ -53,9 +56,13 @@ pub fn emit(
             let source = c::emit_cuda(program).map_err(EmissionError::request)?;
             Ok(vec![EmittedFile::text(format!("{name}.cuh"), source)])
         }
-        Target::Casadi => {
+        Target::Casadi | Target::Acados => {
             let source = c::emit_casadi(program).map_err(EmissionError::request)?;
-            Ok(vec![EmittedFile::text(format!("{name}_casadi.c"), source)])
+            let mut files = vec![EmittedFile::text(format!("{name}_casadi.c"), source)];
+            if target == Target::Acados {
+                files.push(acados::file(program)?);
+            }
+            Ok(files)
         }
         Target::Fmu2 => unit(model, variant, Version::Two),
         Target::Fmu3 => unit(model, variant, Version::Three),
@@ -87,7 +94,7 @@ pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
     let has = |output: Output| with.contains(&output);
     let reason = match target {
         Target::Rust | Target::C99 | Target::Cuda if has(Output::Hessians) => {
-            "--with hessians needs --target casadi"
+            "--with hessians needs --target casadi or acados"
         }
         Target::Rust => return Ok(with.to_vec()),
         _ if has(Output::Lanes) => {
@@ -95,15 +102,17 @@ pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
              which C does not support"
         }
         Target::C99 | Target::Cuda => return Ok(with.to_vec()),
-        Target::Casadi if with.iter().all(|output| *output == Output::Hessians) => {
+        Target::Casadi | Target::Acados
+            if with.iter().all(|output| *output == Output::Hessians) =>
+        {
             return Ok([&c::CASADI_OUTPUTS[..], with].concat());
         }
         Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(Vec::new()),
         Target::Fmu2 | Target::Fmu3 => {
             "--with is not available for a functional mock-up unit: the standard defines its functions"
         }
-        Target::Casadi => {
-            "--target casadi accepts --with hessians only: its functions are rates and \
+        Target::Casadi | Target::Acados => {
+            "--target casadi and acados accept --with hessians only: their functions are rates and \
              jac_rates"
         }
     };

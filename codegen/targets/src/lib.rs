@@ -17,6 +17,7 @@
 //! # }
 //! ```
 
+mod acados;
 pub mod archive;
 mod emission;
 mod error;

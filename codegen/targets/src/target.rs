@@ -11,6 +11,8 @@ pub enum Target {
     Cuda,
     /// External functions of CasADi: `NAME_casadi.c`.
     Casadi,
+    /// Model for acados: `NAME_acados.py` with the functions of [`Target::Casadi`].
+    Acados,
     /// Functional mock-up unit, FMI 2.0: `NAME.fmu`.
     Fmu2,
     /// Functional mock-up unit, FMI 3.0: `NAME.fmu`.
@@ -19,14 +21,20 @@ pub enum Target {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Rust,
         Self::C99,
         Self::Cuda,
         Self::Casadi,
+        Self::Acados,
         Self::Fmu2,
         Self::Fmu3,
     ];
+
+    /// Returns true if the files contain the functions for CasADi.
+    pub fn has_casadi_functions(self) -> bool {
+        matches!(self, Self::Casadi | Self::Acados)
+    }
 
     /// Returns true for functional mock-up units.
     pub fn is_unit(self) -> bool {
@@ -40,6 +48,7 @@ impl Target {
             Self::C99 => "c99",
             Self::Cuda => "cuda",
             Self::Casadi => "casadi",
+            Self::Acados => "acados",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",
         }

@@ -243,7 +243,7 @@ class Model:
         """Writes the emitted source of the model to a folder and returns the paths of the files. The file with the
         equations is first.
 
-        target: "rust", "c99", "cuda" or "casadi". extras: functions to emit in addition to the usual ones,
+        target: "rust", "c99", "cuda", "casadi" or "acados". extras: functions to emit in addition to the usual ones,
         such as "jacobians"; the names are those of `eomgen generate --with`.
         """
         files, noted = _native.generate(self._native, target, list(extras))

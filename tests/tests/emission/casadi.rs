@@ -166,7 +166,8 @@ fn family_certifies_functions_for_casadi() {
     let spec = path("pendulum");
     let family = format!(
         "[family]\nname = \"swings\"\n[[variant]]\nname = \"swing\"\nspec = {spec:?}\ntargets = [\"casadi\"]\n\
-         [[variant]]\nname = \"both\"\nspec = {spec:?}\ntargets = [\"c99\", \"casadi\"]\nwith = [\"hessians\"]\n"
+         [[variant]]\nname = \"both\"\nspec = {spec:?}\ntargets = [\"c99\", \"casadi\"]\nwith = [\"hessians\"]\n\
+         [[variant]]\nname = \"planned\"\nspec = {spec:?}\ntargets = [\"acados\", \"casadi\"]\n"
     );
     std::fs::write(folder.path().join("family.toml"), family).expect("written");
     let write = ["family", "family.toml", "--out", "models"];
@@ -180,6 +181,7 @@ fn family_certifies_functions_for_casadi() {
         ("swing", "swing_casadi.c"),
         ("both", "both_casadi.c"),
         ("both", "both.c"),
+        ("planned", "planned_casadi.c"),
     ] {
         let variant = format!("models/{variant}");
         let (file, document) = (
@@ -193,6 +195,12 @@ fn family_certifies_functions_for_casadi() {
         };
         assert!(said.contains(&format!("{check} ")), "{said}");
     }
+    assert!(
+        folder
+            .path()
+            .join("models/planned/planned_acados.py")
+            .exists()
+    );
     let wrong = [
         "verify",
         "models/both/both_casadi.c",

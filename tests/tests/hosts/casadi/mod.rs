@@ -111,8 +111,8 @@ fn with_is_rejected_for_casadi() {
     let spec = eomgen_tests::models::path("pendulum");
     let spec = spec.to_string_lossy();
     for (with, reason) in [
-        ("jacobians", "its functions are rates and jac_rates"),
-        ("hessians,jacobians", "accepts --with hessians only"),
+        ("jacobians", "their functions are rates and jac_rates"),
+        ("hessians,jacobians", "accept --with hessians only"),
         ("lanes", "needs --target rust"),
         ("bench", "needs --target rust"),
     ] {
