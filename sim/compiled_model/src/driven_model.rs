@@ -17,7 +17,7 @@ use crate::corners::{CornerEnergy, Corners};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::observers::{Observers, Results};
 use crate::projection::Projection;
-use crate::statistics::Meters;
+use crate::statistics::{Meters, Observables};
 use crate::sticking::{SidedModel, SurfaceStates};
 
 /// Largest number of alternating decisions of surfaces and contacts at an event.
@@ -716,9 +716,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
     fn measure_step(&self, step: &mut ObservedStep<'_>) {
         let mut meters = self.meters.borrow_mut();
-        meters.observe_step(step, &mut |t, state, out| {
-            self.write_observables((t, state), out);
-        });
+        if !meters.is_empty() {
+            meters.observe_step(step, &mut DrivenObservables(self));
+        }
     }
 
     fn audit_step(&self, step: &mut ObservedStep<'_>) {
@@ -789,4 +789,36 @@ fn first_indefinite_row(matrix: &mut [f64], size: usize) -> Option<usize> {
         }
     }
     None
+}
+
+/// Observables of a motion of the model.
+struct DrivenObservables<'m, E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
+    &'m DrivenModel<E, I>,
+);
+
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Observables
+    for DrivenObservables<'_, E, I>
+{
+    fn write(&mut self, at: (f64, &[f64]), out: &mut [f64]) {
+        self.0.write_observables(at, out);
+    }
+
+    fn bound(
+        &mut self,
+        (begin, end): (f64, f64),
+        state: &[Enclosure],
+        out: &mut [Enclosure],
+    ) -> bool {
+        let stretch = Stretch {
+            t: Enclosure::time(begin, end),
+            state,
+            inputs: &self.0.inputs.borrow().bound(begin, end),
+        };
+        self.0.evaluator().bound_observables(&stretch, out);
+        self.0.is_free()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.0.degrees_of_freedom()
+    }
 }

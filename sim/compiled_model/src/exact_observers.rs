@@ -1,6 +1,6 @@
 //! Observers of the steps of the exact solver.
 
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ObservedStep, Trajectory};
 
@@ -8,7 +8,7 @@ use crate::audit::{Auditor, EnergyAndPower};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::observers::{Observers, Results};
-use crate::statistics::Meters;
+use crate::statistics::{Meters, Observables};
 use crate::sticking::ObservedMotion;
 
 /// Reason for excluding steps during which the exact solver holds the motion on a surface.
@@ -72,7 +72,7 @@ impl ExactObservers {
             audit_step(auditor, step, is_held, (energies, inputs));
         }
         if let Some(observed) = observed {
-            measure_step(&mut observers.meters, step, (observed, inputs));
+            measure_step(&mut observers.meters, step, (observed, inputs, is_held));
         }
     }
 
@@ -105,12 +105,50 @@ fn audit_step(
 fn measure_step(
     meters: &mut Meters,
     step: &mut ObservedStep<'_>,
-    (observed, inputs): (&mut ObservedMotion, &[f64]),
+    (observed, inputs, is_held): (&mut ObservedMotion, &[f64], bool),
 ) {
     for (t, state) in [step.start, step.end] {
         observed.extend(Point { t, state, inputs });
     }
-    meters.observe_step(step, &mut |t, state, out| {
-        observed.observables(Point { t, state, inputs }, out);
-    });
+    let mut observables = ExactObservables {
+        observed,
+        inputs,
+        is_held,
+    };
+    meters.observe_step(step, &mut observables);
+}
+
+/// Observables of an exact motion with constant inputs.
+struct ExactObservables<'o> {
+    observed: &'o mut ObservedMotion,
+    inputs: &'o [f64],
+    is_held: bool,
+}
+
+impl Observables for ExactObservables<'_> {
+    fn write(&mut self, (t, state): (f64, &[f64]), out: &mut [f64]) {
+        let inputs = self.inputs;
+        self.observed.observables(Point { t, state, inputs }, out);
+    }
+
+    fn bound(
+        &mut self,
+        (begin, end): (f64, f64),
+        state: &[Enclosure],
+        out: &mut [Enclosure],
+    ) -> bool {
+        let constant = |input: &f64| Enclosure::constant(*input);
+        let inputs: Vec<Enclosure> = self.inputs.iter().map(constant).collect();
+        let stretch = Stretch {
+            t: Enclosure::time(begin, end),
+            state,
+            inputs: &inputs,
+        };
+        self.observed.bound_observables(&stretch, out);
+        !self.is_held
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.observed.degrees_of_freedom()
+    }
 }

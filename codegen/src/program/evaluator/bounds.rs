@@ -1,4 +1,4 @@
-//! Bounds of the switching functions and of the distances at impacts over a stretch of a motion, by interval
+//! Bounds of observables, switching functions and distances at impacts over a stretch of a motion, by interval
 //! arithmetic with rates (R. E. Moore, *Methods and Applications of Interval Analysis*, mean-value form).
 
 use super::bounds_memory::BoundsMemory;
@@ -32,6 +32,13 @@ impl Evaluator {
         self.copy_bounds(distances, out);
     }
 
+    /// Writes the bounds of the observables to `out`, in their order.
+    pub fn bound_observables(&mut self, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
+        self.compute_bounds(Stage::Observables, stretch);
+        let observables = self.program.observable_values.iter().copied();
+        self.copy_bounds(observables, out);
+    }
+
     fn copy_bounds(&self, ids: impl Iterator<Item = ValueId>, out: &mut [Enclosure]) {
         let length = |id: ValueId| self.program.value(id).extent.length();
         let numbers = ids.flat_map(|id| (0..length(id)).map(move |index| (id, index)));
@@ -43,7 +50,8 @@ impl Evaluator {
     fn compute_bounds(&mut self, stage: Stage, stretch: &Stretch<'_>) {
         let steps = std::mem::take(&mut self.stages[stage as usize]);
         if self.bounds.is_none() {
-            let known = [Stage::Guards, Stage::Distances].map(|known| match known == stage {
+            let known = [Stage::Guards, Stage::Distances, Stage::Observables];
+            let known = known.map(|known| match known == stage {
                 true => &steps[..],
                 false => &self.stages[known as usize],
             });

@@ -3,7 +3,7 @@
 use super::enclosure::Enclosure;
 use crate::program::{Program, ValueId};
 
-/// Bounds of the values of two stages.
+/// Bounds of the values of the stages.
 pub(super) struct BoundsMemory {
     /// Place of each value's first bound; unused values have none.
     places: Vec<Option<usize>>,
@@ -11,8 +11,8 @@ pub(super) struct BoundsMemory {
 }
 
 impl BoundsMemory {
-    /// Allocates memory for the steps of two stages.
-    pub(super) fn new(program: &Program, steps: [&[ValueId]; 2]) -> Self {
+    /// Allocates memory for the steps of the stages.
+    pub(super) fn new(program: &Program, steps: [&[ValueId]; 3]) -> Self {
         let mut places = vec![None; program.values.len()];
         let mut size = 0;
         for id in steps.into_iter().flatten() {

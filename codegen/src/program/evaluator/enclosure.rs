@@ -231,6 +231,17 @@ fn linear_branch(function: Function, arguments: &[Enclosure]) -> Option<Enclosur
         (Function::Min, &[x, y]) if is_positive(x.subtract(y)) => Some(y),
         (Function::Max, &[x, y]) if is_positive(x.subtract(y)) => Some(x),
         (Function::Max, &[x, y]) if is_positive(y.subtract(x)) => Some(y),
+        (Function::Contact, &[x, width]) => {
+            let outside = |distance: Enclosure| distance.value().low > 0.0;
+            let (above, below) = (x.subtract(width), x.negate().subtract(width));
+            match () {
+                () if outside(above) || outside(below) => Some(Enclosure::constant(1.0)),
+                () if is_positive(above.negate()) && is_positive(below.negate()) => {
+                    Some(Enclosure::constant(0.0))
+                }
+                () => None,
+            }
+        }
         (Function::Deadzone, &[x, width]) => {
             let (above, below) = (x.subtract(width), x.add_enclosure(width));
             match () {
@@ -273,14 +284,6 @@ fn binary_rate(function: Function, x: Enclosure, y: Enclosure) -> Interval {
         Function::Deadzone => ZERO
             .hull(x.subtract(y).rate())
             .hull(x.add_enclosure(y).rate()),
-        Function::Contact => {
-            let is_inside = x_value.high <= y_value.low && -y_value.low <= x_value.low;
-            let is_outside = x_value.low > y_value.high || x_value.high < -y_value.high;
-            match is_inside || is_outside {
-                true => ZERO,
-                false => Interval::ALL,
-            }
-        }
         _ => Interval::ALL,
     }
 }

@@ -1,6 +1,9 @@
 //! Measurement of a motion in progress, step by step.
 
+use eomgen_codegen::program::evaluator::Enclosure;
+
 use super::polynomial::{DEGREES, MAX_DEGREE, Polynomial, chebyshev_point};
+use super::step_quantities::QuantityInStep;
 use super::{Measurement, Statistic};
 
 /// Shortest panel, as a part of its step: a jump of the quantity inside a step is located to this part.
@@ -15,8 +18,18 @@ const MEAN_SQUARE_FACTOR: f64 = 10.0;
 /// Maximum number of panels of a step that resolves all transients: enough to locate three jumps of the quantity.
 const MAX_PANELS: usize = 128;
 
+/// Height of a peak between the points of a polynomial that may stay hidden, relative to the largest magnitude of the
+/// quantity for a maximum and to the root mean square for the other.
+const MAX_HIDDEN_FRACTIONS: [f64; 2] = [1e-3, 0.25];
+
+/// Maximum number of divisions by bounds of a step, per panel that polynomials would resolve without them.
+const MAX_DIVISIONS_PER_PANEL: usize = 16;
+
 /// Tolerance of a quantity of an exact motion, relative to its largest magnitude.
 const EXACT_TOLERANCE: f64 = 1e-7;
+
+/// Places, as parts of a panel, that are far from the points of all polynomials.
+const PROBES: [f64; 3] = [0.109, 0.4195, 0.7651];
 
 /// Place, as a part of a step, at which a transient from its start shows.
 const TRANSIENT_PART: f64 = 1e-7;
@@ -26,6 +39,8 @@ struct Panel {
     from: f64,
     to: f64,
     ends: [f64; 2],
+    /// True if it is part of a panel that a polynomial represents.
+    is_resolved: bool,
 }
 
 /// Interpolation of the quantity over a panel.
@@ -83,24 +98,27 @@ impl Meter {
         self.square_integral / self.duration
     }
 
-    /// Measures a step between two times (s). `value` returns the quantity at a time, or `None` if it is unknown.
+    /// Measures a step between two times (s).
     pub fn observe_step(
         &mut self,
         (start, end): (f64, f64),
-        value: &mut dyn FnMut(f64) -> Option<f64>,
+        quantity: &mut QuantityInStep<'_, '_, '_>,
     ) {
         let begin = start.max(self.measurement.begin);
         if begin >= end {
             return;
         }
-        let Some(last) = value(end) else { return };
-        let first = value(begin).unwrap_or(last);
+        let Some(last) = quantity.value(end) else {
+            return;
+        };
+        let first = quantity.value(begin).unwrap_or(last);
         self.note(first);
         self.note(last);
         let mut open = vec![Panel {
             from: begin,
             to: end,
             ends: [first, last],
+            is_resolved: false,
         }];
         let shortest = MIN_PANEL_PART * (end - begin);
         let most = match self.has_transients {
@@ -108,34 +126,83 @@ impl Meter {
             false => MAX_PANELS,
         };
         let mut panels = 0;
+        let (mut resolved, mut divisions) = (1, 0);
         while let Some(panel) = open.pop() {
             panels += 1;
+            let bound = quantity.bound((panel.from, panel.to));
+            if bound.is_some_and(|bound| self.is_below_maximum(&panel, &bound)) {
+                continue;
+            }
             let length = panel.to - panel.from;
-            let Some(found) = self.interpolate(&panel, value) else {
+            let Some(found) = self.interpolate(&panel, bound.is_some(), quantity) else {
                 continue;
             };
             let is_short = length <= shortest || panels + open.len() >= most;
             let probe = TRANSIENT_PART * (end - begin);
             let is_probed = self.has_transients && panel.from == begin && probe < length;
-            let is_measured = is_short
-                || found.is_resolved
-                    && !(is_probed && self.is_transient(&panel, &found.polynomial, probe, value));
-            if is_measured {
-                self.add_panel(&found.polynomial, &panel, value);
+            let is_resolved = found.is_resolved
+                && !(is_probed && self.is_transient(&panel, &found.polynomial, probe, quantity));
+            resolved += usize::from(is_resolved && !panel.is_resolved);
+            let may_divide = divisions < MAX_DIVISIONS_PER_PANEL * resolved;
+            let hides_peak = || {
+                let exceeds = |bound| self.exceeds_polynomial(&panel, &found.polynomial, &bound);
+                may_divide && bound.is_some_and(exceeds)
+            };
+            if is_short || is_resolved && !hides_peak() {
+                self.add_panel(&found.polynomial, &panel, quantity);
                 continue;
             }
+            divisions += usize::from(is_resolved);
             let half = panel.from + 0.5 * length;
-            let Panel { from, to, ends } = panel;
+            let Panel { from, to, ends, .. } = panel;
             open.push(Panel {
                 from: half,
                 to,
                 ends: [found.middle, ends[1]],
+                is_resolved,
             });
             open.push(Panel {
                 from,
                 to: half,
                 ends: [ends[0], found.middle],
+                is_resolved,
             });
+        }
+    }
+
+    /// Returns true if the quantity cannot exceed the greatest value so far in a panel, within the tolerance.
+    fn is_below_maximum(&self, panel: &Panel, bound: &Enclosure) -> bool {
+        let is_maximum = self.measurement.statistic == Statistic::Maximum;
+        let slack = self.tolerance * self.size + ROUNDING * self.measurement.typical_size;
+        let (_, high) = bound_between(panel, bound);
+        is_maximum
+            && self
+                .greatest
+                .is_some_and(|greatest| high <= greatest + slack)
+    }
+
+    /// Returns true if bounds of the quantity over a panel leave room for a peak that the polynomial does not have.
+    fn exceeds_polynomial(
+        &self,
+        panel: &Panel,
+        polynomial: &Polynomial,
+        bound: &Enclosure,
+    ) -> bool {
+        let (low, high) = bound_between(panel, bound);
+        let (least, greatest) = polynomial.range();
+        let rounding = ROUNDING * self.measurement.typical_size;
+        match self.measurement.statistic {
+            Statistic::Maximum => {
+                let reached = self.greatest.map_or(greatest, |most| most.max(greatest));
+                high > reached + MAX_HIDDEN_FRACTIONS[0] * self.size + rounding
+            }
+            Statistic::RootMeanSquare => {
+                let length = panel.to - panel.from;
+                let own = polynomial.mean_square();
+                let mean = (self.square_integral + own * length) / (self.duration + length);
+                let hidden = MAX_HIDDEN_FRACTIONS[1] * own.max(mean).sqrt() + rounding;
+                high > greatest + hidden || low < least - hidden
+            }
         }
     }
 
@@ -145,10 +212,10 @@ impl Meter {
         panel: &Panel,
         polynomial: &Polynomial,
         probe: f64,
-        value: &mut dyn FnMut(f64) -> Option<f64>,
+        quantity: &mut QuantityInStep<'_, '_, '_>,
     ) -> bool {
         let expected = polynomial.value(probe / (panel.to - panel.from));
-        let found = value(panel.from + probe);
+        let found = quantity.value(panel.from + probe);
         found.is_some_and(|found| (found - expected).abs() > self.tolerance * self.size)
     }
 
@@ -164,7 +231,8 @@ impl Meter {
     fn interpolate(
         &mut self,
         panel: &Panel,
-        value: &mut dyn FnMut(f64) -> Option<f64>,
+        is_bounded: bool,
+        quantity: &mut QuantityInStep<'_, '_, '_>,
     ) -> Option<Interpolation> {
         let length = panel.to - panel.from;
         let mut values = [0.0; MAX_DEGREE + 1];
@@ -178,7 +246,7 @@ impl Meter {
                     continue;
                 }
                 let part = chebyshev_point(index, MAX_DEGREE);
-                let Some(inside) = value(panel.from + part * length) else {
+                let Some(inside) = quantity.value(panel.from + part * length) else {
                     self.add_chord(panel);
                     return None;
                 };
@@ -193,7 +261,10 @@ impl Meter {
                 return None;
             }
             let polynomial = Polynomial::through(&points);
-            let is_resolved = self.is_resolved(&polynomial, length);
+            let mut is_resolved = self.is_resolved(&polynomial, length);
+            if is_resolved && self.has_transients && !is_bounded {
+                is_resolved = self.matches_probes(&polynomial, panel, quantity);
+            }
             last = Some(Interpolation {
                 polynomial,
                 is_resolved,
@@ -204,6 +275,23 @@ impl Meter {
             }
         }
         last
+    }
+
+    /// Returns true if a polynomial has values of the quantity between its points: those of a fast oscillation may look slow.
+    fn matches_probes(
+        &self,
+        polynomial: &Polynomial,
+        panel: &Panel,
+        quantity: &mut QuantityInStep<'_, '_, '_>,
+    ) -> bool {
+        let length = panel.to - panel.from;
+        PROBES.into_iter().all(|part| {
+            let found = quantity.value(panel.from + part * length);
+            found.is_none_or(|found| {
+                let difference = (found - polynomial.value(part)).abs();
+                difference <= MAX_HIDDEN_FRACTIONS[0] * self.size
+            })
+        })
     }
 
     /// Returns true if a polynomial represents the quantity over a panel of this length (s) well enough.
@@ -217,12 +305,7 @@ impl Meter {
             return true;
         }
         match self.measurement.statistic {
-            Statistic::Maximum => {
-                error <= self.tolerance * self.size
-                    || self
-                        .greatest
-                        .is_some_and(|most| polynomial.bound().0 + error <= most)
-            }
+            Statistic::Maximum => error <= self.tolerance * self.size,
             Statistic::RootMeanSquare => {
                 let square = polynomial.mean_square();
                 let error = polynomial.mean_square_error(error);
@@ -237,7 +320,7 @@ impl Meter {
         &mut self,
         polynomial: &Polynomial,
         panel: &Panel,
-        value: &mut dyn FnMut(f64) -> Option<f64>,
+        quantity: &mut QuantityInStep<'_, '_, '_>,
     ) {
         let length = panel.to - panel.from;
         match self.measurement.statistic {
@@ -251,7 +334,7 @@ impl Meter {
                 if self
                     .greatest
                     .is_none_or(|greatest| polynomial.value(place) > greatest)
-                    && let Some(found) = value(panel.from + place * length)
+                    && let Some(found) = quantity.value(panel.from + place * length)
                 {
                     self.note(found);
                 }
@@ -269,4 +352,32 @@ impl Meter {
         self.square_integral += mean * length;
         self.duration += length;
     }
+}
+
+/// Returns the bounds of the quantity over a panel, from bounds of its values and, with the values at the ends, of its rate.
+fn bound_between(panel: &Panel, bound: &Enclosure) -> (f64, f64) {
+    let (value, rate) = (bound.value(), bound.rate());
+    let [first, last] = panel.ends;
+    let length = panel.to - panel.from;
+    // Two lines from the ends with the steepest slopes meet at the highest value.
+    let highest = |low: f64, high: f64, first: f64, last: f64| {
+        if low >= 0.0 {
+            last
+        } else if high <= 0.0 {
+            first
+        } else {
+            (high * last - low * first - low * high * length) / (high - low)
+        }
+    };
+    let by_high = highest(rate.low, rate.high, first, last);
+    let by_low = -highest(-rate.high, -rate.low, -first, -last);
+    let closer = |by_rate: f64, by_value: f64, pick: fn(f64, f64) -> f64| match by_rate.is_finite()
+    {
+        true => pick(by_rate, by_value),
+        false => by_value,
+    };
+    (
+        closer(by_low, value.low, f64::max),
+        closer(by_high, value.high, f64::min),
+    )
 }

@@ -6,8 +6,11 @@
 mod meter;
 mod meters;
 mod polynomial;
+mod state_bounds;
+mod step_quantities;
 
 pub(crate) use meters::Meters;
+pub(crate) use step_quantities::Observables;
 
 /// Quantity of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -70,6 +70,23 @@ impl Polynomial {
         }
     }
 
+    /// Returns the coefficients of the Chebyshev polynomials, by increasing degree.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
+    /// Returns the derivative by the part of the panel.
+    pub fn derivative(&self, part: f64) -> f64 {
+        let x = 2.0 * part - 1.0;
+        // The derivative of T_n is n U_(n-1).
+        let (mut before, mut own, mut sum) = (0.0, 1.0, 0.0);
+        for (order, coefficient) in self.coefficients.iter().enumerate().skip(1) {
+            sum += order as f64 * coefficient * own;
+            (before, own) = (own, 2.0 * x * own - before);
+        }
+        2.0 * sum
+    }
+
     fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
@@ -130,6 +147,14 @@ impl Polynomial {
             own.abs() * mean
         });
         error * (2.0 * products.sum::<f64>() + error)
+    }
+
+    /// Returns bounds of the values over the panel.
+    pub fn range(&self) -> (f64, f64) {
+        let negative = Self {
+            coefficients: self.coefficients.iter().map(|own| -own).collect(),
+        };
+        (-negative.bound().0, self.bound().0)
     }
 
     /// Returns a bound of the values over the panel, and the place of the largest value of a grid.

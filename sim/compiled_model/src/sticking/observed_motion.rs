@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use eomgen_codegen::independence::vectors::max_magnitude;
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
@@ -54,6 +54,16 @@ impl ObservedMotion {
         if !rest.is_some_and(|rest| rest.write_observables(point, out)) {
             self.own.observables(point, out);
         }
+    }
+
+    /// Writes the bounds of the observables over a stretch of the motion during which no surface holds it.
+    pub fn bound_observables(&mut self, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
+        self.own.bound_observables(stretch, out);
+    }
+
+    /// Returns the number of coordinates and modes.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.own.program().degrees_of_freedom()
     }
 
     /// Writes the rates at a point of the motion.

@@ -371,6 +371,80 @@ fn decaying_oscillation_and_narrow_pulse_have_closed_forms() {
     }
 }
 
+/// An oscillator without damping, x = sin t, and quantities with narrow peaks at x = a.
+const PEAKS: &str = r#"
+[model]
+name = "peaks"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+a = { value = 0.9, unit = "m" }
+d = { value = 5, unit = "mm" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[observables]
+penetration = "max(x - a, 0)"
+beyond = "above(x - a)"
+bell = "exp(-((x - a)/d)^2)"
+steep = "(x/a)^200"
+"#;
+
+#[test]
+fn narrow_peaks_between_steps_are_measured() {
+    let options = ["--vary", "a=0.9:0.99:3", "--until", "6"];
+    let measures = [
+        "max:penetration",
+        "rms:penetration",
+        "max:beyond",
+        "rms:beyond",
+        "max:bell",
+        "max:steep",
+    ];
+    for specification in [PEAKS.to_owned(), general(PEAKS)] {
+        let found = sweep_columns(&specification, &options, &measures);
+        for (point, a) in [0.9_f64, 0.945, 0.99].into_iter().enumerate() {
+            // x is beyond a for the angle 2 half.
+            let half = a.acos();
+            let sine = half.sin();
+            let square = half + sine * a - 4.0 * a * sine + 2.0 * a * a * half;
+            assert!((found[0][point] - (1.0 - a)).abs() < 1e-7, "{found:?}");
+            assert!(
+                (found[1][point] - (square / 6.0).sqrt()).abs() < 1e-7,
+                "{found:?}"
+            );
+            assert_eq!(found[2][point], 1.0);
+            assert_near(found[3][point], (half / 3.0).sqrt(), 1e-6);
+            assert_near(found[4][point], 1.0, 1e-7);
+            assert_near(found[5][point], a.powi(-200), 1e-6);
+        }
+    }
+}
+
+#[test]
+fn maxima_of_long_motions_do_not_depend_on_their_time() {
+    let spec = DAMPED.replace(
+        "drive = \"u\"",
+        "drive = \"u\"\nsquare = \"x^2\"\nsize = \"abs(x)\"",
+    );
+    let measures = ["max:x", "max:square", "max:size", "max:x_dot"];
+    let mut first: Option<Vec<f64>> = None;
+    for until in ["8", "16", "31", "60", "177", "600"] {
+        let options = ["--vary", "F=1:2:2", "--state", "x_dot=1", "--until", until];
+        let found = sweep_columns(&spec, &options, &measures);
+        let found: Vec<f64> = found.iter().map(|column| column[0]).collect();
+        assert_near(found[1], found[0] * found[0], 1e-9);
+        assert_near(found[2], found[0], 1e-9);
+        assert_near(found[3], 1.0, 1e-12);
+        for (one, other) in found.iter().zip(first.get_or_insert(found.clone())) {
+            assert_near(*one, *other, 1e-9);
+        }
+    }
+}
+
 #[test]
 fn invalid_measures_are_rejected() {
     let place = SweepFolder::new();
