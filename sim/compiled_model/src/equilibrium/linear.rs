@@ -177,8 +177,9 @@ impl LinearisedEquations {
 
     fn relative_accelerations(&self) -> impl Iterator<Item = f64> {
         let parts = self.accelerations.iter().zip(&self.terms);
-        parts.map(|(value, size)| {
-            if *value == 0.0 {
+        parts.zip(&self.largest).map(|((value, size), largest)| {
+            // Terms below the rounding of earlier accelerations are those of an input that balances nothing.
+            if *value == 0.0 || *size <= f64::EPSILON * largest {
                 0.0
             } else {
                 value.abs() / size

@@ -344,3 +344,50 @@ fn free_inputs_are_zero_where_nothing_is_to_be_balanced() {
         }
     }
 }
+
+/// A bob on a rod that swings about two axes, with a motor about the vertical one.
+const CONICAL: &str = r#"
+[model]
+name = "conical_pendulum"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 500, unit = "mm" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+theta = { unit = "rad", initial = 0.5, range = [0.01, 3] }
+phi = { unit = "rad", initial_rate = 4 }
+[inputs]
+M = { unit = "N m" }
+[kinetic]
+bob = "1/2*m*l^2*(dot(theta)^2 + sin(theta)^2*dot(phi)^2)"
+[potential]
+weight = "-m*g*l*cos(theta)"
+[forces]
+motor = { on = "phi", value = "M" }
+"#;
+
+#[test]
+fn speed_of_a_conical_pendulum_holds_its_angle_without_torque() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = write_model(folder.path(), CONICAL);
+    for (angle, others) in [
+        (0.5, &[][..]),
+        (0.5, &["--state", "M=1"]),
+        (0.5, &["--fix", "M=0"]),
+        (1.2, &["--state", "phi_dot=-3"]),
+        (1.4, &["--state", "phi_dot=30"]),
+    ] {
+        let fixed = format!("theta={angle}");
+        let found = run_json(&[&["trim", &model, "--fix", &fixed], others].concat());
+        let right = (9.81 / (0.5 * f64::cos(angle))).sqrt();
+        let speed = number(&found, "phi_dot").abs();
+        assert!(
+            (speed / right - 1.0).abs() < 1e-9,
+            "{angle}, {others:?}: {found}"
+        );
+        assert!(
+            number(&found, "M").abs() < 1e-9,
+            "{angle}, {others:?}: {found}"
+        );
+    }
+}
