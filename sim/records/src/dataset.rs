@@ -43,6 +43,18 @@ pub struct Channel {
     pub priors: TransducerPriors,
 }
 
+impl Channel {
+    /// Returns the noise, in SI, of a quantity that has no peak of one sample: an impact causes one in an acceleration or a force.
+    pub(crate) fn smooth_noise(&self) -> Option<f64> {
+        let is_smooth = match self.quantity {
+            Quantity::Coordinate(_) | Quantity::Rate(_) | Quantity::State(_) => true,
+            Quantity::Observable(_) => matches!(&*self.unit, "m" | "rad"),
+            Quantity::Acceleration(_) | Quantity::ObservedRate(_) | Quantity::Input(_) => false,
+        };
+        is_smooth.then_some(self.noise)
+    }
+}
+
 /// Priors of a sensor, measured(t) = gain * quantity(t - delay) + bias; `None` for the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransducerPriors {

@@ -8,7 +8,7 @@ use eomgen_model_spec::model::Model;
 use crate::binding::bind_description;
 use crate::checks::check_records;
 use crate::coverage::{self, check_splittable};
-use crate::dataset::{Dataset, Initial, Quantity, StartSource};
+use crate::dataset::{Channel, Dataset, Initial, Quantity, StartSource};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
@@ -72,6 +72,8 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     dataset.notes.extend(speeds);
     let starts = initial_values(&dataset, model);
     let decimation = Decimation::new(description.time.every, description.time.filter);
+    let smooth_noises: Vec<Option<f64>> =
+        (dataset.channels.iter().map(Channel::smooth_noise)).collect();
     for channel in &mut dataset.channels {
         channel.noise *= decimation.noise_factor();
     }
@@ -82,6 +84,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         inputs: &bound.inputs,
         motion: &bound.motion,
         channels: &bound.channel_units,
+        smooth_noises: &smooth_noises,
         initial_values: &starts,
         model,
         decimation: &decimation,

@@ -59,6 +59,7 @@ pub fn read_inputs(
         inputs: &inputs,
         motion: &[],
         channels: &[],
+        smooth_noises: &[],
         initial_values: &[],
         model,
         decimation: &Decimation::new(description.time.every, description.time.filter),

@@ -69,6 +69,7 @@ pub mod inputs;
 mod motion_rates;
 pub mod noise;
 mod number;
+mod outliers;
 mod parquet_file;
 pub mod proposal;
 pub mod record;

@@ -1,5 +1,6 @@
 //! Record: columns of time, inputs and channels, in SI.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
@@ -21,6 +22,7 @@ use crate::gaps::{
 };
 use crate::header::Table;
 use crate::motion_rates::{GivenColumn, GivenKind, differentiate_position, integrate_speed};
+use crate::outliers::find_outliers;
 use crate::refusal::Refusal;
 use crate::samples::{MAX_JITTER_FRACTION, check_known, check_times, typical_step};
 use crate::wrapped_columns::{ReadColumn, unwrap_columns};
@@ -74,6 +76,8 @@ pub(crate) struct RecordReader<'d> {
     pub inputs: &'d [Option<(&'d Column, Unit)>],
     pub motion: &'d [GivenColumn<'d>],
     pub channels: &'d [Unit],
+    /// Noise of each channel, in SI; `None` for a quantity that may have a peak of one sample.
+    pub smooth_noises: &'d [Option<f64>],
     /// Known initial value of each channel, in SI.
     pub initial_values: &'d [Option<f64>],
     pub model: &'d Model,
@@ -188,7 +192,47 @@ impl RecordReader<'_> {
         let gaps = unwrap_columns(&read, (place, from..to), &mut table)
             .map_err(|wrong| Diagnostics::from_one(self.description.source.clone(), wrong))?;
         notes.extend(gaps.into_iter().map(|gap| format!("{name}: {gap}")));
+        self.drop_outliers(name, from..to, &mut table, notes);
         Ok(table)
+    }
+
+    /// Replaces single wrong samples of the channels by missing ones, and notes them.
+    fn drop_outliers(
+        &self,
+        name: &str,
+        span: Range<f64>,
+        table: &mut Table,
+        notes: &mut Vec<String>,
+    ) {
+        let first = table.columns.len() - self.channels.len();
+        let (others, channels) = table.columns.split_at_mut(first);
+        let times = &others[0];
+        let known = self.description.channels.iter().zip(self.smooth_noises);
+        for ((channel, noise), column) in known.zip(channels) {
+            let Some(noise) = *noise else { continue };
+            let mut found = find_outliers(times, column, noise);
+            for outlier in &found {
+                column[outlier.sample] = f64::NAN;
+            }
+            found.retain(|outlier| span.contains(&times[outlier.sample]));
+            let Some(worst) = found
+                .iter()
+                .max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()))
+            else {
+                continue;
+            };
+            let (size, line) = (worst.error.abs(), table.lines[worst.sample]);
+            let count = match found.len() {
+                1 => String::new(),
+                count => format!("the largest of {count} outliers, "),
+            };
+            notes.push(format!(
+                "{name}: left out as an outlier: {count}line {line} of `{}`, which differs from the samples beside it by {size:.3e} (SI), \
+                 {:.1e} standard deviations of its noise",
+                channel.name.text,
+                size / noise
+            ));
+        }
     }
 
     /// Returns the first time of a part and the time after its last, in s.

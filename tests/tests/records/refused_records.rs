@@ -468,6 +468,26 @@ fn weaknesses_of_a_record_are_noted() {
 }
 
 #[test]
+fn single_wrong_samples_are_left_out_and_named() {
+    for (lines, error) in [(&[50][..], 1e6), (&[11, 70, 200], -0.4), (&[390], 0.05)] {
+        let measured = Measured::stage(0.0);
+        let wrong = |place: usize, cell: &str| {
+            let value: f64 = cell.parse().expect("a number");
+            let is_wrong = lines.contains(&(place + 1));
+            format!("{:?}", if is_wrong { value + error } else { value })
+        };
+        measured.write("train.csv", change_column(2, 1, wrong).as_bytes());
+        let (result, warned) = measured.run_command("compare", "outliers");
+        assert_eq!(result["verdict"], "no_significant_gap", "{error}: {warned}");
+        let named = format!("line {} of", lines[0]);
+        let count = format!("the largest of {} outliers", lines.len());
+        let is_named = warned.contains("left out as an outlier")
+            && (lines.len() > 1 && warned.contains(&count) || warned.contains(&named));
+        assert!(is_named, "{error}: {warned}");
+    }
+}
+
+#[test]
 fn control_characters_of_files_are_escaped_in_terminal_and_report() {
     let hostile = "x\u{1b}[31m\u{202e}\u{9b}";
     let is_hidden = |letter: char| letter != '\n' && (letter.is_control() || letter == '\u{202e}');
