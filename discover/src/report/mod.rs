@@ -4,11 +4,12 @@
 //! (`remaining_gap`) and the `summary` in two sentences, documents (`json`) and the page (`page`) with its
 //! `pictures` and the `overlay` of measurement and simulation, checks of the extended equations (`certification`), formatted numbers (`quantity`),
 //! sizes that suggest a wrong unit (`units`), noise of a given motion (`motion_noise`), a common
-//! delay (`common_delay`) or lead (`held_input`), a stated initial state that records contradict
+//! delay (`common_delay`), lag (`common_lag`) or lead (`held_input`), a stated initial state that records contradict
 //! (`initial_states`), the interactive model (`playback`), and the next `experiment`.
 
 mod certification;
 mod common_delay;
+mod common_lag;
 mod discovery;
 mod experiment;
 mod held_input;

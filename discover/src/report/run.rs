@@ -20,6 +20,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::stop::StopRequest;
 use crate::model::unknowns::note_input_delay;
 use crate::report::common_delay::note_common_delay;
+use crate::report::common_lag::note_common_lag;
 use crate::report::discovery::{
     Certainty, compute_closure, compute_gap, describe_bounds, list_nuisances, list_refitted,
     list_rejected, list_sensors, list_steps, summarise_effects,
@@ -213,6 +214,7 @@ pub fn discover_until(
     ));
     let late = note_common_delay(&problem, best);
     for note in (late.into_iter())
+        .chain(note_common_lag(best, &found.accepted))
         .chain(note_held_input(&problem, best))
         .chain(RemainingGap::from_channels(&gap, ModelStage::Extended).note_missing_in_training())
         .chain(note_motion_noise(&problem, best))

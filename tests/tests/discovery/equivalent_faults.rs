@@ -45,18 +45,31 @@ length = 1.0
 /// Standard deviation of uniform noise, m.
 const NOISE: f64 = 2e-4;
 
-/// Returns a record of the oscillator with a force of `gain` times the recorded one, and an `offset` (m) of the sensor.
-fn record(gain: f64, offset: f64, shift: f64) -> String {
+/// Faults of a record.
+#[derive(Clone, Copy)]
+struct Faults {
+    /// Force, relative to the recorded one.
+    gain: f64,
+    /// Offset of the sensor, m.
+    offset: f64,
+    /// Time constant of a low-pass in the sensor, s; 0 for none.
+    lag: f64,
+}
+
+/// Returns a record of the oscillator with these faults.
+fn record(faults: Faults, shift: f64) -> String {
+    let Faults { gain, offset, lag } = faults;
     let (m, k, c) = (1.3, 210.0, 1.1);
     let force = |t: f64| {
         4.0 * (3.1 * t + shift).sin() + 3.0 * (7.3 * t - shift).sin() + 2.0 * (15.7 * t).cos()
     };
-    let (mut x, mut v, mut noise): (f64, f64, f64) = (0.0, 0.0, 0.31 + 0.1 * shift);
+    let (mut x, mut v, mut filtered, mut noise) = (0.0, 0.0, 0.0, 0.31 + 0.1 * shift);
     let mut text = "t,F,x\n".to_owned();
     for sample in 0..800 {
         let t = 0.01 * f64::from(sample);
         noise = 4.0 * noise * (1.0 - noise) * 0.999_999;
-        let shown = x + offset + NOISE * 2.8 * (noise - 0.5);
+        let sensed: f64 = if lag > 0.0 { filtered } else { x };
+        let shown = sensed + offset + NOISE * 2.8 * (noise - 0.5);
         text += &format!("{t:.2},{:.9},{shown:.9}\n", force(t));
         // Velocity Verlet with the force interpolated between samples, as `discover` does.
         let steps = 200;
@@ -70,6 +83,9 @@ fn record(gain: f64, offset: f64, shift: f64) -> String {
             let s = f64::from(step);
             let middle = v + 0.5 * h * acceleration(x, v, s);
             let between = x + 0.5 * h * v;
+            if lag > 0.0 {
+                filtered = between + (filtered - between) * (-h / lag).exp();
+            }
             x += h * middle;
             v += h * acceleration(between, middle, s + 0.5);
         }
@@ -77,20 +93,29 @@ fn record(gain: f64, offset: f64, shift: f64) -> String {
     text
 }
 
-/// Returns the effects of the answer, the named one first.
-fn find_class(gain: f64, offset: f64) -> Vec<String> {
+/// Returns the answer to records with these faults.
+fn answer(faults: Faults) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name);
     for (name, text) in [
         ("oscillator.toml", OSCILLATOR.to_owned()),
         ("dataset.toml", DATASET.to_owned()),
-        ("train.csv", record(gain, offset, 0.0)),
-        ("test.csv", record(gain, offset, 1.0)),
+        ("train.csv", record(faults, 0.0)),
+        ("test.csv", record(faults, 1.0)),
     ] {
         std::fs::write(file(name), text).expect("a file");
     }
     let paths = ["oscillator.toml", "dataset.toml", "out"].map(file);
-    let document = program::run_on_dataset("discover", paths.each_ref());
+    program::run_on_dataset("discover", paths.each_ref())
+}
+
+/// Returns the effects of the answer, the named one first.
+fn find_class(gain: f64, offset: f64) -> Vec<String> {
+    let document = answer(Faults {
+        gain,
+        offset,
+        lag: 0.0,
+    });
     let effects = document["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{document:#}");
     assert_eq!(effects[0]["status"], "class", "{document:#}");
@@ -121,4 +146,22 @@ fn offsets_of_a_sensor_and_of_a_force_form_a_class() {
         let expected = ["force_offset on x", "input_bias on F", "sensor_bias on x"];
         assert_eq!(find_class(1.0, offset), expected, "{offset}");
     }
+}
+
+#[test]
+fn lag_of_a_sensor_is_noted_beside_that_of_the_input() {
+    let document = answer(Faults {
+        gain: 1.0,
+        offset: 0.0,
+        lag: 0.03,
+    });
+    assert_eq!(
+        document["effects"][0]["effect"], "input_lag",
+        "{document:#}"
+    );
+    let notes = document["notes"].to_string();
+    assert!(
+        notes.contains("the same low-pass in every sensor"),
+        "{notes}"
+    );
 }

@@ -1,0 +1,23 @@
+//! Check for a lag of the drive that a lag of the sensors would imitate.
+
+use crate::fit::fit_result::Fit;
+use crate::search::search_result::AcceptedEffect;
+
+/// Effect whose transfer function stands before the machine.
+const LAG: &str = "input_lag";
+
+/// Returns a note if a lag of the only input was found in a linear model: the same low-pass behind the machine has the
+/// same transfer function.
+pub(crate) fn note_common_lag(fit: &Fit, accepted: &[AcceptedEffect]) -> Option<String> {
+    if !accepted.iter().any(|found| found.candidate.effect == LAG) || !fit.model.is_linear() {
+        return None;
+    }
+    let input = match &fit.model.specification().inputs[..] {
+        [only] => &only.name,
+        _ => return None,
+    };
+    Some(format!(
+        "the same low-pass in every sensor gives the same records as the lag of `{input}`, because the model is linear: \
+         before a controller relies on it, measure the output of the drive, or the motion with a sensor of another kind"
+    ))
+}
