@@ -185,7 +185,7 @@ pub fn derive_with_redundancy(
     let impacts = impacts(
         &mut translator,
         &variables,
-        (&mass, &constraints),
+        (kinetic, &mass, &constraints),
         &accelerations.rows,
     )?;
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);

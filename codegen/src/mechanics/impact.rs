@@ -7,6 +7,8 @@ pub struct Impact<N, R> {
     pub distance: N,
     /// Rate g'.
     pub rate: N,
+    /// Rate w at which a contact does no work: a force F there has the power F (g' - w) on T + V.
+    pub workless_rate: N,
     /// Second rate g'' if no contact is closed.
     pub acceleration: N,
     /// Coefficient of restitution.
@@ -29,6 +31,8 @@ pub struct Friction<N, R> {
     pub coefficient: N,
     /// Tangential velocity of the contact.
     pub slip: N,
+    /// Slip at which friction does no work on T + V.
+    pub workless_slip: N,
     /// Rate of the slip if no contact is closed.
     pub acceleration: N,
     /// Change of the rates by a unit tangential impulse.

@@ -9,7 +9,6 @@
 //! A tangential impulse of a contact with the slip s(q, q', t), linear in the rates, acts alike with A =
 //! ds/dq'.
 
-use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{self, Model};
 
 use crate::mechanics::constraints::Constraints;
@@ -18,13 +17,14 @@ use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::solve;
-use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
-use crate::symbolic::graph::{Dependence, Graph, NodeId, Space};
+use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion, explicit_rate};
+use crate::mechanics::workless_rates::{RestTerms, at_zero_rates};
+use crate::symbolic::graph::{Dependence, NodeId};
 
 pub(crate) fn impacts(
     translator: &mut Translator,
     variables: &Variables,
-    (mass, constraints): (&MassMatrix, &Constraints),
+    (kinetic, mass, constraints): (NodeId, &MassMatrix, &Constraints),
     accelerations: &RowNodes,
 ) -> Derived<Vec<Impact<NodeId, RowNodes>>> {
     let model: &Model = translator.model;
@@ -35,6 +35,16 @@ pub(crate) fn impacts(
         right: vec![zero; constraints.rows.len()],
         ..constraints.clone()
     };
+    if model.impacts.is_empty() {
+        return Ok(found);
+    }
+    let rest = RestTerms::derive(
+        &mut translator.graph,
+        model,
+        variables,
+        kinetic,
+        constraints,
+    );
     for impact in &model.impacts {
         let distance = translator.node(&impact.when)?;
         let restitution = translator.node(&impact.restitution)?;
@@ -47,11 +57,14 @@ pub(crate) fn impacts(
         }
         let rate = along_motion(graph, distance);
         let of_rates = along_motion(graph, rate);
-        let of_accelerations = product(graph, &gradient, accelerations);
-        let (solved, _) = solve(graph, mass, &gradient, &along_constraints);
+        let of_accelerations = gradient.dot(graph, accelerations);
+        let (solved, multipliers) = solve(graph, mass, &gradient, &along_constraints);
+        let own_rate = explicit_rate(graph, distance);
+        let effect = (&solved.rows, &multipliers[..]);
         found.push(Impact {
             distance,
             rate,
+            workless_rate: rest.workless_rate(graph, own_rate, effect),
             acceleration: graph.add(of_rates, of_accelerations),
             restitution,
             row: gradient.clone(),
@@ -75,11 +88,14 @@ pub(crate) fn impacts(
             return Err(nonlinear_slip_error(impact, friction));
         }
         let of_rates = along_motion(graph, slip);
-        let of_accelerations = product(graph, &gradient, accelerations);
-        let (solved, _) = solve(graph, mass, &gradient, &along_constraints);
+        let of_accelerations = gradient.dot(graph, accelerations);
+        let (solved, multipliers) = solve(graph, mass, &gradient, &along_constraints);
+        let own_slip = at_zero_rates(graph, slip);
+        let effect = (&solved.rows, &multipliers[..]);
         own.friction = Some(Friction {
             coefficient,
             slip,
+            workless_slip: rest.workless_rate(graph, own_slip, effect),
             acceleration: graph.add(of_rates, of_accelerations),
             column: solved.rows,
             delassus: Vec::new(),
@@ -92,9 +108,7 @@ pub(crate) fn impacts(
     let columns: Vec<RowNodes> = normal.chain(tangential).collect();
     let graph = &mut translator.graph;
     let mut changes = |gradient: &RowNodes| -> Vec<NodeId> {
-        let products = columns
-            .iter()
-            .map(|column| product(graph, gradient, column));
+        let products = columns.iter().map(|column| gradient.dot(graph, column));
         products.collect()
     };
     for (impact, gradient) in found.iter_mut().zip(&gradients) {
@@ -133,17 +147,4 @@ pub(crate) fn immovable_distance_error(impact: &model::Impact) -> DeriveError {
             "write `when` as an expression of coordinates; an impact occurs when it falls through zero".into(),
         ),
     }
-}
-
-fn product(graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> NodeId {
-    let mut terms = Vec::new();
-    for (a, b) in a.scalars.iter().zip(&b.scalars) {
-        terms.push((1.0, graph.multiply(*a, *b)));
-    }
-    let fields = FieldId::first(a.modal.len());
-    for (field, (a, b)) in fields.zip(a.modal.iter().zip(&b.modal)) {
-        let product = graph.multiply(*a, *b);
-        terms.push((1.0, graph.total_over(Space::Modes(field), product)));
-    }
-    graph.combine(&terms)
 }

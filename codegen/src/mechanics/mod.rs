@@ -3,7 +3,7 @@
 //! - `translate` and `fields` translate expressions to nodes.
 //! - `lagrange`, `sweeps`, `forces` and `kinetic` derive the rows of Lagrange's equations.
 //! - `rigid_tree` derives inverse dynamics from frame to frame.
-//! - `constraints` (with their `redundancy`), `impacts` (of `impact`s) and `sliding` derive their terms; `solve` derives the accelerations.
+//! - `constraints` (with their `redundancy`), `impacts` (of `impact`s, with their `workless_rates`) and `sliding` derive their terms; `solve` derives the accelerations.
 //! - `coefficients` derives named coefficients as in Eq. (22).
 //! - `equations` combines these; `outputs` derives additional functions on request.
 //! - `jumps` finds the surfaces at which the energies jump; `corners` derives the jumps of the rates there.
@@ -67,3 +67,5 @@ mod sweeps;
 pub mod translate;
 #[cfg(feature = "derive")]
 pub(crate) mod unsolved;
+#[cfg(feature = "derive")]
+mod workless_rates;

@@ -260,9 +260,11 @@ encode_structures! {
     ScaledValue { row, matrix, transposed, column }
     Value { op, extent, parameter_only; name }
     Impact<ValueId, RowValues> {
-        distance, rate, acceleration, restitution, row, column, delassus, friction
+        distance, rate, workless_rate, acceleration, restitution, row, column, delassus, friction
     }
-    Friction<ValueId, RowValues> { coefficient, slip, acceleration, column, delassus }
+    Friction<ValueId, RowValues> {
+        coefficient, slip, workless_slip, acceleration, column, delassus
+    }
     Side { guard, is_odd }
     SlidingSurface<ValueId, RowValues> {
         guard, disc, is_odd, is_linear, rate, by_sides, column, first_order

@@ -429,3 +429,132 @@ fn max_step_detects_short_pulse() {
         );
     }
 }
+
+/// Machines with contacts, in coordinates of the laboratory; `{x}` is a coordinate or a definition.
+const CONTACTS: [&str; 4] = [
+    // Ball with friction on a floor that shakes.
+    r#"
+[kinetic]
+ball = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[impacts]
+floor = { when = "y - 0.02*L*sin(9*h*t)", restitution = 0.6, friction = 0.2, slip = "dot(x) - 0.5*L*h" }
+"#,
+    // Ball on a rope that becomes taut and stays so.
+    r#"
+[kinetic]
+ball = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[impacts]
+rope = { when = "1.2*L - sqrt((x - L)^2 + y^2)", restitution = 0 }
+"#,
+    // Ball on a guide that moves, between a floor and the guide.
+    r#"
+[kinetic]
+ball = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[constraints]
+guide = { zero = "0.6*x + 0.8*y - 1.04*L - 0.1*L*sin(5*h*t)" }
+[impacts]
+floor = { when = "y", restitution = 0.5 }
+"#,
+    // Two bodies that hit each other and a wall, with a damper.
+    r#"
+[kinetic]
+bodies = "1/2*m*dot(x)^2 + m*dot(y)^2"
+[potential]
+spring = "1/2*m*h^2*(9*x^2 + 4*y^2)"
+[forces]
+damper = { on = "y", value = "-0.2*m*h*dot(y)" }
+[impacts]
+bodies = { when = "x - y + 0.3*L", restitution = 0.7 }
+wall = { when = "1.3*L - x", restitution = 0 }
+"#,
+];
+
+/// Frames: the position (x, y) of the coordinates (a, b), and their initial values for the start x = 1 m, y = 0.55 m with
+/// the rates 0.5 m/s and -1 m/s.
+const FRAMES: [(&str, [&str; 4]); 4] = [
+    (r#"x = "a""#, ["1", "0.5", "0.55", "-1"]),
+    // Uniform motion.
+    (
+        "x = \"a + 2*L*h*t\"\ny = \"b - 3*L*h*t\"",
+        ["1", "-1.5", "0.55", "2"],
+    ),
+    // Rotation.
+    (
+        "x = \"a*cos(2*h*t) - b*sin(2*h*t)\"\ny = \"a*sin(2*h*t) + b*cos(2*h*t)\"",
+        ["1", "1.6", "0.55", "-3"],
+    ),
+    // Acceleration and oscillation.
+    (
+        "x = \"a + L*(h*t)^2\"\ny = \"b + 0.3*L*sin(4*h*t)\"",
+        ["1", "0.5", "0.55", "-2.2"],
+    ),
+];
+
+/// Returns a machine of [`CONTACTS`] in a frame.
+fn contacts_in_frame(machine: &str, (frame, [a, a_rate, b, b_rate]): (&str, [&str; 4])) -> String {
+    let frame = match frame.contains("y = ") {
+        true => frame.to_owned(),
+        false => format!("{frame}\ny = \"b\""),
+    };
+    format!(
+        r#"
+[model]
+name = "frame"
+[parameters]
+m = {{ value = 0.4, unit = "kg" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+L = {{ value = 1, unit = "m" }}
+h = {{ value = 1, unit = "1/s" }}
+[coordinates]
+a = {{ unit = "m", initial = {a}, initial_rate = {a_rate} }}
+b = {{ unit = "m", initial = {b}, initial_rate = {b_rate} }}
+[definitions]
+{frame}
+{machine}"#
+    )
+}
+
+#[test]
+fn losses_at_contacts_do_not_depend_on_the_frame() {
+    for machine in CONTACTS {
+        for solver in [Solver::Rk, Solver::Radau] {
+            let [own, moving @ ..] = FRAMES.map(|frame| {
+                let text = contacts_in_frame(machine, frame);
+                let audit = audit_of_text(&text, 1.5, solver, 1e-10);
+                assert_eq!(audit.fault_count, 0, "{frame:?}{machine}{audit:?}");
+                assert_eq!(audit.exclusion_reason, None);
+                let unexplained = audit.unexplained_energy().abs();
+                assert!(unexplained < 1e-6, "{frame:?}{machine}{audit:?}");
+                audit.impact_energy
+            });
+            assert!(own < -0.01, "{machine}{own}");
+            for loss in moving {
+                assert!((loss - own).abs() < 1e-6, "{machine}{own} {loss}");
+            }
+        }
+    }
+}
+
+#[test]
+fn work_of_a_contact_in_a_moving_frame_is_that_of_its_force() {
+    // A ball at rest on the floor, relative to a frame that rises with V: T + V of the laboratory is constant.
+    let text = BALL
+        .replace("initial = 0.5", "initial = 0, initial_rate = -1")
+        .replace("[kinetic]", "[definitions]\nz = \"y + A*w*t\"\n[kinetic]")
+        .replace("dot(y)", "dot(z)")
+        .replace("m*g*y", "m*g*z")
+        .replace("when = \"y\"", "when = \"z\"")
+        .replace("A = { value = 0,", "A = { value = 0.05,");
+    for solver in [Solver::Rk, Solver::Radau] {
+        let audit = audit_of_text(&text, 2.0, solver, 1e-9);
+        assert_eq!(audit.fault_count, 0, "{audit:?}");
+        assert!(audit.work.abs() < 1e-9, "{audit:?}");
+        assert!(audit.energy_change.abs() < 1e-9, "{audit:?}");
+    }
+}

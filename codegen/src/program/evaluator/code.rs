@@ -108,6 +108,7 @@ fn impact_values(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     let mut values = vec![
         impact.distance,
         impact.rate,
+        impact.workless_rate,
         impact.acceleration,
         impact.restitution,
     ];
@@ -115,7 +116,8 @@ fn impact_values(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
     values.extend(impact.row.all());
     values.extend(impact.column.all());
     if let Some(friction) = &impact.friction {
-        values.extend([friction.coefficient, friction.slip, friction.acceleration]);
+        values.extend([friction.coefficient, friction.slip, friction.workless_slip]);
+        values.push(friction.acceleration);
         values.extend(&friction.delassus);
         values.extend(friction.column.all());
     }

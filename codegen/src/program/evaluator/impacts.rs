@@ -9,6 +9,8 @@ pub struct ImpactValues {
     pub distance: f64,
     /// Rate of the distance.
     pub rate: f64,
+    /// Rate at which a force does no work.
+    pub workless_rate: f64,
     /// Second rate of the distance if no contact is closed.
     pub acceleration: f64,
     /// Coefficient of restitution.
@@ -31,6 +33,8 @@ pub struct FrictionValues {
     pub coefficient: f64,
     /// Tangential velocity.
     pub slip: f64,
+    /// Slip at which friction does no work.
+    pub workless_slip: f64,
     /// Rate of the slip if no contact is closed.
     pub acceleration: f64,
     /// Change of the rates by a unit tangential impulse.
@@ -58,6 +62,7 @@ impl Evaluator {
             let number = |id| self.memory[self.places.offset(id)];
             slot.distance = number(impact.distance);
             slot.rate = number(impact.rate);
+            slot.workless_rate = number(impact.workless_rate);
             slot.acceleration = number(impact.acceleration);
             slot.restitution = number(impact.restitution);
             slot.delassus.resize(impact.delassus.len(), 0.0);
@@ -79,6 +84,7 @@ impl Evaluator {
             let slot = slot.friction.get_or_insert_default();
             slot.coefficient = number(friction.coefficient);
             slot.slip = number(friction.slip);
+            slot.workless_slip = number(friction.workless_slip);
             slot.acceleration = number(friction.acceleration);
             slot.delassus.resize(friction.delassus.len(), 0.0);
             for (entry, id) in slot.delassus.iter_mut().zip(&friction.delassus) {

@@ -105,6 +105,7 @@ impl<'g> Lowering<'g> {
         Impact {
             distance: self.value(impact.distance),
             rate: self.value(impact.rate),
+            workless_rate: self.value(impact.workless_rate),
             acceleration: self.value(impact.acceleration),
             restitution: self.value(impact.restitution),
             row: self.rows(&impact.row),
@@ -120,6 +121,7 @@ impl<'g> Lowering<'g> {
         Friction {
             coefficient: self.value(friction.coefficient),
             slip: self.value(friction.slip),
+            workless_slip: self.value(friction.workless_slip),
             acceleration: self.value(friction.acceleration),
             column: self.rows(&friction.column),
             delassus,

@@ -308,8 +308,7 @@ impl Auditor {
         self.exclude_change(change, reason);
     }
 
-    /// Audits an impact at time `t` (s) that changes the state, at which moving contacts do this
-    /// work (J).
+    /// Audits an impact at time `t` (s) that changes the state, at which the contacts do this work (J).
     pub fn audit_impact(
         &mut self,
         t: f64,

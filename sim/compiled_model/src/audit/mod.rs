@@ -2,8 +2,8 @@
 //! of the power. A difference beyond the errors that the solver's tolerance allows indicates an
 //! error of the equations or of the solver.
 //!
-//! Energy changes at impacts are separate: minus the work of moving contacts, they must not be
-//! gains. Contacts at rest do work only if they move with time. Contacts whose distance depends on
+//! Energy changes at impacts are separate: minus the work of the contacts, they must not be gains. Contacts do work if
+//! they move with time, and on coordinates relative to a moving frame. Contacts whose distance depends on
 //! inputs are not audited, because the distance jumps with held inputs.
 
 mod allowed_errors;
@@ -49,7 +49,7 @@ impl EnergyAndPower {
 pub struct Audit {
     /// Change of the energy from the first step to the last, J.
     pub energy_change: f64,
-    /// Integral of the power plus the work of moving contacts, J.
+    /// Integral of the power plus the work of contacts at impacts, J.
     pub work: f64,
     /// Change of the energy at impacts minus that work, J; losses are negative.
     pub impact_energy: f64,

@@ -160,24 +160,23 @@ impl Contacts {
         self.stop_closed(own, (t, inputs), state);
     }
 
-    /// Stops the remaining motion along closed contacts that move, which would do work, and of those that slide on. The
+    /// Stops the remaining motion along closed contacts whose impulses do work, and of those that slide on. The
     /// correction of the state stops that of others.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;
         }
         let degrees = own.program().degrees_of_freedom();
-        let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let closing = self.has_friction().then(|| self.closing_impulses());
-        let are_still = self.closed.iter().all(|place| drifts.is_still(*place));
+        let are_workless = self.closed.iter().all(|place| self.is_workless(*place));
         let impulses = match closing.flatten() {
             Some(impulses) => impulses,
-            None if are_still => return,
+            None if are_workless => return,
             None => self.stopping(),
         };
         self.add_forces(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
-        self.impact_work -= drifts.work_against(&self.closed, &impulses);
+        self.impact_work += self.work_of(&self.closed, &impulses);
     }
 
     /// Returns true if no contact that touches needs an impulse.

@@ -1,35 +1,11 @@
-//! Work of contacts. The force F of a contact whose distance g(q, t) depends on time has the power
-//! F g_q q' = F (g' - g_t). Its impulse P does the work -P g_t, without the loss by restitution. Friction T along
-//! the slip s(q, q', t) has the power T (s - s_0), with s_0 the slip at zero rates, and its impulse does the
-//! work -P s_0 without the loss by friction.
+//! Work of contacts on T + V. A force F at a distance g(q, t) has the power F (g' - w), where w is the rate at which it
+//! does no work: `g_t` for a kinetic energy that is a quadratic form of the rates. Its impulse does the work -P w, without
+//! the loss by restitution. Friction along the slip acts alike, with the loss by friction.
 
-use eomgen_codegen::program::evaluator::{Evaluator, FrictionValues, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::Contacts;
 use super::tangents::ContactForces;
-
-/// Rates of the distances and slips at zero rates of the coordinates: motion of the contacts themselves.
-pub(super) struct Drifts {
-    pub normal: Vec<f64>,
-    /// Rates of the slips of all contacts; 0 for those without friction.
-    pub slips: Vec<f64>,
-}
-
-impl Drifts {
-    /// Returns the work (J) of impulses at these contacts against their own motion.
-    pub fn work_against(&self, places: &[usize], impulses: &ContactForces) -> f64 {
-        let normal = places.iter().zip(&impulses.normal);
-        let normal = normal.map(|(place, impulse)| impulse * self.normal[*place]);
-        let slips = places.iter().zip(&impulses.tangential);
-        let slips = slips.map(|(place, impulse)| impulse * self.slips[*place]);
-        normal.chain(slips).sum()
-    }
-
-    /// Returns true if a contact does not move itself.
-    pub fn is_still(&self, place: usize) -> bool {
-        self.normal[place] == 0.0 && self.slips[place] == 0.0
-    }
-}
 
 impl Contacts {
     /// Returns the power (W) of the forces of the closed contacts.
@@ -37,44 +13,42 @@ impl Contacts {
         if self.closed.is_empty() {
             return 0.0;
         }
-        let drifts = self.drifts(own, point);
         own.impacts(point, &mut self.at);
         let forces = self.forces();
         let normal = self.closed.iter().zip(&forces.normal);
-        let normal =
-            normal.map(|(place, force)| force * (self.at[*place].rate - drifts.normal[*place]));
+        let normal = normal.map(|(place, force)| {
+            let contact = &self.at[*place];
+            force * (contact.rate - contact.workless_rate)
+        });
         let along = self.closed.iter().zip(&forces.tangential);
         let along = along.map(|(place, force)| {
-            let slip = self.at[*place]
-                .friction
-                .as_ref()
-                .map_or(0.0, |one| one.slip);
-            force * (slip - drifts.slips[*place])
+            let friction = self.at[*place].friction.as_ref();
+            force * friction.map_or(0.0, |one| one.slip - one.workless_slip)
         });
         normal.chain(along).sum()
     }
 
-    /// Returns the work (J) of moving contacts in the last impact.
+    /// Returns the work (J) of the contacts in the last impact.
     pub fn impact_work(&self) -> f64 {
         self.impact_work
     }
 
-    pub(super) fn drifts(&mut self, own: &mut Evaluator, point: Point<'_>) -> Drifts {
-        let degrees = own.program().degrees_of_freedom();
-        let mut state = point.state.to_vec();
-        state[degrees..2 * degrees].fill(0.0);
-        let still = Point {
-            state: &state,
-            ..point
-        };
-        own.impacts(still, &mut self.at);
-        let slip = |friction: &FrictionValues| friction.slip;
-        let slips = self.at.iter();
-        Drifts {
-            normal: self.at.iter().map(|impact| impact.rate).collect(),
-            slips: slips
-                .map(|impact| impact.friction.as_ref().map_or(0.0, slip))
-                .collect(),
-        }
+    /// Returns the work (J) of impulses at these contacts at the last point, without the losses.
+    pub(super) fn work_of(&self, places: &[usize], impulses: &ContactForces) -> f64 {
+        let normal = places.iter().zip(&impulses.normal);
+        let normal = normal.map(|(place, impulse)| -impulse * self.at[*place].workless_rate);
+        let slips = places.iter().zip(&impulses.tangential);
+        let slips = slips.map(|(place, impulse)| -impulse * self.workless_slip(*place));
+        normal.chain(slips).sum()
+    }
+
+    /// Returns true if an impulse at this contact does no work beside its losses.
+    pub(super) fn is_workless(&self, place: usize) -> bool {
+        self.at[place].workless_rate == 0.0 && self.workless_slip(place) == 0.0
+    }
+
+    fn workless_slip(&self, place: usize) -> f64 {
+        let friction = self.at[place].friction.as_ref();
+        friction.map_or(0.0, |one| one.workless_slip)
     }
 }

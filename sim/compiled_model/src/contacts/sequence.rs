@@ -26,12 +26,11 @@ impl Contacts {
     ) -> Result<(Vec<usize>, Vec<f64>), Overlap> {
         let degrees = own.program().degrees_of_freedom();
         let mut roundings = vec![0.0_f64; self.names.len()];
-        let drifts = self.drifts(own, Point { t, state, inputs });
         own.impacts(Point { t, state, inputs }, &mut self.at);
         for count in 0..=MAX_IMPACTS_AT_ONE_INSTANT {
             self.has_restitution &= count < MAX_IMPACTS_AT_ONE_INSTANT;
             let (hit, impulses) = self.solve_hit_together(&touching, ago)?;
-            self.impact_work -= drifts.work_against(&hit, &impulses);
+            self.impact_work += self.work_of(&hit, &impulses);
             let (coordinates, rates) = state[..2 * degrees].split_at_mut(degrees);
             let pushes: Vec<f64> = (0..self.names.len())
                 .map(|place| self.push_size(place, &hit, &impulses))
