@@ -2,7 +2,7 @@
 //! errors.
 
 use eomgen_codegen::program::Op;
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_sim::ode::UNMOVED_SIZE_FRACTION;
 
 use crate::audit::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
@@ -73,7 +73,9 @@ impl Instance<'_> {
                     self::evaluate_distances(&mut evaluator, point)[place]
                 };
                 let change = find_allowed_change(state, &sizes, tolerance, of_impact);
-                let tolerance = TOLERANCE_ERROR_FACTOR * change;
+                let point = Point { t, state, inputs };
+                let rounding = find_largest_distance(&mut evaluator, point, place) - distance;
+                let tolerance = TOLERANCE_ERROR_FACTOR * change + rounding;
                 if distance.is_nan() || *distance < -tolerance {
                     return Ok(Some(Overlap {
                         impact: impacts[place].name.clone(),
@@ -102,6 +104,21 @@ impl Instance<'_> {
         let impact = self.model().model().impacts.get(place)?;
         Some(&impact.name)
     }
+}
+
+/// Returns the upper bound of the exact distance of an impact at a point.
+fn find_largest_distance(evaluator: &mut Evaluator, point: Point<'_>, place: usize) -> f64 {
+    // The sum of polynomials is rounded, that of numbers is not.
+    let still = |value: f64| Enclosure::polynomial(std::array::from_fn(|_| value), 0.0);
+    let all = |values: &[f64]| -> Vec<Enclosure> { values.iter().copied().map(still).collect() };
+    let stretch = Stretch {
+        t: still(point.t),
+        state: &all(point.state),
+        inputs: &all(point.inputs),
+    };
+    let mut bounds = vec![Enclosure::UNKNOWN; evaluator.program().impacts.len()];
+    evaluator.bound_distances(&stretch, &mut bounds);
+    bounds[place].value().high
 }
 
 fn evaluate_distances(evaluator: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
