@@ -121,7 +121,9 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             let impacts = evaluator.program().impacts.iter().enumerate();
             let has_friction = impacts.filter(|(_, impact)| impact.friction.is_some());
             let degrees = evaluator.program().degrees_of_freedom();
-            Contacts::new(names, &self.typical_sizes()[..degrees])
+            let sizes = self.typical_sizes();
+            let (values, others) = sizes.split_at(degrees);
+            Contacts::new(names, [values, &others[..degrees]])
                 .with_friction(has_friction.map(|(place, _)| place))
         });
         self.contacts = contacts.map(RefCell::new);
@@ -689,13 +691,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         }
     }
 
-    fn add_rate_roundings(&self, out: &mut [f64]) {
+    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
+        let degrees = self.degrees_of_freedom();
         if let Some(contacts) = &self.contacts {
-            let degrees = self.degrees_of_freedom();
             contacts.borrow().add_rate_roundings(&mut out[degrees..]);
         }
         if let Some(sliding) = &self.sliding {
             sliding.borrow().add_rate_roundings(out);
+        }
+        let (speeds, accelerations) = out.split_at_mut(degrees);
+        for (speed, acceleration) in speeds.iter_mut().zip(accelerations) {
+            *speed += length * *acceleration;
         }
     }
 
@@ -730,11 +736,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         let is_held = sliding.is_some_and(|sliding| !sliding.borrow().is_free());
         if is_held || self.has_closed_contacts() {
             let mut rates = vec![0.0; step.end.1.len()];
-            self.add_rate_roundings(&mut rates);
-            let (length, degrees) = (step.end.0 - step.start.0, self.degrees_of_freedom());
-            for place in 0..degrees {
-                rates[place] = length * rates[degrees + place];
-            }
+            let length = step.end.0 - step.start.0;
+            self.add_rate_roundings(length, &mut rates);
             auditor.raise_to_roundings(&rates, length);
         }
         let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);

@@ -270,10 +270,10 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
         self.run.has_roundings = is_resting;
         let mut rates = vec![0.0; self.run.stepper.current_point().y.len()];
-        if is_resting {
-            self.watched.add_rate_roundings(&mut rates);
-        }
         let length = self.run.stepper.step();
+        if is_resting {
+            self.watched.add_rate_roundings(length, &mut rates);
+        }
         self.run
             .stepper
             .magnitudes_mut()

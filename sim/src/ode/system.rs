@@ -136,8 +136,9 @@ pub trait System {
     fn write_modes(&self, _modes: &mut [SurfaceMode]) {}
 
     /// Adds the roundings of the rates by forces that balance others at rest, as those of surfaces that hold, to `out`,
-    /// [`System::state_count`] entries in the units of the rates.
-    fn add_rate_roundings(&self, _out: &mut [f64]) {}
+    /// [`System::state_count`] entries in the units of the rates. Rates that are states gather the roundings of a step of
+    /// this `length` (s).
+    fn add_rate_roundings(&self, _length: f64, _out: &mut [f64]) {}
 
     /// Returns true if the solver must call [`System::observe_step`].
     fn is_observing(&self) -> bool {
@@ -233,8 +234,8 @@ impl<S: System + ?Sized> System for &S {
         (**self).write_modes(modes);
     }
 
-    fn add_rate_roundings(&self, out: &mut [f64]) {
-        (**self).add_rate_roundings(out);
+    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
+        (**self).add_rate_roundings(length, out);
     }
 
     fn is_observing(&self) -> bool {

@@ -476,8 +476,8 @@ impl<'a, S: System + ?Sized> WatchedSystem<'a, S> {
     }
 
     /// Adds the roundings of the rates at rest to `out`; see [`System::add_rate_roundings`].
-    pub fn add_rate_roundings(&self, out: &mut [f64]) {
-        self.system.add_rate_roundings(out);
+    pub fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
+        self.system.add_rate_roundings(length, out);
     }
 
     /// Returns true if the system observes steps.

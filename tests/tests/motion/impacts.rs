@@ -777,6 +777,49 @@ fn initial_penetration_by_rounding_starts_on_contact() {
     }
 }
 
+#[test]
+fn start_just_beside_a_floor_costs_no_more_than_one_on_it() {
+    let starts = |height: &str, speed: &str| {
+        let text = format!(
+            "[model]\nname = \"ball\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
+             g = {{ value = 1, unit = \"m/s^2\" }}\nl = {{ value = 1, unit = \"m\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\", initial = {height}, initial_rate = {speed} }}\n[kinetic]\n\
+             T = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"m*g*x\"\n[impacts]\n\
+             floor = {{ when = \"x\", restitution = 0.5 }}\n"
+        );
+        let model = CompiledModel::from_text("ball.toml", &text, Orders::Declared).expect(&text);
+        let run = model.with_declared_parameters().unwrap();
+        [Solver::Rk, Solver::Radau].map(|solver| {
+            let motion = run.simulate(
+                run.initial_state(),
+                &[0.0, 0.5, 1.0],
+                &run.default_inputs(),
+                solver,
+            );
+            let trajectory = motion.expect("a motion").trajectory;
+            let last = trajectory.states.last().expect("a state");
+            assert!(last[0].abs() < 1e-12, "{height} {speed}: {last:?}");
+            trajectory.statistics.evaluations
+        })
+    };
+    for height in [
+        "1e-12", "1e-14", "1e-17", "1e-20", "1e-30", "1e-100", "1e-300",
+    ] {
+        for start in [
+            [height, "0"],
+            [&format!("-{height}"), "0"],
+            ["0", height],
+            ["0", &format!("-{height}")],
+        ] {
+            let evaluations = starts(start[0], start[1]);
+            assert!(
+                evaluations.iter().all(|count| *count < 5000),
+                "{start:?}: {evaluations:?}"
+            );
+        }
+    }
+}
+
 /// Returns a body above a floor, with a force over time and an independent state.
 fn compile_body(height: &str, force: &str, pressure: &str) -> CompiledModel {
     let text = format!(

@@ -61,13 +61,15 @@ pub(crate) struct Contacts {
     at: Vec<ImpactValues>,
     /// Sizes of coordinates that have not moved.
     unmoved_sizes: Vec<f64>,
+    /// The same of their rates.
+    unmoved_rates: Vec<f64>,
     /// The largest magnitude of the terms of each distance so far.
     sizes: Vec<f64>,
     /// When the last impacts were, s.
     recent: VecDeque<(f64, Vec<usize>)>,
     /// False for an impact that ends infinitely many.
     has_restitution: bool,
-    /// The work of contacts that move in the last impact, J.
+    /// The work of contacts in the last impact, J.
     impact_work: f64,
     /// The impact at which the motion ended, and why.
     overlap: Option<(usize, Overlap)>,
@@ -91,15 +93,17 @@ enum Overlap {
 }
 
 impl Contacts {
-    /// Creates open contacts between coordinates of these typical sizes.
-    pub fn new(names: Vec<String>, typical_sizes: &[f64]) -> Self {
+    /// Creates open contacts between coordinates whose values and rates have these typical sizes.
+    pub fn new(names: Vec<String>, [values, rates]: [&[f64]; 2]) -> Self {
         let count = names.len();
+        let unmoved = |sizes: &[f64]| -> Vec<f64> {
+            let sizes = sizes.iter();
+            sizes.map(|size| UNMOVED_SIZE_FRACTION * size).collect()
+        };
         Self {
             names,
-            unmoved_sizes: typical_sizes
-                .iter()
-                .map(|size| UNMOVED_SIZE_FRACTION * size)
-                .collect(),
+            unmoved_sizes: unmoved(values),
+            unmoved_rates: unmoved(rates),
             sizes: vec![0.0; count],
             start: None,
             open_since: vec![0.0; count],
@@ -334,9 +338,13 @@ impl Contacts {
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
         let degrees = own.program().degrees_of_freedom();
-        let rates = &point.state[degrees..2 * degrees];
+        let rates = point.state[degrees..2 * degrees].iter();
+        let rates = rates.zip(&self.unmoved_rates);
+        let rates: Vec<f64> = rates
+            .map(|(rate, unmoved)| rate.abs().max(*unmoved))
+            .collect();
         let small: Vec<f64> = (0..self.at.len())
-            .map(|place| ROUNDING * self.rate_size(place, rates))
+            .map(|place| ROUNDING * self.rate_size(place, &rates))
             .collect();
         let touches = |place: &usize| self.at[*place].distance <= ROUNDING * self.sizes[*place];
         let touching: Vec<usize> = (0..self.at.len())

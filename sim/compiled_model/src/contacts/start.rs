@@ -28,7 +28,7 @@ impl Start<'_> {
         state: &mut [f64],
     ) -> Result<(), (usize, f64)> {
         let degrees = own.program().degrees_of_freedom();
-        let mut contacts = Contacts::new(vec![String::new(); self.lengths.len()], &[]);
+        let mut contacts = Contacts::new(vec![String::new(); self.lengths.len()], [&[], &[]]);
         let span = self.end - self.t;
         for correction in 0..CORRECTIONS {
             let (t, inputs) = (self.t, self.inputs);

@@ -225,7 +225,7 @@ impl Instance<'_> {
         system.guards(at.t, &at.state, &mut guards);
         let (mut rates, mut roundings) = (vec![0.0; at.state.len()], vec![0.0; at.state.len()]);
         system.rates(at.t, &at.state, &mut rates);
-        system.add_rate_roundings(&mut roundings);
+        system.add_rate_roundings(0.0, &mut roundings);
         let mut pairs = rates.iter().zip(roundings);
         let is_held = pairs.all(|(rate, rounding)| rate.abs() <= ROUNDING_FACTOR * rounding);
         Ok(is_held.then(|| rates.split_off(self.degrees())))

@@ -173,8 +173,8 @@ impl System for Recorder<'_> {
         self.system.write_modes(modes);
     }
 
-    fn add_rate_roundings(&self, out: &mut [f64]) {
-        self.system.add_rate_roundings(out);
+    fn add_rate_roundings(&self, length: f64, out: &mut [f64]) {
+        self.system.add_rate_roundings(length, out);
     }
 
     fn is_observing(&self) -> bool {
