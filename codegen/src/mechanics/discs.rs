@@ -80,42 +80,60 @@ fn disc_of_norm(graph: &mut Graph, norm: NodeId) -> Option<Disc> {
 
 impl Disc {
     /// Replaces the unit vector by these components in the nodes that `roots` use; adds the replacements to
-    /// `known`. Returns false if the norm divides anything but components of v.
+    /// `known`. Returns false if the norm divides anything but components of v in the nodes that `rates` use.
     pub fn replace_unit_vector(
         &self,
         graph: &mut Graph,
-        roots: &[NodeId],
+        (rates, roots): (&[NodeId], &[NodeId]),
         unit: &[NodeId],
         known: &mut HashMap<NodeId, NodeId>,
     ) -> bool {
-        let mut is_complete = true;
         // Operands precede their uses.
         for id in graph.reachable(roots) {
             let Operation::Product(factors) = graph.operation(id).clone() else {
                 continue;
             };
-            let power = factors.iter().find(|(factor, _)| *factor == self.norm);
-            let Some(&(_, power)) = power.filter(|(_, power)| *power < 0) else {
+            let Some((divisions, rest)) = self.split_divisions(graph, &factors) else {
                 continue;
             };
-            let rest: Vec<(NodeId, i32)> = factors
-                .iter()
-                .copied()
-                .filter(|(factor, _)| *factor != self.norm)
-                .collect();
             let mut replaced = Some(graph.product(&rest));
-            for _ in power..0 {
+            for _ in 0..divisions {
                 replaced = replaced.and_then(|node| self.divide_by_norm(graph, unit, node));
             }
-            match replaced {
-                Some(node) => {
-                    let node = substitute(graph, node, &|_, _| None, known);
-                    known.insert(id, node);
-                }
-                None => is_complete = false,
+            if let Some(node) = replaced {
+                let node = substitute(graph, node, &|_, _| None, known);
+                known.insert(id, node);
             }
         }
-        is_complete
+        let replaced: Vec<NodeId> = rates
+            .iter()
+            .map(|root| substitute(graph, *root, &|_, _| None, known))
+            .collect();
+        !graph.reachable(&replaced).into_iter().any(|id| {
+            let Operation::Product(factors) = graph.operation(id) else {
+                return false;
+            };
+            self.split_divisions(graph, factors).is_some()
+        })
+    }
+
+    /// Returns the number of divisions of a product by norm(v), and its other factors; `None` without divisions. In
+    /// derivatives the reciprocal of the norm can have a guard at v = 0.
+    fn split_divisions(
+        &self,
+        graph: &Graph,
+        factors: &[(NodeId, i32)],
+    ) -> Option<(i32, Vec<(NodeId, i32)>)> {
+        let mut divisions = 0;
+        let mut rest = Vec::with_capacity(factors.len());
+        for &(factor, exponent) in factors {
+            let (base, power) = graph.guarded_power(factor).unwrap_or((factor, 1));
+            match base == self.norm && power * exponent < 0 {
+                true => divisions -= power * exponent,
+                false => rest.push((factor, exponent)),
+            }
+        }
+        (divisions > 0).then_some((divisions, rest))
     }
 
     /// Returns a node that has a component of v in each of its terms, divided by norm(v).

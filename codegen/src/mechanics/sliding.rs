@@ -35,7 +35,7 @@ use crate::symbolic::substitute::substitute;
 /// Returns true if there can be surfaces that hold the motion, judged without derivatives.
 pub(crate) fn can_hold_motion(equations: &Equations) -> bool {
     !guards_that_may_hold(equations).is_empty()
-        || divides_by_speed(&equations.graph, &roots(equations))
+        || divides_by_speed(&equations.graph, &equations.rate_nodes())
 }
 
 /// Surfaces whose sides are inputs.
@@ -177,8 +177,8 @@ fn add_unit_vectors(
     });
     let mut place = lengths.sum();
     let mut count = 0;
-    let nodes = roots(equations);
-    for disc in find_discs(&mut equations.graph, &nodes) {
+    let rates = equations.rate_nodes();
+    for disc in find_discs(&mut equations.graph, &rates) {
         let first = first_side + functions.len();
         let graph = &mut equations.graph;
         let unit: Vec<NodeId> = (0..disc.components.len())
@@ -187,9 +187,9 @@ fn add_unit_vectors(
                 sign(graph, side)
             })
             .collect();
-        let nodes = roots(equations);
+        let nodes = (&equations.rate_nodes()[..], &roots(equations)[..]);
         let mut known = HashMap::new();
-        if !disc.replace_unit_vector(&mut equations.graph, &nodes, &unit, &mut known) {
+        if !disc.replace_unit_vector(&mut equations.graph, nodes, &unit, &mut known) {
             continue;
         }
         replace(equations, &mut known);
