@@ -212,6 +212,24 @@ impl Flow {
         });
     }
 
+    /// Goes back from a state that overflowed to the last time with a finite state, and writes this state.
+    #[cold]
+    pub fn go_back_to_finite_state(&mut self, regime: &Regime, out: &mut [f64]) {
+        let (mut finite, mut infinite) = (0.0, self.tau);
+        loop {
+            let middle = 0.5 * (finite + infinite);
+            if middle <= finite || middle >= infinite {
+                break;
+            }
+            self.state_at(regime, middle, out);
+            match out.iter().all(|entry| entry.is_finite()) {
+                true => finite = middle,
+                false => infinite = middle,
+            }
+        }
+        self.state_at(regime, finite, out);
+    }
+
     /// Advances to a time after the start at which only the state is needed.
     #[inline(always)]
     pub fn advance_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {

@@ -292,11 +292,13 @@ impl Propagator {
                 false
             }
         };
+        let diverged = motion.state.iter().position(|y| !y.is_finite());
+        if diverged.is_some() {
+            flow.go_back_to_finite_state(regime, &mut motion.state);
+            motion.clock = start.advanced_by(flow.tau);
+        }
         for (slot, phase) in motion.phases.iter_mut().zip(&self.phases) {
             *slot = motion.clock.phase(*phase);
-        }
-        if let Some(state) = motion.state.iter().position(|y| !y.is_finite()) {
-            return Err(SolveError::NotFinite { t: now, state }.into());
         }
         let tau = flow.tau;
         let segment = Segment {
@@ -307,6 +309,10 @@ impl Propagator {
             is_held: cells.iter().any(|cell| matches!(cell, Cell::On(_))),
         };
         follow.observe_segment(&segment, flow);
+        if let Some(state) = diverged {
+            let t = motion.time();
+            return Err(SolveError::NotFinite { t, state }.into());
+        }
         if found == Found::Nothing && breakpoint.is_some() {
             self.take_inputs(motion, inputs)?;
         }

@@ -320,6 +320,58 @@ fn diverging_motion_is_not_reported_as_friction() {
     }
 }
 
+/// x'' = 100 x from rest at 1 m: x = cosh(10 t), x_dot = 10 sinh(10 t) overflows at 70.817 s.
+#[test]
+fn exact_solver_names_the_time_of_overflow() {
+    let law = r#"
+[model]
+name = "unstable"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 100, unit = "N/m" }
+[coordinates]
+x = { unit = "m", initial = 1 }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "-1/2*k*x^2"
+"#;
+    let stop = (f64::MAX.ln() + 0.2_f64.ln()) / 10.0;
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = write_spec(folder.path(), law);
+    for (solver, until, interval) in [("auto", "71", 1.0), ("exact", "1000", 0.1)] {
+        let out = folder.path().join("a.csv");
+        let (shown, every) = (out.display().to_string(), interval.to_string());
+        let output = run(&[
+            "simulate",
+            &spec,
+            "--until",
+            until,
+            "--out",
+            &shown,
+            "--solver",
+            solver,
+            "--interval",
+            &every,
+        ]);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(
+            message.contains(&format!("the state diverged at t = {stop:.4}")),
+            "{message}"
+        );
+        // The energy overflows earlier.
+        let table = std::fs::read_to_string(&out).expect("the rows so far");
+        let rows: Vec<&str> = table.lines().skip(1).collect();
+        assert_eq!(rows.len(), 1 + (stop / interval) as usize, "{message}");
+        for (place, row) in rows.iter().enumerate() {
+            let x: f64 = row.split(',').nth(1).expect("x").parse().expect("a number");
+            let right = (10.0 * interval * place as f64).cosh();
+            assert!((x / right - 1.0).abs() < 1e-11, "{row}");
+        }
+    }
+}
+
 #[test]
 fn explicit_solvers_report_stiffness() {
     for solver in ["rk", "adams"] {
