@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
-    Audit, Error, FunctionInputs, Instance, LoggedEvent, Motion, Overlap,
+    Audit, Error, FunctionInputs, InputRole, Instance, LoggedEvent, Motion, Overlap,
     RecordedMotion as Recorded, Request, SampledController, Solver, SolverChoice,
     split_assignments,
 };
@@ -96,12 +96,17 @@ pub fn simulate<'py>(
     };
     let known = &model.compiled().model().inputs;
     let (inputs, failures) = with_functions(py, (inputs, known), (functions, breaks), span)?;
-    let inputs = with_expressions(model, inputs, &expressions)?;
+    let solver = parse_solver(solver)?;
+    let role = match solver {
+        Solver::Fixed => InputRole::Held,
+        _ => InputRole::Measured,
+    };
+    let inputs = with_expressions(model, inputs, &expressions, role)?;
     let request = Request {
         initial: initial.as_slice()?,
         times: sample_times,
         inputs: &inputs,
-        solver: parse_solver(solver)?,
+        solver,
         tolerance,
         max_step,
         audit: true,
@@ -169,6 +174,7 @@ fn with_expressions(
     model: &Model,
     inputs: HeldInputs,
     expressions: &[(String, String)],
+    role: InputRole,
 ) -> PyResult<HeldInputs> {
     let texts = expressions
         .iter()
@@ -180,7 +186,7 @@ fn with_expressions(
         .iter()
         .map(|(name, value)| (&**name, *value));
     let settings: Vec<(&str, f64)> = settings.collect();
-    let given = FunctionInputs::new(model.compiled().model(), &given);
+    let given = FunctionInputs::new(model.compiled().model(), &given, role);
     let added = given.and_then(|given| given.add_to(inputs, &settings));
     added.map_err(error::model)
 }

@@ -1,7 +1,7 @@
 //! `eomgen simulate`: a trajectory as CSV or Parquet.
 
 use eomgen_compiled_model::{
-    CompiledModel, DEFAULT_TOLERANCE, ExpressionInputs, InputTreatment, Motion, Request,
+    CompiledModel, DEFAULT_TOLERANCE, ExpressionInputs, InputRole, InputTreatment, Motion, Request,
     split_assignments,
 };
 use eomgen_controller_library::{ControllerLibrary, LibraryError};
@@ -102,15 +102,17 @@ fn driven_model(
 ) -> Result<(CompiledModel, HeldInputs, Option<ControllerLibrary>)> {
     let declared = load(&options.model.spec)?.model;
     // Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
-    let remain = !declared.controllers.is_empty()
-        || options.controller.is_some()
-        || options.integration.solver == Solver::Fixed;
+    let is_controlled = !declared.controllers.is_empty() || options.controller.is_some();
+    let role = match options.integration.solver {
+        Solver::Fixed => Some(InputRole::Held),
+        _ => is_controlled.then_some(InputRole::Measured),
+    };
     let may_hold = options.inputs.record.is_none()
-        && (remain || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
+        && (role.is_some() || matches!(options.integration.solver, Solver::Auto | Solver::Exact));
     let prescribed = split_assignments("--input", &options.inputs.input)?;
     let settings = settings(&declared, &options.parameters.set)?;
     let settings = as_borrowed(&settings);
-    let treatment = InputTreatment { remain, may_hold };
+    let treatment = InputTreatment { role, may_hold };
     let (compiled, given) = ExpressionInputs::derive(
         declared,
         &prescribed,

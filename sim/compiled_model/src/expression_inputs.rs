@@ -10,6 +10,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Function, Model};
 use eomgen_sim::inputs::{HeldInputs, InputFunction};
 
 use crate::error::Error;
+use crate::fixed_steps::describe_prescribed_motion;
 use crate::model::CompiledModel;
 use crate::prescribed_inputs::{with_one_prescribed_input, with_prescribed_inputs};
 
@@ -147,15 +148,20 @@ impl FunctionInputs {
     /// # Errors
     /// Same as [`with_prescribed_inputs`](crate::with_prescribed_inputs), and prescribed motion, whose rates an
     /// expression does not give here.
-    pub fn new(model: &Model, given: &[Assignment]) -> Result<Self, Error> {
+    pub fn new(model: &Model, given: &[Assignment], role: InputRole) -> Result<Self, Error> {
         let mut inputs = Vec::with_capacity(given.len());
         for given in given {
             let Some((place, input)) = ExpressionInput::new(model, given)? else {
                 continue;
             };
             if model.inputs[place].rate.is_some() {
-                let reason = "prescribed motion by an expression is not supported in a model with controllers";
-                return Err(given.name_error(reason.to_owned(), None).into());
+                let reason = match role {
+                    InputRole::Measured => {
+                        "prescribed motion by an expression is not supported in a model with controllers".to_owned()
+                    }
+                    InputRole::Held => describe_prescribed_motion(given.name()),
+                };
+                return Err(given.name_error(reason, None).into());
             }
             inputs.push((place, input));
         }
@@ -182,12 +188,21 @@ impl FunctionInputs {
     }
 }
 
-/// Treatment of inputs that are given by expressions. Inputs that do not remain inputs become definitions of the model.
+/// Role of inputs that are given by expressions and remain inputs of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputRole {
+    /// Controllers measure them.
+    Measured,
+    /// Fixed steps hold them.
+    Held,
+}
+
+/// Treatment of inputs that are given by expressions. Inputs without a role become definitions of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InputTreatment {
-    /// They remain inputs, because controllers measure them or fixed steps hold them.
-    pub remain: bool,
-    /// They may be held between their steps, because no record gives other inputs. Without `remain` they are held only if
+    /// The role for which they remain inputs.
+    pub role: Option<InputRole>,
+    /// They may be held between their steps, because no record gives other inputs. Without a role they are held only if
     /// every motion can be solved exactly then.
     pub may_hold: bool,
 }
@@ -219,12 +234,12 @@ impl ExpressionInputs {
         };
         if let Some(steps) = steps {
             let model = derive(declared.clone())?;
-            if treatment.remain || model.piecewise_linear().is_ok() {
+            if treatment.role.is_some() || model.piecewise_linear().is_ok() {
                 return Ok((model, Self::Steps(steps)));
             }
         }
-        if treatment.remain {
-            let functions = FunctionInputs::new(&declared, given)?;
+        if let Some(role) = treatment.role {
+            let functions = FunctionInputs::new(&declared, given, role)?;
             return Ok((derive(declared)?, Self::Functions(functions)));
         }
         let model = derive(with_prescribed_inputs(declared, given)?)?;

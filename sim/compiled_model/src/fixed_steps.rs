@@ -3,7 +3,7 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::Trajectory;
+use eomgen_sim::ode::{Settings, Trajectory};
 
 use crate::error::Error;
 use crate::instance::Instance;
@@ -83,11 +83,13 @@ impl Instance<'_> {
             ));
         }
         let prescribed = model.inputs.iter().find(|input| input.rate.is_some());
-        prescribed.map(|input| {
-            let name = &input.name;
-            format!("the input `{name}` is prescribed motion, which cannot be held during a step")
-        })
+        prescribed.map(|input| describe_prescribed_motion(&input.name))
     }
+}
+
+/// Returns why fixed steps have no prescribed motion.
+pub(crate) fn describe_prescribed_motion(input: &str) -> String {
+    format!("the input `{input}` is prescribed motion, which cannot be held during a step")
 }
 
 impl FixedSteps {
@@ -107,6 +109,23 @@ impl FixedSteps {
 
     pub fn state(&self) -> &[f64] {
         &self.state
+    }
+
+    /// Checks that the steps to `until` (s) are at most as many as those of other solvers.
+    ///
+    /// # Errors
+    /// A step that is too short for the time.
+    pub fn check_step_count(&self, until: f64) -> Result<(), Error> {
+        let most = Settings::default().max_steps as f64;
+        let steps = (until - self.reached) / self.step;
+        match steps > most {
+            true => Err(Error::Request(format!(
+                "the step, {:e} s, needs {steps:.1e} steps to the end; at most {most:e} are taken: give a longer one, or \
+                 shorten the time",
+                self.step
+            ))),
+            false => Ok(()),
+        }
     }
 
     /// Continues to `until` (s) with the rows at `samples`. Inputs are evaluated at the start of each step and held.

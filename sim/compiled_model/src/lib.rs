@@ -135,7 +135,9 @@ pub use event_log::{EventKind, LoggedEvent};
 pub use exported_model::{ExportedCode, ExportedModel};
 pub use exported_motion::ExportedMotion;
 #[cfg(feature = "derive")]
-pub use expression_inputs::{ExpressionInputs, FunctionInputs, InputTreatment, StepInputs};
+pub use expression_inputs::{
+    ExpressionInputs, FunctionInputs, InputRole, InputTreatment, StepInputs,
+};
 #[cfg(feature = "derive")]
 pub use gradients::{RecordedMotion, SampleWeights, TrajectoryGradient};
 #[cfg(feature = "derive")]

@@ -379,6 +379,14 @@ impl Simulation<'_> {
         }
     }
 
+    /// Checks that fixed steps to a time (s) are not too many.
+    pub(crate) fn check_step_count(&self, until: f64) -> Result<(), Error> {
+        match &self.engine {
+            Engine::Fixed(steps) => steps.check_step_count(until),
+            Engine::Exact { .. } | Engine::General(_) => Ok(()),
+        }
+    }
+
     /// Checks times that a call asks for.
     pub(crate) fn check_times(&self, until: f64, samples: &[f64]) -> Result<(), Error> {
         let now = self.time();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eomgen_compiled_model::{
-    CompiledModel, Error, ExpressionInputs, InputTreatment, Orders, StateRequest,
+    CompiledModel, Error, ExpressionInputs, InputRole, InputTreatment, Orders, StateRequest,
     list_undriven_inputs, split_assignments,
 };
 use eomgen_model_spec::assignment::Assignment;
@@ -247,7 +247,7 @@ fn driven_model(
     first: &[(&str, f64)],
 ) -> Result<(CompiledModel, ExpressionInputs), Error> {
     let treatment = InputTreatment {
-        remain: !declared.controllers.is_empty(),
+        role: (!declared.controllers.is_empty()).then_some(InputRole::Measured),
         may_hold: request.record.is_none(),
     };
     ExpressionInputs::derive(declared.clone(), given, (treatment, first), |model| {

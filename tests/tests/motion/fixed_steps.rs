@@ -65,6 +65,21 @@ fn models_with_events_and_times_between_steps_are_rejected() {
             "the input `s` is prescribed motion",
         ),
         (
+            shipped("crane"),
+            "--step 0.01 --input s=0.1*sin(4*t)",
+            "the input `s` is prescribed motion, which cannot be held during a step",
+        ),
+        (
+            shipped("pendulum"),
+            "--step 1e-9",
+            "the step, 1e-9 s, needs 1.0e9 steps to the end; at most 2e7 are taken",
+        ),
+        (
+            regulator.clone(),
+            "--step 1e-9",
+            "the step, 1e-9 s, needs 1.0e9 steps to the end; at most 2e7 are taken",
+        ),
+        (
             shipped("pendulum"),
             "",
             "the solver fixed needs the length of its steps",

@@ -94,6 +94,7 @@ impl Simulation<'_> {
         record: &mut LoopRecord<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Option<EarlyStop>, Error> {
+        self.check_step_count(until)?;
         let Some(mut controls) = self.controls.take() else {
             return self.advance_plant((until, rows), record.trajectory, progress);
         };
