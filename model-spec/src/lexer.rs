@@ -191,6 +191,12 @@ fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
                 .with_span(span, "beyond 1.8e308"),
         );
     }
+    check_underflow(text, value, span)?;
+    Ok(value)
+}
+
+/// Rejects a decimal number other than 0 that is read as 0.
+pub(crate) fn check_underflow(text: &str, value: f64, span: Span) -> Result<(), Diagnostic> {
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     if value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
         return Err(
@@ -198,7 +204,7 @@ fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
                 .with_span(span, "below 4.9e-324, it would be read as 0"),
         );
     }
-    Ok(value)
+    Ok(())
 }
 
 #[cfg(test)]

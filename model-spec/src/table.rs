@@ -4,6 +4,7 @@
 use toml_edit::{Item, Table, TableLike, Value};
 
 use crate::diagnostic::{Diagnostic, quote};
+use crate::lexer::check_underflow;
 use crate::quantity::{Name, Number, Quantity, StringValue};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -263,10 +264,10 @@ impl<'d> Entry<'d> {
             Value::Float(float) => *float.value(),
             _ => return None,
         };
-        if value.is_finite() {
-            return Some(Ok(Number { value, span }));
-        }
         let shown = self.text.get(span.start..span.end).unwrap_or("this");
+        if value.is_finite() {
+            return Some(check_underflow(shown, value, span).map(|()| Number { value, span }));
+        }
         let message = format!("{} is not a finite number", quote(shown));
         Some(Err(
             Diagnostic::error(message).with_span(span, "expected a finite number")

@@ -116,7 +116,9 @@ fn normal(
     let low = [parameter.min, further[0]].into_iter().flatten();
     let high = [parameter.max, further[1]].into_iter().flatten();
     let bounds = [low.reduce(f64::max), high.reduce(f64::min)];
-    let near = |bound: &f64| (bound - value).abs() < sd;
+    // Each number is rounded when it is read and when it is converted, and their difference once more.
+    let rounding = |bound: f64| 2.0 * f64::EPSILON * (bound.abs() + value.abs() + sd);
+    let near = |bound: &f64| (bound - value).abs() < sd - rounding(*bound);
     if bounds.iter().flatten().any(near) {
         return Err(uncertainty_error(
             parameter,

@@ -65,10 +65,12 @@ impl Builder {
 
     fn convert_to_si(&mut self, unit: &Unit, number: Number) -> Option<f64> {
         let value = unit.to_si(number.value);
-        if value.is_finite() {
-            return Some(value);
-        }
-        let message = format!("{} {unit} is too large in SI units", number.value);
+        let size = match value {
+            _ if !value.is_finite() => "large",
+            0.0 if number.value != 0.0 => "small",
+            _ => return Some(value),
+        };
+        let message = format!("{:?} {unit} is too {size} in SI units", number.value);
         self.found
             .push(Diagnostic::error(message).with_span(number.span, "here"));
         None

@@ -710,3 +710,34 @@ B = { in = "A", origin = ["l", 0, 0], rotation = "rotation_x(q)" }
 A = { frame = "A", mass = "m", centre = ["l", 0, 0] }
 B = { frame = "B", mass = "m", centre = [0, "l", 0] }
 "#;
+
+#[test]
+fn bound_at_one_standard_deviation_is_accepted_in_every_unit() {
+    let is_accepted = |unit: &str, [value, sd, max]: [f64; 3]| {
+        let text = format!(
+            "[model]\nname = \"a\"\n[parameters]\nJ = {{ value = 1, unit = \"kg m^2\" }}\n\
+             p = {{ value = {value:?}, unit = \"{unit}\", max = {max:?}, uncertainty = {{ sd = {sd:?} }} }}\n\
+             [coordinates]\nq = {{ unit = \"rad\" }}\n[kinetic]\nT = \"1/2*J*dot(q)^2\"\n"
+        );
+        eomgen_model_spec::check(Source::new("a.toml", text)).is_ok()
+    };
+    for unit in ["rad", "deg", "mrad", "m", "um", "N/mm", "km/h", "1/min"] {
+        for [value, sd, max] in [
+            [-4.0, 1.0, -3.0],
+            [0.3, 0.1, 0.4],
+            [0.7, 0.1, 0.8],
+            [7.3, 1.1, 8.4],
+            [1e3, 1e-3, 1000.001],
+        ] {
+            assert!(
+                is_accepted(unit, [value, sd, max]),
+                "{value} {sd} {max} {unit}"
+            );
+            let nearer = max - 1e-6 * sd;
+            assert!(
+                !is_accepted(unit, [value, sd, nearer]),
+                "{value} {sd} {unit}"
+            );
+        }
+    }
+}
