@@ -7,7 +7,7 @@ use std::path::Path;
 use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_compiled_model::{
-    CompiledModel, DrivenModel, EquilibriumRequest, Error, Orders, Request, Solver,
+    CompiledModel, DrivenModel, EquilibriumRequest, Error, EventKind, Orders, Request, Solver,
 };
 use eomgen_sim::ode::{Settings, simulate};
 
@@ -923,6 +923,99 @@ fn random_chains_match_in_cartesian_coordinates_and_angles() {
         for (found, expected) in found[2 * count..].iter().zip(&expected) {
             let error = (found - expected).abs() / largest;
             assert!(error < 1e-10, "{count} masses: {found} and {expected}");
+        }
+    }
+}
+
+/// Returns a crank that drives a sliding mass with dry friction, in its angle and, if `is_constrained`, also in the position
+/// of the mass. `position` is that position as a function of the angle, `transmission` its derivative at the start.
+fn crank_with_dry_friction(
+    (position, transmission): (&str, f64),
+    rate: f64,
+    is_constrained: bool,
+) -> CompiledModel {
+    let [coordinate, definition, constraint] = match is_constrained {
+        true => [
+            format!(
+                "s = {{ unit = \"m\", initial = \"{}\", initial_rate = {:?} }}\n",
+                position.replace("phi", "p0"),
+                transmission * rate
+            ),
+            String::new(),
+            format!("[constraints]\nrod = {{ zero = \"s - ({position})\" }}\n"),
+        ],
+        false => [
+            String::new(),
+            format!("[definitions]\ns = \"{position}\"\n"),
+            String::new(),
+        ],
+    };
+    compile(&format!(
+        r#"
+[model]
+name = "crank"
+[parameters]
+J = {{ value = 0.002, unit = "kg m^2" }}
+r = {{ value = 0.04, unit = "m" }}
+l = {{ value = 0.14, unit = "m" }}
+m = {{ value = 0.5, unit = "kg" }}
+F = {{ value = 3, unit = "N" }}
+p0 = {{ value = 2, unit = "rad" }}
+[coordinates]
+phi = {{ unit = "rad", initial = "p0", initial_rate = {rate:?} }}
+{coordinate}{definition}[kinetic]
+crank = "1/2*J*dot(phi)^2"
+mass = "1/2*m*dot(s)^2"
+[forces]
+friction = {{ on = "s", value = "-F*sign(dot(s))" }}
+{constraint}"#
+    ))
+}
+
+/// The friction has no effect at a dead centre, which the crank passes, and stops the machine beyond it.
+#[test]
+fn dry_friction_stops_constrained_crank_as_one_in_its_angle() {
+    let (sine, cosine) = 2.0_f64.sin_cos();
+    let rod = (0.14_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
+    let guide = ("r*sin(phi)", 0.04 * cosine);
+    let with_rod = (
+        "r*cos(phi) + sqrt(l^2 - r^2*sin(phi)^2)",
+        -0.04 * sine - 0.04_f64.powi(2) * sine * cosine / rod,
+    );
+    let times: Vec<f64> = (0..=20).map(|sample| 0.05 * f64::from(sample)).collect();
+    for machine in [guide, with_rod] {
+        for rate in [11.0, 11.2, 12.0, 12.8, 13.1, 14.3] {
+            let simulate = |is_constrained: bool, solver| {
+                let model = crank_with_dry_friction(machine, rate, is_constrained);
+                let run = model.with_declared_parameters().unwrap();
+                run.simulate(run.initial_state(), &times, &run.default_inputs(), solver)
+                    .unwrap_or_else(|error| panic!("{machine:?} {rate} {solver}: {error}"))
+            };
+            let expected = simulate(false, Solver::Rk);
+            let expected_log = expected.event_log(1);
+            assert_eq!(
+                expected_log.last().map(|event| event.kind),
+                Some(EventKind::Stick)
+            );
+            for solver in [Solver::Rk, Solver::Radau] {
+                let motion = simulate(true, solver);
+                let (log, subject) = (motion.event_log(2), format!("{machine:?} {rate} {solver}"));
+                assert_eq!(log.len(), expected_log.len(), "{subject}: {log:?}");
+                for (event, expected) in log.iter().zip(&expected_log) {
+                    assert_eq!(event.kind, expected.kind, "{subject}");
+                    assert!((event.t - expected.t).abs() < 1e-6, "{subject}: {event:?}");
+                }
+                let [state, expected] =
+                    [&motion, &expected].map(|motion| &motion.trajectory.final_state);
+                assert!(
+                    (state[0] - expected[0]).abs() < 1e-6,
+                    "{subject}: {state:?}"
+                );
+                assert!(
+                    state[2].abs() < 1e-9 && state[3].abs() < 1e-9,
+                    "{subject}: {state:?}"
+                );
+            }
         }
     }
 }

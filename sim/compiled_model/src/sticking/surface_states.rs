@@ -37,9 +37,6 @@ pub(crate) struct SurfaceStates {
     pub(super) places: Vec<SurfaceState>,
     /// Frictions against the direction of sliding.
     pub(super) discs: Vec<Disc>,
-    /// True if the rates had no jump on a surface at the last arrival; then the sign of its
-    /// function determines the side.
-    pub(super) is_jumpless: Vec<bool>,
     pub(super) sizes: Vec<f64>,
     /// Relative tolerance of the states.
     pub(super) tolerance: f64,
@@ -59,7 +56,6 @@ impl SurfaceStates {
             may_hold: sided.can_hold_motion(),
             first_disc_guard: sided.guard_count(),
             places: vec![SurfaceState::Free; count],
-            is_jumpless: vec![false; count],
             discs: sided.discs().iter().cloned().map(Disc::new).collect(),
             sizes: vec![0.0; sided.side_count()],
             tolerance,
@@ -197,16 +193,12 @@ impl SurfaceStates {
         self.discs.len()
     }
 
-    /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs. Surfaces
-    /// without a jump are not fixed, because their rates beyond the surface may lead away from it.
+    /// Fixes the sides of the guards, -1, 1, or 0 (unknown); `None` restores the signs.
     pub fn fix_sides(&mut self, sides: Option<&[f64]>) {
         self.known = KnownSides::Nothing;
         self.sided.fix_other_sides(sides);
         self.kept = sides.map(|sides| {
-            let kept = |surface: usize| match self.is_jumpless[surface] {
-                true => 0.0,
-                false => sides[self.sided.guard_index(surface)],
-            };
+            let kept = |surface: usize| sides[self.sided.guard_index(surface)];
             (0..self.places.len()).map(kept).collect()
         });
     }

@@ -454,7 +454,6 @@ impl SurfaceStates {
     ) -> (Vec<usize>, Vec<Arrival>) {
         let mut left = (Vec::new(), Vec::new());
         for ((surface, arrival), jumps) in touching.iter().zip(arrivals).zip(jumps) {
-            self.is_jumpless[*surface] = !jumps;
             if *jumps {
                 left.0.push(*surface);
                 left.1.push(*arrival);

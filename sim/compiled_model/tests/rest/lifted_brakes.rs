@@ -1,6 +1,7 @@
 //! Friction that holds, vanishes and acts again: the motion begins when it vanishes, and is braked
 //! afterwards instead of stopped at once.
 
+use eomgen_compiled_model::EventKind;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::{GENERAL, grid, of_text};
@@ -66,5 +67,47 @@ fn brake_that_is_lifted_and_applied_again_stops_the_mass_in_time() {
                 assert!((state[3] - rate).abs() < 1e-7, "{place}");
             }
         }
+    }
+}
+
+/// A mass on a spring stops at its first reversal while the brake is lifted, and rests at the next one when it is applied.
+#[test]
+fn brake_that_is_lifted_at_a_reversal_holds_at_the_next_one() {
+    let model = of_text(
+        r#"
+[model]
+name = "braked_spring"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+F = { value = 0.8, unit = "N" }
+s = { value = 1, unit = "s" }
+[coordinates]
+x = { unit = "m", initial = 1 }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+[forces]
+brake = { on = "x", value = "-F*above(t/s - 4)*sign(dot(x))" }
+"#,
+    );
+    // cos(t) until 4 s, then an oscillation about -0.8 m to its first reversal.
+    let amplitude = (4.0_f64.cos() + 0.8).hypot(4.0_f64.sin());
+    let run = model.with_declared_parameters().expect("values");
+    let inputs = run.default_inputs();
+    for solver in GENERAL {
+        let motion = run
+            .simulate(run.initial_state(), &grid(20.0, 20), &inputs, solver)
+            .unwrap_or_else(|error| panic!("{solver}: {error}"));
+        let state = &motion.trajectory.final_state;
+        assert!(
+            (state[0] - (amplitude - 0.8)).abs() < 1e-6,
+            "{solver}: {state:?}"
+        );
+        assert!(state[1].abs() < 1e-9, "{solver}: {state:?}");
+        let kinds = motion.event_log(1).into_iter().map(|event| event.kind);
+        let expected = [EventKind::Crossing, EventKind::Crossing, EventKind::Stick];
+        assert!(kinds.eq(expected), "{solver}: {:?}", motion.event_log(1));
     }
 }
