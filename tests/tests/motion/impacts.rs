@@ -1208,3 +1208,24 @@ floor = { when = "y", restitution = "e" }
         }
     }
 }
+
+/// A mass between two stops without play: no restitution is possible.
+#[test]
+fn mass_between_stops_without_play_stays() {
+    for (first, second) in [(0.5, 0.5), (0.0, 0.0), (0.9, 0.2)] {
+        let text = format!(
+            "[model]\nname = \"jam\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             k = {{ value = 1, unit = \"N/m\" }}\nd = {{ value = 0, unit = \"m\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\", initial_rate = 1 }}\n[kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\n\
+             V = \"1/2*k*x^2\"\n[impacts]\na = {{ when = \"x + d\", restitution = {first} }}\n\
+             b = {{ when = \"d - x\", restitution = {second} }}\n"
+        );
+        let model = CompiledModel::from_text("jam.toml", &text, Orders::Declared);
+        let model = model.unwrap_or_else(|error| panic!("{error}"));
+        for motion in simulate_with_all_solvers(&model, &[0.0, 1.0], &[0.0, 0.5, 1.0]) {
+            let states = &motion.trajectory.states;
+            assert_eq!(states.len(), 3, "{first}, {second}");
+            assert_eq!(states[2], [0.0, 0.0], "{first}, {second}");
+        }
+    }
+}

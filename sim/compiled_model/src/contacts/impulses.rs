@@ -212,8 +212,8 @@ impl Contacts {
 
     /// The impulses of what touches and hit so long `ago` (s), nothing where none keep the bodies apart.
     /// Newton's law can add energy where contacts of different restitution touch at once, or one that leaves
-    /// is hit again; then none takes more restitution than the most that does not. With none it never
-    /// does: twice the energy is -P W P then.
+    /// is hit again. Contacts that leave no room, as two stops without play, allow no restitution. Then none takes more
+    /// restitution than the most that is possible. Without restitution, twice the energy changes by -P W P.
     pub(super) fn solve_impulses(&self, touching: &[usize], ago: f64) -> Option<ContactForces> {
         let delassus = self.delassus(touching);
         let with = |most: f64| {
@@ -239,15 +239,14 @@ impl Contacts {
             normal,
             tangential: Vec::new(),
         };
-        let impulses = with(1.0)?;
-        if !adds_energy(&impulses) {
+        let is_possible = |impulses: &Vec<f64>| !adds_energy(impulses);
+        if let Some(impulses) = with(1.0).filter(is_possible) {
             return Some(smooth(impulses));
         }
         let (mut most, mut found) = (0.0, with(0.0)?);
         let mut part = 0.5;
         for _ in 0..RESTITUTION_HALVINGS {
-            let trial = with(most + part)?;
-            if !adds_energy(&trial) {
+            if let Some(trial) = with(most + part).filter(is_possible) {
                 (most, found) = (most + part, trial);
             }
             part *= 0.5;
