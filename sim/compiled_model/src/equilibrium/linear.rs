@@ -25,6 +25,8 @@ pub(super) struct LinearisedEquations {
     /// Sum of the magnitudes of the terms that each acceleration has in the state, by its derivatives, and of the largest
     /// constraint force.
     pub state_terms: DVector<f64>,
+    /// True for each acceleration that an unknown input changes.
+    pub input_rows: Vec<bool>,
     /// Largest magnitudes of the accelerations at all points of the search up to now.
     pub largest: DVector<f64>,
 }
@@ -177,14 +179,18 @@ impl LinearisedEquations {
 
     fn relative_accelerations(&self) -> impl Iterator<Item = f64> {
         let parts = self.accelerations.iter().zip(&self.terms);
-        parts.zip(&self.largest).map(|((value, size), largest)| {
-            // Terms below the rounding of earlier accelerations are those of an input that balances nothing.
-            if *value == 0.0 || *size <= f64::EPSILON * largest {
-                0.0
-            } else {
-                value.abs() / size
-            }
-        })
+        let scales = self.largest.iter().zip(&self.input_rows);
+        parts
+            .zip(scales)
+            .map(|((value, size), (largest, is_balanced))| {
+                // Terms below the rounding of earlier accelerations are those of an input that balances nothing.
+                let is_rounding = *is_balanced && *size <= f64::EPSILON * largest;
+                if *value == 0.0 || is_rounding {
+                    0.0
+                } else {
+                    value.abs() / size
+                }
+            })
     }
 }
 

@@ -481,7 +481,15 @@ impl<'i, 'm> Search<'i, 'm> {
             Some(constraints) => constraints.project(&accelerations)?,
             None => accelerations,
         };
+        let balances = |row: usize| {
+            let columns = self.unknowns.iter().zip(matrix.row(row).into_iter());
+            let is_input =
+                |unknown: &Unknown| matches!(unknown, Unknown::Setting(Setting::Input(_)));
+            let mut inputs = columns.filter(|(unknown, _)| is_input(unknown));
+            inputs.any(|(_, entry)| *entry != 0.0)
+        };
         Some(LinearisedEquations {
+            input_rows: (0..rows).map(balances).collect(),
             largest: accelerations.abs(),
             accelerations,
             matrix,
