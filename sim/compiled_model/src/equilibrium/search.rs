@@ -482,11 +482,11 @@ impl<'i, 'm> Search<'i, 'm> {
             None => accelerations,
         };
         let balances = |row: usize| {
-            let columns = self.unknowns.iter().zip(matrix.row(row).into_iter());
-            let is_input =
-                |unknown: &Unknown| matches!(unknown, Unknown::Setting(Setting::Input(_)));
-            let mut inputs = columns.filter(|(unknown, _)| is_input(unknown));
-            inputs.any(|(_, entry)| *entry != 0.0)
+            let mut unknowns = self.unknowns.iter().enumerate();
+            unknowns.any(|(column, unknown)| {
+                matches!(unknown, Unknown::Setting(Setting::Input(_)))
+                    && matrix[(row, column)] != 0.0
+            })
         };
         Some(LinearisedEquations {
             input_rows: (0..rows).map(balances).collect(),
