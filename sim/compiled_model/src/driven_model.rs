@@ -812,13 +812,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Observables
         state: &[Enclosure],
         out: &mut [Enclosure],
     ) -> bool {
+        if !self.0.is_free() {
+            return false;
+        }
         let stretch = Stretch {
             t: Enclosure::time(begin, end),
             state,
             inputs: &self.0.inputs.borrow().bound(begin, end),
         };
         self.0.evaluator().bound_observables(&stretch, out);
-        self.0.is_free()
+        true
     }
 
     fn degrees_of_freedom(&self) -> usize {

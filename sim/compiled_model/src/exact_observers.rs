@@ -137,6 +137,9 @@ impl Observables for ExactObservables<'_> {
         state: &[Enclosure],
         out: &mut [Enclosure],
     ) -> bool {
+        if self.is_held {
+            return false;
+        }
         let constant = |input: &f64| Enclosure::constant(*input);
         let inputs: Vec<Enclosure> = self.inputs.iter().map(constant).collect();
         let stretch = Stretch {
@@ -145,7 +148,7 @@ impl Observables for ExactObservables<'_> {
             inputs: &inputs,
         };
         self.observed.bound_observables(&stretch, out);
-        !self.is_held
+        true
     }
 
     fn degrees_of_freedom(&self) -> usize {

@@ -41,6 +41,7 @@ pub struct Piece {
 }
 
 impl BernsteinBasis {
+    /// Prepares the conversion.
     pub fn new() -> Self {
         let basis =
             SMatrix::<f64, INNER, INNER>::from_fn(|row, column| bernstein(column + 1, PARTS[row]));
@@ -103,6 +104,12 @@ impl BernsteinBasis {
             to: 1.0,
             controls: controls.collect(),
         })
+    }
+}
+
+impl Default for BernsteinBasis {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -57,6 +57,7 @@ mod tableau;
 mod trajectory;
 mod watch;
 
+pub use bernstein::{BernsteinBasis, Piece};
 pub use error::{NOT_POSITIVE_DEFINITE_MESSAGE, SolveError};
 pub use events::{Event, Jump, SurfaceMode};
 pub use external_motion::ExternalMotion;

@@ -18,9 +18,11 @@ const MEAN_SQUARE_FACTOR: f64 = 10.0;
 /// Maximum number of panels of a step that resolves all transients: enough to locate three jumps of the quantity.
 const MAX_PANELS: usize = 128;
 
-/// Height of a peak between the points of a polynomial that may stay hidden, relative to the largest magnitude of the
-/// quantity for a maximum and to the root mean square for the other.
-const MAX_HIDDEN_FRACTIONS: [f64; 2] = [1e-3, 0.25];
+/// Largest peak between the points of a polynomial that a maximum may miss, relative to the largest magnitude.
+const MAX_HIDDEN_PEAK_FRACTION: f64 = 1e-3;
+
+/// The same for a root mean square, relative to it.
+const MAX_HIDDEN_RMS_FRACTION: f64 = 0.25;
 
 /// Maximum number of divisions by bounds of a step, per panel that polynomials would resolve without them.
 const MAX_DIVISIONS_PER_PANEL: usize = 16;
@@ -189,19 +191,19 @@ impl Meter {
         bound: &Enclosure,
     ) -> bool {
         let (low, high) = bound_between(panel, bound);
-        let (least, greatest) = polynomial.range();
+        let own = polynomial.bounds();
         let rounding = ROUNDING * self.measurement.typical_size;
         match self.measurement.statistic {
             Statistic::Maximum => {
-                let reached = self.greatest.map_or(greatest, |most| most.max(greatest));
-                high > reached + MAX_HIDDEN_FRACTIONS[0] * self.size + rounding
+                let reached = self.greatest.map_or(own.high, |most| most.max(own.high));
+                high > reached + MAX_HIDDEN_PEAK_FRACTION * self.size + rounding
             }
             Statistic::RootMeanSquare => {
                 let length = panel.to - panel.from;
-                let own = polynomial.mean_square();
-                let mean = (self.square_integral + own * length) / (self.duration + length);
-                let hidden = MAX_HIDDEN_FRACTIONS[1] * own.max(mean).sqrt() + rounding;
-                high > greatest + hidden || low < least - hidden
+                let square = polynomial.mean_square();
+                let mean = (self.square_integral + square * length) / (self.duration + length);
+                let hidden = MAX_HIDDEN_RMS_FRACTION * square.max(mean).sqrt() + rounding;
+                high > own.high + hidden || low < own.low - hidden
             }
         }
     }
@@ -289,7 +291,7 @@ impl Meter {
             let found = quantity.value(panel.from + part * length);
             found.is_none_or(|found| {
                 let difference = (found - polynomial.value(part)).abs();
-                difference <= MAX_HIDDEN_FRACTIONS[0] * self.size
+                difference <= MAX_HIDDEN_PEAK_FRACTION * self.size
             })
         })
     }
@@ -326,11 +328,14 @@ impl Meter {
         match self.measurement.statistic {
             Statistic::RootMeanSquare => self.add_square(polynomial.mean_square(), length),
             Statistic::Maximum => {
-                let (bound, part) = polynomial.bound();
-                if self.greatest.is_some_and(|greatest| bound <= greatest) {
+                let bounds = polynomial.bounds();
+                if self
+                    .greatest
+                    .is_some_and(|greatest| bounds.high <= greatest)
+                {
                     return;
                 }
-                let place = polynomial.maximum_near(part);
+                let place = polynomial.maximum_near(bounds.largest_place);
                 if self
                     .greatest
                     .is_none_or(|greatest| polynomial.value(place) > greatest)

@@ -6,7 +6,7 @@ use super::meter::Meter;
 use super::step_quantities::{Observables, QuantityCache, StepQuantities};
 use super::{Measurement, Quantity};
 
-/// Meters of a motion. Each measures as if it were alone.
+/// Meters of a motion. The result of each does not depend on the others.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meters {
     meters: Vec<Meter>,

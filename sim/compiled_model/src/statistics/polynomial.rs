@@ -46,6 +46,14 @@ pub(super) fn chebyshev_point(index: usize, degree: usize) -> f64 {
     0.5 * (1.0 - cosine(index, degree))
 }
 
+/// Bounds of a polynomial over its panel.
+pub(super) struct Bounds {
+    pub low: f64,
+    pub high: f64,
+    /// Place of the largest value of a grid, as a part of the panel.
+    pub largest_place: f64,
+}
+
 /// Polynomial over a panel.
 pub(super) struct Polynomial {
     /// Coefficients of the Chebyshev polynomials.
@@ -149,16 +157,13 @@ impl Polynomial {
         error * (2.0 * products.sum::<f64>() + error)
     }
 
-    /// Returns bounds of the values over the panel.
-    pub fn range(&self) -> (f64, f64) {
-        let negative = Self {
-            coefficients: self.coefficients.iter().map(|own| -own).collect(),
-        };
-        (-negative.bound().0, self.bound().0)
+    /// Drops the terms above a degree.
+    pub fn truncate(&mut self, degree: usize) {
+        self.coefficients.truncate(degree + 1);
     }
 
-    /// Returns a bound of the values over the panel, and the place of the largest value of a grid.
-    pub fn bound(&self) -> (f64, f64) {
+    /// Returns bounds of the values over the panel.
+    pub fn bounds(&self) -> Bounds {
         let points = GRID_POINTS_PER_DEGREE * self.degree();
         let mut greatest = (f64::NEG_INFINITY, 0.0);
         let mut least = f64::INFINITY;
@@ -172,8 +177,12 @@ impl Polynomial {
         }
         // H. Ehlich and K. Zeller, Math. Z. 86 (1964): the excess over such a grid is bounded.
         let excess = 1.0 / (0.5 * PI / GRID_POINTS_PER_DEGREE as f64).cos() - 1.0;
-        let amplitude = 0.5 * (greatest.0 - least);
-        (greatest.0 + excess * amplitude, greatest.1)
+        let margin = excess * 0.5 * (greatest.0 - least);
+        Bounds {
+            low: least - margin,
+            high: greatest.0 + margin,
+            largest_place: greatest.1,
+        }
     }
 
     /// Returns the place of the maximum next to a point of the grid.
@@ -256,8 +265,12 @@ mod tests {
         for phase in 0..40 {
             let function = |s: f64| (5.0 * s + 0.2 * f64::from(phase)).sin();
             let polynomial = interpolate(16, function);
-            let (bound, part) = polynomial.bound();
-            let found = polynomial.value(polynomial.maximum_near(part));
+            let Bounds {
+                high: bound,
+                largest_place,
+                ..
+            } = polynomial.bounds();
+            let found = polynomial.value(polynomial.maximum_near(largest_place));
             let grid = (0..=100_000).map(|k| polynomial.value(1e-5 * f64::from(k)));
             let expected = grid.fold(f64::NEG_INFINITY, f64::max);
             assert!(

@@ -7,46 +7,53 @@ use std::sync::LazyLock;
 
 use eomgen_codegen::program::evaluator::{DEGREE, Enclosure};
 use eomgen_model_spec::interval::Interval;
+use eomgen_sim::ode::BernsteinBasis;
 
 use super::polynomial::{Polynomial, chebyshev_point};
 
 /// Degree of the interpolation of states.
 pub(super) const STATE_DEGREE: usize = DEGREE + 1;
 
-/// Bernstein control points of the Chebyshev polynomials up to [`DEGREE`], raised to that degree.
-static CONTROLS: LazyLock<[[f64; DEGREE + 1]; DEGREE + 1]> =
-    LazyLock::new(|| std::array::from_fn(|order| raise(&chebyshev_controls(order))));
+static BASIS: LazyLock<BernsteinBasis> = LazyLock::new(BernsteinBasis::new);
 
 /// Returns the bounds of the states over a panel of a length (s). `states` has the states at the Chebyshev points of
 /// [`STATE_DEGREE`], and `degrees` is the number of coordinates, whose rates follow them in the state.
 pub(super) fn bound_states(states: &[Vec<f64>], degrees: usize, length: f64) -> Vec<Enclosure> {
     let count = states.first().map_or(0, Vec::len);
     let column = |place: usize| -> Vec<f64> { states.iter().map(|state| state[place]).collect() };
-    let bound = |place: usize| {
-        let polynomial = Polynomial::through(&column(place));
-        let coefficients = polynomial.coefficients();
-        let mut error: f64 = coefficients[DEGREE..].iter().map(|entry| entry.abs()).sum();
-        if place < degrees {
-            let rates = column(degrees + place).into_iter().enumerate();
-            let differences = rates.map(|(index, rate)| {
-                let part = chebyshev_point(index, STATE_DEGREE);
-                (polynomial.derivative(part) - rate * length).abs()
-            });
-            // A term of degree n with this error of the derivative is n times smaller, at least.
-            error = error.max(differences.fold(0.0, f64::max) / STATE_DEGREE as f64);
+    let polynomials = (0..count).map(|place| Polynomial::through(&column(place)));
+    let mut polynomials: Vec<Polynomial> = polynomials.collect();
+    let error = |(place, polynomial): (usize, &Polynomial)| {
+        let last: f64 = polynomial.coefficients()[DEGREE..]
+            .iter()
+            .map(|entry| entry.abs())
+            .sum();
+        if place >= degrees {
+            return last;
         }
-        let mut controls = [0.0; DEGREE + 1];
-        for (coefficient, own) in coefficients.iter().zip(&*CONTROLS) {
-            for (control, part) in controls.iter_mut().zip(own) {
-                *control += coefficient * part;
-            }
-        }
+        let rates = column(degrees + place).into_iter().enumerate();
+        let differences = rates.map(|(index, rate)| {
+            let part = chebyshev_point(index, STATE_DEGREE);
+            (polynomial.derivative(part) - rate * length).abs()
+        });
+        // A term of degree n with this error of the derivative is n times smaller, at least.
+        last.max(differences.fold(0.0, f64::max) / STATE_DEGREE as f64)
+    };
+    let errors: Vec<f64> = polynomials.iter().enumerate().map(error).collect();
+    for polynomial in &mut polynomials {
+        polynomial.truncate(DEGREE);
+    }
+    let at = |part: f64| -> Vec<f64> { polynomials.iter().map(|own| own.value(part)).collect() };
+    let mut bounds = Vec::with_capacity(count);
+    if let Some(piece) = BASIS.fit((&at(0.0), &at(1.0)), |part| Some(at(part))) {
+        piece.bound(length, &mut bounds);
+    }
+    let with_rest = |(bound, error): (Enclosure, f64)| {
         // Markov's inequality bounds the rate of the rest.
         let rate = 2.0 * (STATE_DEGREE * STATE_DEGREE) as f64 * error / length;
-        let rest = Enclosure::from_bounds(symmetric(error), symmetric(rate));
-        Enclosure::polynomial(controls, length).add_enclosure(rest)
+        bound.add_enclosure(Enclosure::from_bounds(symmetric(error), symmetric(rate)))
     };
-    (0..count).map(bound).collect()
+    bounds.into_iter().zip(errors).map(with_rest).collect()
 }
 
 fn symmetric(size: f64) -> Interval {
@@ -54,39 +61,6 @@ fn symmetric(size: f64) -> Interval {
         low: -size,
         high: size,
     }
-}
-
-/// Returns the Bernstein control points of a Chebyshev polynomial over a panel, in its own degree.
-fn chebyshev_controls(order: usize) -> Vec<f64> {
-    let control = |place: usize| {
-        let sign = if (order - place).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
-        sign * binomial(2 * order, 2 * place) / binomial(order, place)
-    };
-    (0..=order).map(control).collect()
-}
-
-/// Raises the degree of a Bernstein polynomial to [`DEGREE`].
-fn raise(controls: &[f64]) -> [f64; DEGREE + 1] {
-    let mut raised = controls.to_vec();
-    while raised.len() <= DEGREE {
-        let degree = raised.len();
-        let point = |place: usize| {
-            let part = place as f64 / degree as f64;
-            let before = if place == 0 { 0.0 } else { raised[place - 1] };
-            let own = raised.get(place).copied().unwrap_or(0.0);
-            part * before + (1.0 - part) * own
-        };
-        raised = (0..=degree).map(point).collect();
-    }
-    std::array::from_fn(|place| raised[place])
-}
-
-fn binomial(n: usize, k: usize) -> f64 {
-    (0..k).fold(1.0, |choices, j| choices * (n - j) as f64 / (j + 1) as f64)
 }
 
 #[cfg(test)]
