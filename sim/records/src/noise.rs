@@ -25,21 +25,24 @@ pub fn estimate_noise(column: &[f64]) -> Option<f64> {
         let n = order as f64;
         variance *= 2.0 * (2.0 * n - 1.0) / n;
         if DIFFERENCE_ORDERS.contains(&order)
-            && let Some(median) = median_magnitude(&differences)
+            && let Some(noise) = noise_of_differences(&differences, variance)
         {
-            least = least.min(median / NORMAL_MEDIAN / f64::sqrt(variance));
+            least = least.min(noise);
         }
     }
     let found = least.max(resolution(column)? / f64::sqrt(12.0));
     (found > 0.0 && found.is_finite()).then_some(found)
 }
 
-fn median_magnitude(differences: &[f64]) -> Option<f64> {
+/// Returns the standard deviation of white noise, robust against outliers, from differences that have this variance at a
+/// standard deviation of 1; `None` without known differences.
+pub(crate) fn noise_of_differences(differences: &[f64], variance: f64) -> Option<f64> {
     let known = differences
         .iter()
         .map(|d| d.abs())
         .filter(|d| d.is_finite());
-    median(&known.collect::<Vec<f64>>())
+    let median = median(&known.collect::<Vec<f64>>())?;
+    Some(median / NORMAL_MEDIAN / variance.sqrt())
 }
 
 fn resolution(column: &[f64]) -> Option<f64> {

@@ -3,12 +3,13 @@
 //! A wrong sample changes the fourth differences by its error times 1, -4, 6, -4, 1; those of a smooth motion with a step
 //! or a kink have other patterns (F. B. Hildebrand, *Introduction to Numerical Analysis*, 4.9).
 
+use crate::noise::noise_of_differences;
 use crate::samples::{MAX_JITTER_FRACTION, typical_step};
 
 /// Fourth differences of an error of 1 in one sample.
 const PATTERN: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 
-/// Sum of the squares of [`PATTERN`].
+/// Sum of the squares of [`PATTERN`], the variance of fourth differences of white noise.
 const PATTERN_SQUARE: f64 = 70.0;
 
 /// Smallest error of a wrong sample, relative to the noise. White noise reaches 7 in 1e12 samples.
@@ -16,9 +17,6 @@ const MIN_ERROR_OVER_NOISE: f64 = 30.0;
 
 /// Largest part of the fourth differences that the pattern may leave, relative to its error. A step leaves 2.
 const MAX_REST_FRACTION: f64 = 0.2;
-
-/// Standard deviation of white noise over the median of its magnitude.
-const DEVIATION_OVER_MEDIAN: f64 = 1.4826;
 
 /// Wrong sample of a column.
 pub(crate) struct Outlier {
@@ -44,15 +42,10 @@ pub(crate) fn find_outliers(times: &[f64], column: &[f64], noise: f64) -> Vec<Ou
                 .sum()
         })
         .collect();
-    let mut sizes: Vec<f64> = differences.iter().map(|own| own.abs()).collect();
-    sizes.retain(|size| size.is_finite());
-    if sizes.is_empty() {
+    let Some(own_noise) = noise_of_differences(&differences, PATTERN_SQUARE) else {
         return Vec::new();
-    }
-    let middle = sizes.len() / 2;
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    let deviation = DEVIATION_OVER_MEDIAN * *median / PATTERN_SQUARE.sqrt();
-    let least = MIN_ERROR_OVER_NOISE * noise.max(deviation);
+    };
+    let least = MIN_ERROR_OVER_NOISE * noise.max(own_noise);
     let outlier = |(first, part): (usize, &[f64])| {
         let pairs = || part.iter().zip(PATTERN);
         let error = pairs().map(|(own, factor)| own * factor).sum::<f64>() / PATTERN_SQUARE;
