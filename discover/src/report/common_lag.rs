@@ -1,9 +1,9 @@
-//! Check for a lag of the drive that a lag of the sensors would imitate.
+//! Check for a lag of the drive that could also be a lag of the sensors.
 
 use crate::fit::fit_result::Fit;
 use crate::search::search_result::AcceptedEffect;
 
-/// Effect whose transfer function stands before the machine.
+/// Effect of a drive with a first-order lag.
 const LAG: &str = "input_lag";
 
 /// Returns a note if a lag of the only input was found in a linear model: the same low-pass behind the machine has the

@@ -11,7 +11,7 @@ use crate::model::unknowns::{UnknownKind, list_sensor_unknowns};
 use crate::report::quantity::format_quantity;
 
 /// Least distance of a first sample from the stated value, in standard deviations of noise and
-/// sensor, that counts as a contradiction. Noise alone exceeds it once in 500 million samples.
+/// sensor, that counts as a contradiction. Normal noise exceeds it in one of 500 million samples.
 const MIN_CONTRADICTION: f64 = 6.0;
 
 /// Describes the channels whose first sample contradicts the initial state that the dataset states

@@ -42,7 +42,7 @@ impl Contacts {
         normal.chain(slips).sum()
     }
 
-    /// Returns true if an impulse at this contact does no work beside its losses.
+    /// Returns true if an impulse at this contact does no work except its losses.
     pub(super) fn is_workless(&self, place: usize) -> bool {
         self.at[place].workless_rate == 0.0 && self.workless_slip(place) == 0.0
     }

@@ -14,7 +14,7 @@ use eomgen_tests::program::{run_accepted, run_rejected, text};
 /// Version of acados with its Python interface and its own CasADi.
 const PACKAGE: &str = "comma-deps-acados==0.2.2.post92";
 
-/// acados in an environment of its own.
+/// Virtual environment with acados.
 struct Acados {
     python: PathBuf,
     root: PathBuf,
