@@ -1,6 +1,6 @@
 //! Warnings and JSON of the energy audit in `simulate`.
 
-use eomgen_compiled_model::{Audit, Instance, Motion, Overlap};
+use eomgen_compiled_model::{Audit, Imbalance, Instance, Motion, Overlap};
 use serde_json::{Value, json};
 
 use crate::error::{Result, warn};
@@ -21,7 +21,7 @@ impl<'m> AuditResult<'m> {
     }
 
     pub fn has_failed(&self) -> bool {
-        self.overlap.is_some() || self.audit.is_some_and(|audit| audit.fault_count > 0)
+        self.overlap.is_some() || self.audit.is_some_and(Audit::has_failed)
     }
 
     pub fn warn(&self) {
@@ -46,9 +46,7 @@ impl<'m> AuditResult<'m> {
                 "tolerance": overlap.tolerance,
             })
         });
-        let largest = audit
-            .largest_fault
-            .map(|fault| json!({ "t": fault.t, "size": fault.energy_gain, "tolerance": fault.tolerance }));
+        let imbalance = |fault: Imbalance| json!({ "t": fault.t, "size": fault.energy_gain, "tolerance": fault.tolerance });
         json!({
             "energy_change": audit.energy_change,
             "work": audit.work,
@@ -56,7 +54,8 @@ impl<'m> AuditResult<'m> {
             "unchecked": audit.unaudited_energy,
             "residual": audit.unexplained_energy(),
             "faults": audit.fault_count,
-            "largest_fault": largest,
+            "largest_fault": audit.largest_fault.map(imbalance),
+            "drift": audit.drift.map(imbalance),
             "overlap": overlap,
             "not_applicable": audit.exclusion_reason,
             "evaluations": audit.evaluations,

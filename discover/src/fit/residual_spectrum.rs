@@ -16,10 +16,19 @@ const MIN_SAMPLES: usize = 16;
 /// Peak of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpectralPeak {
-    /// Line at this frequency, Hz.
-    Frequency(f64),
+    /// Line of the spectrum.
+    Line(SpectralLine),
     /// Most of the power is below a few periods per window.
     BelowResolution,
+}
+
+/// Frequency of a line of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralLine {
+    /// Frequency, interpolated between the values of the spectrum, Hz.
+    pub frequency: f64,
+    /// Distance of these values, Hz.
+    pub resolution: f64,
 }
 
 /// Returns the peak frequency of the residual of the channel with the largest residual, Hz; `None`
@@ -28,7 +37,7 @@ pub fn find_peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option
     let sizes = &fit.train.normalised_rms;
     let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
     match find_training_peak(problem, fit, worst)? {
-        SpectralPeak::Frequency(frequency) => Some(frequency),
+        SpectralPeak::Line(line) => Some(line.frequency),
         SpectralPeak::BelowResolution => None,
     }
 }
@@ -123,7 +132,28 @@ fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     match peak < thresholds::FIRST_SPECTRAL_LINE {
         _ if !stands_out => None,
         true => Some(SpectralPeak::BelowResolution),
-        false => Some(SpectralPeak::Frequency(spectrum.frequency[peak])),
+        false => Some(SpectralPeak::Line(interpolate_line(spectrum, peak))),
+    }
+}
+
+/// Returns the frequency of a sine from its largest density, at `peak`, and the larger one beside it. Under Hann's
+/// window the ratio r of their amplitudes gives the distance (2 r - 1)/(r + 1) in frequency steps.
+///
+/// T. Grandke, "Interpolation algorithms for discrete Fourier transforms of weighted signals", IEEE Trans. Instrum.
+/// Meas. 32 (1983) 350-355.
+fn interpolate_line(spectrum: &PowerSpectrum, peak: usize) -> SpectralLine {
+    let density = &spectrum.density;
+    let resolution = spectrum.frequency[1] - spectrum.frequency[0];
+    let after = density.get(peak + 1).copied().unwrap_or(0.0);
+    let (side, beside) = match after > density[peak - 1] {
+        true => (1.0, after),
+        false => (-1.0, density[peak - 1]),
+    };
+    let ratio = (beside / density[peak]).sqrt();
+    let shift = side * (2.0 * ratio - 1.0) / (ratio + 1.0);
+    SpectralLine {
+        frequency: (peak as f64 + shift) * resolution,
+        resolution,
     }
 }
 
@@ -181,21 +211,41 @@ mod tests {
         }
     }
 
+    fn find_line(samples: usize, count: usize, of: impl Fn(f64, f64) -> f64) -> SpectralLine {
+        match find_peak_of(samples, count, of) {
+            Some(SpectralPeak::Line(line)) => line,
+            other => panic!("{samples} samples: {other:?}"),
+        }
+    }
+
     #[test]
     fn a_line_is_found_in_noise_and_beside_a_drift_and_noise_has_none() {
         let line =
             |t: f64, inside: f64| (std::f64::consts::TAU * 7.0 * t).sin() + 0.3 * inside + noise(t);
         for samples in [100, 200, 400] {
-            let Some(SpectralPeak::Frequency(frequency)) = find_peak_of(samples, 8, line) else {
-                panic!("{samples}: no line");
-            };
+            let found = find_line(samples, 8, line);
+            assert!(found.resolution < 1.2 / (STEP * samples as f64));
             assert!(
-                (frequency - 7.0).abs() < 1.0 / (STEP * samples as f64),
-                "{frequency}"
+                (found.frequency - 7.0).abs() < 0.2 * found.resolution,
+                "{found:?}"
             );
         }
         for count in [1, 8, 40] {
             assert_eq!(find_peak_of(200, count, |t, _| noise(t)), None, "{count}");
+        }
+    }
+
+    #[test]
+    fn frequencies_between_the_values_of_the_spectrum_are_interpolated() {
+        for periods in [3.4, 3.5, 4.0, 5.25, 11.7, 30.49] {
+            let resolution = 1.0 / (STEP * 200.0);
+            let frequency = periods * resolution;
+            let sine = |t: f64, _: f64| (std::f64::consts::TAU * frequency * t + 0.4).cos();
+            let found = find_line(200, 8, sine).frequency;
+            assert!(
+                (found - frequency).abs() < 0.1 * resolution,
+                "{periods} periods: {found} Hz instead of {frequency} Hz"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Sentences on the difference between model and records: channel, time, speed and frequency.
 
 use crate::fit::fit_result::Fit;
-use crate::fit::residual_spectrum::{SpectralPeak, find_training_peak};
+use crate::fit::residual_spectrum::{SpectralLine, SpectralPeak, find_training_peak};
 use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::differentiate_column;
@@ -58,8 +58,12 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         text += &more;
     }
     match find_training_peak(problem, fit, worst) {
-        Some(SpectralPeak::Frequency(frequency)) => {
-            text += &format!(" Its spectrum has a peak at {frequency:.3} Hz.");
+        Some(SpectralPeak::Line(line)) => {
+            text += &format!(
+                " Its spectrum has a peak at {} Hz; the windows separate frequencies {} Hz apart.",
+                format_to_resolution(line),
+                format_number(line.resolution, 2)
+            );
         }
         Some(SpectralPeak::BelowResolution) => {
             text += " Most of it is below the frequency resolution of windows of this length.";
@@ -67,6 +71,12 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         None => {}
     }
     text
+}
+
+/// Formats the frequency of a line with decimals down to a tenth of the resolution.
+fn format_to_resolution(line: SpectralLine) -> String {
+    let decimals = (1.0 - line.resolution.log10()).ceil().clamp(0.0, 9.0) as usize;
+    format!("{:.decimals$}", line.frequency)
 }
 
 /// Returns the training window with the largest residuals; `None` if there is only one window.

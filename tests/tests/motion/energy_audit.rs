@@ -153,6 +153,42 @@ fn energy_is_conserved_or_a_warning_is_given() {
 }
 
 #[test]
+fn energy_that_errors_of_loose_tolerances_add_up_gives_a_warning() {
+    for (k, amplitude) in [(400.0, 0.15), (4.0, 2.0), (4e6, 1e-3)] {
+        let text = format!(
+            r#"
+[model]
+name = "hardening"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = {k}, unit = "N/m" }}
+a = {{ value = {amplitude}, unit = "m" }}
+[coordinates]
+x = {{ unit = "m", initial = "a" }}
+[kinetic]
+t = "1/2*m*dot(x)^2"
+[potential]
+v = "1/2*k*x^2 + 1/4*k*x^4/a^2"
+"#
+        );
+        let energy = 0.75 * k * amplitude * amplitude;
+        let until = 300.0 / f64::sqrt(k);
+        for solver in [Solver::Rk, Solver::Radau, Solver::Adams] {
+            let [loose, tight] =
+                [3e-2, 1e-7].map(|tolerance| audit_of_text(&text, until, solver, tolerance));
+            assert!(loose.unexplained_energy().abs() > 0.1 * energy, "{loose:?}");
+            assert!(loose.has_failed(), "{solver}, {k} N/m: {loose:?}");
+            assert!(loose.warning_message().is_some());
+            assert!(
+                tight.unexplained_energy().abs() < 1e-2 * energy,
+                "{tight:?}"
+            );
+            assert!(!tight.has_failed(), "{solver}, {k} N/m: {tight:?}");
+        }
+    }
+}
+
+#[test]
 fn losses_at_impacts_are_accounted_for() {
     for solver in [Solver::Rk, Solver::Radau] {
         let audit = audit_of_text(BALL, 5.0, solver, 1e-9);

@@ -26,6 +26,10 @@ const MAX_BALANCED_PANELS: usize = 512;
 /// Maximum number of panels of a quadrature whose states need a step each.
 const MAX_RESOLVED_PANELS: usize = 16;
 
+/// Relative error of every entry of the state whose energy change limits the sum of the differences. A larger one
+/// invalidates the motion, even if the tolerance allows each difference.
+const MAX_DRIFT_ERROR: f64 = 1e-2;
+
 /// Rounding of an energy, relative to its magnitude.
 const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -48,8 +52,12 @@ pub(crate) struct Auditor {
     is_exact: bool,
     /// Reason why contacts are not audited; `None` if they are.
     driven_contacts: Option<String>,
-    /// Largest magnitude of each entry of the state.
+    /// Largest magnitude of each entry of the state, raised to that at which the tolerance allows known errors.
     sizes: Vec<f64>,
+    /// Largest magnitude of each entry of the state.
+    magnitudes: Vec<f64>,
+    /// Largest sum of the differences that is not examined, J.
+    drift_limit: f64,
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
     /// Power at the end of the last step, W.
@@ -83,14 +91,17 @@ impl Auditor {
         typical_sizes: &[f64],
         driven_contacts: Option<String>,
     ) -> Self {
+        let unmoved = typical_sizes
+            .iter()
+            .map(|size| UNMOVED_SIZE_FRACTION * size);
+        let magnitudes: Vec<f64> = unmoved.collect();
         Self {
             tolerance: tolerance.unwrap_or(EXACT_TOLERANCE),
             is_exact: tolerance.is_none(),
             driven_contacts,
-            sizes: typical_sizes
-                .iter()
-                .map(|size| UNMOVED_SIZE_FRACTION * size)
-                .collect(),
+            sizes: magnitudes.clone(),
+            magnitudes,
+            drift_limit: 0.0,
             energy: None,
             power: 0.0,
             pending_energy: 0.0,
@@ -194,6 +205,31 @@ impl Auditor {
         }
         self.audit.energy_change += change;
         self.audit.work += work;
+        self.check_drift(end, energies);
+    }
+
+    /// Records the first sum of the differences that is too large for the motion to be right.
+    fn check_drift(&mut self, (t, state): (f64, &[f64]), energies: &mut Energies<'_>) {
+        let drift = self.audit.unexplained_energy();
+        let is_small = |limit: f64| drift.is_nan() || drift.abs() <= limit;
+        if self.audit.drift.is_some() || is_small(self.drift_limit) {
+            return;
+        }
+        let error = MAX_DRIFT_ERROR.max(self.tolerance);
+        let mut evaluations = 0;
+        let limit = find_allowed_change(state, &self.magnitudes, error, &mut |state| {
+            evaluations += 1;
+            energies(t, state).energy
+        });
+        self.audit.evaluations += evaluations;
+        self.drift_limit = self.drift_limit.max(limit);
+        if !is_small(self.drift_limit) {
+            self.audit.drift = Some(Imbalance {
+                t,
+                energy_gain: drift,
+                tolerance: self.drift_limit,
+            });
+        }
     }
 
     /// Excludes an energy change (J) from the audit, for a reason.
@@ -415,8 +451,10 @@ impl Auditor {
     }
 
     fn raise_sizes(&mut self, state: &[f64]) {
-        for (size, entry) in self.sizes.iter_mut().zip(state) {
+        let magnitudes = self.sizes.iter_mut().zip(&mut self.magnitudes);
+        for ((size, magnitude), entry) in magnitudes.zip(state) {
             *size = size.max(entry.abs());
+            *magnitude = magnitude.max(entry.abs());
         }
     }
 

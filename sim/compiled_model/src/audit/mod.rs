@@ -61,6 +61,8 @@ pub struct Audit {
     pub first_fault: Option<Imbalance>,
     /// Largest fault.
     pub largest_fault: Option<Imbalance>,
+    /// First sum of the differences of all steps that no right motion has, even if the tolerance allows each of them.
+    pub drift: Option<Imbalance>,
     /// Number of evaluations of energy and power.
     pub evaluations: u64,
     /// Reason why part of the motion was not audited; `None` if all was.
@@ -84,18 +86,18 @@ impl Audit {
         self.energy_change - self.work - self.impact_energy - self.unaudited_energy
     }
 
+    /// Returns true if the energy changed without work.
+    pub fn has_failed(&self) -> bool {
+        self.fault_count > 0 || self.drift.is_some()
+    }
+
     /// Returns a warning about the first unexplained change of the energy, if there is one.
     pub fn warning_message(&self) -> Option<String> {
-        let Imbalance {
-            t,
-            energy_gain: size,
-            tolerance,
-        } = self.first_fault?;
-        let (verb, size) = if size < 0.0 {
-            ("loses", -size)
-        } else {
-            ("gains", size)
+        let Some(fault) = self.first_fault else {
+            return self.drift.map(Imbalance::describe_drift);
         };
+        let (verb, size) = fault.verb_and_size();
+        let Imbalance { t, tolerance, .. } = fault;
         let more = match self.fault_count {
             1 => String::new(),
             count => format!(
@@ -116,5 +118,24 @@ impl Audit {
         if found.energy_gain.abs() > largest.energy_gain.abs() {
             *largest = found;
         }
+    }
+}
+
+impl Imbalance {
+    fn verb_and_size(self) -> (&'static str, f64) {
+        let verb = match self.energy_gain < 0.0 {
+            true => "loses",
+            false => "gains",
+        };
+        (verb, self.energy_gain.abs())
+    }
+
+    fn describe_drift(self) -> String {
+        let (verb, size) = self.verb_and_size();
+        format!(
+            "the motion {verb} {size:.4e} J without work until t = {} s, by errors of the solver that its tolerance \
+             allows in each step: reduce the tolerance",
+            self.t
+        )
     }
 }
