@@ -113,7 +113,7 @@ pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Di
     let values = model
         .parameter_values()
         .map_err(|error| error.diagnostic())?;
-    let equations = derive(model, orders).map_err(DeriveError::diagnostic)?;
+    let mut equations = derive(model, orders).map_err(DeriveError::diagnostic)?;
     check_signs(model, &equations.graph, &equations.residuals, &values)?;
     let Some(program) = constraint_program(model, &equations, &values) else {
         return Ok(equations);
@@ -121,7 +121,10 @@ pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Di
     let residuals = residual_places(model, &program);
     let redundancy = find_redundancy(model, orders, &mut ConstraintRows::new(program, residuals))?;
     match redundancy.groups.is_empty() {
-        true => Ok(equations),
+        true => {
+            equations.redundancy = redundancy;
+            Ok(equations)
+        }
         false => {
             derive_with_redundancy(model, orders, &redundancy).map_err(DeriveError::diagnostic)
         }

@@ -2,6 +2,8 @@
 //! determined, its multipliers are not. Several states are tested, because at a singular position more constraints
 //! depend on each other. Constraints that contradict each other or have no effect are rejected.
 
+use std::collections::BTreeSet;
+
 use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::model::{Constraint, Model};
 use eomgen_model_spec::variant::ModelError;
@@ -64,18 +66,31 @@ pub(crate) fn find_redundancy(
         rows,
         inputs,
     };
-    let mut found = search.dependence(state);
+    // Rows that vanish at the initial state have their lengths elsewhere.
+    search.move_state(state, 0);
+    let initial = search.dependence(state);
+    let mut found = initial.clone();
     for seed in 0..OTHER_STATES {
         if found.combinations.is_empty() {
             break;
         }
         let moved = search.move_state(state, seed);
         let other = search.dependence(&moved);
-        if other.combinations.len() <= found.combinations.len() {
+        let counts = [&other, &found].map(|one| one.combinations.len());
+        let is_closer = search.size(&other) < search.size(&found);
+        if counts[0] < counts[1] || counts[0] == counts[1] && is_closer {
             found = other;
         }
     }
-    found.redundancy(model, &search.largest)
+    let groups = found.find_groups(model, &search.largest)?;
+    let is_singular = initial.combinations.len() > found.combinations.len();
+    Ok(Redundancy {
+        groups,
+        singular_start: match is_singular {
+            true => initial.members(),
+            false => Vec::new(),
+        },
+    })
 }
 
 struct Search<'s> {
@@ -89,11 +104,13 @@ struct Search<'s> {
 }
 
 /// Combinations of constraints whose derivatives are zero at the nearest state that satisfies them.
+#[derive(Clone)]
 struct Dependence {
     combinations: Vec<Combination>,
     residuals: Vec<f64>,
 }
 
+#[derive(Clone)]
 struct Combination {
     /// Factors of the scaled rows.
     parts: Vec<f64>,
@@ -127,6 +144,15 @@ impl Search<'_> {
             combinations: combinations.collect(),
             residuals: self.rows.residuals(at(&state).point()),
         }
+    }
+
+    /// Returns the norm of the remaining residuals, divided by the largest lengths of the rows so far.
+    fn size(&self, found: &Dependence) -> f64 {
+        let scaled = found.residuals.iter().zip(&self.scales);
+        let scaled: Vec<f64> = scaled
+            .map(|(residual, scale)| residual / positive_or_one(*scale))
+            .collect();
+        norm(&scaled)
     }
 
     /// Returns the rows at `state`, divided by their largest lengths so far.
@@ -181,8 +207,15 @@ fn symmetric(seed: u64, place: u64) -> f64 {
 }
 
 impl Dependence {
+    /// Returns the constraints of all combinations, ascending.
+    fn members(&self) -> Vec<usize> {
+        let all = self.combinations.iter().flat_map(Combination::members);
+        let all: BTreeSet<usize> = all.collect();
+        all.into_iter().collect()
+    }
+
     /// Returns the groups of dependent constraints. `began` are the largest initial residuals.
-    fn redundancy(&self, model: &Model, began: &[f64]) -> Result<Redundancy, Diagnostic> {
+    fn find_groups(&self, model: &Model, began: &[f64]) -> Result<Vec<DependentGroup>, Diagnostic> {
         let mut groups: Vec<DependentGroup> = Vec::new();
         for combination in &self.combinations {
             let members = combination.members();
@@ -209,7 +242,7 @@ impl Dependence {
             });
         }
         groups.sort_by(|a, b| a.constraints.cmp(&b.constraints));
-        Ok(Redundancy { groups })
+        Ok(groups)
     }
 
     /// Returns the error of a combination of these constraints, if they are no redundant ones.

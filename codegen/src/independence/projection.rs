@@ -1,15 +1,33 @@
-//! Projection of a state onto the holonomic constraints by Newton's method, in the metric of the coordinates'
+//! Projection of a state onto the holonomic constraints by least squares, in the metric of the coordinates'
 //! inertias. Damping suppresses the directions in which constraints depend on each other.
 
 use super::geometry::ConstraintGeometry;
-use super::vectors::dot;
+use super::vectors::{dot, norm};
 use crate::program::evaluator::Point;
 
 /// Largest number of Newton steps. If rows depend on each other, a step only halves the residuals.
-const MAX_STEPS: usize = 60;
+const MAX_NEWTON_STEPS: usize = 60;
 
-/// Added to the diagonal of R R^T: directions with scaled rows shorter than its square root do not move.
-const DAMPING: f64 = 1e-12;
+/// Largest number of steps to a minimum of the residuals.
+const MAX_STEPS: usize = 200;
+
+/// Residuals below this fraction of the initial ones are zero; Newton's method halves them in each step if rows
+/// depend on each other.
+const MAX_SOLVED_RESIDUAL: f64 = 1e-6;
+
+/// Least damping, added to the diagonal of R R^T: directions with scaled rows shorter than its square root do not move.
+const MIN_DAMPING: f64 = 1e-12;
+
+/// Factor on the damping after a poor step, and its inverse after a good one.
+const DAMPING_FACTOR: f64 = 10.0;
+
+/// Reductions of the squared residuals, relative to the expected ones, above which a step is good and below which it
+/// is poor.
+const GOOD_REDUCTION: f64 = 0.75;
+const POOR_REDUCTION: f64 = 0.25;
+
+/// Damping at which a step has no effect.
+const MAX_DAMPING: f64 = 1e12;
 
 /// State and inputs at which constraints are evaluated.
 #[derive(Clone, Copy)]
@@ -29,62 +47,158 @@ impl<'p> Place<'p> {
 }
 
 /// Returns the state near `place` with the smallest residuals of the constraints at `holonomic`; `scales` are
-/// the lengths of their rows.
+/// the lengths of their rows. Newton's method finds farther solutions than steps that must reduce the residuals, but
+/// no minimum that is not zero.
 pub(super) fn project(
     rows: &mut dyn ConstraintGeometry,
     place: Place<'_>,
     holonomic: &[usize],
     scales: &[f64],
 ) -> Vec<f64> {
-    let mut state = place.state.to_vec();
-    for _ in 0..MAX_STEPS {
-        let here = Place {
-            state: &state,
-            ..place
-        };
-        let inertia = rows.inertia(here.point());
-        let (all, residuals) = (rows.rows(here.point()), rows.residuals(here.point()));
-        let scaled: Vec<Vec<f64>> = holonomic
-            .iter()
-            .map(|k| all[*k].iter().map(|entry| entry / scales[*k]).collect())
-            .collect();
-        let right = holonomic.iter().map(|k| residuals[*k] / scales[*k]);
-        let Some(factors) = solve(&scaled, right.collect()) else {
-            return state;
-        };
-        let mut moved = false;
-        for (degree, inertia) in inertia.iter().enumerate() {
-            let step: f64 = scaled
-                .iter()
-                .zip(&factors)
-                .map(|(row, f)| row[degree] * f)
-                .sum();
-            let step = step / inertia.sqrt();
-            moved |= step.abs() > f64::EPSILON * state[degree].abs();
-            state[degree] -= step;
+    let mut projection = Projection {
+        rows,
+        inputs: place.inputs,
+        holonomic,
+        scales,
+    };
+    let newton = projection.solve(place.state);
+    let sizes = [place.state, &newton].map(|state| norm(&projection.residuals(state)));
+    if sizes[1] <= MAX_SOLVED_RESIDUAL * sizes[0] {
+        return newton;
+    }
+    let minimum = projection.minimise(place.state);
+    match norm(&projection.residuals(&minimum)) < sizes[1] || sizes[1].is_nan() {
+        true => minimum,
+        false => newton,
+    }
+}
+
+struct Projection<'p> {
+    rows: &'p mut dyn ConstraintGeometry,
+    inputs: &'p [f64],
+    holonomic: &'p [usize],
+    scales: &'p [f64],
+}
+
+/// Directions of steps: scaled rows and inertias of the coordinates.
+struct Directions {
+    rows: Vec<Vec<f64>>,
+    inertia: Vec<f64>,
+}
+
+impl Projection<'_> {
+    /// Newton's method, for dependent rows with the least damping.
+    fn solve(&mut self, from: &[f64]) -> Vec<f64> {
+        let mut state = from.to_vec();
+        for _ in 0..MAX_NEWTON_STEPS {
+            let directions = self.directions(&state);
+            let residuals = self.residuals(&state);
+            let Some(factors) = solve(&directions.rows, residuals, MIN_DAMPING) else {
+                break;
+            };
+            let moved = directions.step(&state, &factors);
+            if moved == state {
+                break;
+            }
+            state = moved;
         }
-        if !moved {
-            break;
+        state
+    }
+
+    /// The damping follows the ratio of the reduction of the squared residuals to that of their linearisation.
+    ///
+    /// D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", J. Soc. Ind. Appl.
+    /// Math. 11 (1963) 431-441.
+    fn minimise(&mut self, from: &[f64]) -> Vec<f64> {
+        let mut state = from.to_vec();
+        let mut residuals = self.residuals(&state);
+        let mut damping = MIN_DAMPING;
+        for _ in 0..MAX_STEPS {
+            let directions = self.directions(&state);
+            loop {
+                let Some(factors) = solve(&directions.rows, residuals.clone(), damping) else {
+                    return state;
+                };
+                let moved = directions.step(&state, &factors);
+                let after = self.residuals(&moved);
+                if norm(&after) < norm(&residuals) {
+                    let reduction = norm(&residuals).powi(2) - norm(&after).powi(2);
+                    // The linearised residuals after the step are the damping times the factors.
+                    let expected = norm(&residuals).powi(2) - (damping * norm(&factors)).powi(2);
+                    if reduction > GOOD_REDUCTION * expected {
+                        damping = MIN_DAMPING.max(damping / DAMPING_FACTOR);
+                    } else if reduction < POOR_REDUCTION * expected {
+                        damping *= DAMPING_FACTOR;
+                    }
+                    (state, residuals) = (moved, after);
+                    break;
+                }
+                damping *= DAMPING_FACTOR;
+                if moved == state || damping > MAX_DAMPING {
+                    return state;
+                }
+            }
+        }
+        state
+    }
+
+    fn directions(&mut self, state: &[f64]) -> Directions {
+        let inputs = self.inputs;
+        let point = Place { state, inputs }.point();
+        let all = self.rows.rows(point);
+        let scaled = (self.holonomic.iter()).map(|k| {
+            all[*k]
+                .iter()
+                .map(|entry| entry / self.scales[*k])
+                .collect()
+        });
+        Directions {
+            rows: scaled.collect(),
+            inertia: self.rows.inertia(point),
         }
     }
-    state
+
+    fn residuals(&mut self, state: &[f64]) -> Vec<f64> {
+        let inputs = self.inputs;
+        let residuals = self.rows.residuals(Place { state, inputs }.point());
+        let scaled = self
+            .holonomic
+            .iter()
+            .map(|k| residuals[*k] / self.scales[*k]);
+        scaled.collect()
+    }
+}
+
+impl Directions {
+    /// Returns the state after the step along the rows with these factors.
+    fn step(&self, state: &[f64], factors: &[f64]) -> Vec<f64> {
+        let entries = state.iter().enumerate();
+        let moved = entries.map(|(place, entry)| match self.inertia.get(place) {
+            Some(inertia) => {
+                let parts = self.rows.iter().zip(factors);
+                entry - parts.map(|(row, f)| row[place] * f).sum::<f64>() / inertia.sqrt()
+            }
+            None => *entry,
+        });
+        moved.collect()
+    }
 }
 
 /// Solves (R R^T + damping) y = right by Cholesky factorisation. Returns None if a number is not finite.
-fn solve(rows: &[Vec<f64>], mut right: Vec<f64>) -> Option<Vec<f64>> {
+fn solve(rows: &[Vec<f64>], mut right: Vec<f64>, damping: f64) -> Option<Vec<f64>> {
     let count = rows.len();
     let mut lower = vec![vec![0.0; count]; count];
     for row in 0..count {
         for column in 0..=row {
             let known = dot(&lower[row][..column], &lower[column][..column]);
-            let damping = if row == column { DAMPING } else { 0.0 };
-            let rest = dot(&rows[row], &rows[column]) + damping - known;
+            let added = if row == column { damping } else { 0.0 };
+            let rest = dot(&rows[row], &rows[column]) + added - known;
             if !rest.is_finite() {
                 return None;
             }
             lower[row][column] = match row == column {
                 // Rounding can make the pivot smaller than the damping.
-                true => rest.max(DAMPING).sqrt(),
+                true => rest.max(damping).sqrt(),
                 false => rest / lower[column][column],
             };
         }

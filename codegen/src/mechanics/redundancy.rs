@@ -9,6 +9,8 @@ use eomgen_model_spec::model::Model;
 pub struct Redundancy {
     /// Groups of constraints that depend on each other, each ascending.
     pub groups: Vec<DependentGroup>,
+    /// Indices of the constraints that depend on each other, or have no effect, at the initial state only; ascending.
+    pub singular_start: Vec<usize>,
 }
 
 /// Constraints that depend on each other.
@@ -34,10 +36,23 @@ impl Redundancy {
         self.groups.iter().map(|group| group.rank).sum()
     }
 
-    /// Returns a note about each group.
+    /// Returns a note about each group and about a singular initial state.
     pub fn describe(&self, model: &Model) -> Vec<String> {
         let groups = self.groups.iter();
-        groups.map(|group| group.describe(model)).collect()
+        let groups = groups.map(|group| group.describe(model));
+        groups.chain(self.describe_start(model)).collect()
+    }
+
+    fn describe_start(&self, model: &Model) -> Option<String> {
+        let list = join_names(model, &self.singular_start);
+        let reason = match self.singular_start.as_slice() {
+            [] => return None,
+            [_] => format!("the constraint {list} has no effect there"),
+            _ => format!("the constraints {list} depend on each other there"),
+        };
+        Some(format!(
+            "the initial state is a singular position: {reason}; a motion must start elsewhere (--state)"
+        ))
     }
 
     /// Returns the number of constraints beyond those that are needed.
@@ -46,18 +61,22 @@ impl Redundancy {
     }
 }
 
+fn join_names(model: &Model, constraints: &[usize]) -> String {
+    let names = constraints.iter();
+    let names: Vec<String> = names
+        .map(|place| format!("`{}`", model.constraints[*place].name))
+        .collect();
+    names.join(", ")
+}
+
 impl DependentGroup {
     fn describe(&self, model: &Model) -> String {
-        let names = self.constraints.iter();
-        let names: Vec<String> = names
-            .map(|place| format!("`{}`", model.constraints[*place].name))
-            .collect();
+        let list = join_names(model, &self.constraints);
         let excess = self.constraints.len() - self.rank;
         let verb = if excess == 1 { "is" } else { "are" };
         format!(
-            "the constraints {} depend on each other, and {excess} of them {verb} redundant: the motion is unique, the \
-             multipliers are not; those of least norm are used",
-            names.join(", ")
+            "the constraints {list} depend on each other, and {excess} of them {verb} redundant: the motion is unique, the \
+             multipliers are not; those of least norm are used"
         )
     }
 }

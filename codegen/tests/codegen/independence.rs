@@ -150,6 +150,37 @@ fn constraints_without_a_solution_or_effect_are_rejected_in_every_unit() {
     }
 }
 
+/// Circles of radius l in a plane have a common point if their centres are nearer than 2 l.
+#[test]
+fn circles_without_a_common_point_contradict_each_other() {
+    for (distance, angle) in [
+        (2.2, 0.3),
+        (2.5, -0.9273),
+        (3.0, 0.0),
+        (5.0, 2.0),
+        (20.0, 1.0),
+    ] {
+        for scale in ["1", "1e6", "1e-6"] {
+            let (x, y) = (distance * f64::cos(angle), distance * f64::sin(angle));
+            let circles = |x: f64, y: f64| {
+                format!(
+                    "a = {{ zero = \"x^2 + y^2 - l^2\" }}\n\
+                     b = {{ zero = \"{scale}*((x - {x}*l)^2 + (y - {y}*l)^2 - l^2)/l\" }}"
+                )
+            };
+            let on_the_first =
+                "x = { unit = \"m\", initial = \"l\" }\ny = { unit = \"m\" }\nz = { unit = \"m\" }";
+            for start in [AWAY, on_the_first] {
+                let found = refusal(&bead(start, &circles(x, y)));
+                let found = found.unwrap_or_else(|| panic!("{distance} {angle} {scale}: derived"));
+                assert!(found.contains("`b` contradicts `a`"), "{found}");
+                let part = 1.9 / distance;
+                assert_eq!(refusal(&bead(start, &circles(part * x, part * y))), None);
+            }
+        }
+    }
+}
+
 #[test]
 fn independent_constraints_of_any_scale_are_accepted() {
     for constraints in [

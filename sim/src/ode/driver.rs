@@ -25,6 +25,10 @@ pub(super) const SHORTENED: f64 = 0.2;
 /// More samples than this in a step are many.
 const MANY: usize = 2;
 
+/// Length of the first step after a jump of inputs or of the state, relative to the time to the next output. States inside
+/// a much longer step have the rounding of its end.
+const MAX_STEP_OVER_OUTPUT: f64 = 10.0;
+
 /// Action after a step with an acceptable error.
 pub(super) enum Accepted {
     /// The motion continues from its end.
@@ -52,6 +56,8 @@ pub(super) struct Run<M> {
     pub(super) rebounds: Vec<usize>,
     /// A step that leads beyond the end of a call.
     pending: Option<PendingStep>,
+    /// True if the next step is the first after a jump of inputs or of the state.
+    follows_jump: bool,
 }
 
 /// An accurate step that leads beyond the end of a call. Its surfaces and constraints were examined; its end
@@ -77,6 +83,7 @@ impl<M: Stepper> Run<M> {
             has_roundings: false,
             rebounds: Vec::new(),
             pending: None,
+            follows_jump: false,
         }
     }
 
@@ -95,6 +102,7 @@ impl<M: Stepper> Run<M> {
             self.stepper.take_back();
         }
         self.projected = None;
+        self.follows_jump = true;
         self.stepper.restart(point, step);
     }
 }
@@ -218,11 +226,9 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
         let begin = self.run.stepper.current_point().t;
         let next = system.next_breakpoint(begin).filter(|next| *next > begin);
-        let until = next.map_or(self.end, |next| next.min(self.end));
-        self.until = match self.may_pass {
-            true => next.unwrap_or(f64::INFINITY),
-            false => until,
-        };
+        let farthest = next.unwrap_or(f64::INFINITY).min(self.jump_limit(begin));
+        let until = farthest.min(self.end);
+        self.until = if self.may_pass { farthest } else { until };
         self.watched.limit_time(next.unwrap_or(f64::INFINITY));
         let mut shortened = 0;
         loop {
@@ -250,6 +256,15 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
                 // Rates beyond the end of the call may not exist.
                 self.until = until;
             }
+        }
+    }
+
+    /// Returns the time (s) at which a step from `begin` ends at the latest, if it follows a jump.
+    fn jump_limit(&self, begin: f64) -> f64 {
+        let output = self.next_sample().map_or(self.end, |t| t.min(self.end));
+        match self.run.follows_jump && output > begin {
+            true => begin + MAX_STEP_OVER_OUTPUT * (output - begin),
+            false => f64::INFINITY,
         }
     }
 
@@ -406,6 +421,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
     /// Takes the samples inside a step, replaces its end by the projected state, and enters the regime there.
     fn accept_with(&mut self, step: PendingStep) -> Result<(), SolveError> {
         self.run.stepper.settle(self.run.projected.is_some());
+        self.run.follows_jump = false;
         self.trajectory.statistics.steps += 1;
         self.watched.forget_later_trials();
         let end = self.run.stepper.current_point().clone();
@@ -460,6 +476,7 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         if !self.watched.has_breakpoint_at(here.t) {
             return;
         }
+        self.run.follows_jump = true;
         let mut point = here.clone();
         let is_changed = self.watched.apply_breakpoint(point.t, &mut point.y);
         if is_changed {

@@ -212,6 +212,52 @@ fn inputs_changed_between_calls_act_like_held_inputs() {
     }
 }
 
+/// A mass whose force is constant between its jumps, so that no error estimate limits a step.
+#[test]
+fn steps_without_error_leave_no_rounding_in_states_before_their_end() {
+    let text = "[model]\nname = \"mass\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n[coordinates]\n\
+                x = { unit = \"m\" }\n[inputs]\nu = { unit = \"N\" }\n[kinetic]\nt = \"1/2*m*dot(x)^2\"\n\
+                [forces]\nf = { on = \"x\", value = \"u\" }\n";
+    let compiled = CompiledModel::from_text("mass.toml", text, Orders::Declared).expect("a model");
+    let run = compiled.with_declared_parameters().expect("an instance");
+    for solver in [Solver::Rk, Solver::Radau, Solver::Adams] {
+        for calls_per_jump in [1, 3, 10] {
+            let start = (0.0, run.initial_state());
+            let rest = HeldInputs::constant(vec![0.0]);
+            let mut simulation = run
+                .start_simulation(start, rest, options(solver))
+                .expect("a simulation");
+            simulation.advance(1000.0).expect("an advance");
+            let (interval, mut wanted) = (0.01, [0.0, 0.0]);
+            for call in 0..200 {
+                let force = if call / calls_per_jump % 2 == 0 {
+                    1.0
+                } else {
+                    -1.0
+                };
+                simulation.set_inputs(&[force]).expect("inputs");
+                let until = 1000.0 + interval * f64::from(call + 1);
+                simulation.advance(until).expect("an advance");
+                wanted[0] += interval * wanted[1] + 0.5 * interval * interval * force;
+                wanted[1] += interval * force;
+                let error = (simulation.state()[0] - wanted[0]).abs();
+                assert!(
+                    error < 1e-12,
+                    "{solver}, {calls_per_jump} calls, call {call}: {error:.1e} m"
+                );
+            }
+        }
+        let times: Vec<f64> = (0..200).map(|k| 1000.0 + 0.01 * f64::from(k)).collect();
+        let times = [&[0.0], &times[..]].concat();
+        let jump = HeldInputs::new(vec![0.0, 1000.0, 3000.0], vec![0.0, 1.0, 1.0], 1);
+        let motion = whole(&run, solver, &times, &jump.expect("inputs"));
+        for (t, state) in times.iter().zip(&motion.states).skip(1) {
+            let error = (state[0] - 0.5 * (t - 1000.0).powi(2)).abs();
+            assert!(error < 5e-13, "{solver}, {t} s: {error:.1e} m");
+        }
+    }
+}
+
 #[test]
 fn short_calls_keep_the_steps_of_the_solver() {
     let case = &CASES[5];

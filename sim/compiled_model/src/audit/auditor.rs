@@ -56,7 +56,9 @@ pub(crate) struct Auditor {
     sizes: Vec<f64>,
     /// Largest magnitude of each entry of the state.
     magnitudes: Vec<f64>,
-    /// Largest sum of the differences that is not examined, J.
+    /// Sum of the differences in steps beyond the uncertainties of their work, J.
+    drift: f64,
+    /// Largest such sum that is not examined, J.
     drift_limit: f64,
     /// Energy at the end of the last step, J.
     energy: Option<f64>,
@@ -101,6 +103,7 @@ impl Auditor {
             driven_contacts,
             sizes: magnitudes.clone(),
             magnitudes,
+            drift: 0.0,
             drift_limit: 0.0,
             energy: None,
             power: 0.0,
@@ -175,6 +178,7 @@ impl Auditor {
         let is_estimated = has_interior || length > MAX_CROSSING_STEP_FRACTION * self.last_length;
         // NaN is not negligible.
         let is_negligible = (change - work).abs() <= NEGLIGIBLE_FRACTION * self.last_allowed;
+        let mut uncertainty = 0.0;
         if !is_negligible {
             let factor = match is_estimated && !self.is_exact {
                 true => ESTIMATE_FACTOR,
@@ -186,7 +190,7 @@ impl Auditor {
             self.last_allowed = allowed;
             let judged = (ends, change);
             let found = self.integrate_accurately(step, energies, judged, (factor, allowed));
-            work = found.work;
+            (work, uncertainty) = (found.work, found.uncertainty);
             let tolerance = found.allowed + found.uncertainty;
             if has_interior
                 && found.uncertainty > found.allowed
@@ -205,12 +209,16 @@ impl Auditor {
         }
         self.audit.energy_change += change;
         self.audit.work += work;
+        let difference = change - work;
+        self.drift += (difference.abs() - uncertainty)
+            .max(0.0)
+            .copysign(difference);
         self.check_drift(end, energies);
     }
 
     /// Records the first sum of the differences that is too large for the motion to be right.
     fn check_drift(&mut self, (t, state): (f64, &[f64]), energies: &mut Energies<'_>) {
-        let drift = self.audit.unexplained_energy();
+        let drift = self.drift;
         let is_small = |limit: f64| drift.is_nan() || drift.abs() <= limit;
         if self.audit.drift.is_some() || is_small(self.drift_limit) {
             return;
