@@ -25,5 +25,6 @@ mod piecewise;
 mod redundant_constraints;
 mod reference_trajectory;
 mod stopped;
+mod stops_without_play;
 mod taylor;
 mod woodpecker;

@@ -4,7 +4,7 @@
 use eomgen_codegen::independence::vectors::{dot, max_magnitude};
 
 /// A pivot that is this small beside its diagonal entry is rounding: its row follows from others.
-const MIN_INDEPENDENT_PIVOT: f64 = 1e-10;
+pub(super) const MIN_INDEPENDENT_PIVOT: f64 = 1e-10;
 
 /// What is this small beside the largest of the right side is zero.
 const ZERO_FRACTION: f64 = 1e-12;

@@ -28,6 +28,7 @@ impl Contacts {
         // A step that was taken back may have ended below.
         self.overlap = None;
         self.uncorrected_offsets.clone_from(&self.offsets);
+        self.uncorrected_redundant.clone_from(&self.redundant);
         let mut arrived = vec![0.0; self.names.len()];
         own.distances(Point { t, state, inputs }, &mut arrived);
         if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
@@ -57,6 +58,7 @@ impl Contacts {
         if let Some(place) = self.closed.iter().find(is_left) {
             return self.stop_overlapping(*place, state);
         }
+        self.release_independent(state);
         self.keep_open_sides(&arrived);
         CORRECTIONS as u64 + 1
     }
@@ -82,6 +84,7 @@ impl Contacts {
     pub fn forget_correction(&mut self) {
         self.overlap = None;
         self.offsets.clone_from(&self.uncorrected_offsets);
+        self.redundant.clone_from(&self.uncorrected_redundant);
     }
 
     /// Offsets the distances of open contacts that a correction makes zero or negative, because the motion has not hit
@@ -107,7 +110,7 @@ impl Contacts {
         distances: &[f64],
     ) -> Option<usize> {
         let deepest = |contacts: &Self, place: usize| MAX_OVERLAP_FRACTION * contacts.sizes[place];
-        let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
+        let mut open = (0..distances.len()).filter(|place| !self.rests(*place));
         open.find(|place| is_below(distances[*place], deepest(self, *place)))?;
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
@@ -118,7 +121,7 @@ impl Contacts {
             self.distance_rounding(place, (point.t, point.state)) + DISTANCE_ROUNDING * covered
         };
         let allowed = |place: usize| deepest(self, place) + rounding(place);
-        let mut open = (0..distances.len()).filter(|place| !self.closed.contains(place));
+        let mut open = (0..distances.len()).filter(|place| !self.rests(*place));
         open.find(|place| is_below(distances[*place], allowed(*place)))
     }
 

@@ -67,7 +67,7 @@ impl Contacts {
         let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
         own.distances(Point { t, state, inputs }, &mut beyond);
         let is_hit = |place: &usize, contacts: &Self| {
-            !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
+            !contacts.rests(*place) && beyond[*place] + contacts.offsets[*place] < 0.0
         };
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
             let located = Point {
@@ -107,7 +107,7 @@ impl Contacts {
             .filter(|place| {
                 let impact = &self.at[*place];
                 let within = roundings[*place].max(-impact.rate * shortest[*place]);
-                self.closed.contains(place)
+                self.rests(*place)
                     || hits.contains(place)
                     || collapsing.contains(place)
                     || impact.distance <= within
@@ -147,7 +147,10 @@ impl Contacts {
             slip_changes,
         };
         match self.has_friction() {
-            false => self.close_resting(&touching, &flight),
+            false => {
+                self.close_resting(&touching, &flight);
+                self.note_redundant(own, Point { t, state, inputs }, &[]);
+            }
             true => {
                 let point = Point { t, state, inputs };
                 if let Err(cause) = self.close_resting_with_friction(own, point, &touching, &flight)
@@ -195,7 +198,7 @@ impl Contacts {
     /// Returns the restitution of a contact in the present impact: 0 if it is closed, or if the impact ends infinitely
     /// many.
     pub(super) fn restitution(&self, place: usize) -> f64 {
-        match self.has_restitution && !self.closed.contains(&place) {
+        match self.has_restitution && !self.rests(place) {
             true => self.at[place].restitution,
             false => 0.0,
         }
@@ -204,7 +207,7 @@ impl Contacts {
     /// The rate with which a contact hit so long `ago`, s.
     pub(super) fn hit_rate(&self, place: usize, ago: f64) -> f64 {
         let impact = &self.at[place];
-        match self.closed.contains(&place) {
+        match self.rests(place) {
             true => impact.rate,
             false => impact.rate - ago * impact.acceleration,
         }
@@ -288,6 +291,7 @@ impl Contacts {
     /// that fall side by side.
     fn close_resting(&mut self, touching: &[usize], flight: &Flight) {
         self.closed.clear();
+        self.redundant.clear();
         loop {
             let forces = self.forces();
             let even = |place: usize| {
@@ -303,6 +307,7 @@ impl Contacts {
                 let acceleration = impact.acceleration + pushed;
                 !self.closed.contains(place)
                     && flight.is_none(**place, (impact.rate, acceleration), even(**place))
+                    && !self.is_blocked_by(&self.closed, **place)
             };
             let Some(next) = touching.iter().find(rests) else {
                 break;

@@ -13,6 +13,7 @@ mod correction;
 mod friction;
 mod impulses;
 mod power;
+mod redundant;
 mod sequence;
 mod start;
 mod tangents;
@@ -47,10 +48,14 @@ pub(crate) struct Contacts {
     pub names: Vec<String>,
     /// When the motion began, s.
     start: Option<f64>,
-    /// When each was closed last, or the motion began, s.
+    /// When each touched at rest last, or the motion began, s.
     open_since: Vec<f64>,
     /// Those that are closed.
     closed: Vec<usize>,
+    /// Those that touch at rest because the closed ones determine their distances.
+    redundant: Vec<usize>,
+    /// The same before the last correction of a state.
+    uncorrected_redundant: Vec<usize>,
     /// What is added to each distance, so that one that leaves from zero is positive.
     offsets: Vec<f64>,
     /// The same before the last correction of a state.
@@ -108,6 +113,8 @@ impl Contacts {
             start: None,
             open_since: vec![0.0; count],
             closed: Vec::new(),
+            redundant: Vec::new(),
+            uncorrected_redundant: Vec::new(),
             offsets: vec![0.0; count],
             uncorrected_offsets: vec![0.0; count],
             allowances: vec![0.0; count],
@@ -177,6 +184,9 @@ impl Contacts {
         for (place, force) in self.closed.iter().zip(&forces.normal) {
             out[*place] = force + self.allowances[*place];
         }
+        for place in &self.redundant {
+            out[*place] = 1.0;
+        }
         self.write_friction_guards(&forces, &mut out[self.names.len()..]);
     }
 
@@ -188,6 +198,9 @@ impl Contacts {
         }
         for place in &self.closed {
             out[*place] = Enclosure::UNKNOWN;
+        }
+        for place in &self.redundant {
+            out[*place] = Enclosure::constant(1.0);
         }
         let slips = &mut out[self.names.len()..];
         for (slot, tangent) in slips.iter_mut().zip(&self.tangents) {
@@ -249,8 +262,14 @@ impl Contacts {
         })
     }
 
-    /// Closes those of the contacts that touch which then push.
-    fn close(&mut self, touching: &[usize], (t, state): (f64, &[f64])) {
+    /// Closes those of the contacts that touch at rest which then push. The impacts are those at `point`, and `located` is
+    /// the point whose rounding decides where contacts open.
+    fn close(
+        &mut self,
+        own: &mut Evaluator,
+        touching: &[usize],
+        (point, located): (Point<'_>, Point<'_>),
+    ) {
         let accelerations: Vec<f64> = touching.iter().map(|i| self.at[*i].acceleration).collect();
         let forces = solve_complementarity(&self.delassus(touching), &accelerations);
         let pushing = touching
@@ -261,8 +280,9 @@ impl Contacts {
         for place in &self.closed {
             self.allowances[*place] = 0.0;
         }
+        self.note_redundant(own, point, touching);
         // They leave without speed: for a while rounding of the state moves them more.
-        self.offset_by_rounding(touching, (t, state));
+        self.offset_by_rounding(touching, (located.t, located.state));
     }
 
     /// Has the distances of those that touch begin above zero.
@@ -357,7 +377,7 @@ impl Contacts {
             .collect();
         self.offset_distances(&touching);
         match self.has_friction() {
-            false => self.close(&still, (point.t, point.state)),
+            false => self.close(own, &still, (point, point)),
             true => {
                 let started = self.start_resting(own, point, (&still, &small));
                 self.note_forces(started);
@@ -414,16 +434,16 @@ impl Contacts {
         }
         let pulls = |(place, force): (&usize, &f64)| force + self.allowances[*place] < 0.0;
         if self.closed.iter().zip(&self.forces().normal).any(pulls) {
-            let touching = std::mem::take(&mut self.closed);
-            self.close(&touching, (located.t, located.state));
+            let resting = self.resting();
+            self.close(own, &resting, (point, located));
         }
         Ok(())
     }
 
-    /// Notes that the closed contacts are closed until now, s.
+    /// Notes that the contacts that touch at rest do so until now, s.
     fn note_closed_until(&mut self, t: f64) {
-        for place in &self.closed {
-            self.open_since[*place] = t;
+        for place in self.resting() {
+            self.open_since[place] = t;
         }
     }
 

@@ -58,7 +58,7 @@ impl Contacts {
                 self.at[*place].rate < -unsolved.max(roundings[*place])
             };
             // The rate of a closed contact is rounding, as is one that needs no impulse.
-            let mut open = touching.iter().filter(|place| !self.closed.contains(place));
+            let mut open = touching.iter().filter(|place| !self.rests(**place));
             let has_pushed = impulses.normal.iter().any(|impulse| *impulse > 0.0);
             if more.is_empty() && !(has_pushed && open.any(approaches)) {
                 break;
@@ -92,7 +92,7 @@ impl Contacts {
                 let is_pushed = normal.next().is_some_and(|impulse| *impulse > 0.0);
                 let push = MAX_UNSOLVED_RATE_FRACTION * self.push_size(*place, &all, &impulses);
                 let leaves = self.has_restitution
-                    && !self.closed.contains(place)
+                    && !self.rests(*place)
                     && self.hit_rate(*place, ago) > push;
                 !(is_pushed && leaves)
             });

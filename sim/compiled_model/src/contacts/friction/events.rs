@@ -28,11 +28,12 @@ impl Contacts {
         point: Point<'_>,
         located: Point<'_>,
     ) -> Result<(), (usize, Overlap)> {
-        let places = self.closed.clone();
+        let places = self.resting();
         let forces = self.friction_forces();
-        let modes: Vec<ContactMode> = places.iter().map(|place| self.mode(*place)).collect();
+        let mut modes: Vec<ContactMode> =
+            self.closed.iter().map(|place| self.mode(*place)).collect();
         let mut excluded = Vec::new();
-        for (index, place) in places.iter().enumerate() {
+        for (index, place) in self.closed.iter().enumerate() {
             let is_pulling = forces.normal[index] + self.allowances[*place] < 0.0;
             let tangent = self.tangent(*place);
             let has_ended =
@@ -46,6 +47,7 @@ impl Contacts {
         if excluded.is_empty() && is_finite {
             return Ok(());
         }
+        modes.resize(places.len(), ContactMode::Open);
         let roundings = self.slip_roundings(own, point);
         let slipping = self.slip_directions(&roundings, &excluded);
         let accelerations = self.free_accelerations(&places);
@@ -53,7 +55,7 @@ impl Contacts {
         let decided = problem.decide(Some(&modes), &excluded);
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
-        self.enter_modes(&places, &decision, &roundings, located);
+        self.enter_modes(own, (&places, &decision), &roundings, (point, located));
         Ok(())
     }
 
@@ -75,7 +77,7 @@ impl Contacts {
         let decided = problem.decide(Some(&modes), &[]);
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
         if decision.modes != modes {
-            self.enter_modes(&places, &decision, &roundings, point);
+            self.enter_modes(own, (&places, &decision), &roundings, (point, point));
             return Ok(());
         }
         let bears = |contacts: &Self| -> Vec<bool> {
@@ -157,13 +159,13 @@ impl Contacts {
         decided.ok_or((places.first().copied().unwrap_or(0), Overlap::NoForces))
     }
 
-    /// Enters decided modes: contacts that do not push open.
+    /// Enters modes decided at `point`: contacts that do not push open.
     pub(in super::super) fn enter_modes(
         &mut self,
-        places: &[usize],
-        decision: &ContactDecision,
+        own: &mut Evaluator,
+        (places, decision): (&[usize], &ContactDecision),
         roundings: &[f64],
-        located: Point<'_>,
+        (point, located): (Point<'_>, Point<'_>),
     ) {
         self.closed.clear();
         let mut opened = Vec::new();
@@ -176,12 +178,16 @@ impl Contacts {
                 self.tangents[index].mode = *mode;
             }
         }
+        for place in &self.closed {
+            self.allowances[*place] = 0.0;
+        }
+        self.note_redundant(own, point, places);
         self.offset_by_rounding(&opened, (located.t, located.state));
         let forces = self.friction_forces();
         self.mark_bearing(roundings);
         for index in 0..self.closed.len() {
             let place = self.closed[index];
-            self.allowances[place] = (-2.0 * forces.normal[index]).max(0.0);
+            self.allowances[place] = self.allowances[place].max(-2.0 * forces.normal[index]);
             self.reset_offsets(place, index, &forces, roundings);
         }
     }

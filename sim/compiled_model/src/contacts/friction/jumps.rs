@@ -24,8 +24,7 @@ impl Contacts {
             .collect();
         let small = RATE_ROUNDING * max_magnitude(&required);
         // The rate of a closed contact is rounding, which must not decide that it is hit.
-        let is_hit =
-            |index: &usize| !self.closed.contains(&touching[*index]) && required[*index] < -small;
+        let is_hit = |index: &usize| !self.rests(touching[*index]) && required[*index] < -small;
         let mut hit = (0..touching.len()).filter(is_hit);
         if let (Some(index), None) = (hit.next(), hit.next())
             && let Some(impulses) = self.solve_single(touching, index, ago)
@@ -97,12 +96,10 @@ impl Contacts {
         let changes = self.rate_changes(touching, impulses);
         let small = RATE_ROUNDING * max_magnitude(&before);
         let mut after = touching.iter().zip(before.iter().zip(&changes));
-        after.all(
-            |(place, (before, change))| match self.closed.contains(place) {
-                true => *change >= -small,
-                false => before + change >= -small,
-            },
-        )
+        after.all(|(place, (before, change))| match self.rests(*place) {
+            true => *change >= -small,
+            false => before + change >= -small,
+        })
     }
 
     /// Returns the changes of the rates of distances, then of slips, by impulses.

@@ -24,7 +24,7 @@ impl Contacts {
         }
         let roundings = self.slip_roundings(own, point);
         let decision = self.decide_resting(still, (small, &roundings))?;
-        self.enter_modes(still, &decision, &roundings, point);
+        self.enter_modes(own, (still, &decision), &roundings, (point, point));
         Ok(())
     }
 
@@ -44,6 +44,7 @@ impl Contacts {
             *rounding = rounding.max(*change);
         }
         self.closed.clear();
+        self.redundant.clear();
         let mut resting: Vec<usize> = Vec::new();
         let mut decision = None;
         let mut even = flight.acceleration_roundings.clone();
@@ -72,12 +73,16 @@ impl Contacts {
             return Ok(());
         };
         // Contacts that move on together without a force stay closed.
+        let decided = resting.iter().zip(&decision.modes);
+        let pushing = decided.filter(|(_, mode)| **mode != ContactMode::Open);
+        let pushing: Vec<usize> = pushing.map(|(place, _)| *place).collect();
         for (place, mode) in resting.iter().zip(&mut decision.modes) {
             let among = touching.iter().zip(&accelerations);
             let is_even = among
                 .filter(|(own, _)| *own == place)
                 .any(|(_, a)| *a <= even[*place]);
-            if *mode == ContactMode::Open && is_even {
+            let is_free = !self.is_blocked_by(&pushing, *place);
+            if *mode == ContactMode::Open && is_even && is_free {
                 let is_slipping = self.tangent_index(*place).is_some_and(|index| {
                     self.slip(*place).abs() > roundings[index].max(flight.rate_roundings[*place])
                 });
@@ -88,7 +93,7 @@ impl Contacts {
                 };
             }
         }
-        self.enter_modes(&resting, &decision, &roundings, point);
+        self.enter_modes(own, (&resting, &decision), &roundings, (point, point));
         for place in self.closed.clone() {
             let least = even[place] / self.at[place].delassus[place];
             self.allowances[place] = self.allowances[place].max(least);

@@ -1,0 +1,159 @@
+//! Redundant contacts: open contacts that touch at rest and whose distances follow from those of the closed ones, as the
+//! second of two stops without play. Their distances keep zero while the others are closed, so that the errors of a step
+//! around zero are no impacts. If a closed contact would pull, they share in the decision which contacts push.
+
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use super::complementarity::MIN_INDEPENDENT_PIVOT;
+use super::{Contacts, ROUNDING, solve_rows};
+
+impl Contacts {
+    /// Returns the closed contacts, then the redundant ones.
+    pub(super) fn resting(&self) -> Vec<usize> {
+        [&self.closed[..], &self.redundant].concat()
+    }
+
+    /// Returns true if a contact touches at rest.
+    pub(super) fn rests(&self, place: usize) -> bool {
+        self.closed.contains(&place) || self.redundant.contains(&place)
+    }
+
+    /// Notes the redundant contacts at a point at which impacts are known. Those of the contacts at rest that do not push,
+    /// but that others prevent from opening, close before.
+    pub(super) fn note_redundant(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+        resting: &[usize],
+    ) {
+        self.close_confined(resting);
+        self.redundant = (0..self.names.len())
+            .filter(|place| !self.closed.contains(place))
+            .collect();
+        self.redundant = self.find_redundant(point.state);
+        if self.redundant.is_empty() {
+            return;
+        }
+        let mut rates = vec![0.0; point.state.len()];
+        own.rates(point, &mut rates);
+        let degrees = own.program().degrees_of_freedom();
+        let (speeds, accelerations) = (
+            &point.state[degrees..2 * degrees],
+            &rates[degrees..2 * degrees],
+        );
+        let acceleration_sizes: Vec<f64> = (0..self.names.len())
+            .map(|place| self.rate_size(place, accelerations) + self.at[place].acceleration.abs())
+            .collect();
+        let moves_along = |place: &usize| {
+            let follows = |quantity: &dyn Fn(usize) -> f64, size: &dyn Fn(usize) -> f64| {
+                let (rest, all) = self.compare_with_closed(*place, quantity, size);
+                rest.abs() <= ROUNDING * all
+            };
+            follows(&|place| self.at[place].rate, &|place| {
+                self.rate_size(place, speeds)
+            }) && follows(&|place| self.at[place].acceleration, &|place| {
+                acceleration_sizes[place]
+            })
+        };
+        let redundant = self.redundant.iter().copied().filter(moves_along).collect();
+        self.redundant = redundant;
+        // A force of rounding that pulls parts no bodies that a redundant contact holds.
+        for place in self.closed.clone() {
+            let delassus = &self.at[place].delassus;
+            if self.redundant.iter().any(|other| delassus[*other] != 0.0) {
+                let rounding = ROUNDING * acceleration_sizes[place] / delassus[place];
+                let allowance = self.allowances[place].max(rounding);
+                self.allowances[place] = allowance.max(f64::MIN_POSITIVE);
+            }
+        }
+    }
+
+    /// Closes those of the contacts at rest that others at rest prevent from opening, if neither pushes.
+    fn close_confined(&mut self, resting: &[usize]) {
+        for place in resting {
+            if self.closed.contains(place)
+                || self.at[*place].friction.is_some()
+                || self.parts_of(&self.closed, *place).is_some()
+            {
+                continue;
+            }
+            let last = self.closed.len();
+            self.closed.push(*place);
+            let confines = |other: &usize| {
+                let parts = self.parts_of(&self.closed, *other);
+                !self.closed.contains(other) && parts.is_some_and(|parts| parts[last] < 0.0)
+            };
+            if !resting.iter().any(confines) {
+                self.closed.pop();
+            }
+        }
+    }
+
+    /// Returns the part of a quantity of a contact that does not follow from those of the closed ones, and the size of
+    /// its terms.
+    fn compare_with_closed(
+        &self,
+        place: usize,
+        quantity: &dyn Fn(usize) -> f64,
+        size: &dyn Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let parts = self.parts_of(&self.closed, place).unwrap_or_default();
+        let start = (quantity(place), size(place));
+        let closed = self.closed.iter().zip(&parts);
+        closed.fold(start, |(rest, all), (other, part)| {
+            (
+                rest - part * quantity(*other),
+                all + part.abs() * size(*other),
+            )
+        })
+    }
+
+    /// Returns true if the distance of a contact follows from those of these contacts, and falls while one of them grows.
+    pub(super) fn is_blocked_by(&self, closed: &[usize], place: usize) -> bool {
+        let parts = self.parts_of(closed, place);
+        parts.is_some_and(|parts| parts.iter().any(|part| *part < 0.0))
+    }
+
+    /// Releases the redundant contacts whose distances no longer follow from those of the closed ones.
+    pub(super) fn release_independent(&mut self, state: &[f64]) {
+        if self.redundant.is_empty() {
+            return;
+        }
+        let kept = self.find_redundant(state);
+        let mut released = std::mem::replace(&mut self.redundant, kept);
+        released.retain(|place| !self.redundant.contains(place));
+        self.offset_distances(&released);
+    }
+
+    /// Returns those of the redundant contacts whose distances follow from those of the closed ones and are zero to rounding.
+    fn find_redundant(&self, state: &[f64]) -> Vec<usize> {
+        let degrees = self.at.first().map_or(0, |impact| impact.row.len());
+        let size = |place: usize| self.distance_size(place, &state[..degrees]);
+        let is_redundant = |place: &usize| {
+            let distance = |place: usize| self.at[place].distance;
+            let (rest, all) = self.compare_with_closed(*place, &distance, &size);
+            self.parts_of(&self.closed, *place).is_some() && rest.abs() <= ROUNDING * all
+        };
+        let known = self.redundant.iter().copied();
+        known.filter(is_redundant).collect()
+    }
+
+    /// Returns the row of a contact as a sum of those of closed ones; `None` if it is independent.
+    fn parts_of(&self, closed: &[usize], place: usize) -> Option<Vec<f64>> {
+        let column = closed.iter().map(|other| -self.at[*other].delassus[place]);
+        let column: Vec<f64> = column.collect();
+        let rows: Vec<usize> = (0..closed.len()).collect();
+        let mut parts = solve_rows(&self.delassus(closed), &column, &rows);
+        let terms = parts.iter().zip(&column);
+        let follows: f64 = terms.map(|(part, entry)| -part * entry).sum();
+        let whole = self.at[place].delassus[place];
+        // Rounding of a part that is zero has no sign.
+        for (part, other) in parts.iter_mut().zip(closed) {
+            let unit = (whole / self.at[*other].delassus[*other]).sqrt();
+            if part.abs() <= MIN_INDEPENDENT_PIVOT * unit {
+                *part = 0.0;
+            }
+        }
+        (whole - follows <= MIN_INDEPENDENT_PIVOT * whole).then_some(parts)
+    }
+}
