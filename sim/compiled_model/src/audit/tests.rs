@@ -136,3 +136,28 @@ fn only_energy_gain_at_impact_is_a_fault() {
     assert_eq!(fault.t, 2.0);
     assert!((fault.energy_gain - 0.5 * 0.21).abs() < 1e-12);
 }
+
+/// The energy that a last bounce leaves is 1e-24 J; a fault of this size is found.
+#[test]
+fn fault_of_a_small_motion_is_found() {
+    let small = |t: f64| [1e-12 * t.cos(), -1e-12 * t.sin()];
+    let faults = |gain: f64| {
+        let mut auditor = Auditor::new(Some(1e-9), &[1e-12; 2], None);
+        for count in 0..40 {
+            let (t, next) = (0.1 * f64::from(count), 0.1 * f64::from(count + 1));
+            let (start, mut end) = (small(t), small(next));
+            if count == 20 {
+                end[1] *= gain;
+            }
+            let mut step = ObservedStep {
+                start: (t, &start),
+                end: (next, &end),
+                state_inside: &mut |t, _| Some(small(t).to_vec()),
+            };
+            auditor.audit_step(&mut step, &mut oscillator);
+        }
+        auditor.audit().fault_count
+    };
+    assert_eq!(faults(1.0), 0);
+    assert!(faults(1.0 + 1e-4) > 0);
+}

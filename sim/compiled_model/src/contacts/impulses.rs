@@ -163,8 +163,8 @@ impl Contacts {
         self.stop_closed(own, (t, inputs), state);
     }
 
-    /// Stops the remaining motion along closed contacts whose impulses do work, and of those that slide on. The
-    /// correction of the state stops that of others.
+    /// Stops the remaining motion along closed contacts, and of those that slide on. The energy that it takes is that of
+    /// the impact.
     fn stop_closed(&mut self, own: &mut Evaluator, (t, inputs): (f64, &[f64]), state: &mut [f64]) {
         if self.closed.is_empty() {
             return;
@@ -172,12 +172,7 @@ impl Contacts {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let closing = self.has_friction().then(|| self.closing_impulses());
-        let are_workless = self.closed.iter().all(|place| self.is_workless(*place));
-        let impulses = match closing.flatten() {
-            Some(impulses) => impulses,
-            None if are_workless => return,
-            None => self.stopping(),
-        };
+        let impulses = closing.flatten().unwrap_or_else(|| self.stopping());
         self.add_forces(&self.closed, &impulses, &mut state[degrees..2 * degrees]);
         self.impact_work += self.work_of(&self.closed, &impulses);
     }

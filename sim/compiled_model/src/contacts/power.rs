@@ -42,11 +42,6 @@ impl Contacts {
         normal.chain(slips).sum()
     }
 
-    /// Returns true if an impulse at this contact does no work except its losses.
-    pub(super) fn is_workless(&self, place: usize) -> bool {
-        self.at[place].workless_rate == 0.0 && self.workless_slip(place) == 0.0
-    }
-
     fn workless_slip(&self, place: usize) -> f64 {
         let friction = self.at[place].friction.as_ref();
         friction.map_or(0.0, |one| one.workless_slip)
