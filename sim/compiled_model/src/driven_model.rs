@@ -345,22 +345,33 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             let count = program.value(guard.value).extent.length();
             std::iter::repeat_n((&guard.formula, moves), count)
         });
-        let own = all
-            .zip(here.iter().zip(&there))
-            .map(|((formula, moves), (here, there))| Surface {
-                formula: formula.clone(),
-                kind: match moves && here == there {
-                    true => SurfaceKind::Speed,
-                    false => SurfaceKind::Function,
-                },
-            });
+        let states = self.sliding.as_ref().map(RefCell::borrow);
+        let states = states.filter(|states| states.can_hold_motion());
+        let held_kind = match &states {
+            None => SurfaceKind::Speed,
+            Some(states) if self.contacts.is_some() && states.disc_count() > 0 => {
+                SurfaceKind::HeldWithoutContacts
+            }
+            Some(_) => SurfaceKind::HeldSpeed,
+        };
+        let holding = states.map(|states| states.holding_guards());
+        let holding = holding.unwrap_or_default();
+        let own = all.zip(here.iter().zip(&there)).enumerate();
+        let own = own.map(|(guard, ((formula, moves), (here, there)))| Surface {
+            formula: formula.clone(),
+            kind: match moves && here == there {
+                true if holding.contains(&guard) => held_kind,
+                true => SurfaceKind::Speed,
+                false => SurfaceKind::Function,
+            },
+        });
         let contacts = self.contacts.iter();
         let impacts = contacts.flat_map(|contacts| contacts.borrow().surfaces());
         let sliding = self.sliding.iter();
         let discs = sliding.flat_map(|sliding| sliding.borrow().disc_formulas());
         let discs = discs.map(|formula| Surface {
             formula,
-            kind: SurfaceKind::Speed,
+            kind: held_kind,
         });
         own.chain(impacts).chain(discs).collect()
     }

@@ -80,7 +80,6 @@ pub(crate) fn format_named(
 ) -> String {
     let unsupported_sticking = match solver {
         Solver::Adams => UnsupportedSticking::Adams,
-        _ if !labels.impacts.is_empty() => UnsupportedSticking::Impacts,
         _ => UnsupportedSticking::Formula,
     };
     message(&Names {

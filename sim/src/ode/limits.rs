@@ -74,17 +74,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Returns the least frequent of the switching functions with at least a quarter of the recent
-    /// switches. A surface that sticks and releases between the switches of another one does not
+    /// switches, or the most frequent one. A surface that sticks and releases between the switches of another one does not
     /// chatter.
     fn rarest(&self) -> usize {
         let mut counts = vec![0; self.run.modes.len()];
         for (_, guard) in &self.run.recent {
             counts[*guard] += 1;
         }
-        let turns = counts
-            .iter()
-            .enumerate()
-            .filter(|(_, count)| 4 * **count >= self.run.recent.len());
+        let largest = counts.iter().copied().max().unwrap_or(0);
+        let least = largest.min(self.run.recent.len().div_ceil(4));
+        let turns = counts.iter().enumerate();
+        let turns = turns.filter(|(_, count)| **count >= least);
         turns
             .min_by_key(|(_, count)| **count)
             .map_or(0, |(guard, _)| guard)

@@ -14,8 +14,12 @@ pub struct Surface {
 pub enum SurfaceKind {
     /// A function of the state.
     Function,
-    /// A speed, as for dry friction.
+    /// A speed at which the system does not rest, as under dry friction with a solver that does not support it.
     Speed,
+    /// A speed at which the system can rest.
+    HeldSpeed,
+    /// A speed at which the system can rest while no contact is closed.
+    HeldWithoutContacts,
     /// The distance of a contact.
     Distance,
 }
@@ -28,8 +32,6 @@ pub enum UnsupportedSticking {
     Formula,
     /// The Adams method needs the preceding steps.
     Adams,
-    /// A contact is closed.
-    Impacts,
 }
 
 /// Names of a system's states, coordinates first, and of its switching functions.
@@ -67,13 +69,16 @@ impl Names<'_> {
             Some(SurfaceKind::Speed) => {
                 let (reason, cure) = match self.unsupported_sticking {
                     UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
-                    UnsupportedSticking::Impacts => ("while a contact is closed", ""),
                     UnsupportedSticking::Formula => {
                         ("for a speed with piecewise functions or an exponent", "")
                     }
                 };
                 format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
             }
+            Some(SurfaceKind::HeldWithoutContacts) => {
+                format!("{STICKING} while a contact is closed; {SMOOTH_LAW}")
+            }
+            Some(SurfaceKind::HeldSpeed) => format!("{RESTARTING}; {SMOOTH_LAW}"),
             Some(SurfaceKind::Function | SurfaceKind::Distance) => CHATTERING.to_owned(),
             None => "replace the jump by a steep smooth function".to_owned(),
         }
@@ -82,6 +87,9 @@ impl Names<'_> {
 
 /// Sticking under dry friction.
 const STICKING: &str = "it sticks, as a body at rest under dry friction, which is not supported";
+
+/// Rest that begins and ends too often.
+const RESTARTING: &str = "it comes to rest and starts again without end";
 
 /// Alternative to dry friction.
 const SMOOTH_LAW: &str =

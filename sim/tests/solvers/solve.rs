@@ -155,6 +155,20 @@ fn sticking_without_support_is_an_error() {
     assert!(said(surface(SurfaceKind::Speed)).contains("on which `v` is zero: it sticks"));
     // Only users of adams see its name.
     assert!(!said(surface(SurfaceKind::Speed)).contains("adams"));
+    // A motion that chatters at a speed at which it can rest is no missing support.
+    for (kind, cause) in [
+        (SurfaceKind::HeldSpeed, "without end"),
+        (
+            SurfaceKind::HeldWithoutContacts,
+            "while a contact is closed",
+        ),
+    ] {
+        let message = said(surface(kind));
+        assert!(
+            message.contains(cause) && !message.contains("piecewise"),
+            "{message}"
+        );
+    }
     // A position is no friction.
     assert!(
         said(surface(SurfaceKind::Function)).contains("chatters")

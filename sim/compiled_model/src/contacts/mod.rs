@@ -142,7 +142,7 @@ impl Contacts {
         });
         let slips = self.tangents.iter().map(|tangent| Surface {
             formula: format!("slip of {}", self.names[tangent.place]),
-            kind: SurfaceKind::Speed,
+            kind: SurfaceKind::HeldSpeed,
         });
         distances.chain(slips).collect()
     }

@@ -72,6 +72,19 @@ impl SurfaceStates {
         (self.can_hold, self.may_hold) = (false, false);
     }
 
+    /// Returns true if a surface can hold the motion.
+    pub fn can_hold_motion(&self) -> bool {
+        self.can_hold
+    }
+
+    /// Returns the guards of the surfaces that can hold the motion, without those of discs.
+    pub fn holding_guards(&self) -> Vec<usize> {
+        let surfaces = 0..self.places.len();
+        surfaces
+            .map(|surface| self.sided.guard_index(surface))
+            .collect()
+    }
+
     /// Places the guards of discs behind those of so many contacts.
     pub fn skip_contact_guards(&mut self, count: usize) {
         self.first_disc_guard = self.sided.guard_count() + count;
