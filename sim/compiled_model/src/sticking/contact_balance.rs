@@ -8,7 +8,8 @@ use eomgen_sim::contact_friction::ContactMode;
 use super::sided_model::{SidedModel, TimeAndState};
 use crate::contacts::{contact_problem, free_accelerations, rates_and_slips};
 
-/// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding.
+/// Rest of the effect of a surface's force on its own function, with closed contacts, that is rounding. A smaller rate of
+/// the function is rounding, too.
 const MAX_STOPPED_FRACTION: f64 = 1e-8;
 
 impl SidedModel {
@@ -65,6 +66,14 @@ impl SidedModel {
         let own = self.own_effects.get(surface).copied().unwrap_or(0.0);
         !self.closed_contacts.is_empty()
             && self.at[surface].by_sides[surface].abs() <= MAX_STOPPED_FRACTION * own
+    }
+
+    /// Returns the side, -1 or 1, to which closed contacts that prevent the motion of a surface's force move it across the
+    /// surface; `None` if they stop it.
+    pub(super) fn side_of_contact_motion(&self, surface: usize) -> Option<f64> {
+        let own = self.own_effects.get(surface).copied().unwrap_or(0.0);
+        let rate = self.at[surface].rate;
+        (rate.abs() > MAX_STOPPED_FRACTION * own).then(|| rate.signum())
     }
 
     /// Adds the effects of the contact forces to those of the surfaces, as last evaluated. The switching functions are

@@ -9,8 +9,8 @@ pub(super) enum SurfaceState {
     Holding { from: f64, since: f64 },
     /// The surface exerts its largest force to this side, and other surfaces hold the motion.
     Bearing { from: f64, side: f64 },
-    /// Closed contacts stop the motion, and the surface exerts no force.
-    Unloaded { from: f64 },
+    /// Closed contacts stop the motion, and the surface exerts no force while its function stays within `allowed`.
+    Unloaded { from: f64, allowed: f64 },
     /// The surface has released the motion to this side, but its function is still within
     /// rounding; the surface is displaced by `moved`.
     Leaving { side: f64, moved: f64 },
@@ -24,11 +24,16 @@ impl SurfaceState {
     /// Returns the side from which the motion came, if the surface holds it.
     pub(super) fn came_from(self) -> Option<f64> {
         match self {
-            Self::Holding { from, .. } | Self::Bearing { from, .. } | Self::Unloaded { from } => {
-                Some(from)
-            }
+            Self::Holding { from, .. }
+            | Self::Bearing { from, .. }
+            | Self::Unloaded { from, .. } => Some(from),
             Self::Free | Self::Leaving { .. } => None,
         }
+    }
+
+    /// Returns true if closed contacts stopped the motion, and move it now.
+    pub(super) fn is_moved_by_contacts(self, function: f64) -> bool {
+        matches!(self, Self::Unloaded { allowed, .. } if function.abs() > allowed)
     }
 
     /// Returns the displacement of the surface until the motion has left it.

@@ -165,7 +165,10 @@ impl SurfaceStates {
         for (surface, place) in self.places.iter_mut().enumerate() {
             if modes[self.sided.guard_index(surface)] == SurfaceMode::Held {
                 // The start of the motion decides about the force.
-                *place = SurfaceState::Unloaded { from: 1.0 };
+                *place = SurfaceState::Unloaded {
+                    from: 1.0,
+                    allowed: f64::INFINITY,
+                };
             }
         }
         let discs = self.discs.iter_mut().zip(&modes[self.first_disc_guard..]);
@@ -270,7 +273,7 @@ impl SurfaceStates {
 
     /// Replaces the guards `out` of surfaces that hold or release the motion; the first call
     /// starts the motion. The guard of a surface that holds changes its sign if its force reaches
-    /// a limit.
+    /// a limit, that of a surface whose motion contacts stop if they move it.
     pub fn write_guards(&mut self, at: (f64, &[f64]), inputs: &[f64], out: &mut [f64]) {
         if !self.may_hold {
             return;
@@ -289,9 +292,8 @@ impl SurfaceStates {
             match *place {
                 SurfaceState::Free => {}
                 SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
-                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
-                    *slot = from;
-                }
+                SurfaceState::Bearing { from, .. } => *slot = from,
+                SurfaceState::Unloaded { from, allowed } => *slot = from * (allowed - slot.abs()),
                 SurfaceState::Leaving { side, moved } => *slot += side * moved,
             }
         }
@@ -304,10 +306,10 @@ impl SurfaceStates {
             let slot = &mut out[self.sided.guard_index(surface)];
             match *place {
                 SurfaceState::Free => {}
-                SurfaceState::Holding { .. } => *slot = Enclosure::UNKNOWN,
-                SurfaceState::Bearing { from, .. } | SurfaceState::Unloaded { from } => {
-                    *slot = Enclosure::constant(from);
+                SurfaceState::Holding { .. } | SurfaceState::Unloaded { .. } => {
+                    *slot = Enclosure::UNKNOWN;
                 }
+                SurfaceState::Bearing { from, .. } => *slot = Enclosure::constant(from),
                 SurfaceState::Leaving { side, moved } => {
                     *slot = slot.add_enclosure(Enclosure::constant(side * moved));
                 }

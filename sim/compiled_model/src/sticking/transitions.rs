@@ -87,6 +87,7 @@ impl SurfaceStates {
             let near = NEAR_MOVE_FACTOR * (to - from).abs();
             let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
             let is_near = to.abs() <= near;
+            is_new |= place.is_moved_by_contacts(to);
             if place.is_on() || is_crossed || (is_near && *place == SurfaceState::Free) {
                 is_new |= is_crossed && !place.is_on();
                 touching.push(surface);
@@ -372,15 +373,24 @@ impl SurfaceStates {
     ) {
         self.known = KnownSides::Nothing;
         self.has_decided = true;
-        let sides = self.current_sides(at, inputs);
+        let mut sides = self.current_sides(at, inputs);
         let jumps = self.sided.has_jumps(at, inputs, touching, &sides);
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
-        let (touching, arrivals) = self.unload_stopped((touching, arrivals), came_from);
+        let functions = self.sided.evaluate_functions(at, inputs);
+        let (mut touching, arrivals, passing) =
+            self.unload_stopped((touching, arrivals), (came_from, &functions));
+        for (surface, side) in &passing {
+            sides[*surface] = 0.5 + 0.5 * side;
+        }
         let arrived: Vec<DiscArrival> = discs.iter().map(|(_, arrival)| arrival.clone()).collect();
         let asked = (&touching[..], &arrivals[..], &arrived[..]);
-        let Some((verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
+        let Some((mut verdicts, vectors)) = self.sided.decide(at, inputs, asked, &sides) else {
             // The functions decide, and the solver reports chattering.
-            for surface in touching {
+            for surface in passing
+                .into_iter()
+                .map(|(surface, _)| surface)
+                .chain(touching)
+            {
                 self.places[surface] = SurfaceState::Free;
             }
             for (index, arrival) in discs {
@@ -390,7 +400,10 @@ impl SurfaceStates {
             }
             return;
         };
-        let functions = self.sided.evaluate_functions(at, inputs);
+        for (surface, side) in passing {
+            touching.push(surface);
+            verdicts.push(Verdict::Releases(side));
+        }
         let mut roundings = self.sided.function_roundings(at, inputs);
         let passed = self.begin.map_or(0.0, |begin| at.0 - begin);
         for (surface, rounding) in roundings.iter_mut().enumerate() {
@@ -430,20 +443,34 @@ impl SurfaceStates {
         }
     }
 
-    /// Enters rest at the surfaces whose motion closed contacts stop, and returns the others.
+    /// Enters rest at the surfaces whose motion closed contacts stop. Returns the surfaces with arrivals whose force acts on
+    /// the motion, and those across which the contacts move it, with the side.
     fn unload_stopped(
         &mut self,
         (touching, arrivals): (Vec<usize>, Vec<Arrival>),
-        came_from: &[f64],
-    ) -> (Vec<usize>, Vec<Arrival>) {
+        (came_from, functions): (&[f64], &[f64]),
+    ) -> (Vec<usize>, Vec<Arrival>, Vec<(usize, f64)>) {
         let reached = touching.into_iter().zip(arrivals);
         let (stopped, others): (Vec<_>, Vec<_>) =
             reached.partition(|(surface, _)| self.sided.is_stopped_by_contacts(*surface));
+        let mut passing = Vec::new();
         for (surface, _) in stopped {
-            let from = side_of_arrival(self.places[surface], came_from[surface]);
-            self.places[surface] = SurfaceState::Unloaded { from };
+            let (place, function) = (self.places[surface], functions[surface]);
+            let side = match place.is_moved_by_contacts(function) {
+                true => Some(function.signum()),
+                false => self.sided.side_of_contact_motion(surface),
+            };
+            if let Some(side) = side {
+                passing.push((surface, side));
+                continue;
+            }
+            self.places[surface] = SurfaceState::Unloaded {
+                from: side_of_arrival(place, came_from[surface]),
+                allowed: self.tolerance * self.sizes[surface] + f64::MIN_POSITIVE,
+            };
         }
-        others.into_iter().unzip()
+        let (touching, arrivals) = others.into_iter().unzip();
+        (touching, arrivals, passing)
     }
 
     /// Frees the surfaces without a jump of the rates and returns the others.
