@@ -16,6 +16,7 @@ mod exact_properties;
 mod exact_reference;
 mod exact_survival;
 mod fixed_steps;
+mod friction_at_moving_contacts;
 mod friction_in_moving_frames;
 mod impacts;
 mod inputs_of_time;

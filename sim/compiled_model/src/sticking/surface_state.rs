@@ -9,8 +9,13 @@ pub(super) enum SurfaceState {
     Holding { from: f64, since: f64 },
     /// The surface exerts its largest force to this side, and other surfaces hold the motion.
     Bearing { from: f64, side: f64 },
-    /// Closed contacts stop the motion, and the surface exerts no force while its function stays within `allowed`.
-    Unloaded { from: f64, allowed: f64 },
+    /// Closed contacts stop the motion since this time, s, and the surface exerts no force while its function stays within
+    /// the errors `allowed` at once and per second.
+    Unloaded {
+        from: f64,
+        since: f64,
+        allowed: [f64; 2],
+    },
     /// The surface has released the motion to this side, but its function is still within
     /// rounding; the surface is displaced by `moved`.
     Leaving { side: f64, moved: f64 },
@@ -31,9 +36,14 @@ impl SurfaceState {
         }
     }
 
-    /// Returns true if closed contacts stopped the motion, and move it now.
-    pub(super) fn is_moved_by_contacts(self, function: f64) -> bool {
-        matches!(self, Self::Unloaded { allowed, .. } if function.abs() > allowed)
+    /// Returns true if closed contacts stopped the motion, and move it at this time (s) and value of the function.
+    pub(super) fn is_moved_by_contacts(self, (t, function): (f64, f64)) -> bool {
+        match self {
+            Self::Unloaded { since, allowed, .. } => {
+                function.abs() > find_allowed(allowed, t - since)
+            }
+            _ => false,
+        }
     }
 
     /// Returns the displacement of the surface until the motion has left it.
@@ -49,4 +59,9 @@ impl SurfaceState {
 pub(super) fn side_of_arrival(state: SurfaceState, sign: f64) -> f64 {
     let by_sign = if sign < 0.0 { -1.0 } else { 1.0 };
     state.came_from().unwrap_or(by_sign)
+}
+
+/// Returns the allowed error of a function after a time, s, from those at once and per second.
+pub(super) fn find_allowed([at_once, per_second]: [f64; 2], elapsed: f64) -> f64 {
+    at_once + per_second * elapsed.abs() + f64::MIN_POSITIVE
 }

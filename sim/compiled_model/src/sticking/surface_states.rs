@@ -6,7 +6,7 @@ use eomgen_sim::ode::{SurfaceMode, difference_step};
 
 use super::discs::{Disc, DiscState, norm, signs};
 use super::sided_model::SidedModel;
-use super::surface_state::SurfaceState;
+use super::surface_state::{SurfaceState, find_allowed};
 
 /// Largest distance of a state from a surface that holds it, relative to the largest value of the
 /// switching function. Beyond it the state is corrected.
@@ -167,7 +167,8 @@ impl SurfaceStates {
                 // The start of the motion decides about the force.
                 *place = SurfaceState::Unloaded {
                     from: 1.0,
-                    allowed: f64::INFINITY,
+                    since: 0.0,
+                    allowed: [0.0; 2],
                 };
             }
         }
@@ -293,7 +294,11 @@ impl SurfaceStates {
                 SurfaceState::Free => {}
                 SurfaceState::Holding { from, .. } => *slot = from * 4.0 * side * (1.0 - side),
                 SurfaceState::Bearing { from, .. } => *slot = from,
-                SurfaceState::Unloaded { from, allowed } => *slot = from * (allowed - slot.abs()),
+                SurfaceState::Unloaded {
+                    from,
+                    since,
+                    allowed,
+                } => *slot = from * (find_allowed(allowed, at.0 - since) - slot.abs()),
                 SurfaceState::Leaving { side, moved } => *slot += side * moved,
             }
         }

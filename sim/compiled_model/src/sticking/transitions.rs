@@ -87,7 +87,7 @@ impl SurfaceStates {
             let near = NEAR_MOVE_FACTOR * (to - from).abs();
             let near = near.min(MAX_NEAR_FRACTION * self.sizes[surface]) + roundings[surface];
             let is_near = to.abs() <= near;
-            is_new |= place.is_moved_by_contacts(to);
+            is_new |= place.is_moved_by_contacts((t, to));
             if place.is_on() || is_crossed || (is_near && *place == SurfaceState::Free) {
                 is_new |= is_crossed && !place.is_on();
                 touching.push(surface);
@@ -378,7 +378,7 @@ impl SurfaceStates {
         let (touching, arrivals) = self.free_without_jump((touching, arrivals), &jumps);
         let functions = self.sided.evaluate_functions(at, inputs);
         let (mut touching, arrivals, passing) =
-            self.unload_stopped((touching, arrivals), (came_from, &functions));
+            self.unload_stopped((touching, arrivals), came_from, (at.0, &functions));
         for (surface, side) in &passing {
             sides[*surface] = 0.5 + 0.5 * side;
         }
@@ -448,7 +448,8 @@ impl SurfaceStates {
     fn unload_stopped(
         &mut self,
         (touching, arrivals): (Vec<usize>, Vec<Arrival>),
-        (came_from, functions): (&[f64], &[f64]),
+        came_from: &[f64],
+        (t, functions): (f64, &[f64]),
     ) -> (Vec<usize>, Vec<Arrival>, Vec<(usize, f64)>) {
         let reached = touching.into_iter().zip(arrivals);
         let (stopped, others): (Vec<_>, Vec<_>) =
@@ -456,7 +457,7 @@ impl SurfaceStates {
         let mut passing = Vec::new();
         for (surface, _) in stopped {
             let (place, function) = (self.places[surface], functions[surface]);
-            let side = match place.is_moved_by_contacts(function) {
+            let side = match place.is_moved_by_contacts((t, function)) {
                 true => Some(function.signum()),
                 false => self.sided.side_of_contact_motion(surface),
             };
@@ -464,9 +465,11 @@ impl SurfaceStates {
                 passing.push((surface, side));
                 continue;
             }
+            let errors = [self.sizes[surface], self.sided.own_effects[surface]];
             self.places[surface] = SurfaceState::Unloaded {
                 from: side_of_arrival(place, came_from[surface]),
-                allowed: self.tolerance * self.sizes[surface] + f64::MIN_POSITIVE,
+                since: t,
+                allowed: errors.map(|size| self.tolerance * size),
             };
         }
         let (touching, arrivals) = others.into_iter().unzip();
