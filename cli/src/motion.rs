@@ -9,9 +9,6 @@ use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 
-/// Maximum number of moved initial values in a note.
-const MAX_LISTED: usize = 8;
-
 /// Simulates over all requested times. A stop of the solver is an error.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     Ok(follow(instance, request)?.into_complete()?)
@@ -62,31 +59,8 @@ fn note_choices(motion: &Motion) {
 
 /// Prints a note about states that were moved onto the constraints.
 pub fn note_moved(what: &str, all: &[InitialChange]) {
-    if all.is_empty() {
-        return;
-    }
-    let moved = all.iter().take(MAX_LISTED);
-    let moved = moved.map(|moved| {
-        let (from, to) = (Rounded(moved.requested), Rounded(moved.used));
-        format!("{} from {from} to {to} {}", moved.name, moved.unit)
-    });
-    let mut moved: Vec<String> = moved.collect();
-    if all.len() > MAX_LISTED {
-        moved.push(format!("{} more", all.len() - MAX_LISTED));
-    }
-    warn(&format!(
-        "note: the {what} was moved onto the constraints: {}",
-        moved.join(", ")
-    ));
-}
-
-/// Number with six significant digits.
-struct Rounded(f64);
-
-impl std::fmt::Display for Rounded {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let rounded: f64 = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
-        write!(f, "{rounded}")
+    if let Some(text) = InitialChange::describe_all(what, all) {
+        warn(&format!("note: {text}"));
     }
 }
 

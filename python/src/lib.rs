@@ -49,7 +49,7 @@ mod _native {
     #[pymodule_export]
     use crate::inputs::{RefusedType, RefusedValue};
     #[pymodule_export]
-    use crate::linearisation::{discretise, linearise};
+    use crate::linearisation::{discretise, linearise, move_onto_constraints};
     #[pymodule_export]
     use crate::model::{Model, nearest};
     #[pymodule_export]

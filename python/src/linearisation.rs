@@ -1,7 +1,8 @@
 //! Linearisation of a model.
 
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_compiled_model::Linearisation;
+use eomgen_compiled_model::{InitialChange, Linearisation};
+use eomgen_sim::inputs::HeldInputs;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -23,6 +24,24 @@ pub fn discretise(
     let found = (model.compiled()).discretise(a.as_slice()?, b.as_slice()?, period);
     let found = found.map_err(|error| PyValueError::new_err(error.to_string()))?;
     Ok((found.a, found.b))
+}
+
+/// Moves a state onto the constraints of a model. Returns a sentence about the changes too.
+#[pyfunction]
+pub fn move_onto_constraints(
+    py: Python<'_>,
+    model: &Model,
+    t: f64,
+    x: PyReadonlyArray1<'_, f64>,
+    u: PyReadonlyArray1<'_, f64>,
+) -> PyResult<(Vec<f64>, Option<String>)> {
+    let (state, inputs) = (x.as_slice()?, u.as_slice()?);
+    let moved = py.detach(|| {
+        let inputs = HeldInputs::constant(inputs.to_vec());
+        model.instance()?.find_consistent_state(state, t, &inputs)
+    });
+    let (state, changes) = moved.map_err(error::model)?;
+    Ok((state, InitialChange::describe_all("state", &changes)))
 }
 
 /// Linearises a model at a time, state and inputs.

@@ -249,3 +249,38 @@ def test_models_can_be_pickled():
 def test_names_are_escaped_in_html():
     shown = eomgen.load(OSCILLATOR)._repr_html_()
     assert "<math>" in shown and "<hostile>" not in shown
+
+
+ROD = """
+[model]
+name = "rod"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.7, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { unit = "m", initial = 0.1 }
+y = { unit = "m", initial = -0.7, initial_rate = 0.2 }
+[kinetic]
+load = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[constraints]
+rod = { zero = "x^2 + y^2 - l^2" }
+"""
+
+
+def test_linearisation_and_modes_move_the_state_onto_constraints():
+    model = eomgen.load(ROD)
+    with pytest.warns(UserWarning, match="the state was moved onto the constraints: x from 0.1 to"):
+        moved = model.linearise()
+    x, y, x_dot, y_dot = moved.x
+    assert abs(x * x + y * y - 0.49) < 1e-12
+    assert abs(x * x_dot + y * y_dot) < 1e-12
+    with pytest.warns(UserWarning, match="moved"):
+        frequencies = [mode.frequency for mode in model.modes()]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        again = model.linearise(x=moved.x)
+        assert frequencies == [mode.frequency for mode in model.modes(x=moved.x)]
+    assert np.allclose(again.A, moved.A, rtol=1e-9, atol=1e-9)

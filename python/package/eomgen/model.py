@@ -206,21 +206,26 @@ class Model:
 
         t: time in s. x: state, (states,), or a mapping of names to numbers; missing states have the
         specification's initial values. u: inputs, (inputs,), or a mapping of names to numbers; missing inputs
-        are 0.
+        are 0. A state that does not satisfy the constraints is moved onto them, with a warning.
         """
-        time = _arguments.real("t", t)
-        call = self._call(time, self.state(x), u)
-        state, inputs = call.x[0], call.u[0]
+        time, state, inputs = self._operating_point(t, x, u)
         found = _native.linearise(self._native, time, state, inputs)
         return Linearisation(self._native, self._states, self._inputs, self._observables, state, inputs, *found)
+
+    def _operating_point(self, t: Any, x: Any, u: Any) -> Tuple[float, "np.ndarray", "np.ndarray"]:
+        time = _arguments.real("t", t)
+        call = self._call(time, self.state(x), u)
+        state, moved = _native.move_onto_constraints(self._native, time, call.x[0], call.u[0])
+        if moved is not None:
+            warnings.warn(moved, stacklevel=3)
+        return time, np.array(state), call.u[0]
 
     def modes(self, t: float = 0.0, x: Any = None, u: Any = None) -> List[Mode]:
         """Computes the natural modes of the model linearised at a state, lowest frequency first. The arguments are
         those of `linearise`.
         """
-        time = _arguments.real("t", t)
-        call = self._call(time, self.state(x), u)
-        amplitudes, found = _native.modes(self._native, time, call.x[0], call.u[0])
+        time, state, inputs = self._operating_point(t, x, u)
+        amplitudes, found = _native.modes(self._native, time, state, inputs)
         names = tuple(name for name, _ in amplitudes)
         return [
             Mode(frequency, damping, complex(*eigenvalue), np.array([complex(*v) for v in shape]), names, limit)

@@ -43,6 +43,9 @@ pub(crate) struct Projection {
     pub singularity_watch: RefCell<SingularityWatch>,
 }
 
+/// Maximum number of changed initial values in a sentence.
+const MAX_LISTED_CHANGES: usize = 8;
+
 /// An initial value that was changed to satisfy the constraints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialChange {
@@ -54,6 +57,34 @@ pub struct InitialChange {
     pub requested: f64,
     /// Value used.
     pub used: f64,
+}
+
+impl InitialChange {
+    /// Returns a sentence about the changes of what, such as `initial state`; `None` without changes.
+    pub fn describe_all(what: &str, all: &[Self]) -> Option<String> {
+        let listed = all.iter().take(MAX_LISTED_CHANGES).map(Self::describe);
+        let mut listed: Vec<String> = listed.collect();
+        match all.len() {
+            0 => return None,
+            count if count > MAX_LISTED_CHANGES => {
+                listed.push(format!("{} more", count - MAX_LISTED_CHANGES));
+            }
+            _ => {}
+        }
+        Some(format!(
+            "the {what} was moved onto the constraints: {}",
+            listed.join(", ")
+        ))
+    }
+
+    fn describe(&self) -> String {
+        let [from, to] = [self.requested, self.used].map(round_to_six_digits);
+        format!("{} from {from} to {to} {}", self.name, self.unit)
+    }
+}
+
+fn round_to_six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 impl Projection {
