@@ -68,7 +68,7 @@ impl FailedWindows {
         Some(Self {
             count: unfollowed.len(),
             total: windows.windows.len(),
-            first_start: window.times[0],
+            first_start: windows.records[window.record].origin + window.times[0],
             record: windows.records[window.record].name.clone(),
         })
     }

@@ -137,6 +137,7 @@ fn write_record(times: &[f64], inputs: HeldInputs, seen: &[f64], channels: usize
         name: "experiment".to_owned(),
         path: PathBuf::new(),
         times: times.to_vec(),
+        origin: 0.0,
         inputs,
         input_columns: Vec::new(),
         channels: (0..channels)

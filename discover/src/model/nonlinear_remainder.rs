@@ -125,6 +125,7 @@ mod tests {
             name: "train[0]".to_owned(),
             path: PathBuf::new(),
             times,
+            origin: 0.0,
             inputs,
             input_columns: vec![torque],
             channels: Vec::new(),

@@ -47,11 +47,12 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
     );
     if let Some(worst) = find_worst_window(problem, fit) {
         let window = &problem.train.windows[worst];
+        let record = &problem.train.records[window.record];
         text += &format!(
             " It is largest from {:.3} s to {:.3} s of `{}`.",
-            window.times[0],
-            window.times[window.times.len() - 1],
-            problem.train.records[window.record].name
+            record.origin + window.times[0],
+            record.origin + window.times[window.times.len() - 1],
+            record.name
         );
     }
     if let Some(more) = by_speed(problem, fit, worst) {

@@ -36,7 +36,7 @@ pub(crate) fn draw_overlays(
     let worst = find_worst_window(problem, before).unwrap_or(WindowId::new(0));
     let record = problem.train.windows[worst].record;
     let trained = Seen::of(problem, (&problem.train, record), &train);
-    let stretch = trained.stretch(&problem.train.windows[worst]);
+    let stretch = trained.stretch(&problem.train, &problem.train.windows[worst]);
     let caption = format!(
         "{}, which was used in the fit.",
         name_record(&problem.train.records[record])
@@ -116,7 +116,7 @@ impl Seen {
         });
         Self {
             times: windows()
-                .flat_map(|(_, window)| window.times.iter().copied())
+                .flat_map(|(_, window)| set.file_times(window))
                 .collect(),
             channels: channels.collect(),
         }
@@ -124,9 +124,10 @@ impl Seen {
 
     /// The samples of a window; of a long one those around the largest difference of the first model, in
     /// noises.
-    fn stretch(&self, window: &Window) -> std::ops::Range<usize> {
+    fn stretch(&self, set: &Windows<'_>, window: &Window) -> std::ops::Range<usize> {
         let samples = self.times.len();
-        let first = self.times.partition_point(|t| *t < window.times[0]);
+        let begin = set.file_times(window).next().unwrap_or_default();
+        let first = self.times.partition_point(|t| *t < begin);
         let inside = first..(first + window.times.len()).min(samples);
         let most = ((ENLARGED_FRACTION * samples as f64) as usize)
             .max(MIN_ENLARGED_SAMPLES)

@@ -95,7 +95,7 @@ pub(crate) fn draw_residuals(
         .windows
         .iter()
         .filter(|w| w.record == 0)
-        .flat_map(|w| w.times.iter().copied())
+        .flat_map(|w| problem.test.file_times(w))
         .collect();
     let column = |fit: &Fit, channel: usize| -> Vec<f64> {
         let windows = windows_of_first_record(problem, fit);

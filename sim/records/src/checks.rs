@@ -8,7 +8,7 @@ use crate::dataset::Dataset;
 use crate::gaps::describe_missing;
 use crate::record::Record;
 use crate::refusal::Refusal;
-use crate::samples::{MAX_JITTER_FRACTION, span, typical_step};
+use crate::samples::{MAX_JITTER_FRACTION, shown_time, span, typical_step};
 use crate::windows::{MAX_DELAY_SAMPLES, MAX_LEAD_SAMPLES};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Input;
@@ -113,7 +113,7 @@ pub(crate) fn held_inputs_note<'n>(
     let gaps = inputs
         .zip(&record.input_columns)
         .filter_map(|(name, column)| {
-            let missing = describe_missing(&record.times, column)?;
+            let missing = describe_missing((&record.times, record.origin), column)?;
             Some(format!("{missing} of `{name}`"))
         });
     let gaps: Vec<String> = gaps.collect();
@@ -136,9 +136,10 @@ fn input_sizes(record: &Record, inputs: &[Input]) -> Result<(), Refusal> {
         let samples = record.times.iter().zip(column);
         if let Some((time, value)) = samples.into_iter().find(|(_, v)| v.abs() > LARGEST_INPUT) {
             let message = format!(
-                "input `{}` is {value:e} (SI) at t = {time} s: its powers exceed the largest number of a computer, \
+                "input `{}` is {value:e} (SI) at t = {} s: its powers exceed the largest number of a computer, \
                  about 1e308; expected values that the machine can reach",
-                input.name
+                input.name,
+                shown_time(record.origin, *time)
             );
             return Err(Refusal::file_error(&record.path, message));
         }
@@ -162,7 +163,7 @@ fn check_values(
             column.len()
         ));
     }
-    if let Some(gap) = describe_missing(&record.times, column) {
+    if let Some(gap) = describe_missing((&record.times, record.origin), column) {
         notes.push(format!(
             "{}: missing, and ignored: {gap} of `{name}`",
             record.name
@@ -326,6 +327,7 @@ mod tests {
                 name: "train[0]".to_owned(),
                 path: PathBuf::new(),
                 times: vec![0.0, 1.0],
+                origin: 0.0,
                 inputs: HeldInputs::zero(input_columns.len()),
                 input_columns: input_columns.to_vec(),
                 channels: Vec::new(),

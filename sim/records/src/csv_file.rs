@@ -10,7 +10,7 @@ use eomgen_model_spec::unit::Unit;
 use crate::description::columns::ColumnKey;
 use crate::description::format::{Format, Separator};
 use crate::header::{COMMENT, MAX_SAMPLES, Table, find_columns, too_many_samples};
-use crate::number::parse_number;
+use crate::number::{parse_decimal, parse_number};
 use crate::proposal::layout::detect_layout;
 use crate::refusal::Refusal;
 
@@ -43,12 +43,17 @@ pub fn read_columns(
     let mut table = Table {
         columns: vec![Vec::new(); wanted.len()],
         lines: Vec::new(),
+        decimals: Vec::new(),
     };
     while let Some((line, record)) = file.next_record()? {
         if table.lines.len() == MAX_SAMPLES {
             return Err(too_many_samples(path));
         }
         table.lines.push(line);
+        if let Some(place) = places.first() {
+            let cell = record.get(*place).unwrap_or_default();
+            table.decimals.push(parse_decimal(cell, format.decimal));
+        }
         for (column, place) in table.columns.iter_mut().zip(&places) {
             let cell = record.get(*place).unwrap_or_default();
             column.push(read_number(path, line, cell, *place, format.decimal)?);

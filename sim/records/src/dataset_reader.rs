@@ -7,6 +7,7 @@ use eomgen_model_spec::model::Model;
 
 use crate::binding::bind_description;
 use crate::checks::check_records;
+use crate::clock::contains_time;
 use crate::coverage::{self, check_splittable};
 use crate::dataset::{Channel, Dataset, Initial, Quantity, StartSource};
 use crate::decimation::Decimation;
@@ -87,6 +88,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         smooth_noises: &smooth_noises,
         initial_values: &starts,
         model,
+        counts_from_first: !contains_time(model),
         decimation: &decimation,
         min_samples: MIN_SAMPLES,
     };

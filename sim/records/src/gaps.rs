@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::samples::{MIN_GAP_STEPS, typical_step};
+use crate::samples::{MIN_GAP_STEPS, shown_time, typical_step};
 
 /// Number of gaps between rows above which a record has uneven steps and is not split.
 const MAX_GAPS: usize = 20;
@@ -22,13 +22,13 @@ pub(crate) struct Gap {
 }
 
 impl Gap {
-    /// Describes the missing samples and their times.
-    pub fn describe(&self) -> String {
+    /// Describes the missing samples and their times, which are later by `origin` in the file.
+    pub fn describe(&self, origin: f64) -> String {
         let column = match &self.column {
             Some(name) => format!(" of `{name}`"),
             None => String::new(),
         };
-        let (count, before, behind) = (self.count, self.before, self.behind);
+        let (count, before, behind) = (self.count, origin + self.before, origin + self.behind);
         let place = match (before.is_finite(), behind.is_finite()) {
             (true, true) => format!("between {before:.6} s and {behind:.6} s"),
             (false, _) => format!("before {behind:.6} s"),
@@ -124,11 +124,11 @@ pub(crate) fn split_samples(times: &[f64], mut gaps: Vec<Gap>) -> Vec<Range<usiz
     parts
 }
 
-/// Returns the number of missing samples and the time of the first one; `None` without any.
-pub(crate) fn describe_missing(times: &[f64], column: &[f64]) -> Option<String> {
+/// Returns the number of missing samples and the time of the first one in the file; `None` without any.
+pub(crate) fn describe_missing((times, origin): (&[f64], f64), column: &[f64]) -> Option<String> {
     let count = column.iter().filter(|value| !value.is_finite()).count();
     let first = column.iter().position(|value| !value.is_finite())?;
-    let t = times.get(first)?;
+    let t = shown_time(origin, *times.get(first)?);
     Some(match count {
         1 => format!("the sample at t = {t} s"),
         count => format!("{count} samples from t = {t} s on"),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use eomgen_model_spec::hidden_characters::escape_hidden;
 
+use crate::decimal::Decimal;
 use crate::description::columns::ColumnKey;
 use crate::refusal::Refusal;
 
@@ -15,6 +16,8 @@ pub struct Table {
     pub columns: Vec<Vec<f64>>,
     /// Line number of each row, from 1; in files without lines row 1 has number 2.
     pub lines: Vec<u64>,
+    /// Numbers of the first column without rounding; `None` for a missing one.
+    pub decimals: Vec<Option<Decimal>>,
 }
 
 pub(crate) const COMMENT: char = '#';

@@ -62,6 +62,7 @@ pub fn read_inputs(
         smooth_noises: &[],
         initial_values: &[],
         model,
+        counts_from_first: false,
         decimation: &Decimation::new(description.time.every, description.time.filter),
         min_samples: MIN_INPUT_SAMPLES,
     };
@@ -72,7 +73,7 @@ pub fn read_inputs(
             "{}: {}: the inputs in between are unknown and their last values are held, so the motion after the gap \
              can differ from that of the machine",
             record.name,
-            gap.describe()
+            gap.describe(record.origin)
         )
     }));
     warnings.extend(held_inputs_note(&record, input_names(&model.inputs)));

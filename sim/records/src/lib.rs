@@ -4,7 +4,7 @@
 //!
 //! - a [`description`] is the parsed dataset file; `bound` looks up its names and units in a model;
 //! - `files` and `columns` (text by `csv_file` with its `number`s, Parquet by `parquet_file`) read the numbers of a
-//!   [`record`];
+//!   [`record`], whose time `clock` counts from the first sample without rounding (`decimal`);
 //! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns,
 //!   `decimation` reduces samples, [`samples`] checks them, and `record_parts` splits records at `gaps`;
 //! - if the records give the motion (`given_motion`), `motion_rates` adds rates and `rest` removes
@@ -51,12 +51,14 @@
 
 mod binding;
 pub mod checks;
+mod clock;
 mod columns;
 mod computed_observables;
 mod coverage;
 mod csv_file;
 pub mod dataset;
 mod dataset_reader;
+mod decimal;
 mod decimation;
 pub mod description;
 pub mod experiment;

@@ -9,6 +9,7 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
+use crate::decimal::Decimal;
 use crate::description::columns::ColumnKey;
 use crate::header::{MAX_SAMPLES, Table, find_columns, too_many_samples};
 use crate::refusal::Refusal;
@@ -86,6 +87,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
         }
     }
     let mut values = vec![Vec::new(); wanted.len()];
+    let mut decimals = Vec::new();
     for row in reader.get_row_iter(None).map_err(broken)? {
         let row = row.map_err(broken)?;
         if values
@@ -93,6 +95,10 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
             .is_some_and(|column| column.len() == MAX_SAMPLES)
         {
             return Err(too_many_samples(path));
+        }
+        if let Some(place) = places.first() {
+            let field = row.get_column_iter().nth(*place).map(|(_, field)| field);
+            decimals.push(field.and_then(decimal_from_field));
         }
         for (column, place) in values.iter_mut().zip(&places) {
             let field = row.get_column_iter().nth(*place).map(|(_, field)| field);
@@ -105,6 +111,7 @@ fn decode_columns(path: &Path, bytes: Vec<u8>, wanted: &[&ColumnKey]) -> Result<
     Ok(Table {
         lines: lines.collect(),
         columns: values,
+        decimals,
     })
 }
 
@@ -128,6 +135,14 @@ fn has_valid_offsets(metadata: &ParquetMetaData, length: usize) -> bool {
         .all(|group| group.num_rows() >= 0 && group.columns().iter().all(whole))
         && groups.map(|group| group.num_rows() as i128).sum::<i128>()
             == i128::from(metadata.file_metadata().num_rows())
+}
+
+fn decimal_from_field(field: &Field) -> Option<Decimal> {
+    match field {
+        Field::Long(value) => Some(Decimal::from_integer(*value)),
+        Field::Float(value) => Decimal::parse(&format!("{value:e}")),
+        other => Decimal::from_double(number_from_field(Path::new(""), "", other).ok()?),
+    }
 }
 
 fn number_from_field(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {

@@ -10,6 +10,7 @@ use eomgen_model_spec::unit::Unit;
 use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 
+use crate::clock::Clock;
 use crate::columns;
 use crate::decimation::Decimation;
 use crate::description::Description;
@@ -34,8 +35,11 @@ pub struct Record {
     pub name: String,
     /// Path of its file.
     pub path: PathBuf,
-    /// Times of the samples, in s.
+    /// Times of the samples, in s, counted from the first sample of the file. If the model depends on the time, they are
+    /// those of the file.
     pub times: Vec<f64>,
+    /// Difference of these times and those of the file, in s.
+    pub origin: f64,
     /// Inputs of the model, held between samples. If the motion is given, each row also contains
     /// all coordinates, then all rates, then all second rates.
     pub inputs: HeldInputs,
@@ -69,6 +73,15 @@ impl Record {
     }
 }
 
+/// Part of a file that a record uses.
+pub(crate) struct UsedPart {
+    pub rows: Range<usize>,
+    /// Times of its first sample and of the one after its last, in s; infinite where the file ends.
+    pub span: Range<f64>,
+    /// Difference of the record's times and those of the file, in s.
+    pub origin: f64,
+}
+
 pub(crate) struct RecordReader<'d> {
     pub description: &'d Description,
     pub path: &'d Path,
@@ -81,6 +94,8 @@ pub(crate) struct RecordReader<'d> {
     /// Known initial value of each channel, in SI.
     pub initial_values: &'d [Option<f64>],
     pub model: &'d Model,
+    /// True if times count from the first sample of a file.
+    pub counts_from_first: bool,
     pub decimation: &'d Decimation,
     pub min_samples: usize,
 }
@@ -97,9 +112,10 @@ impl RecordReader<'_> {
             Diagnostics::from_one(self.description.source.clone(), diagnostic)
         };
         let place = resolve_record_path(self.path, &stretch.file).map_err(wrong)?;
-        let mut table = self.read_table(&place, name, stretch, notes)?;
-        self.add_rates(&place, name, stretch, &mut table, notes)?;
-        let is_continued = self.cut_to_stretch(stretch, &mut table)?;
+        let (mut table, used) = self.read_table(&place, name, stretch, notes)?;
+        self.add_rates(&place, name, &used, &mut table, notes)?;
+        let is_continued = used.rows.start > 0;
+        cut_to_rows(used.rows, &mut table);
         let mut gaps = self.find_unknown_inputs(&table);
         self.decimate(&place, &mut table)?;
         let first_motion = 1 + self.inputs.iter().flatten().count();
@@ -126,6 +142,7 @@ impl RecordReader<'_> {
             inputs: self.build_inputs(&times, &input_columns, motion),
             path: place,
             times,
+            origin: used.origin,
             input_columns,
             channels,
             is_continued,
@@ -164,43 +181,42 @@ impl RecordReader<'_> {
         inputs.chain(motion).chain(channels).collect()
     }
 
-    /// Reads time, input columns, given motion and channels, in SI and unwrapped.
+    /// Reads time, input columns, given motion and channels, in SI and unwrapped, and the part in use.
     fn read_table(
         &self,
         place: &Path,
         name: &str,
         stretch: &Stretch,
         notes: &mut Vec<String>,
-    ) -> Result<Table, Refusal> {
-        let read = self.read_columns();
+    ) -> Result<(Table, UsedPart), Refusal> {
+        let columns = self.read_columns();
         let mut wanted = vec![&self.description.time.column.column];
-        wanted.extend(read.iter().map(|column| &column.column.column));
-        let units = [self.time]
-            .into_iter()
-            .chain(read.iter().map(|column| column.unit));
+        wanted.extend(columns.iter().map(|column| &column.column.column));
         let mut table = columns::read_columns(place, &self.description.format, &wanted)?;
-        for (column, unit) in table.columns.iter_mut().zip(units) {
+        let clock = Clock::new(&table, self.time, self.counts_from_first);
+        let read_times = std::mem::replace(&mut table.columns[0], clock.times);
+        for (column, read) in table.columns[1..].iter_mut().zip(&columns) {
             for value in column.iter_mut() {
                 // A number that overflows in SI counts as missing.
-                *value = Some(unit.to_si(*value))
+                *value = Some(read.unit.to_si(*value))
                     .filter(|v| v.is_finite())
                     .unwrap_or(f64::NAN);
             }
         }
         check_times(place, &table.columns[0], &table.lines, 1)?;
-        let (from, to) = self.stretch_ends(stretch);
-        let gaps = unwrap_columns(&read, (place, from..to), &mut table)
+        let used = self.find_used_part(stretch, &read_times, (&table.columns[0], clock.origin))?;
+        let gaps = unwrap_columns(&columns, (place, &used), &mut table)
             .map_err(|wrong| Diagnostics::from_one(self.description.source.clone(), wrong))?;
         notes.extend(gaps.into_iter().map(|gap| format!("{name}: {gap}")));
-        self.drop_outliers(name, from..to, &mut table, notes);
-        Ok(table)
+        self.drop_outliers(name, &used.rows, &mut table, notes);
+        Ok((table, used))
     }
 
     /// Replaces single wrong samples of the channels by missing ones, and notes them.
     fn drop_outliers(
         &self,
         name: &str,
-        span: Range<f64>,
+        used: &Range<usize>,
         table: &mut Table,
         notes: &mut Vec<String>,
     ) {
@@ -214,7 +230,7 @@ impl RecordReader<'_> {
             for outlier in &found {
                 column[outlier.sample] = f64::NAN;
             }
-            found.retain(|outlier| span.contains(&times[outlier.sample]));
+            found.retain(|outlier| used.contains(&outlier.sample));
             let Some(worst) = found
                 .iter()
                 .max_by(|a, b| a.error.abs().total_cmp(&b.error.abs()))
@@ -235,15 +251,45 @@ impl RecordReader<'_> {
         }
     }
 
-    /// Returns the first time of a part and the time after its last, in s.
-    fn stretch_ends(&self, stretch: &Stretch) -> (f64, f64) {
-        let end = |number: Option<Number>, open: f64| {
-            number.map_or(open, |number| self.time.to_si(number.value))
+    /// Returns the part of a file in use. `read` are its times in their unit, `times` those in s.
+    fn find_used_part(
+        &self,
+        stretch: &Stretch,
+        read: &[f64],
+        (times, origin): (&[f64], f64),
+    ) -> Result<UsedPart, Refusal> {
+        let until = |end: Option<Number>, open: usize| {
+            end.map_or(open, |end| read.partition_point(|t| *t < end.value))
         };
-        (
-            end(stretch.from, f64::NEG_INFINITY),
-            end(stretch.to, f64::INFINITY),
-        )
+        let rows = until(stretch.from, 0)..until(stretch.to, read.len());
+        if let Some(end) = stretch.from.or(stretch.to)
+            && rows.is_empty()
+        {
+            let nothing = Diagnostic::error(format!(
+                "\"{}\" has no samples in this part: its times are {} to {} {}",
+                stretch.file.text,
+                read[0],
+                read[read.len() - 1],
+                self.description.time.column.unit.text
+            ));
+            return Err(Diagnostics::from_one(
+                self.description.source.clone(),
+                nothing.with_span(
+                    end.span,
+                    "expected a time of the record, in the unit of its column",
+                ),
+            )
+            .into());
+        }
+        let from = stretch
+            .from
+            .map_or(f64::NEG_INFINITY, |_| times[rows.start]);
+        let to = times.get(rows.end).copied().unwrap_or(f64::INFINITY);
+        Ok(UsedPart {
+            rows,
+            span: from..to,
+            origin,
+        })
     }
 
     /// Appends rates and second rates to a given motion, so that a filter keeps them consistent.
@@ -252,7 +298,7 @@ impl RecordReader<'_> {
         &self,
         place: &Path,
         name: &str,
-        stretch: &Stretch,
+        used: &UsedPart,
         table: &mut Table,
         notes: &mut Vec<String>,
     ) -> Result<(), Refusal> {
@@ -261,7 +307,6 @@ impl RecordReader<'_> {
         }
         let first = 1 + self.inputs.iter().flatten().count();
         let given = first..first + self.motion.len();
-        let (from, to) = self.stretch_ends(stretch);
         let mut rates = [const { Vec::new() }; 3];
         for (coordinate, column) in self.motion.iter().zip(&table.columns[given.clone()]) {
             check_known(place, &format!("motion of `{}`", coordinate.name), column)?;
@@ -271,16 +316,14 @@ impl RecordReader<'_> {
                 (_, None) => None,
                 (GivenKind::Position, _) => differentiate_position(times, column, &parts),
                 (GivenKind::Speed { initial }, Some(first)) => {
-                    check_position_known(place, coordinate.name, (times, column), to)?;
+                    check_position_known(place, coordinate.name, (times, column), used)?;
                     integrate_speed(times, column, first.clone(), initial)
                 }
             };
             for part in parts {
-                let used = part.filter(|sample| (from..to).contains(&times[*sample]));
-                let used: Vec<usize> = used.collect();
-                if let (Some(first), Some(last)) = (used.first(), used.last())
-                    && let Some(filled) =
-                        describe_missing(&times[*first..=*last], &column[*first..=*last])
+                let shared = part.start.max(used.rows.start)..part.end.min(used.rows.end);
+                if let (Some(times), Some(column)) = (times.get(shared.clone()), column.get(shared))
+                    && let Some(filled) = describe_missing((times, used.origin), column)
                 {
                     notes.push(format!(
                         "{name}: missing, and interpolated: {filled} of `{}`",
@@ -301,43 +344,6 @@ impl RecordReader<'_> {
         }
         table.columns.splice(given, rates.into_iter().flatten());
         Ok(())
-    }
-
-    /// Keeps the samples between two times, if given. Returns true if samples before were dropped.
-    fn cut_to_stretch(&self, stretch: &Stretch, table: &mut Table) -> Result<bool, Refusal> {
-        if stretch.from.is_none() && stretch.to.is_none() {
-            return Ok(false);
-        }
-        let (from, to) = self.stretch_ends(stretch);
-        let times = &table.columns[0];
-        let kept = times.partition_point(|t| *t < from)..times.partition_point(|t| *t < to);
-        if kept.is_empty() {
-            let (first, last) = (times[0], times[times.len() - 1]);
-            let span = stretch
-                .from
-                .or(stretch.to)
-                .map_or(stretch.file.span, |n| n.span);
-            let nothing = Diagnostic::error(format!(
-                "\"{}\" has no samples in this part: its times are {} to {} {}",
-                stretch.file.text,
-                self.time.from_si(first),
-                self.time.from_si(last),
-                self.description.time.column.unit.text
-            ));
-            return Err(Diagnostics::from_one(
-                self.description.source.clone(),
-                nothing.with_span(
-                    span,
-                    "expected a time of the record, in the unit of its column",
-                ),
-            )
-            .into());
-        }
-        table.lines = table.lines[kept.clone()].to_vec();
-        for column in &mut table.columns {
-            *column = column[kept.clone()].to_vec();
-        }
-        Ok(kept.start > 0)
     }
 
     fn decimate(&self, place: &Path, table: &mut Table) -> Result<(), Refusal> {
@@ -405,23 +411,30 @@ impl RecordReader<'_> {
     }
 }
 
-/// Checks that a column of speeds has no gap before a time (s), after which its integral is unknown.
+fn cut_to_rows(rows: Range<usize>, table: &mut Table) {
+    table.lines = table.lines[rows.clone()].to_vec();
+    for column in &mut table.columns {
+        *column = column[rows.clone()].to_vec();
+    }
+}
+
+/// Checks that a column of speeds has no gap before the end of the part in use: after it, its integral is unknown.
 fn check_position_known(
     place: &Path,
     name: &str,
     (times, speeds): (&[f64], &[f64]),
-    until: f64,
+    used: &UsedPart,
 ) -> Result<(), Refusal> {
     let mut gaps = find_missing_rows(times);
     gaps.extend(find_long_empty_cells(name, times, speeds));
-    match gaps.iter().find(|gap| gap.behind < until) {
+    match gaps.iter().find(|gap| gap.behind < used.span.end) {
         Some(gap) => Err(Refusal::file_error(
             place,
             format!(
                 "{}, and the position of `{name}` is integrated from its speed: it is unknown after the gap; use \
                  only the part before it (`to`), or write the part after it to a file of its own, whose first position \
                  is `initial` in [motion.{name}]",
-                gap.describe()
+                gap.describe(used.origin)
             ),
         )),
         None => Ok(()),

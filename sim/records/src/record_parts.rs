@@ -25,7 +25,11 @@ pub(crate) fn split_at_gaps(
         if !has_empty_cells {
             return Ok(vec![record]);
         }
-        let shown: Vec<String> = gaps.iter().take(3).map(Gap::describe).collect();
+        let shown: Vec<String> = gaps
+            .iter()
+            .take(3)
+            .map(|gap| gap.describe(record.origin))
+            .collect();
         return Err(Refusal::file_error(
             &record.path,
             format!(
@@ -39,11 +43,15 @@ pub(crate) fn split_at_gaps(
             true => "the parts before and after are used as separate records",
             false => "this part is ignored",
         };
-        notes.push(format!("{}: {}: {result}", record.name, gap.describe()));
+        notes.push(format!(
+            "{}: {}: {result}",
+            record.name,
+            gap.describe(record.origin)
+        ));
     }
     let mut found = Vec::with_capacity(parts.len());
     for part in parts {
-        let begin = record.times[part.start];
+        let begin = record.origin + record.times[part.start];
         if part.len() < MIN_SAMPLES {
             notes.push(format!(
                 "{}: the {} samples from {begin:.6} s on are too few and are ignored",
@@ -65,6 +73,7 @@ pub(crate) fn split_at_gaps(
             },
             path: record.path.clone(),
             times: record.times[part.clone()].to_vec(),
+            origin: record.origin,
             inputs: record.inputs.clone(),
             input_columns: cut(&record.input_columns),
             channels: cut(&record.channels),

@@ -19,6 +19,9 @@ pub(crate) const MIN_GAP_STEPS: f64 = 5.0;
 /// Relative deviation of a step from the usual one that counts as jitter.
 pub(crate) const MAX_JITTER_FRACTION: f64 = 0.1;
 
+/// Parts of a second to which times in messages are rounded.
+const SHOWN_PARTS: f64 = 1e9;
+
 /// Checks for at least `fewest` finite, increasing times; `lines` are their line numbers.
 pub fn check_times(
     path: &Path,
@@ -64,11 +67,28 @@ pub fn check_known(path: &Path, what: &str, column: &[f64]) -> Result<(), Refusa
     Ok(())
 }
 
-/// Returns the median step between samples, in s.
+/// Returns the mean of the steps between samples that differ from their median by jitter, in s. Of times with few digits, the
+/// median is one of two rounded steps.
 pub fn typical_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+    let Some(median) = steps.get(steps.len() / 2).copied() else {
+        return 0.0;
+    };
+    let is_usual = |step: &&f64| (*step - median).abs() <= MAX_JITTER_FRACTION * median;
+    let (sum, count) =
+        (steps.iter().filter(is_usual)).fold((0.0, 0.0), |(s, n), step| (s + step, n + 1.0));
+    if count > 0.0 { sum / count } else { median }
+}
+
+/// Returns a time of a file, in s, without the rounding of its sum.
+pub fn shown_time(origin: f64, time: f64) -> f64 {
+    let shown = ((origin + time) * SHOWN_PARTS).round() / SHOWN_PARTS;
+    if shown.is_finite() {
+        shown
+    } else {
+        origin + time
+    }
 }
 
 pub(crate) fn span(column: &[f64]) -> f64 {

@@ -102,6 +102,12 @@ impl<'d> Windows<'d> {
         counts.sum::<usize>() as f64
     }
 
+    /// Returns the times of a window in its file, s.
+    pub fn file_times(&self, window: &Window) -> impl Iterator<Item = f64> {
+        let origin = self.records[window.record].origin;
+        window.times.iter().map(move |t| origin + t)
+    }
+
     /// Returns the inputs of a window's record.
     pub fn inputs(&self, window: &Window) -> &HeldInputs {
         &self.records[window.record].inputs

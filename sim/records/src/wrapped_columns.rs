@@ -1,7 +1,6 @@
 //! Unwraps columns with a declared period and rejects other columns that look wrapped.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 use std::path::Path;
 
 use eomgen_model_spec::diagnostic::Diagnostic;
@@ -11,6 +10,7 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::{Column, Wrap};
 use crate::header::Table;
+use crate::record::UsedPart;
 use crate::samples::{MIN_GAP_STEPS, span, typical_step};
 use crate::unwrapping::unwrap_values;
 use crate::wrap_detection::{MAX_RELATIVE_DIFFERENCE, WrapPattern, detect_wrapping};
@@ -83,10 +83,10 @@ pub(crate) fn can_wrap(unit: &Unit) -> bool {
     [Dimension::DIMENSIONLESS, Dimension::LENGTH].contains(&unit.dimension)
 }
 
-/// Unwraps the declared columns and returns notes. `range` is the file and the time range in use.
+/// Unwraps the declared columns and returns notes.
 pub(crate) fn unwrap_columns(
     read: &[ReadColumn<'_>],
-    (file, range): (&Path, Range<f64>),
+    (file, used): (&Path, &UsedPart),
     table: &mut Table,
 ) -> Result<Vec<String>, Diagnostic> {
     let mut notes = Vec::new();
@@ -101,9 +101,11 @@ pub(crate) fn unwrap_columns(
         match (column.column.wrap, pattern) {
             (Some(Wrap::Period(number)), pattern) => {
                 check_period(column, number, values, pattern)?;
-                notes.extend(unwrap_column(column, number, &range, (times, values))?);
+                notes.extend(unwrap_column(column, number, used, (times, values))?);
             }
-            (None, Some(pattern)) => notes.extend(refuse_wrapped(column, file, &pattern)?),
+            (None, Some(pattern)) => {
+                notes.extend(refuse_wrapped(column, (file, used.origin), &pattern)?)
+            }
             _ => {}
         }
     }
@@ -167,7 +169,7 @@ fn proposed_key(pattern: &WrapPattern, period: f64, place: &str) -> String {
 fn unwrap_column(
     column: &ReadColumn<'_>,
     number: Number,
-    range: &Range<f64>,
+    used: &UsedPart,
     (times, values): (&[f64], &mut Vec<f64>),
 ) -> Result<Vec<String>, Diagnostic> {
     let (name, period) = (column.name, column.period_in_si(number));
@@ -175,13 +177,14 @@ fn unwrap_column(
     let lost = MIN_GAP_STEPS * typical_step(times);
     let mut notes = Vec::new();
     for (from, to) in found.unknown {
-        let place = format!("from {from:.6} s to {to:.6} s");
+        let (origin, span) = (used.origin, &used.span);
+        let place = format!("from {:.6} s to {:.6} s", origin + from, origin + to);
         let has_samples = (times.iter()).any(|t| *t > from && *t < to);
         if to - from > lost && !has_samples {
             notes.push(format!(
                 "`{name}` may be off by whole periods after the gap {place}: its speed changes there"
             ));
-        } else if from < range.end && to > range.start {
+        } else if from < span.end && to > span.start {
             return Err(Diagnostic::error(format!(
                 "`{name}` is missing {place}, and its speed changes there: the number of turns is not known"
             ))
@@ -200,7 +203,7 @@ fn unwrap_column(
 
 fn refuse_wrapped(
     column: &ReadColumn<'_>,
-    file: &Path,
+    (file, origin): (&Path, f64),
     pattern: &WrapPattern,
 ) -> Result<Option<String>, Diagnostic> {
     let (table, name, unit) = (column.table, column.name, column.unit);
@@ -213,7 +216,7 @@ fn refuse_wrapped(
         "{}: `{name}` jumps {count} by about {}, first at {:.6} s",
         file.display(),
         format_with_unit(size, unit),
-        pattern.first
+        origin + pattern.first
     );
     let cure = proposed_key(pattern, size, &format!(" in [{table}.{name}]"));
     if pattern.is_wrapped(table == "inputs") {
