@@ -79,7 +79,7 @@ fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
         .times()
         .iter()
         .copied()
-        .take_while(|t| *t <= end)
+        .take_while(|t| *t <= end + rounding(end))
         .collect();
     let last = inputs.times().last().copied().unwrap_or(end);
     if end > last {
@@ -104,7 +104,8 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
             "--interval {step:?}: expected a time in s above 0 and at most {whole:?}"
         )));
     }
-    let steps = (whole / step * (1.0 + 1e-12)).floor();
+    let lost = rounding(start.abs().max(end.abs())).min(0.5 * step);
+    let steps = ((whole + lost) / step * (1.0 + 1e-12)).floor();
     if steps > MAX_VALUES {
         return Err(Error::input(format!(
             "too many rows: {whole:?} s have {steps:.1e} intervals of {step:?} s, the limit is {MAX_VALUES:e} values (rows \
@@ -115,6 +116,11 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
     Ok((0..=steps as usize)
         .map(|row| round_to_decimals(start + row as f64 * step, decimals).min(end))
         .collect())
+}
+
+/// Returns the rounding of a difference of two times of this size, and of their conversion from another unit.
+fn rounding(t: f64) -> f64 {
+    2.0 * (t.abs().next_up() - t.abs())
 }
 
 /// Returns the number of decimals of the shortest notation of a number.
@@ -166,6 +172,18 @@ mod tests {
         assert_eq!(times[2], 0.102);
         let longest = times.iter().map(|t| decimals(*t)).max();
         assert_eq!(longest, Some(3));
+    }
+
+    #[test]
+    fn times_far_from_zero_have_as_many_rows() {
+        for start in [0.0, 1.7e9, 1.75e9 + 0.25, -3e7] {
+            for (steps, step) in [(1199, 0.005), (1000, 0.1), (777, 0.003)] {
+                let end = start + f64::from(steps) * step;
+                let times = even_times((start, end), Some(step)).ok().expect("times");
+                assert_eq!(times.len(), steps as usize + 1, "{start} {step}");
+                assert_eq!(times.last(), Some(&end), "{start} {step}");
+            }
+        }
     }
 
     #[test]

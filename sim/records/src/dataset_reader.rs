@@ -9,11 +9,12 @@ use crate::binding::bind_description;
 use crate::checks::check_records;
 use crate::clock::contains_time;
 use crate::coverage::{self, check_splittable};
-use crate::dataset::{Channel, Dataset, Initial, Quantity, StartSource};
+use crate::dataset::{Channel, Dataset, StartSource};
 use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::description::records::Stretch;
 use crate::given_motion::speed_notes;
+use crate::initial_readings::initial_readings;
 use crate::inputs::input_notes;
 use crate::record::{Record, RecordReader};
 use crate::record_parts::split_at_gaps;
@@ -71,7 +72,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     };
     let speeds = speed_notes(&bound.motion, &description);
     dataset.notes.extend(speeds);
-    let starts = initial_values(&dataset, model);
+    let starts = initial_readings(&dataset, model);
     let decimation = Decimation::new(description.time.every, description.time.filter);
     let smooth_noises: Vec<Option<f64>> =
         (dataset.channels.iter().map(Channel::smooth_noise)).collect();
@@ -86,7 +87,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         motion: &bound.motion,
         channels: &bound.channel_units,
         smooth_noises: &smooth_noises,
-        initial_values: &starts,
+        initial_readings: &starts,
         model,
         counts_from_first: !contains_time(model),
         decimation: &decimation,
@@ -134,26 +135,4 @@ fn check_prescribed_columns(description: &Description, model: &Model) -> Option<
         .with_span(name.span, "these commands hold inputs constant between samples")
         .with_help("remove this section to keep the input at rest, or use `simulate --record`, which supports prescribed motion"),
     )
-}
-
-/// Returns the initial value of each channel in SI, for coordinates with a known initial state.
-fn initial_values(dataset: &Dataset, model: &Model) -> Vec<Option<f64>> {
-    let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
-    let state = model.initial_state(&orders).unwrap_or_default();
-    let of = |place: usize| match &dataset.initial {
-        Initial::Estimate => None,
-        Initial::Rest => state.get(place).copied(),
-        Initial::Values(values) => {
-            let name = &model.coordinates[place].name;
-            let given = values.iter().find(|(given, _)| given == name);
-            given.map(|(_, value)| *value).or(state.get(place).copied())
-        }
-    };
-    let channels = dataset.channels.iter();
-    channels
-        .map(|channel| match channel.quantity {
-            Quantity::Coordinate(place) => of(place),
-            _ => None,
-        })
-        .collect()
 }

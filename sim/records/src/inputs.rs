@@ -60,7 +60,7 @@ pub fn read_inputs(
         motion: &[],
         channels: &[],
         smooth_noises: &[],
-        initial_values: &[],
+        initial_readings: &[],
         model,
         counts_from_first: false,
         decimation: &Decimation::new(description.time.every, description.time.filter),

@@ -6,7 +6,7 @@
 //! - `files` and `columns` (text by `csv_file` with its `number`s, Parquet by `parquet_file`) read the numbers of a
 //!   [`record`], whose time `clock` counts from the first sample without rounding (`decimal`);
 //! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns,
-//!   `decimation` reduces samples, [`samples`] checks them, and `record_parts` splits records at `gaps`;
+//!   from their `initial_readings`, `decimation` reduces samples, [`samples`] checks them, and `record_parts` splits records at `gaps`;
 //! - if the records give the motion (`given_motion`), `motion_rates` adds rates and `rest` removes
 //!   samples at rest;
 //! - a [`dataset`] contains all records; [`checks`] and `coverage` examine it, and [`windows`]
@@ -67,6 +67,7 @@ mod files;
 mod gaps;
 mod given_motion;
 mod header;
+mod initial_readings;
 pub mod inputs;
 mod motion_rates;
 pub mod noise;

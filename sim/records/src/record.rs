@@ -91,8 +91,8 @@ pub(crate) struct RecordReader<'d> {
     pub channels: &'d [Unit],
     /// Noise of each channel, in SI; `None` for a quantity that may have a peak of one sample.
     pub smooth_noises: &'d [Option<f64>],
-    /// Known initial value of each channel, in SI.
-    pub initial_values: &'d [Option<f64>],
+    /// Known reading of each channel at the start of a file, in SI.
+    pub initial_readings: &'d [Option<f64>],
     pub model: &'d Model,
     /// True if times count from the first sample of a file.
     pub counts_from_first: bool,
@@ -173,7 +173,7 @@ impl RecordReader<'_> {
             motion.map(|given| ReadColumn::new("motion", given.name, given.column, &given.unit));
         let channels = self.description.channels.iter().zip(self.channels);
         let channels = channels
-            .zip(self.initial_values)
+            .zip(self.initial_readings)
             .map(|((channel, unit), start)| {
                 let column = ReadColumn::new("channels", &channel.name.text, &channel.column, unit);
                 column.with_start(*start)

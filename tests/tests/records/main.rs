@@ -7,3 +7,4 @@ mod measured_quantities;
 mod parquet;
 mod refused_records;
 mod several_records;
+mod time_origins;
