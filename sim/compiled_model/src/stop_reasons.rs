@@ -80,6 +80,7 @@ pub(crate) fn format_named(
 ) -> String {
     let unsupported_sticking = match solver {
         Solver::Adams => UnsupportedSticking::Adams,
+        Solver::Exact => UnsupportedSticking::Exact,
         _ => UnsupportedSticking::Formula,
     };
     message(&Names {

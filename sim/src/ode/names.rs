@@ -32,6 +32,8 @@ pub enum UnsupportedSticking {
     Formula,
     /// The Adams method needs the preceding steps.
     Adams,
+    /// The exact solver crosses the surface again and again.
+    Exact,
 }
 
 /// Names of a system's states, coordinates first, and of its switching functions.
@@ -69,6 +71,10 @@ impl Names<'_> {
             Some(SurfaceKind::Speed) => {
                 let (reason, cure) = match self.unsupported_sticking {
                     UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
+                    UnsupportedSticking::Exact => (
+                        "by the exact solver here",
+                        "use the general solver (--solver rk), or ",
+                    ),
                     UnsupportedSticking::Formula => {
                         ("for a speed with piecewise functions or an exponent", "")
                     }

@@ -6,7 +6,7 @@
 //! sticking and slipping. The state is therefore put onto the surface, and `flow` ignores crossings
 //! until the function is farther away than its rounding error.
 
-use super::propagator::{Motion, Propagator};
+use super::propagator::{Departure, Motion, Propagator};
 
 impl Propagator {
     /// Puts the motion, after a change from the regime `before`, onto every surface that holds it
@@ -17,7 +17,9 @@ impl Propagator {
             if pair.0 == pair.1 {
                 continue;
             }
-            motion.departing.retain(|departing| *departing != family);
+            motion
+                .departing
+                .retain(|departing| departing.family != family);
             let (rank, departs) = match (pair.0.standing_on(), pair.1.standing_on()) {
                 (_, Some(rank)) => (rank, false),
                 (Some(rank), None) => (rank, true),
@@ -29,7 +31,10 @@ impl Propagator {
                 continue;
             }
             if departs {
-                motion.departing.push(family);
+                motion.departing.push(Departure {
+                    family,
+                    errors: None,
+                });
             }
             let threshold = self.families[family].threshold(&after.regime.system, rank);
             let row = function.state.as_slice();

@@ -319,14 +319,20 @@ impl Flow {
         let noise = DEPARTURE_ROUNDINGS * self.start_rate_noise(regime, place);
         if inward <= noise {
             let distance = above.min(below);
-            self.evaluations[place].slack = Some([2.0 * distance, 2.0 * rate.abs() + noise]);
-            self.departs = true;
+            self.continue_departure(place, [2.0 * distance, 2.0 * rate.abs() + noise]);
         }
     }
 
-    /// Returns true if a function is still leaving a limit that held it.
-    pub fn is_departing(&self, place: usize) -> bool {
-        self.evaluations[place].slack.is_some()
+    /// Continues the departure of a function whose value and rate have these errors at the start.
+    pub fn continue_departure(&mut self, place: usize, errors: [f64; 2]) {
+        self.evaluations[place].slack = Some(errors);
+        self.departs = true;
+    }
+
+    /// Returns the errors of value and rate here of a function that is still leaving a limit.
+    pub fn departure_errors(&self, place: usize) -> Option<[f64; 2]> {
+        let [value, rate] = self.evaluations[place].slack?;
+        Some([value + rate * self.tau, rate])
     }
 
     /// Ends the departures of functions that are farther from their limits by now than

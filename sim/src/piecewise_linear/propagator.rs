@@ -73,14 +73,23 @@ pub struct Motion {
     /// Switches so far and the time at which the present average began.
     switches: u64,
     averaged_from: f64,
-    /// The families whose functions are leaving a surface that held the motion.
-    pub(super) departing: Vec<usize>,
+    /// The functions that are leaving a surface that held the motion.
+    pub(super) departing: Vec<Departure>,
     /// Work done so far.
     pub(super) effort: Effort,
     /// The state at the start of the present segment.
     before: Vec<f64>,
     /// exp(i theta) of the phases now.
     phases: Vec<Complex<f64>>,
+}
+
+/// A function that is leaving a surface that held the motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Departure {
+    pub family: usize,
+    /// Errors of value and rate, once they are known: those of the release, because the distance
+    /// from the surface is no error later.
+    pub errors: Option<[f64; 2]>,
 }
 
 /// Whose functions may have jumped beyond their limits.
@@ -461,8 +470,11 @@ fn go_on<S: Simd>(
 ) -> (Found, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
     // The functions have the indices of their families.
-    for family in &motion.departing {
-        flow.depart(simd, regime, *family);
+    for departure in &motion.departing {
+        match departure.errors {
+            None => flow.depart(simd, regime, departure.family),
+            Some(errors) => flow.continue_departure(departure.family, errors),
+        }
     }
     if motion.at_once > AT_ONCE {
         // Only rounding errors separate the surfaces: advance the motion first.
@@ -481,10 +493,14 @@ fn go_on<S: Simd>(
         Some(found) => found,
         None => search(simd, flow, regime, length, step, &mut motion.effort),
     };
-    motion.departing.retain(|family| flow.is_departing(*family));
     if found == Found::Nothing {
         flow.advance_to(simd, regime, length);
+        flow.end_departures(simd, regime);
     }
+    motion.departing.retain_mut(|departure| {
+        departure.errors = flow.departure_errors(departure.family);
+        departure.errors.is_some()
+    });
     flow.state(simd, regime, &mut motion.state);
     (found, jump.is_some())
 }
