@@ -15,12 +15,16 @@ const MIN_RELATIVE_DISTANCE: f64 = 1e-9;
 /// Imaginary parts below this part of the largest eigenvalue count as zero.
 pub(super) const REAL: f64 = 1e-11;
 
-/// Returns true for each eigenvalue near zero.
-pub(super) fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -> Vec<bool> {
+/// Returns true for each eigenvalue near zero, among them those up to `undetermined`, 1/s.
+pub(super) fn near_zero(
+    eigenvalues: &[Complex<f64>],
+    forcing: f64,
+    [slow, undetermined]: [f64; 2],
+) -> Vec<bool> {
     let fastest = forcing.abs().max(1.0);
     let largest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
     // A conjugate pair differs by rounding only and must not be torn apart.
-    let mut bound = NEAR_ZERO * largest;
+    let mut bound = (NEAR_ZERO * largest).max(undetermined);
     for value in eigenvalues {
         if (value.norm() - bound).abs() < 1e-3 * bound {
             bound *= 1.01;

@@ -25,6 +25,7 @@ mod passed_surfaces;
 mod piecewise;
 mod redundant_constraints;
 mod reference_trajectory;
+mod release_from_friction;
 mod stopped;
 mod stops_without_play;
 mod taylor;
