@@ -171,43 +171,58 @@ fn drawn_machines_with_stepped_inputs_match_the_general_solver() {
 }
 
 #[test]
-fn mass_driven_by_a_chain_of_integrators_matches_the_closed_form() {
-    // A free mass with constant velocity moves the input of a lag, which pushes another free mass.
-    const MASS: f64 = 0.5;
-    const LAG: f64 = 0.02;
-    const GAIN: f64 = 40.0;
-    const PLACE: f64 = 0.6;
-    const VELOCITY: f64 = -0.9;
+fn masses_at_the_end_of_a_chain_of_integrators_match_the_closed_form() {
+    // A free mass with constant velocity moves the input of a lag, which pushes three masses on springs.
+    const LAG: f64 = 0.0154;
+    const GAIN: f64 = 47.9;
+    const PLACE: f64 = 0.656;
+    const VELOCITY: f64 = -0.874;
+    const MASSES: [f64; 3] = [0.275, 0.739, 0.487];
+    let [m, n, o] = MASSES;
     let text = format!(
         r#"
 [model]
 name = "chain"
 [parameters]
-m = {{ value = {MASS}, unit = "kg" }}
+m = {{ value = {m}, unit = "kg" }}
+n = {{ value = {n}, unit = "kg" }}
+o = {{ value = {o}, unit = "kg" }}
 T = {{ value = {LAG}, unit = "s" }}
 c = {{ value = {GAIN}, unit = "N/m" }}
+k = {{ value = 4.61, unit = "N/m" }}
+l = {{ value = 104.1, unit = "N/m" }}
+h = {{ value = 21.3, unit = "N/m" }}
+d = {{ value = 3.41, unit = "N s/m" }}
+e = {{ value = 0.0714, unit = "N s/m" }}
+f = {{ value = 0.0147, unit = "N s/m" }}
 [coordinates]
-x = {{ unit = "m", initial = {PLACE}, initial_rate = {VELOCITY} }}
+p = {{ unit = "m", initial = {PLACE}, initial_rate = {VELOCITY} }}
+x = {{ unit = "m" }}
 y = {{ unit = "m" }}
+r = {{ unit = "m" }}
 [states]
-z = {{ unit = "N", rate = "(c*x - z)/T" }}
+z = {{ unit = "N", rate = "(c*p - z)/T" }}
 [kinetic]
-K = "1/2*m*(dot(x)^2 + dot(y)^2)"
+K = "1/2*m*(dot(p)^2 + dot(x)^2) + 1/2*n*dot(y)^2 + 1/2*o*dot(r)^2"
+[potential]
+V = "1/2*k*(x - y)^2 + 1/2*l*(y - r)^2 + 1/2*h*(x - r)^2"
+[dissipation]
+D = "1/2*d*(dot(x) - dot(y))^2 + 1/2*e*(dot(y) - dot(r))^2 + 1/2*f*(dot(x) - dot(r))^2"
 [forces]
-push = {{ on = "y", value = "z" }}
+push = {{ on = "r", value = "z" }}
 "#
     );
     let times: Vec<f64> = (0..=20).map(|k| 0.1 * f64::from(k)).collect();
     let motion = simulate(&text, Solver::Exact, &times, &HeldInputs::zero(0));
     for (state, t) in motion.trajectory.states.iter().zip(&times) {
-        // z = c (x0 - v T + v t) - c (x0 - v T) exp(-t/T), integrated twice.
+        // z = c (p0 - v T + v t) - c (p0 - v T) exp(-t/T) moves the centre of mass; integrated twice.
         let offset = PLACE - VELOCITY * LAG;
         let decay = LAG * t + LAG * LAG * (-t / LAG).exp_m1();
-        let y = GAIN / MASS * (0.5 * offset * t * t + VELOCITY * t.powi(3) / 6.0 - offset * decay);
+        let moment = GAIN * (0.5 * offset * t * t + VELOCITY * t.powi(3) / 6.0 - offset * decay);
+        let found: f64 = MASSES.iter().zip(&state[1..]).map(|(m, x)| m * x).sum();
         assert!(
-            (state[1] - y).abs() < 1e-11 * (1.0 + y.abs()),
-            "t = {t}: {} {y}",
-            state[1]
+            (found - moment).abs() < 1e-11 * (1.0 + moment.abs()),
+            "t = {t}: {found} {moment}"
         );
     }
 }
