@@ -587,8 +587,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let mut jumps = false;
         if let Some(contacts) = &self.contacts {
             let arrived = y.to_vec();
-            self.with_contacts(contacts, before, |contacts, own, inputs| {
-                contacts.apply_impact(own, inputs, before, t, y);
+            let inputs_before = &self.inputs.borrow().evaluate(before.0);
+            // Forces at the point of the impact, also of what holds the motion, before inputs jump there.
+            let reached = (before.0.max(t.next_down()), &arrived[..]);
+            self.with_contacts(contacts, reached, |contacts, own, inputs| {
+                let mut near = inputs.to_vec();
+                near[..inputs_before.len()].copy_from_slice(inputs_before);
+                let before = Point {
+                    t: before.0,
+                    state: before.1,
+                    inputs: &near,
+                };
+                contacts.apply_impact(own, before, (t, inputs), y);
             });
             let work = contacts.borrow().impact_work();
             jumps = arrived != y;

@@ -1,7 +1,7 @@
 //! Impacts: touching contacts, jumps of rates, and contacts that close afterwards.
 
 use eomgen_codegen::independence::vectors::{dot, max_magnitude};
-use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 
 use super::complementarity::solve_complementarity;
 use super::tangents::ContactForces;
@@ -51,14 +51,13 @@ impl Flight {
 }
 
 impl Contacts {
-    /// Applies an impact in the step across a surface, from a state `before` to `state` just
-    /// beyond it at the time `t`.
+    /// Applies an impact in the step across a surface, from a point `before` to `state` just
+    /// beyond it at the time `t`, with these inputs.
     pub fn apply_impact(
         &mut self,
         own: &mut Evaluator,
-        inputs: &[f64],
-        (t_before, before): (f64, &[f64]),
-        t: f64,
+        before: Point<'_>,
+        (t, inputs): (f64, &[f64]),
         state: &mut [f64],
     ) {
         self.impact_work = 0.0;
@@ -72,7 +71,7 @@ impl Contacts {
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
             let located = Point {
                 t,
-                state: before,
+                state: before.state,
                 inputs,
             };
             let updated = self.change_modes(own, Point { t, state, inputs }, located);
@@ -82,12 +81,7 @@ impl Contacts {
             }
             return;
         };
-        let point = Point {
-            t: t_before,
-            state: before,
-            inputs,
-        };
-        own.distances(point, &mut near);
+        own.distances(before, &mut near);
         own.impacts(Point { t, state, inputs }, &mut self.at);
         let shortest: Vec<f64> = (self.open_since.iter())
             .map(|since| {
@@ -96,7 +90,7 @@ impl Contacts {
             })
             .collect();
         let roundings: Vec<f64> = (0..count)
-            .map(|place| self.distance_rounding(place, (t, before)))
+            .map(|place| self.distance_rounding(place, (t, before.state)))
             .collect();
         // What touches without a speed, as a body that falls together with the one below it, is hit
         // by the jump of the other.
@@ -117,12 +111,13 @@ impl Contacts {
         let ago = |place: &usize| {
             let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
             let to = to + self.offsets[*place];
-            (t - t_before) * (to / (to - from)).clamp(0.0, 1.0)
+            let by_chord = (t - before.t) * (to / (to - from)).clamp(0.0, 1.0);
+            by_chord.min(time_below(&self.at[*place], -to))
         };
         let ago = hits.iter().map(ago).fold(0.0, f64::max);
         if self.needs_no_impulse(&touching, ago) {
             // What leaves slowly went below zero by rounding.
-            self.offset_by_rounding(&touching, (t, before));
+            self.offset_by_rounding(&touching, (t, before.state));
             return;
         }
         self.has_restitution = collapsing.is_empty();
@@ -140,7 +135,7 @@ impl Contacts {
         let flight = Flight {
             shortest,
             lowest: (0..count)
-                .map(|place| MIN_FLIGHT_ROUNDINGS * self.position_rounding(place, before))
+                .map(|place| MIN_FLIGHT_ROUNDINGS * self.position_rounding(place, before.state))
                 .collect(),
             rate_roundings,
             acceleration_roundings: self.acceleration_roundings(own, Point { t, state, inputs }),
@@ -312,6 +307,18 @@ impl Contacts {
             self.allowances[*next] = even / self.at[*next].delassus[*next];
         }
         self.offset_distances(touching);
+    }
+}
+
+/// Returns the time (s) since a distance was zero, if it is now negative with this `depth` and its acceleration was constant;
+/// NaN or infinite if it never was. A step that begins on the contact lasts longer than the motion below it.
+fn time_below(impact: &ImpactValues, depth: f64) -> f64 {
+    let (rate, acceleration) = (impact.rate, impact.acceleration);
+    let root = (rate * rate + 2.0 * acceleration * depth).sqrt();
+    match rate < 0.0 {
+        true => 2.0 * depth / (root - rate),
+        false if acceleration > 0.0 => (rate + root) / acceleration,
+        false => f64::INFINITY,
     }
 }
 
