@@ -59,6 +59,8 @@ impl<S: System + ?Sized> WatchedSystem<'_, S> {
         let near = histories.iter_mut().zip(&here).enumerate();
         let near: Vec<usize> = near
             .filter_map(|(guard, (history, value))| history.follow(value.abs()).then_some(guard))
+            // Bodies do not pass each other, and a surface with a band has no events.
+            .filter(|guard| !self.system().is_distance(*guard))
             .collect();
         if near.is_empty() {
             return Vec::new();

@@ -18,6 +18,7 @@ mod exact_survival;
 mod fixed_steps;
 mod friction_at_moving_contacts;
 mod friction_in_moving_frames;
+mod held_at_walls;
 mod impacts;
 mod inputs_of_time;
 mod invalid_requests;

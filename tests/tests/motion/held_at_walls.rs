@@ -1,0 +1,142 @@
+//! Bodies that dry friction holds while they touch a wall, or that a moving wall hits.
+
+use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
+use eomgen_tests::random_numbers::Numbers;
+
+/// Units of length and mass.
+const UNITS: [(f64, f64); 2] = [(1.0, 1.0), (1e-3, 1e3)];
+
+const SOLVERS: [Solver; 3] = [Solver::Rk, Solver::Radau, Solver::Auto];
+
+const MACHINES: usize = 30;
+
+fn between(numbers: &mut Numbers, low: f64, high: f64) -> f64 {
+    low + 0.5 * (high - low) * (1.0 + numbers.symmetric())
+}
+
+/// Returns times (s) and states of a motion without warnings.
+fn simulate(text: &str, until: f64, solver: Solver) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let model = CompiledModel::from_text("held.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let run = model.with_declared_parameters().unwrap();
+    let times: Vec<f64> = (0..=60)
+        .map(|step| until * f64::from(step) / 60.0)
+        .collect();
+    let request = Request {
+        initial: run.initial_state(),
+        times: &times,
+        inputs: &run.default_inputs(),
+        solver,
+        tolerance: 1e-9,
+        max_step: f64::INFINITY,
+        audit: true,
+    };
+    let motion = run.simulate_until_stop(&request, &mut |_| {});
+    let motion = motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"));
+    let stop = &motion.early_stop;
+    assert!(stop.is_none(), "{solver}, {until} s: {stop:?}\n{text}");
+    (times, motion.trajectory.states)
+}
+
+/// A spring pulls a body at a wall first away from it and then presses it against it by turns, by less than the friction. The mass at
+/// the other end oscillates freely.
+#[test]
+fn held_body_stays_at_a_wall() {
+    for case in 0..MACHINES {
+        let numbers = &mut Numbers(case as u64 + 1);
+        let (length, mass) = UNITS[case % 2];
+        let m = between(numbers, 0.2, 3.0);
+        let k = between(numbers, 2.0, 60.0);
+        let wall = between(numbers, -0.2, 0.2);
+        let stretch = between(numbers, -0.2, 0.2);
+        let speed = between(numbers, -0.5, 0.5);
+        let frequency = (k / (3.0 * m)).sqrt();
+        let amplitude = stretch.hypot(speed / frequency);
+        let friction = k * amplitude * between(numbers, 1.02, 2.0);
+        let distance = if stretch > 0.0 { "x - c" } else { "c - x" };
+        let restitution = [0.0, 0.3, 1.0][case / 2 % 3];
+        let text = format!(
+            "[model]\nname = \"held\"\n[parameters]\n\
+             m = {{ value = {:?}, unit = \"kg\" }}\nF = {{ value = {:?}, unit = \"N\" }}\n\
+             k = {{ value = {:?}, unit = \"N/m\" }}\nc = {{ value = {:?}, unit = \"m\" }}\n\
+             [coordinates]\nx = {{ unit = \"m\", initial = {:?} }}\n\
+             z = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+             [kinetic]\nx = \"1/2*m*dot(x)^2\"\nz = \"1/2*3*m*dot(z)^2\"\n\
+             [potential]\nspring = \"1/2*k*(z - x)^2\"\n\
+             [forces]\nfriction = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
+             [impacts]\nwall = {{ when = \"{distance}\", restitution = {restitution} }}\n",
+            m * mass,
+            friction * mass * length,
+            k * mass,
+            wall * length,
+            wall * length,
+            (wall + stretch) * length,
+            speed * length
+        );
+        for solver in SOLVERS {
+            let (times, states) = simulate(&text, 3.0, solver);
+            for (t, state) in times.iter().zip(&states) {
+                let phase = frequency * t;
+                let free = stretch * phase.cos() + speed / frequency * phase.sin();
+                let [x, z] = [0, 1].map(|place| state[place] / length - wall);
+                let name = format!("{case}, {solver}, {t} s");
+                assert!(x.abs() < 1e-12, "{name}: the held body moves by {x:e}");
+                assert!((z - free).abs() < 1e-6 * amplitude, "{name}: {z} {free}");
+            }
+        }
+    }
+}
+
+/// A body at rest by friction on two surfaces is hit by an oscillating wall, and again before it stops. The durations vary
+/// the lengths of the steps.
+#[test]
+fn held_body_is_hit_by_a_moving_wall() {
+    for (length, mass) in UNITS {
+        for step in 0..12 {
+            let until = 0.5 + 0.3 * f64::from(step);
+            let parameter = |name: &str, value: f64, unit: &str| {
+                format!("{name} = {{ value = {value:?}, unit = \"{unit}\" }}\n")
+            };
+            let parameters = [
+                parameter("c", -0.132 * length, "m"),
+                parameter("a", 0.0157 * length, "m"),
+                parameter("w", 14.4, "1/s"),
+                parameter("g", 0.126 * length, "m"),
+                parameter("m", 1.01 * mass, "kg"),
+                parameter("k", 19.9 * mass, "N/m"),
+                parameter("P", 2.18 * mass * length, "N"),
+                parameter("F", 21.963 * mass * length, "N"),
+                parameter("G", 3.99 * mass * length, "N"),
+            ];
+            let text = format!(
+                "[model]\nname = \"hit\"\n[parameters]\n{}[coordinates]\n\
+                 x = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+                 y = {{ unit = \"m\", initial = {:?}, initial_rate = 0 }}\n\
+                 [kinetic]\nx = \"1/2*m*dot(x)^2\"\ny = \"m*dot(y)^2\"\n\
+                 [potential]\nspring = \"1/2*k*x^2\"\n\
+                 [forces]\npush = {{ on = \"y\", value = \"P\" }}\n\
+                 ground = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
+                 between = {{ on = \"y - x\", value = \"-G*sign(dot(y) - dot(x))\" }}\n\
+                 [impacts]\nwall = {{ when = \"-x + c - a*sin(w*t)\", restitution = 0.44 }}\n\
+                 stop = {{ when = \"-y + g\", restitution = 0.65 }}\n",
+                parameters.concat(),
+                -0.182 * length,
+                1.414 * length,
+                -0.146 * length
+            );
+            let (_, expected) = simulate(&text, until, Solver::Radau);
+            for solver in [Solver::Rk, Solver::Auto] {
+                let (times, found) = simulate(&text, until, solver);
+                for ((t, found), expected) in times.iter().zip(&found).zip(&expected) {
+                    for place in 0..2 {
+                        let difference = (found[place] - expected[place]).abs() / length;
+                        assert!(
+                            difference < 1e-6,
+                            "{solver}, {until} s, {t} s: {difference:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
