@@ -590,7 +590,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             let inputs_before = &self.inputs.borrow().evaluate(before.0);
             // Forces at the point of the impact, also of what holds the motion, before inputs jump there.
             let reached = (before.0.max(t.next_down()), &arrived[..]);
-            self.with_contacts(contacts, reached, |contacts, own, inputs| {
+            let is_hit = self.with_contacts(contacts, reached, |contacts, own, inputs| {
                 let mut near = inputs.to_vec();
                 near[..inputs_before.len()].copy_from_slice(inputs_before);
                 let before = Point {
@@ -598,11 +598,11 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                     state: before.1,
                     inputs: &near,
                 };
-                contacts.apply_impact(own, before, (t, inputs), y);
+                contacts.apply_impact(own, before, (t, inputs), y)
             });
             let work = contacts.borrow().impact_work();
             jumps = arrived != y;
-            if jumps && self.projection.is_some() {
+            if is_hit && self.projection.is_some() {
                 contacts.borrow_mut().offset_for_projection((t, y));
             }
             if let Some(auditor) = self.auditor.as_ref().filter(|_| jumps) {

@@ -62,7 +62,11 @@ fn gears(numbers: &mut Numbers, case: usize, (length, mass): (f64, f64)) -> Mach
     let count = 2 + case % 3;
     let torque = between(numbers, 0.5, 5.0) * mass;
     let (spring, damping) = (between(numbers, 0.0, 3.0), between(numbers, 0.0, 0.3));
-    let dry = if case % 2 == 0 { 0.0 } else { 0.3 * torque };
+    let dry = if case.is_multiple_of(2) {
+        0.0
+    } else {
+        0.3 * torque
+    };
     let mut parameters = format!(
         "F = {{ value = {torque:?}, unit = \"N*m\" }}\nw = {{ value = 1, unit = \"rad/s\" }}\n\
          k = {{ value = {:?}, unit = \"N*m/rad\" }}\nd = {{ value = {:?}, unit = \"N*m*s/rad\" }}\n\

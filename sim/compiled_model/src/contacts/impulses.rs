@@ -1,7 +1,7 @@
 //! Impacts: touching contacts, jumps of rates, and contacts that close afterwards.
 
 use eomgen_codegen::independence::vectors::{dot, max_magnitude};
-use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use super::complementarity::solve_complementarity;
 use super::tangents::ContactForces;
@@ -52,14 +52,14 @@ impl Flight {
 
 impl Contacts {
     /// Applies an impact in the step across a surface, from a point `before` to `state` just
-    /// beyond it at the time `t`, with these inputs.
+    /// beyond it at the time `t`, with these inputs. Returns true if contacts are hit.
     pub fn apply_impact(
         &mut self,
         own: &mut Evaluator,
         before: Point<'_>,
         (t, inputs): (f64, &[f64]),
         state: &mut [f64],
-    ) {
+    ) -> bool {
         self.impact_work = 0.0;
         self.note_closed_until(t);
         let count = self.names.len();
@@ -79,7 +79,7 @@ impl Contacts {
                 self.overlap = Some(cause);
                 state.fill(f64::NAN);
             }
-            return;
+            return false;
         };
         own.distances(before, &mut near);
         own.impacts(Point { t, state, inputs }, &mut self.at);
@@ -111,14 +111,13 @@ impl Contacts {
         let ago = |place: &usize| {
             let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
             let to = to + self.offsets[*place];
-            let by_chord = (t - before.t) * (to / (to - from)).clamp(0.0, 1.0);
-            by_chord.min(time_below(&self.at[*place], -to))
+            (t - before.t) * (to / (to - from)).clamp(0.0, 1.0)
         };
         let ago = hits.iter().map(ago).fold(0.0, f64::max);
         if self.needs_no_impulse(&touching, ago) {
             // What leaves slowly went below zero by rounding.
             self.offset_by_rounding(&touching, (t, before.state));
-            return;
+            return true;
         }
         self.has_restitution = collapsing.is_empty();
         let slip_changes = self.slip_acceleration_sizes().into_iter();
@@ -129,7 +128,7 @@ impl Contacts {
             Err(cause) => {
                 self.overlap = Some((first, cause));
                 state.fill(f64::NAN);
-                return;
+                return true;
             }
         };
         let flight = Flight {
@@ -151,11 +150,13 @@ impl Contacts {
                 if let Err(cause) = self.close_resting_with_friction(own, point, &touching, &flight)
                 {
                     self.overlap = Some(cause);
-                    return state.fill(f64::NAN);
+                    state.fill(f64::NAN);
+                    return true;
                 }
             }
         }
         self.stop_closed(own, (t, inputs), state);
+        true
     }
 
     /// Stops the remaining motion along closed contacts, and of those that slide on. The energy that it takes is that of
@@ -307,18 +308,6 @@ impl Contacts {
             self.allowances[*next] = even / self.at[*next].delassus[*next];
         }
         self.offset_distances(touching);
-    }
-}
-
-/// Returns the time (s) since a distance was zero, if it is now negative with this `depth` and its acceleration was constant;
-/// NaN or infinite if it never was. A step that begins on the contact lasts longer than the motion below it.
-fn time_below(impact: &ImpactValues, depth: f64) -> f64 {
-    let (rate, acceleration) = (impact.rate, impact.acceleration);
-    let root = (rate * rate + 2.0 * acceleration * depth).sqrt();
-    match rate < 0.0 {
-        true => 2.0 * depth / (root - rate),
-        false if acceleration > 0.0 => (rate + root) / acceleration,
-        false => f64::INFINITY,
     }
 }
 
