@@ -5,7 +5,7 @@
 //! - a [`description`] is the parsed dataset file; `bound` looks up its names and units in a model;
 //! - `files` and `columns` (text by `csv_file` with its `number`s, Parquet by `parquet_file`) read the numbers of a
 //!   [`record`], whose time `clock` counts from the first sample without rounding (`decimal`);
-//! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns,
+//! - `wrapped_columns` (`unwrapping`, `wrap_detection`, `wrap_period`) unwraps columns of the `used_part` of a file,
 //!   from their `initial_readings`, `decimation` reduces samples, [`samples`] checks them, and `record_parts` splits records at `gaps`;
 //! - if the records give the motion (`given_motion`), `motion_rates` adds rates and `rest` removes
 //!   samples at rest;
@@ -82,6 +82,7 @@ mod rest;
 pub mod samples;
 mod units;
 mod unwrapping;
+mod used_part;
 pub mod windows;
 mod wrap_detection;
 mod wrap_period;

@@ -26,6 +26,7 @@ use crate::motion_rates::{GivenColumn, GivenKind, differentiate_position, integr
 use crate::outliers::find_outliers;
 use crate::refusal::Refusal;
 use crate::samples::{MAX_JITTER_FRACTION, check_known, check_times, typical_step};
+use crate::used_part::UsedPart;
 use crate::wrapped_columns::{ReadColumn, unwrap_columns};
 
 /// Record in SI.
@@ -71,15 +72,6 @@ impl Record {
         let value = |t: &f64| self.inputs.last_sample(*t)[place];
         self.times.iter().map(value).collect()
     }
-}
-
-/// Part of a file that a record uses.
-pub(crate) struct UsedPart {
-    pub rows: Range<usize>,
-    /// Times of its first sample and of the one after its last, in s; infinite where the file ends.
-    pub span: Range<f64>,
-    /// Difference of the record's times and those of the file, in s.
-    pub origin: f64,
 }
 
 pub(crate) struct RecordReader<'d> {

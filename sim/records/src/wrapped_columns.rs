@@ -10,9 +10,9 @@ use eomgen_model_spec::unit::Unit;
 
 use crate::description::columns::{Column, Wrap};
 use crate::header::Table;
-use crate::record::UsedPart;
 use crate::samples::{MIN_GAP_STEPS, span, typical_step};
 use crate::unwrapping::unwrap_values;
+use crate::used_part::UsedPart;
 use crate::wrap_detection::{MAX_RELATIVE_DIFFERENCE, WrapPattern, detect_wrapping};
 use crate::wrap_period::ColumnUnit;
 
