@@ -37,8 +37,8 @@ pub static FORMAT: Keys = Keys::new(&[
 /// Keys of `[time]`.
 pub static TIME: Keys = Keys::new(&[
     Key::new("column", "name or number", "\"t\"", "time column, which must increase").required(),
-    Key::new("unit", "text", "\"s\"", "unit of the time").required(),
-    Key::new("every", "whole number", "10", "number of samples of which one is kept; 1 if absent. A held input is replaced by its mean over the kept samples, so keep 30 samples or more per period of the fastest motion. Gaps of at most `every` samples are filled; kept samples within 8 of a longer gap are missing"),
+    Key::new("unit", "text", "\"s\"", "unit of the time. Its origin has no effect: times count from the first sample of the file, without rounding of the written digits. Only a model that depends on `t` uses the times of the file, as rounded doubles").required(),
+    Key::new("every", "whole number", "10", "number of samples of which one is kept; 1 if absent. A held input is replaced by values over the kept samples with the same impulses, so keep 30 samples or more per period of the fastest motion. Gaps of at most `every` samples are filled; kept samples within 8 of a longer gap are missing"),
     Key::new("filter", "text", "\"none\"", "`\"low-pass\"` (default) or `\"none\"`").explained("Fewer samples"),
 ]);
 /// Keys of `[inputs.NAME]`.
