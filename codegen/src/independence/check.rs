@@ -66,8 +66,6 @@ pub(crate) fn find_redundancy(
         rows,
         inputs,
     };
-    // Rows that vanish at the initial state have their lengths elsewhere.
-    search.move_state(state, 0);
     let initial = search.dependence(state);
     let mut found = initial.clone();
     for seed in 0..OTHER_STATES {
