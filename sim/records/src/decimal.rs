@@ -44,6 +44,9 @@ impl Decimal {
 
     /// Returns the double nearest to the difference; `None` if its digits overflow.
     pub fn subtract(self, other: Self) -> Option<f64> {
+        if other.digits == 0 {
+            return Some(self.to_double());
+        }
         let exponent = self.exponent.min(other.exponent);
         let align = |number: Self| {
             let places = u32::try_from(number.exponent.checked_sub(exponent)?).ok()?;

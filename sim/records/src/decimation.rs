@@ -349,6 +349,6 @@ mod tests {
             "{of_means} {expected}"
         );
         let found = missed(&kept.decimate_held(&force));
-        assert!(found < 0.01 * of_means, "{found} {of_means}");
+        assert!(found < 0.02 * of_means, "{found} {of_means}");
     }
 }
