@@ -136,7 +136,7 @@ fn peak(spectrum: &PowerSpectrum, windows: usize) -> Option<SpectralPeak> {
     }
 }
 
-/// Returns the frequency of a sine from its largest density, at `peak`, and the larger one beside it. Under Hann's
+/// Returns the frequency of a sine from its largest density, at `peak`, and the larger of both neighbours. Under Hann's
 /// window the ratio r of their amplitudes gives the distance (2 r - 1)/(r + 1) in frequency steps.
 ///
 /// T. Grandke, "Interpolation algorithms for discrete Fourier transforms of weighted signals", IEEE Trans. Instrum.

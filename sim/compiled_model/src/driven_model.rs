@@ -588,7 +588,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(contacts) = &self.contacts {
             let arrived = y.to_vec();
             let inputs_before = &self.inputs.borrow().evaluate(before.0);
-            // Forces at the point of the impact, also of what holds the motion, before inputs jump there.
+            // The forces, with those that hold the motion, are those at the point of the impact, before inputs jump there.
             let reached = (before.0.max(t.next_down()), &arrived[..]);
             let is_hit = self.with_contacts(contacts, reached, |contacts, own, inputs| {
                 let mut near = inputs.to_vec();

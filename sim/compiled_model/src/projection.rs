@@ -60,7 +60,7 @@ pub struct InitialChange {
 }
 
 impl InitialChange {
-    /// Returns a sentence about the changes of what, such as `initial state`; `None` without changes.
+    /// Returns a sentence about the changes of a state, named by `what`, such as `initial state`; `None` without changes.
     pub fn describe_all(what: &str, all: &[Self]) -> Option<String> {
         let listed = all.iter().take(MAX_LISTED_CHANGES).map(Self::describe);
         let mut listed: Vec<String> = listed.collect();
