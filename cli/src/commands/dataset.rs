@@ -11,6 +11,14 @@ use crate::model::load;
 use crate::output::write_file;
 
 pub fn run(options: &Dataset) -> Result {
+    let is_specification = |path: &Path| path.extension().is_some_and(|end| end == "toml");
+    if is_specification(&options.record) && !is_specification(&options.spec) {
+        return Err(Error::input(format!(
+            "the specification comes second: eomgen dataset {} {}",
+            options.spec.display(),
+            options.record.display()
+        )));
+    }
     let model = load(&options.spec)?.model;
     let name = name(options)?;
     let text =

@@ -217,6 +217,29 @@ mod tests {
     }
 
     #[test]
+    fn connected_part_at_the_limit_is_solved() -> Result<(), AnalysisError> {
+        let degrees = MAX_CONNECTED_STATES / 2;
+        let states = 2 * degrees;
+        let stiffness = |place: usize| (1.0 + place as f64 / 100.0).powi(2);
+        let mut rows = vec![0.0; states * states];
+        for place in 0..degrees {
+            rows[place * states + degrees + place] = 1.0;
+            rows[(degrees + place) * states + place] = -stiffness(place);
+            if place > 0 {
+                // Each mass drives the next one only: the eigenvalues are those of single masses.
+                rows[(degrees + place) * states + place - 1] = 0.01;
+            }
+        }
+        let modes = natural_modes(&rows, degrees)?;
+        assert_eq!(modes.len(), degrees);
+        for (place, mode) in modes.iter().enumerate() {
+            let right = stiffness(place).sqrt() / std::f64::consts::TAU;
+            assert!(close(mode.frequency(), right), "{place}: {mode:?}");
+        }
+        Ok(())
+    }
+
+    #[test]
     fn damped_oscillator_matches_closed_form() -> Result<(), AnalysisError> {
         let modes = natural_modes(&matrix(&[&[-400.0]], &[&[-4.0]]), 1)?;
         assert_eq!(modes.len(), 1);

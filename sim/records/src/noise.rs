@@ -8,30 +8,78 @@ const DIFFERENCE_ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 /// Median absolute value of a normal distribution, in standard deviations.
 const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
+/// Differences beyond this number of standard deviations are outliers.
+const MAX_DIFFERENCE_OVER_NOISE: f64 = 4.0;
+
+/// Excess over the estimate of a higher order, in standard deviations of that estimate, from which on
+/// motion counts as its cause. Among 1600 drawn motions with 200 to 8000 samples, 2 leaves a mean error
+/// of +0.4 to +2.3 %, 3 one of +0.6 to +3.1 %. The smallest estimate of all orders is 15 % low in one of
+/// twenty motions with 500 samples.
+const MAX_EXCESS_OVER_ERROR: f64 = 2.0;
+
+/// Estimate from differences of one order.
+struct OrderEstimate {
+    /// Standard deviation of the noise.
+    noise: f64,
+    /// Standard deviation of the estimate, relative to it.
+    relative_error: f64,
+}
+
 /// Returns the standard deviation of the white noise of an evenly sampled column, at least that of
 /// its resolution; `None` for a constant column. Differences of order n of white noise have the
-/// variance binomial(2n, n). The smallest estimate of all orders applies, because motion only
-/// increases it.
+/// variance binomial(2n, n). The estimate of the lowest order applies that no higher order contradicts
+/// (O. V. Lepskii, *Theory of Probability and its Applications* 35, 1990): motion increases the
+/// estimates of low orders, and those of high orders scatter more.
 pub fn estimate_noise(column: &[f64]) -> Option<f64> {
     let mut differences: Vec<f64> = column.to_vec();
-    let mut least = f64::INFINITY;
-    let mut variance = 1.0;
+    let mut estimates: Vec<OrderEstimate> = Vec::new();
     for order in 1..=*DIFFERENCE_ORDERS.end() {
         differences = differences
             .windows(2)
             .map(|pair| pair[1] - pair[0])
             .collect();
-        // Recurrence of binomial(2n, n).
-        let n = order as f64;
-        variance *= 2.0 * (2.0 * n - 1.0) / n;
-        if DIFFERENCE_ORDERS.contains(&order)
-            && let Some(noise) = noise_of_differences(&differences, variance)
-        {
-            least = least.min(noise);
+        if DIFFERENCE_ORDERS.contains(&order) {
+            estimates.extend(estimate_of_order(&differences, order));
         }
     }
-    let found = least.max(resolution(column)? / f64::sqrt(12.0));
+    let agrees = |place: usize| {
+        let own = estimates[place].noise;
+        let mut higher = estimates[place + 1..].iter();
+        higher
+            .all(|other| own <= other.noise * (1.0 + MAX_EXCESS_OVER_ERROR * other.relative_error))
+    };
+    let lowest = (0..estimates.len()).find(|place| agrees(*place));
+    let noise = lowest.map_or(0.0, |place| estimates[place].noise);
+    let found = noise.max(resolution(column)? / f64::sqrt(12.0));
     (found > 0.0 && found.is_finite()).then_some(found)
+}
+
+/// Estimates the noise by the root mean square of differences without outliers. The correlation of two
+/// differences k samples apart is binomial(2n, n + k)/binomial(2n, n); the sum of its squares is
+/// binomial(4n, 2n)/binomial(2n, n)^2.
+fn estimate_of_order(differences: &[f64], order: usize) -> Option<OrderEstimate> {
+    let variance = central_binomial(order);
+    let limit =
+        MAX_DIFFERENCE_OVER_NOISE * variance.sqrt() * noise_of_differences(differences, variance)?;
+    let squares = differences
+        .iter()
+        .filter(|d| d.abs() <= limit)
+        .map(|d| d * d);
+    let (count, sum) = squares.fold((0.0, 0.0), |(count, sum), square| {
+        (count + 1.0, sum + square)
+    });
+    let correlation = central_binomial(2 * order) / variance.powi(2);
+    Some(OrderEstimate {
+        noise: (sum / count / variance).sqrt(),
+        relative_error: (correlation / (2.0 * count)).sqrt(),
+    })
+}
+
+/// Returns binomial(2n, n).
+fn central_binomial(n: usize) -> f64 {
+    (1..=n)
+        .map(|k| (2.0 * (2.0 * k as f64 - 1.0)) / k as f64)
+        .product()
 }
 
 /// Returns the standard deviation of white noise, robust against outliers, from differences that have this variance at a
@@ -82,7 +130,7 @@ mod tests {
         };
         for sd in [1e-5, 1e-3, 0.1] {
             let found = estimate_noise(&noisy(sd)).expect("noise");
-            assert!((found / sd - 1.0).abs() < 0.1, "{sd}: {found}");
+            assert!((found / sd - 1.0).abs() < 0.05, "{sd}: {found}");
         }
         let step = 2.0 * std::f64::consts::PI / 4096.0;
         let rounded: Vec<f64> = (0..4000)
@@ -91,5 +139,24 @@ mod tests {
         let found = estimate_noise(&rounded).expect("noise");
         assert!(found > 0.9 * step / 12f64.sqrt() && found < step, "{found}");
         assert_eq!(estimate_noise(&[1.0; 100]), None);
+    }
+
+    #[test]
+    fn short_columns_have_no_low_estimate() {
+        let all = normal(40 * 400);
+        let estimates: Vec<f64> = (0..40)
+            .map(|part| {
+                let period = 20.0 + 5.0 * part as f64;
+                let motion = |k: usize| 100.0 * (std::f64::consts::TAU * k as f64 / period).sin();
+                let column: Vec<f64> = (0..400).map(|k| motion(k) + all[400 * part + k]).collect();
+                estimate_noise(&column).expect("noise")
+            })
+            .collect();
+        let mean = estimates.iter().sum::<f64>() / 40.0;
+        assert!((mean - 1.0).abs() < 0.03, "{mean}: {estimates:?}");
+        assert!(
+            estimates.iter().all(|found| *found > 0.85 && *found < 1.25),
+            "{estimates:?}"
+        );
     }
 }

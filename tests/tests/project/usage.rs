@@ -239,6 +239,11 @@ fn proposed_dataset_file_is_complete_or_absent() {
     assert!(measured.read("proposed.toml").contains("[inputs.force]"));
     let printed = run_accepted(&["dataset", &record, &spec("emps")]);
     assert_eq!(printed, measured.read("proposed.toml"));
+    let swapped = run_rejected(&["dataset", &spec("emps"), &record]);
+    assert!(
+        swapped.contains("the specification comes second"),
+        "{swapped}"
+    );
     let json: serde_json::Value = serde_json::from_str(&run_accepted(&[
         "dataset",
         &record,

@@ -135,6 +135,10 @@ fn time_table(found: &DetectedRecord<'_>) -> String {
     let why = match (&column.unit, &column.unknown_unit) {
         (Some(_), _) => "from the file".to_owned(),
         (None, Some(unknown)) => format!("guessed: {} is not a known unit", quote_text(unknown)),
+        (None, None) if found.time_is_a_counter() => {
+            "guessed: the file has none; a counter of samples must be replaced by a column of time"
+                .to_owned()
+        }
         (None, None) => "guessed: the file has none".to_owned(),
     };
     let mut text = format!(
@@ -211,7 +215,7 @@ fn channel_table(found: &DetectedRecord<'_>, matched: &Match) -> String {
         ),
     };
     format!(
-        "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\n{}noise = {noise:.1e}\u{1}{why}\n",
+        "\n[channels.{name}]\u{1}{}\ncolumn = {}\n{}\n{}noise = {noise:.2e}\u{1}{why}\n",
         matched.reason,
         column_key(found, column),
         unit_entry(found, matched),

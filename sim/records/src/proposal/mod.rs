@@ -98,6 +98,12 @@ impl DetectedRecord<'_> {
         steps.any(|s| (s - step).abs() > MAX_JITTER_FRACTION * step)
     }
 
+    /// Returns true if the column of time has no unit and increases by one from line to line.
+    fn time_is_a_counter(&self) -> bool {
+        self.columns[self.time].unit.is_none()
+            && self.times().windows(2).all(|pair| pair[1] - pair[0] == 1.0)
+    }
+
     fn decimation_factor(&self) -> usize {
         self.times().len().div_ceil(MAX_UNDECIMATED_SAMPLES)
     }

@@ -416,6 +416,30 @@ fn proposals_never_match_another_dimension() {
 }
 
 #[test]
+fn counter_of_samples_is_marked_as_no_time() {
+    let proposal = |head: &str, time: fn(f64) -> f64| {
+        let folder = folder("", head, |t, a| format!("{},{:.6}\n", time(t), 1e-3 * a));
+        propose_dataset(&folder.path().join("train.csv"), "train.csv", &pendulum())
+            .unwrap_or_else(|refusal| panic!("{head}: {refusal}"))
+    };
+    let count = |t: f64| (100.0 * t).round() + 7.0;
+    for head in ["sample,theta\n", "n,theta\n", "t,theta\n"] {
+        let text = proposal(head, count);
+        assert!(
+            text.contains("a counter of samples must be replaced"),
+            "{head}: {text}"
+        );
+    }
+    for (head, time) in [
+        ("t [ms],theta\n", count as fn(f64) -> f64),
+        ("t,theta\n", |t| t),
+    ] {
+        let text = proposal(head, time);
+        assert!(!text.contains("counter"), "{head}: {text}");
+    }
+}
+
+#[test]
 fn hidden_characters_in_names_survive_proposals() {
     let head = "t,theta,force\u{1b}[31m\u{202e}\"x\\\n";
     let folder = folder("", &head.replace(['"', '\\'], "'"), |t, a| {
