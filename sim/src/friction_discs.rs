@@ -178,7 +178,7 @@ impl Problem<'_> {
         }
         let all = &self.rates.c + &self.rates.w * s;
         let free = rows(&all, &disc.rows) - &own * rows(s, &disc.rows);
-        let held = solve_least_squares(own.clone(), -free.clone());
+        let held = solve_least_squares(&own, -free.clone());
         let rest = (&free + &own * &held).norm();
         if held.norm() <= 1.0 && rest <= RATE_ROUNDING * free.norm() {
             return held;
@@ -208,7 +208,7 @@ impl Problem<'_> {
         let mut errors = self.projection_error(&s).0;
         for _ in 0..MAX_NEWTON_STEPS {
             let (error, derivative) = self.projection_error(&s);
-            let step = solve_least_squares(derivative, -error);
+            let step = solve_least_squares(&derivative, -error);
             let mut part = 1.0;
             let mut is_better = false;
             for _ in 0..MAX_HALVINGS {

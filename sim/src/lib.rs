@@ -106,8 +106,7 @@ pub mod inputs;
 pub mod ode;
 #[cfg(feature = "derive")]
 pub mod piecewise_linear;
-#[cfg(test)]
-mod random_numbers;
+pub mod random_numbers;
 #[cfg(feature = "derive")]
 mod registers;
 pub mod sliding_modes;

@@ -1,4 +1,4 @@
-//! Random numbers of the tests.
+//! Random numbers in a reproducible order.
 
 /// Xorshift generator.
 pub struct Numbers(u64);

@@ -116,7 +116,7 @@ impl Rates {
         let free = &self.c + &self.w * &s;
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -free[*i]));
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
-        let mut values = solve_least_squares(w.clone(), right);
+        let mut values = solve_least_squares(&w, right);
         if self.sharing == Sharing::LeastMaximum {
             reduce_largest(&w, values.as_mut_slice());
         }
@@ -172,7 +172,7 @@ impl Rates {
         }
         let w = DMatrix::from_fn(held.len(), held.len(), |r, c| self.w[(held[r], held[c])]);
         let column = DVector::from_iterator(held.len(), held.iter().map(|j| self.w[(*j, i)]));
-        let balanced = solve_least_squares(w, column);
+        let balanced = solve_least_squares(&w, column);
         let pairs = held.iter().zip(&balanced);
         let through: f64 = pairs.map(|(j, b)| self.w[(i, *j)] * b).sum();
         let own = self.w[(i, i)];
@@ -201,20 +201,35 @@ fn held_surfaces(sides: &[Option<f64>]) -> Vec<usize> {
     (0..sides.len()).filter(|i| sides[*i].is_none()).collect()
 }
 
-/// Returns the smallest least-squares solution x of W x = b.
-pub fn solve_least_squares(w: DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
+/// Returns the matrix with each row divided by its largest magnitude, and these magnitudes (1 for a row of
+/// zeros). A row has the unit of its function.
+pub fn divide_rows(w: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let sizes = w.row_iter().map(|row| row.amax());
+    let sizes = sizes.map(|size| if size > 0.0 { size } else { 1.0 });
+    let sizes = DVector::from_iterator(w.nrows(), sizes);
+    let divided = w.map_with_location(|row, _, entry| entry / sizes[row]);
+    (divided, sizes)
+}
+
+/// Returns the smallest least-squares solution x of W x = b, with each row divided by its largest magnitude. A step of
+/// refinement makes the error of each row a rounding of its own terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
+pub fn solve_least_squares(w: &DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
         return divided.map(|x| if x.is_finite() { x } else { 0.0 });
     }
     let zero = || DVector::zeros(b.len());
+    let (w, sizes) = divide_rows(w);
     let Some(svd) = qr_iteration::svd(&w).filter(|_| b.iter().all(|entry| entry.is_finite()))
     else {
         return zero();
     };
-    let most = svd.singular_values.max();
-    svd.solve(&b, MIN_SINGULAR_VALUE_FRACTION * most)
-        .unwrap_or_else(|_| zero())
+    let b = b.component_div(&sizes);
+    let least = MIN_SINGULAR_VALUE_FRACTION * svd.singular_values.max();
+    let solve = |right: &DVector<f64>| svd.solve(right, least).unwrap_or_else(|_| zero());
+    let solution = solve(&b);
+    let correction = solve(&(b - &w * &solution));
+    solution + correction
 }
 
 /// Largest number of passes over the directions in which values may change.
@@ -229,7 +244,7 @@ pub fn reduce_largest(w: &DMatrix<f64>, s: &mut [f64]) {
     if s.len() <= 1 {
         return;
     }
-    let Some(v) = qr_iteration::svd(w) else {
+    let Some(v) = qr_iteration::svd(&divide_rows(w).0) else {
         return;
     };
     let most = v.singular_values.max();

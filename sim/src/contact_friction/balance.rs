@@ -19,7 +19,7 @@ pub fn solve_balance(matrix: Vec<f64>, right: Vec<f64>) -> Option<Vec<f64>> {
         return Some(solved);
     }
     let matrix = DMatrix::from_row_slice(size, size, &matrix);
-    let solved = solve_least_squares(matrix, DVector::from_vec(right));
+    let solved = solve_least_squares(&matrix, DVector::from_vec(right));
     Some(solved.iter().copied().collect())
 }
 

@@ -15,6 +15,9 @@ const HIDDEN: f64 = 2.0;
 /// A function can reach its surface in the next step if it is within this multiple of its range.
 const WITHIN_REACH: f64 = 20.0;
 
+/// Factor for a step that may hide a change of sign: the deviation becomes an eighth.
+const HALF: f64 = 0.5;
+
 /// Error of a function's values inside a step, in units of the tolerance.
 const ERRORS: f64 = 10.0;
 
@@ -87,14 +90,21 @@ fn factor(samples: [f64; 5], error: f64) -> f64 {
     let [a, b, c, d, e] = samples;
     let near = |by: f64, start: f64, end: f64| (0.375 * start + 0.75 * c - 0.125 * end - by).abs();
     let off = near(b, a, e).max(near(d, e, a));
-    let is_within_reach = lowest <= WITHIN_REACH * moved;
-    if off <= error || !is_within_reach {
+    if off <= error {
         return f64::INFINITY;
+    }
+    if lowest > WITHIN_REACH * moved {
+        // A change that grows by the third power of the length stays above the surface.
+        return (lowest / moved).cbrt();
     }
     // The deviation is of third order in the step length.
     let factor = (TOLD * moved / off).cbrt();
-    match factor < 1.0 && lowest > HIDDEN * off {
-        true => 1.0,
+    if lowest > HIDDEN * off {
+        return factor.max(1.0);
+    }
+    // A change of sign between samples may be hidden. One at a sample is located.
+    match lowest >= 0.0 {
+        true => factor.min(HALF),
         false => factor,
     }
 }
@@ -140,9 +150,17 @@ mod tests {
         }
     }
 
+    /// The parabola of a stuck friction is flat between its limits: the next step may not be much longer.
+    #[test]
+    fn flat_function_limits_growth() {
+        let limit = |t: f64| 1.0 - (0.2 + 0.15 * (3.0 * t).sin()).powi(2);
+        let factor = of(limit, 0.3);
+        assert!((1.0..3.5).contains(&factor), "{factor}");
+    }
+
     #[test]
     fn distant_or_smooth_functions_do_not_limit_steps() {
-        assert_eq!(of(|t| 50.0 + t.sin(), 17.0), f64::INFINITY);
+        assert!(of(|t| 50.0 + t.sin(), 17.0) > 2.0);
         assert_eq!(of(|t| 1.0 - t, 1.0), f64::INFINITY);
         assert_eq!(of(|t| 1e-3 + 2.0 * t - t * t, 1.0), f64::INFINITY);
     }

@@ -231,7 +231,7 @@ fn express_by(functions: &[DVector<f64>], wanted: &DVector<f64>) -> Option<DVect
     let count = functions.len();
     let products = DMatrix::from_fn(count, count, |i, j| functions[i].dot(&functions[j]));
     let right = DVector::from_fn(count, |i, _| functions[i].dot(wanted));
-    let factors = solve_least_squares(products, right);
+    let factors = solve_least_squares(&products, right);
     let terms = functions.iter().zip(&factors);
     let rest = terms.fold(wanted.clone(), |rest, (function, factor)| {
         rest - function * *factor

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::event_function::Linear;
 use super::parallel_guards::{Cell, ParallelGuards};
-use crate::sliding_modes::MIN_SINGULAR_VALUE_FRACTION;
+use crate::sliding_modes::{MIN_SINGULAR_VALUE_FRACTION, divide_rows};
 
 /// Largest residual of a jump that is constant on its surface, relative.
 const ROUNDING: f64 = 1e-11;
@@ -169,13 +169,18 @@ fn invert(projected: &DMatrix<f64>) -> Option<(DMatrix<f64>, bool)> {
     if projected.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    let values = projected.singular_values();
+    let (divided, sizes) = divide_rows(projected);
+    let values = divided.singular_values();
     let smallest = MIN_SINGULAR_VALUE_FRACTION * values.max();
-    if values.min() > smallest {
-        return Some((projected.clone().try_inverse()?, false));
+    let are_dependent = values.min() <= smallest;
+    let mut inverse = match are_dependent {
+        true => divided.pseudo_inverse(smallest).ok()?,
+        false => divided.try_inverse()?,
+    };
+    for (mut column, size) in inverse.column_iter_mut().zip(&sizes) {
+        column.unscale_mut(*size);
     }
-    let inverse = projected.clone().pseudo_inverse(smallest);
-    Some((inverse.ok()?, true))
+    Some((inverse, are_dependent))
 }
 
 /// Returns true if a function keeps its value, up to rounding.

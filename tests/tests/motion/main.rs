@@ -19,6 +19,7 @@ mod fixed_steps;
 mod friction_at_moving_contacts;
 mod friction_in_moving_frames;
 mod held_at_walls;
+mod held_frictions;
 mod impacts;
 mod inputs_of_time;
 mod invalid_requests;

@@ -7,11 +7,12 @@
 //! (`transitions`), with the sides that keep its function at zero (`sides`). At the release, the function and its
 //! rate are zero up to rounding, which must not determine the side; so the surface is displaced by that rounding
 //! until the motion has left it (`surface_state`). `discs` does the same for friction in several directions,
-//! `contact_balance` with closed contacts. `sided_model` is the model with given sides of its surfaces, and
+//! `contact_balance` with closed contacts. `implied_guards` finds functions that vanish with the held ones. `sided_model` is the model with given sides of its surfaces, and
 //! `observed_motion` computes observables and rates during sticking.
 
 mod contact_balance;
 mod discs;
+mod implied_guards;
 mod observed_motion;
 mod sided_model;
 mod sides;

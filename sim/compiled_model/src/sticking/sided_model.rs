@@ -54,6 +54,10 @@ pub struct SidedModel {
     pub(super) impacts: Vec<ImpactValues>,
     /// Effect of each surface's force on its own function without contact forces.
     pub(super) own_effects: Vec<f64>,
+    /// Guards at random points; empty before the first use.
+    pub(super) drawn_guards: Vec<Vec<f64>>,
+    /// Guards that vanish with the held functions.
+    pub(super) implied_guards: Vec<usize>,
 }
 
 impl SidedModel {
@@ -82,6 +86,8 @@ impl SidedModel {
             closed_contacts: Vec::new(),
             impacts: Vec::new(),
             own_effects: Vec::new(),
+            drawn_guards: Vec::new(),
+            implied_guards: Vec::new(),
             evaluator,
         }
     }
@@ -172,7 +178,12 @@ impl SidedModel {
         self.evaluator.guards(point, &mut self.guards);
         for (other, (surface, is_fixed)) in self.others.iter().enumerate() {
             if !is_fixed {
-                let value = self.guards[surface.guard];
+                let is_implied = self.implied_guards.contains(&surface.guard);
+                let value = if is_implied {
+                    0.0
+                } else {
+                    self.guards[surface.guard]
+                };
                 self.inputs[self.model_input_count + other] = side_of(value, surface.is_odd);
             }
         }
@@ -273,7 +284,7 @@ impl SidedModel {
             }
             self.evaluate(at);
             let right = self.surface_values(held, |surface| -surface.rate);
-            let change = solve_least_squares(self.matrix(held), right);
+            let change = solve_least_squares(&self.matrix(held), right);
             for (surface, change) in held.iter().zip(&change) {
                 self.inputs[self.first_side + surface] += change;
             }
@@ -404,7 +415,7 @@ impl SidedModel {
     ) {
         self.evaluate((t, state));
         let right = DVector::from_iterator(held.len(), held.iter().map(|i| -values[*i]));
-        let moved = solve_least_squares(self.matrix(held), right);
+        let moved = solve_least_squares(&self.matrix(held), right);
         let degrees = self.evaluator.program().degrees_of_freedom();
         for (surface, moved) in held.iter().zip(&moved) {
             let entries = state[degrees..].iter_mut().zip(&self.at[*surface].column);

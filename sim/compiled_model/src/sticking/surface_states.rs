@@ -46,6 +46,8 @@ pub(crate) struct SurfaceStates {
     pub(super) known: KnownSides,
     /// True if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
     pub(super) has_decided: bool,
+    /// Rows of the surfaces and discs of the implied guards.
+    held_rows: Vec<usize>,
 }
 
 impl SurfaceStates {
@@ -63,6 +65,7 @@ impl SurfaceStates {
             kept: None,
             known: KnownSides::Nothing,
             has_decided: false,
+            held_rows: Vec::new(),
             sided,
         }
     }
@@ -283,6 +286,10 @@ impl SurfaceStates {
             self.start_motion(at, inputs);
         }
         self.write_disc_guards(at, inputs, out);
+        self.update_implied_guards();
+        for guard in &self.sided.implied_guards {
+            out[*guard] = 0.0;
+        }
         if self.is_free() {
             return;
         }
@@ -304,9 +311,25 @@ impl SurfaceStates {
         }
     }
 
+    /// Finds the guards that vanish with the functions of the surfaces and discs that hold the motion.
+    fn update_implied_guards(&mut self) {
+        let surfaces = 0..self.places.len();
+        let surfaces = surfaces.filter(|surface| self.places[*surface].is_on());
+        let discs = self.discs.iter().filter(|disc| disc.is_holding());
+        let rows = surfaces.chain(discs.flat_map(|disc| disc.rows.clone()));
+        let rows: Vec<usize> = rows.collect();
+        if rows != self.held_rows {
+            self.sided.find_implied_guards(&rows);
+            self.held_rows = rows;
+        }
+    }
+
     /// Replaces the bounds of guards as [`SurfaceStates::write_guards`] replaces the guards. Those of
     /// surfaces that hold are unknown.
     pub fn bound_guards(&self, out: &mut [Enclosure]) {
+        for guard in &self.sided.implied_guards {
+            out[*guard] = Enclosure::UNKNOWN;
+        }
         for (surface, place) in self.places.iter().enumerate() {
             let slot = &mut out[self.sided.guard_index(surface)];
             match *place {

@@ -1,0 +1,69 @@
+//! Switching functions that vanish with those of the held surfaces, as dot(y) - dot(x) does if dot(x) and dot(y) are
+//! held. Their values are rounding, so their signs have no meaning.
+//!
+//! Such a function is the sum of constant multiples of the held functions. Equal values at random points prove it, except
+//! for a set of points of measure zero (J. T. Schwartz, J. ACM 27 (1980) 701-717).
+
+use eomgen_analysis::qr_iteration;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_sim::random_numbers::Numbers;
+use nalgebra::{DMatrix, DVector};
+
+use super::sided_model::SidedModel;
+
+/// Number of points beyond the number of functions that can be held.
+const ADDITIONAL_POINTS: usize = 4;
+
+/// Largest difference from the sum, relative to the largest value of the function.
+const MAX_DIFFERENCE: f64 = 1e-10;
+
+impl SidedModel {
+    /// Finds the guards that vanish with the functions of these held rows.
+    pub(super) fn find_implied_guards(&mut self, held: &[usize]) {
+        self.implied_guards.clear();
+        if held.is_empty() {
+            return;
+        }
+        if self.drawn_guards.is_empty() {
+            self.drawn_guards = self.evaluate_guards_at_random_points();
+        }
+        let values = &self.drawn_guards;
+        let column =
+            |guard: usize| DVector::from_iterator(values.len(), values.iter().map(|at| at[guard]));
+        let own: Vec<usize> = held.iter().map(|row| self.guard_index(*row)).collect();
+        let columns: Vec<DVector<f64>> = own.iter().map(|guard| column(*guard)).collect();
+        let Some(functions) = qr_iteration::svd(&DMatrix::from_columns(&columns)) else {
+            return;
+        };
+        let least = MAX_DIFFERENCE * functions.singular_values.max();
+        let is_implied = |guard: &usize| {
+            let wanted = column(*guard);
+            let size = wanted.amax();
+            let factors = functions.solve(&wanted, least).ok();
+            let rest = factors.map(|factors| {
+                let terms = columns.iter().zip(&factors);
+                terms.fold(wanted, |rest, (column, factor)| rest - column * *factor)
+            });
+            size > 0.0 && rest.is_some_and(|rest| rest.amax() <= MAX_DIFFERENCE * size)
+        };
+        let others = (0..self.guard_count()).filter(|guard| !own.contains(guard));
+        self.implied_guards = others.filter(is_implied).collect();
+    }
+
+    fn evaluate_guards_at_random_points(&mut self) -> Vec<Vec<f64>> {
+        let mut numbers = Numbers::new(1);
+        let mut draw = |count: usize| (0..count).map(|_| numbers.next()).collect::<Vec<f64>>();
+        let count = self.evaluator.program().states();
+        let mut all = vec![vec![0.0; self.guards.len()]; self.side_count() + ADDITIONAL_POINTS];
+        for guards in &mut all {
+            let (t, state, inputs) = (draw(1)[0], draw(count), draw(self.inputs.len()));
+            let point = Point {
+                t,
+                state: &state,
+                inputs: &inputs,
+            };
+            self.evaluator.guards(point, guards);
+        }
+        all
+    }
+}

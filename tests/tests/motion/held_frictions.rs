@@ -1,0 +1,208 @@
+//! Dry frictions that hold a machine: levers of any length, loads with short peaks, and states that depend on a speed that
+//! the held frictions make zero.
+
+use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
+use eomgen_sim::inputs::HeldInputs;
+
+fn simulate(text: &str, solver: Solver, times: &[f64], max_step: f64) -> Motion {
+    let model = CompiledModel::from_text("machine.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let run = model.with_declared_parameters().expect("an instance");
+    let request = Request {
+        initial: run.initial_state(),
+        times,
+        inputs: &HeldInputs::constant(Vec::new()),
+        solver,
+        tolerance: 1e-9,
+        max_step,
+        audit: false,
+    };
+    let motion = run.simulate_until_stop(&request, &mut |_| {});
+    let motion = motion.and_then(Motion::into_complete);
+    motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
+}
+
+fn sample(until: f64, count: usize) -> Vec<f64> {
+    (0..=count)
+        .map(|k| until * k as f64 / count as f64)
+        .collect()
+}
+
+fn assert_equal(found: &Motion, right: &Motion, places: &[usize], error: f64, what: &str) {
+    for place in places {
+        let sizes = right.trajectory.states.iter().map(|state| state[*place].abs());
+        let size = sizes.fold(0.0, f64::max);
+        for (at, (a, b)) in found.trajectory.states.iter().zip(&right.trajectory.states).enumerate() {
+            let difference = (a[*place] - b[*place]).abs();
+            assert!(
+                difference <= error * size,
+                "{what}, row {at}, state {place}: {difference:e} of {size:e}"
+            );
+        }
+    }
+}
+
+/// A carriage with friction and an unbalanced rotor with friction, driven by a torque of three times its friction.
+fn rotor(lever: f64) -> String {
+    let inertia = lever * lever;
+    format!(
+        r#"
+[model]
+name = "rotor"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+J = {{ value = {inertia:e}, unit = "kg m^2" }}
+s = {{ value = {:e}, unit = "kg m" }}
+F = {{ value = {:e}, unit = "N" }}
+T = {{ value = {inertia:e}, unit = "N m" }}
+w = {{ value = 1, unit = "rad/s" }}
+[coordinates]
+x = {{ unit = "m" }}
+theta = {{ unit = "rad" }}
+[kinetic]
+all = "1/2*m*dot(x)^2 + 1/2*J*dot(theta)^2 + s*dot(x)*dot(theta)"
+[forces]
+slide = {{ on = "x", value = "-F*sign(dot(x))" }}
+bearing = {{ on = "theta", value = "-T*sign(dot(theta)) + 3*T*sin(w*t)" }}
+"#,
+        0.5 * lever,
+        4.0 * lever
+    )
+}
+
+#[test]
+fn breakaway_does_not_depend_on_the_length_of_a_lever() {
+    let times = sample(2.0, 40);
+    let release = (1.0_f64 / 3.0).asin();
+    for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
+        let right = simulate(&rotor(1.0), solver, &times, f64::INFINITY);
+        for (time, state) in times.iter().zip(&right.trajectory.states) {
+            assert_eq!(
+                state[1] != 0.0,
+                *time > release,
+                "{solver}, {time} s: {state:?}"
+            );
+        }
+        for lever in [1e-6, 1e-4, 1e-3, 1e-2, 1e3] {
+            let found = simulate(&rotor(lever), solver, &times, f64::INFINITY);
+            assert_equal(
+                &found,
+                &right,
+                &[1, 3],
+                1e-7,
+                &format!("{solver}, {lever:e} m"),
+            );
+        }
+    }
+}
+
+/// A mass on a spring with friction and hysteresis, driven by two sines of 1/s `rates`. Between the samples of a long step, the
+/// load may exceed the friction.
+fn driven(
+    [m, k, friction]: [f64; 3],
+    drives: [f64; 2],
+    rates: [f64; 2],
+    stiffness: f64,
+    rate: f64,
+) -> String {
+    format!(
+        r#"
+[model]
+name = "driven"
+[parameters]
+m = {{ value = {m}, unit = "kg" }}
+k = {{ value = {k}, unit = "N/m" }}
+F = {{ value = {friction}, unit = "N" }}
+A = {{ value = {}, unit = "N" }}
+B = {{ value = {}, unit = "N" }}
+v = {{ value = {}, unit = "rad/s" }}
+w = {{ value = {}, unit = "rad/s" }}
+h = {{ value = {stiffness}, unit = "N/m" }}
+H = {{ value = 1, unit = "N" }}
+[coordinates]
+x = {{ unit = "m", initial = 0.02, initial_rate = {rate} }}
+[states]
+z = {{ unit = "N", rate = "h*dot(x) - h/H*abs(dot(x))*z" }}
+[kinetic]
+all = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[forces]
+drive = {{ on = "x", value = "-F*sign(dot(x)) + A*sin(v*t) + B*sin(w*t) - z" }}
+"#,
+        drives[0], drives[1], rates[0], rates[1]
+    )
+}
+
+#[test]
+fn short_peaks_of_a_load_release_a_held_mass() {
+    let machines = [
+        driven(
+            [1.3221785807175488, 82.24972820084987, 2.658672394846581],
+            [1.5771948708106864, 0.6082760210469997],
+            [5.406699953603807, 18.309878560699843],
+            979.0870370408538,
+            -0.7925346218433929,
+        ),
+        driven(
+            [1.967532287556495, 29.814077901882328, 2.396455786583515],
+            [1.9677234866488849, 0.9533785961331258],
+            [5.847981417465044, 28.384859880845333],
+            327.31823910712797,
+            0.9895603626777179,
+        ),
+        driven(
+            [0.6252807817303785, 51.02737541609534, 2.304385410940349],
+            [1.3227193415500247, 0.9593672183691331],
+            [8.910296153094414, 24.847330814617575],
+            572.3565188531504,
+            0.654012639158295,
+        ),
+    ];
+    let times = sample(10.0, 40);
+    for text in machines {
+        let right = simulate(&text, Solver::Rk, &times, 0.01);
+        let found = simulate(&text, Solver::Rk, &times, f64::INFINITY);
+        assert_equal(&found, &right, &[0, 2], 1e-6, &text);
+    }
+}
+
+#[test]
+fn hysteresis_between_two_held_masses_ends() {
+    for (drive, rate) in [(4.1, 3.3), (3.6, 2.1), (5.2, 4.7)] {
+        let text = format!(
+            r#"
+[model]
+name = "pair"
+[parameters]
+m = {{ value = 0.7, unit = "kg" }}
+n = {{ value = 1.77, unit = "kg" }}
+k = {{ value = 164.6, unit = "N/m" }}
+c = {{ value = 88.3, unit = "N/m" }}
+F = {{ value = 1.74, unit = "N" }}
+G = {{ value = 1.62, unit = "N" }}
+h = {{ value = 1373, unit = "N/m" }}
+H = {{ value = 1.64, unit = "N" }}
+A = {{ value = {drive}, unit = "N" }}
+w = {{ value = {rate}, unit = "rad/s" }}
+[coordinates]
+x = {{ unit = "m", initial = -0.02, initial_rate = 0.67 }}
+y = {{ unit = "m", initial_rate = -0.13 }}
+[states]
+z = {{ unit = "N", rate = "h*(dot(y) - dot(x))*(1 - z/H*sign(dot(y) - dot(x)))" }}
+[kinetic]
+all = "1/2*m*dot(x)^2 + 1/2*n*dot(y)^2"
+[potential]
+all = "1/2*k*x^2 + 1/2*c*(y - x)^2"
+[forces]
+x = {{ on = "x", value = "-F*sign(dot(x))" }}
+y = {{ on = "y", value = "-G*sign(dot(y)) + A*sin(w*t)" }}
+z = {{ on = "y - x", value = "-z" }}
+"#
+        );
+        let times = sample(5.0, 50);
+        let found = simulate(&text, Solver::Rk, &times, f64::INFINITY);
+        let right = simulate(&text, Solver::Radau, &times, f64::INFINITY);
+        assert_equal(&found, &right, &[0, 1, 4], 1e-6, &text);
+    }
+}
