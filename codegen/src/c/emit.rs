@@ -10,6 +10,7 @@ use super::names::{WORDS, fill_template};
 use super::real::Real;
 use super::regimes::regime;
 use super::stages::definition;
+use super::standard_macros::{find_macros, hide_macros};
 use super::step;
 use super::types::fill_functions;
 use crate::identity::{seal, unsealed};
@@ -62,9 +63,8 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
     let Parts {
         declarations,
         definitions,
-        hidden,
     } = Parts::new(program, real)?;
-    let [hide, restore] = header::hide_macros(hidden.into_iter().chain(["R"]));
+    let [hide, restore] = hide_macros(["R"]);
     let notes = header::notes(program, real, header::HEADER_ONLY);
     let opening = "#if defined(NAME_IMPLEMENTATION) && !defined(NAME_IMPLEMENTED)\n#define NAME_IMPLEMENTED\n";
     let closing = format!(
@@ -89,8 +89,6 @@ pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitErr
 struct Parts {
     declarations: String,
     definitions: String,
-    /// Macros with the name of a field.
-    hidden: Vec<&'static str>,
 }
 
 impl Parts {
@@ -125,12 +123,12 @@ impl Parts {
             program.name,
             unsealed(program)
         );
-        text += &defined;
-        text += "#undef R\n";
+        // The header of mathematics, which these names can hide, is included before.
+        let [hide, restore] = hide_macros(find_macros(&defined));
+        text += &[&*hide, &defined, &restore, "#undef R\n"].concat();
         Ok(Self {
             declarations,
             definitions: text,
-            hidden: header::hidden_macros(&file),
         })
     }
 }

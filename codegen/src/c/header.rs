@@ -8,6 +8,7 @@ use super::names::fill_template;
 use super::real::Real;
 use super::regimes::{REGIME, regime_head};
 use super::stages::{declaration, nest_lines};
+use super::standard_macros::{find_macros, hide_macros};
 use super::step;
 use super::types;
 use super::types::structures;
@@ -82,7 +83,7 @@ pub(super) fn header(
         Real::Double => "double",
         Real::Single => "float",
     };
-    let mut text = fill_template(
+    let text = fill_template(
         program,
         &"#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
          #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
@@ -96,60 +97,22 @@ pub(super) fn header(
          #define NAME_IS_SINGLE(type) NAME_IS_TYPE(type)\n"
             .replace("NUMBER", number),
     );
-    let [hide, restore] = hide_macros(hidden_macros(file));
-    text += &hide;
-    text += &sizes(file);
-    text += &jacobians::sizes(program);
-    text += &structures(file, prepared)?;
-    text += &types::declarations(program);
+    let mut declared = sizes(file);
+    declared += &jacobians::sizes(program);
+    declared += &structures(file, prepared)?;
+    declared += &types::declarations(program);
     for stage in stages {
-        text += &declaration(program, stage);
+        declared += &declaration(program, stage);
     }
     if program.outputs.regimes.is_some() {
-        text += &comment(&resolve_links(program, REGIME));
-        text += &format!("{};\n", regime_head(program, false));
+        declared += &comment(&resolve_links(program, REGIME));
+        declared += &format!("{};\n", regime_head(program, false));
     }
-    text += &step::declaration(program);
-    text += &jacobians::declarations(program);
-    text += &controllers::declarations(program);
-    Ok(text + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
-}
-
-/// Macros of standard headers, which a caller can include before this header, with names as parameters have them.
-const STANDARD_MACROS: &str = "I complex imaginary BUFSIZ EOF HUGE_VAL INFINITY NAN RAND_MAX M_1_PI M_2_PI M_2_SQRTPI \
-    M_E M_LN10 M_LN2 M_LOG10E M_LOG2E M_PI M_PI_2 M_PI_4 M_SQRT1_2 M_SQRT2";
-
-/// Returns the macros with the name of a field.
-pub(super) fn hidden_macros(file: &File<'_>) -> Vec<&'static str> {
-    let program = file.program;
-    let parameters = program
-        .parameters
-        .iter()
-        .map(|parameter| &parameter.quantity.name);
-    let inputs = program.inputs.iter().map(|input| &input.name);
-    let fields: Vec<&String> = parameters
-        .chain(inputs)
-        .chain(file.field_names.values())
-        .collect();
-    let names = STANDARD_MACROS.split_whitespace();
-    names
-        .filter(|name| fields.iter().any(|field| field == name))
-        .collect()
-}
-
-/// Returns the lines that hide macros of the caller, and those that restore them.
-pub(super) fn hide_macros(names: impl IntoIterator<Item = &'static str>) -> [String; 2] {
-    let [mut hide, mut restore] = [String::new(), String::new()];
-    for name in names {
-        hide += &format!("#pragma push_macro(\"{name}\")\n#undef {name}\n");
-        restore += &format!("#pragma pop_macro(\"{name}\")\n");
-    }
-    if !hide.is_empty() {
-        hide = "/** Macros of the caller, such as those of <complex.h>, can have these names. */\n"
-            .to_owned()
-            + &hide;
-    }
-    [hide, restore]
+    declared += &step::declaration(program);
+    declared += &jacobians::declarations(program);
+    declared += &controllers::declarations(program);
+    let [hide, restore] = hide_macros(find_macros(&declared));
+    Ok(text + &hide + &declared + &restore + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
 }
 
 fn sizes(file: &File<'_>) -> String {

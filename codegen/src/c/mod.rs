@@ -4,7 +4,8 @@
 //! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
 //! `jacobians` and `controllers` write functions, `functions` their helpers, with the operations on bits of
 //! `primitives`; `vectors` writes test vectors. `casadi` and `cuda` are additional interfaces. `expression` writes
-//! statements, `comments` documentation, `names` all names. [`statements`](crate::statements) decides
+//! statements, `comments` documentation, `names` all names; `standard_macros` hides macros
+//! of the caller with these names. [`statements`](crate::statements) decides
 //! the order of computation.
 
 mod casadi;
@@ -22,6 +23,7 @@ mod real;
 mod regimes;
 mod sine_and_cosine;
 mod stages;
+mod standard_macros;
 mod step;
 mod types;
 mod vectors;
