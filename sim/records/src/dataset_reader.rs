@@ -27,7 +27,7 @@ use crate::samples::MIN_SAMPLES;
 /// # Errors
 /// Problems of the dataset file, or the first problem of a record, with its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
-    let description = Description::read(path)?;
+    let description = Description::read(path, model)?;
     if let Some(refused) = check_prescribed_columns(&description, model) {
         return Err(Diagnostics::from_one(description.source.clone(), refused).into());
     }

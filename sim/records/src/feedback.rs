@@ -18,7 +18,7 @@ pub fn open_loop(model: Model, dataset: &Path) -> Result<(Model, Option<String>)
     if model.controllers.is_empty() {
         return Ok((model, None));
     }
-    let description = Description::read(dataset)?;
+    let description = Description::read(dataset, &model)?;
     let mut driven = Vec::new();
     for controller in &model.controllers {
         for output in &controller.outputs {

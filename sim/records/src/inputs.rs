@@ -37,7 +37,7 @@ pub fn read_inputs(
     record: &str,
     (model, driven): (&Model, &[&str]),
 ) -> Result<RecordInputs, Refusal> {
-    let description = Description::read(dataset)?;
+    let description = Description::read(dataset, model)?;
     let file = find_record(&description, record).map_err(Refusal::Record)?;
     let mut found = Diagnostics::new(description.source.clone());
     if let Some(given) = description.motion.first() {

@@ -1,10 +1,13 @@
 //! Tables `[time]`, `[inputs.NAME]`, `[motion.NAME]` and `[channels.NAME]`.
 
+use eomgen_model_spec::assignment::{Assignment, QuantityReader};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::quantity::{Name, Number, StringValue};
 use eomgen_model_spec::record::Record;
 use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::Entry;
+use eomgen_model_spec::unit::Unit;
 
 use super::keys;
 
@@ -38,7 +41,44 @@ pub struct Column {
     pub unit: StringValue,
     /// Wrapping of the values, if declared.
     pub wrap: Option<Wrap>,
+    /// Period of wrapped values as an expression, which [`Column::evaluate_period`] evaluates.
+    period: Option<StringValue>,
 }
+
+impl Column {
+    /// Evaluates the period of wrapped values if it is an expression, at the parameter values of a model. An invalid unit of
+    /// the column is reported elsewhere.
+    ///
+    /// # Errors
+    /// An invalid expression, another unit, and a period that is not positive.
+    pub fn evaluate_period(&mut self, model: &Model) -> Result<(), Diagnostic> {
+        let (Some(written), Ok(unit)) = (self.period.take(), Unit::parse(&self.unit.text)) else {
+            return Ok(());
+        };
+        let text = format!("wrap={}", written.text);
+        let value = Assignment::split("wrap", &text)
+            .and_then(|given| QuantityReader::new(model)?.read(&given, &unit));
+        let value = value.map_err(|found| {
+            let found = found.list().first().cloned();
+            let message = found
+                .as_ref()
+                .map_or("`wrap` has no value", |found| found.message.as_str());
+            let help = found.as_ref().and_then(|found| found.help.clone());
+            Diagnostic::error(message)
+                .with_span(written.span, PERIOD_FORMS)
+                .with_optional_help(help)
+        })?;
+        self.wrap = Some(Wrap::Period(positive_period(Number {
+            value,
+            span: written.span,
+        })?));
+        Ok(())
+    }
+}
+
+/// Values of `wrap`, in messages.
+const PERIOD_FORMS: &str =
+    "expected a number in the column's unit, an expression such as \"2*pi rad\", or \"none\"";
 
 /// Declaration of jumps from one end of a range to the other.
 #[derive(Clone, Copy, Debug)]
@@ -126,31 +166,35 @@ fn read_column(record: &Record<'_>, found: &mut Diagnostics) -> Option<Column> {
     let column = record.require("column", found).cloned();
     let unit = record.required("unit", Entry::written, found);
     let column = column.and_then(|entry| read_key(&entry, found));
-    let wrap = read_wrap(record, found);
+    let (wrap, period) = match record.get("wrap").map(|entry| (entry, entry.written())) {
+        None => (None, None),
+        Some((_, Ok(written))) if written.text == "none" => (Some(Wrap::Never), None),
+        Some((_, Ok(written))) => (None, Some(written)),
+        Some((entry, Err(_))) => {
+            let period = entry.number().and_then(positive_period);
+            (found.push_error(period).map(Wrap::Period), None)
+        }
+    };
     Some(Column {
         column: column?,
         unit: unit?,
         wrap,
+        period,
     })
 }
 
-fn read_wrap(record: &Record<'_>, found: &mut Diagnostics) -> Option<Wrap> {
-    let entry = record.get("wrap")?;
-    if entry.written().is_ok() {
-        return found.push_error(entry.keyword(&[("none", Wrap::Never)]));
+fn positive_period(period: Number) -> Result<Number, Diagnostic> {
+    match period.value > 0.0 {
+        true => Ok(period),
+        false => Err(Diagnostic::error(format!(
+            "values cannot wrap around after {}",
+            period.value
+        ))
+        .with_span(
+            period.span,
+            "expected a number greater than 0, in the column's unit, or \"none\"",
+        )),
     }
-    let period = found.push_error(entry.number())?;
-    if period.value <= 0.0 {
-        found.push(
-            Diagnostic::error(format!("values cannot wrap around after {}", period.value))
-                .with_span(
-                    period.span,
-                    "expected a number greater than 0, in the column's unit, or \"none\"",
-                ),
-        );
-        return None;
-    }
-    Some(Wrap::Period(period))
 }
 
 fn read_key(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<ColumnKey> {

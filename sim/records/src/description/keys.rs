@@ -5,7 +5,7 @@ use eomgen_model_spec::keys::{Key, Keys, Kind};
 
 const COLUMN: Key = Key::new("column", "name or number", "\"x\"", "column of the values").required();
 const UNIT: Key = Key::new("unit", "text", "\"m\"", "unit of the values").required();
-const WRAP: Key = Key::new("wrap", "number or `\"none\"`", "360", "period of values that wrap around, in `unit`; without it, columns that look wrapped are rejected").explained("Values that wrap around");
+const WRAP: Key = Key::new("wrap", "number, expression or `\"none\"`", "360", "period of values that wrap around, in `unit`, or an expression such as `\"2*pi rad\"`; without it, columns that look wrapped are rejected").explained("Values that wrap around");
 const CORRECTION: &str = "prior of a correction: gain, bias in `unit`, delay in s; no correction if absent";
 const SENSOR: &str = "prior of the sensor: gain, bias in `unit`, delay in s; the usual prior if absent";
 

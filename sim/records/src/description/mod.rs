@@ -11,6 +11,7 @@ pub mod records;
 use std::path::Path;
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::quantity::{Name, Number};
 use eomgen_model_spec::record::Record;
 use eomgen_model_spec::source::Source;
@@ -18,7 +19,7 @@ use eomgen_model_spec::span::Span;
 use eomgen_model_spec::table::Entry;
 use eomgen_model_spec::toml_file;
 
-use self::columns::{ChannelColumn, ColumnKey, InputColumn, MotionColumn, Time};
+use self::columns::{ChannelColumn, Column, ColumnKey, InputColumn, MotionColumn, Time};
 use self::experiment::Experiment;
 use self::format::Format;
 use self::motion::{InitialState, Windows};
@@ -56,12 +57,27 @@ pub struct Description {
 }
 
 impl Description {
-    /// Reads a dataset file.
+    /// Reads a dataset file, with the names and parameter values of a model in its expressions.
     ///
     /// # Errors
-    /// A file that cannot be read, and all errors of grammar, tables and keys.
-    pub fn read(path: &Path) -> Result<Self, Diagnostics> {
-        Self::parse(toml_file::source(path, MAX_DESCRIPTION_BYTES)?)
+    /// A file that cannot be read, all errors of grammar, tables and keys, and those of expressions.
+    pub fn read(path: &Path, model: &Model) -> Result<Self, Diagnostics> {
+        let mut description = Self::parse(toml_file::source(path, MAX_DESCRIPTION_BYTES)?)?;
+        let mut found = Diagnostics::new(description.source.clone());
+        for column in description.columns_mut() {
+            found.push_error(column.evaluate_period(model));
+        }
+        match found.is_empty() {
+            true => Ok(description),
+            false => Err(found),
+        }
+    }
+
+    fn columns_mut(&mut self) -> impl Iterator<Item = &mut Column> {
+        let inputs = self.inputs.iter_mut().map(|input| &mut input.column);
+        let motion = self.motion.iter_mut().map(|given| &mut given.column);
+        let channels = self.channels.iter_mut().map(|channel| &mut channel.column);
+        inputs.chain(motion).chain(channels)
     }
 
     /// Parses the text of a dataset file.

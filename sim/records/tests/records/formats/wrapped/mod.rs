@@ -174,6 +174,11 @@ fn declared_channel_is_unwrapped_before_decimation() {
     for (unit, keys, scale) in [
         ("deg", "wrap = 360", 1.0),
         ("rad", "wrap = 6.283", 1f64.to_radians()),
+        ("deg", "wrap = \"360 deg\"", 1.0),
+        ("deg", "wrap = \"2*pi rad\"", 1.0),
+        ("deg", "wrap = \"2*pi\"", 1.0),
+        ("rad", "wrap = \"2*pi\"", 1f64.to_radians()),
+        ("rad", "wrap = \"3600/10 deg\"", 1f64.to_radians()),
     ] {
         for every in [1, 4] {
             let description = with(keys)
@@ -219,7 +224,14 @@ fn wrong_period_is_rejected() {
         ("wrap = 100", "spans 357."),
         ("wrap = 720", "jumps by about 360.0000 deg"),
         ("wrap = 0", "cannot wrap around after 0"),
-        ("wrap = \"no\"", "expected \"none\""),
+        ("wrap = \"no\"", "or \"none\""),
+        ("wrap = \"50*pi/90\"", "spans 357."),
+        ("wrap = \"0 deg\"", "cannot wrap around after 0"),
+        ("wrap = \"-2*pi\"", "cannot wrap around after -360"),
+        ("wrap = \"360 mm\"", "in deg, not in mm"),
+        ("wrap = \"2*q\"", "unknown name `q`"),
+        ("wrap = \"k\"", "expected in deg"),
+        ("wrap = \"2*(\"", "or \"none\""),
     ] {
         let said = refused(&folder(&with(keys), wrapped, |_| 0.0));
         assert!(said.contains(part), "{part}: {said}");
