@@ -31,7 +31,7 @@
 //! `uncertainty` (spread of the parameters), [`model`] (the result). [`load()`] and [`check`]
 //! run all steps; [`diagnostic`] reports the findings.
 //!
-//! Further modules: [`control`] (sampled controllers) and [`schedule`] (their times), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
+//! Further modules: [`argument`] (names of arguments in messages), [`control`] (sampled controllers) and [`schedule`] (their times), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
 //! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
 //! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
 //! [`interval`] (bounds of expressions), [`mod@keys`] and [`sections`] (table of the sections and keys), [`toml_file`], [`mod@table`], [`record`] and
@@ -40,6 +40,7 @@
 
 #[cfg(feature = "read")]
 mod adjacent_file;
+pub mod argument;
 #[cfg(feature = "read")]
 pub mod assignment;
 #[cfg(feature = "read")]

@@ -72,6 +72,7 @@ mod _native {
         // Exceptions without samples.
         module
             .getattr("SimulationError")?
+        eomgen_model_spec::argument::name_python_arguments();
             .setattr("trajectory", module.py().None())
     }
 }

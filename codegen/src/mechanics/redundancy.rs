@@ -1,5 +1,6 @@
 //! Constraints that depend on each other.
 
+use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::model::Model;
 
 /// Constraints that depend on each other at every state that satisfies them. The accelerations are determined, the
@@ -51,7 +52,8 @@ impl Redundancy {
             _ => format!("the constraints {list} depend on each other there"),
         };
         Some(format!(
-            "the initial state is a singular position: {reason}; a motion must start elsewhere (--state)"
+            "the initial state is a singular position: {reason}; a motion must start elsewhere ({})",
+            Argument::State
         ))
     }
 

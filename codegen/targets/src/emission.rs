@@ -5,6 +5,7 @@ use eomgen_codegen::mechanics::outputs::UnknownOutput;
 use eomgen_codegen::program::Output;
 use eomgen_codegen::rust::{self, Packaging};
 use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::model::Model;
 
 use crate::acados;
@@ -91,15 +92,20 @@ pub fn parse_output(name: &str) -> Result<Output, String> {
 /// # Errors
 /// An output that the target does not support.
 pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
+    let (extras, target_argument) = (Argument::Extras, Argument::Target);
+    let hessians = extras.with_text("hessians");
     let has = |output: Output| with.contains(&output);
     let reason = match target {
         Target::Rust | Target::C99 | Target::Cuda if has(Output::Hessians) => {
-            "--with hessians needs --target casadi or acados"
+            format!("{hessians} needs {target_argument} casadi or acados")
         }
         Target::Rust => return Ok(with.to_vec()),
         _ if has(Output::Lanes) => {
-            "--with lanes needs --target rust: its functions are generic over the number type, \
-             which C does not support"
+            format!(
+                "{} needs {}: its functions are generic over the number type, which C does not support",
+                Argument::Extras.with_text("lanes"),
+                Argument::Target.with_text("rust")
+            )
         }
         Target::C99 | Target::Cuda => return Ok(with.to_vec()),
         Target::Casadi | Target::Acados
@@ -109,12 +115,15 @@ pub fn outputs(target: Target, with: &[Output]) -> Result<Vec<Output>> {
         }
         Target::Fmu2 | Target::Fmu3 if with.is_empty() => return Ok(Vec::new()),
         Target::Fmu2 | Target::Fmu3 => {
-            "--with is not available for a functional mock-up unit: the standard defines its functions"
+            format!(
+                "{extras} is not available for a functional mock-up unit: the standard defines its functions"
+            )
         }
         Target::Casadi | Target::Acados => {
-            "--target casadi and acados accept --with hessians only: their functions are rates and \
-             jac_rates"
+            format!(
+                "{target_argument} casadi and acados accept {hessians} only: their functions are rates and jac_rates"
+            )
         }
     };
-    Err(EmissionError::Request(reason.to_owned()))
+    Err(EmissionError::Request(reason))
 }

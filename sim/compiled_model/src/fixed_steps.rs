@@ -2,6 +2,7 @@
 //! operations, as `step`, so that a simulation and a loop on a processor have the same bits.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::argument::Argument;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Settings, Trajectory};
 
@@ -38,13 +39,15 @@ impl Instance<'_> {
         step: f64,
     ) -> Result<FixedSteps, Error> {
         if !(step.is_finite() && step > 0.0) {
-            return Err(Error::Request(
-                "the solver fixed needs the length of its steps: --step 1e-4 (s); in Python max_step".to_owned(),
-            ));
+            return Err(Error::Request(format!(
+                "the solver fixed needs the length of its steps: {} (s)",
+                Argument::StepLength.with_number("1e-4")
+            )));
         }
         if let Some(reason) = self.find_event() {
             return Err(Error::Request(format!(
-                "the solver fixed locates no events, but {reason}: use --solver rk"
+                "the solver fixed locates no events, but {reason}: use {}",
+                Argument::Solver.with_text("rk")
             )));
         }
         let count = self.model().program().states();

@@ -1,6 +1,7 @@
 //! Initial states on the constraints, errors of constraints that cannot hold, and the system whose
 //! steps are projected onto the constraints.
 
+use eomgen_model_spec::argument::Argument;
 use std::borrow::Borrow;
 use std::cell::RefCell;
 
@@ -222,15 +223,17 @@ impl dyn MotionModel + '_ {
         if let Some(place) = lengths.iter().position(|length| *length == 0.0) {
             return Ok(Some(format!(
                 "the constraint `{}` has no effect at the initial state, because its derivative is zero; start \
-                 at another state (--state), or write it with a simple zero, such as x instead of x^2",
-                constraints[place].name
+                 at another state ({}), or write it with a simple zero, such as x instead of x^2",
+                constraints[place].name,
+                Argument::State
             )));
         }
         if let Some(place) = lengths.iter().position(|length| !length.is_finite()) {
             return Ok(Some(format!(
                 "the derivative of the constraint `{}` is not finite at the initial state, as for \
-                 sqrt(x) at x = 0; start at another state (--state), or rewrite the constraint",
-                constraints[place].name
+                 sqrt(x) at x = 0; start at another state ({}), or rewrite the constraint",
+                constraints[place].name,
+                Argument::State
             )));
         }
         for (row, length) in all.iter_mut().zip(&lengths) {
@@ -249,7 +252,8 @@ impl dyn MotionModel + '_ {
             let found = self.describe_singular_position(point, &direction);
             return Ok(found.map(|dependence| {
                 format!(
-                    "the initial state is a singular position: {dependence}; start at another state (--state)"
+                    "the initial state is a singular position: {dependence}; start at another state ({})",
+                    Argument::State
                 )
             }));
         };
@@ -340,8 +344,9 @@ impl dyn MotionModel + '_ {
             .collect();
         Error::Request(format!(
             "no state near the initial state satisfies the constraints: {}; a constraint may have no \
-             solution or contradict another; check them, or start nearer to a solution (--state)",
-            left.join(", ")
+             solution or contradict another; check them, or start nearer to a solution ({})",
+            left.join(", "),
+            Argument::State
         ))
     }
 }
@@ -374,8 +379,9 @@ impl DependentConstraint<'_> {
         }
         format!(
             "the initial state is a singular position: the derivative of the constraint `{name}` is a linear \
-             combination of the derivatives of {others}; start at another state (--state), or remove one of them if they depend on \
-             each other everywhere"
+             combination of the derivatives of {others}; start at another state ({}), or remove one of them if they depend on \
+             each other everywhere",
+            Argument::State
         )
     }
 }

@@ -4,6 +4,7 @@ use eomgen_analysis::discretisation::{DiscreteSystem, hold_inputs};
 use eomgen_codegen::program::Variable;
 use eomgen_codegen::program::evaluator::Point;
 use eomgen_codegen::singular_terms::{SingularTerm, singular_terms};
+use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::RESIDUAL;
 
@@ -29,9 +30,9 @@ const MAX_SIDE_DIFFERENCE: f64 = 1e-6;
 /// Variables listed in a message.
 const MAX_LISTED: usize = 6;
 
-/// Cure of a term without a derivative.
-const SMOOTH_FORMS: &str = "choose another state (--state), or write a smooth form with a small eps: sqrt(v^2 + eps^2) \
-    instead of norm(v) or abs(v), x/sqrt(x + eps) instead of sqrt(x)";
+/// Smooth forms of terms without a derivative.
+const SMOOTH_FORMS: &str = "write a smooth form with a small eps: sqrt(v^2 + eps^2) instead of norm(v) or abs(v), \
+    x/sqrt(x + eps) instead of sqrt(x)";
 
 /// Linearisation of a model about a point: d(dx)/dt = f + A dx + B du and dy = C dx + D du, with
 /// the deviations dx, du, dy from the point. Matrices are row-major.
@@ -228,7 +229,10 @@ impl Instance<'_> {
         );
         let diagnostic = Diagnostic::error(message)
             .with_span(first.span, self.singularity(first, point))
-            .with_help(SMOOTH_FORMS);
+            .with_help(format!(
+                "choose another state ({}), or {SMOOTH_FORMS}",
+                Argument::OperatingState
+            ));
         let diagnostic = others.iter().fold(diagnostic, |diagnostic, other| {
             diagnostic.with_related_span(other.span, self.singularity(other, point))
         });
@@ -262,9 +266,10 @@ impl Instance<'_> {
     fn singular_position_error(&self, dependence: &str, point: Point<'_>) -> Error {
         Error::Request(format!(
             "the model `{}` has no linearisation at {} (SI): this is a singular position, {dependence}. Choose another \
-             state (--state)",
+             state ({})",
             self.model().model().name,
             self.list_coordinates(point),
+            Argument::OperatingState,
         ))
     }
 
@@ -272,9 +277,10 @@ impl Instance<'_> {
         Error::Request(format!(
             "the model `{}` has no linearisation at {} (SI): the coordinates have a pole there, at which a motion with \
              `{coordinate}` has no inertia, as an angle about an axis has none on the axis. Describe the machine by \
-             other coordinates near this state, for example Cartesian ones, or choose another state (--state)",
+             other coordinates near this state, for example Cartesian ones, or choose another state ({})",
             self.model().model().name,
             self.list_coordinates(point),
+            Argument::OperatingState,
         ))
     }
 

@@ -1,5 +1,6 @@
 //! Inputs given by expressions of time and parameters, as `NAME=EXPR`.
 
+use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::assignment::Assignment;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
@@ -59,7 +60,8 @@ pub fn list_undriven_inputs(model: &Model, driven: &[&str]) -> Vec<String> {
     own.map(|(_, (input, value))| {
         let name = &input.name;
         format!(
-            "input `{name}` is not driven and is taken as {value}; set it with --input {name}=..."
+            "input `{name}` is not driven and is taken as {value}; set it with {}",
+            Argument::Inputs.with_entry(name, "...")
         )
     })
     .collect()

@@ -2,6 +2,7 @@
 //! program.
 
 use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::argument::Argument;
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Method, ObservedStep, Surface, SurfaceMode, Trajectory};
 use eomgen_sim::piecewise_linear::{Motion as ExactMotion, Propagator, StepObserver};
@@ -122,7 +123,8 @@ impl<'m> Instance<'m> {
         self.check_held_inputs(&inputs, (t, t))?;
         if options.solver == Solver::Exact && inputs.is_time_varying() {
             return Err(Error::Request(format!(
-                "{TIME_VARYING_INPUTS_MESSAGE}: use --solver rk"
+                "{TIME_VARYING_INPUTS_MESSAGE}: use {}",
+                Argument::Solver.with_text("rk")
             )));
         }
         let choice = (options.solver == Solver::Auto).then(|| self.choose_solver(&inputs));

@@ -1,6 +1,7 @@
 //! Simulation of an instance: choice of the solver, and errors with the names of states and
 //! surfaces. The crate `sim` contains the solvers.
 
+use eomgen_model_spec::argument::Argument;
 use std::cell::RefCell;
 
 use eomgen_sim::inputs::HeldInputs;
@@ -180,7 +181,10 @@ impl Instance<'_> {
                     Some(SolverChoice::NotPiecewiseLinear(reason.to_owned())),
                     progress,
                 ),
-                false => Err(Error::Request(format!("{reason}: use --solver rk"))),
+                false => Err(Error::Request(format!(
+                    "{reason}: use {}",
+                    Argument::Solver.with_text("rk")
+                ))),
             };
         }
         if let Err(error) = exact {
@@ -307,7 +311,8 @@ impl Instance<'_> {
             return Ok(());
         };
         Err(Error::Request(format!(
-            "the solver adams uses the preceding steps, which {jumps}: use --solver rk or radau"
+            "the solver adams uses the preceding steps, which {jumps}: use {} or radau",
+            Argument::Solver.with_text("rk")
         )))
     }
 

@@ -17,6 +17,7 @@ use eomgen_analysis::qr_iteration::symmetric_eigen;
 use eomgen_codegen::independence::rows::ConstraintRows;
 use eomgen_codegen::independence::vectors::norm;
 use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::argument::Argument;
 use eomgen_sim::inputs::HeldInputs;
 use nalgebra::{DMatrix, DVector, Dyn, RowDVector, SymmetricEigen};
 
@@ -267,7 +268,8 @@ impl SingularityWatch {
         let what = ConstraintRank::describe(combined, self.names.iter());
         format!(
             "at t = {t:?} s the motion reaches a singular position: {what}. The accelerations are not determined there; \
-             shorten the time, or avoid the position (add a stop, or choose another initial state with --state)"
+             shorten the time, or avoid the position (add a stop, or choose another initial state with {})",
+            Argument::State
         )
     }
 }

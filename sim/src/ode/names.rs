@@ -1,5 +1,7 @@
 //! Names of states and switching functions, for messages.
 
+use eomgen_model_spec::argument::Argument;
+
 /// Name of a switching function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surface {
@@ -70,14 +72,20 @@ impl Names<'_> {
         match self.surfaces.get(index).map(|surface| surface.kind) {
             Some(SurfaceKind::Speed) => {
                 let (reason, cure) = match self.unsupported_sticking {
-                    UnsupportedSticking::Adams => ("by the solver adams", "use the solver rk, or "),
+                    UnsupportedSticking::Adams => {
+                        ("by the solver adams", "use the solver rk, or ".to_owned())
+                    }
                     UnsupportedSticking::Exact => (
                         "by the exact solver here",
-                        "use the general solver (--solver rk), or ",
+                        format!(
+                            "use the general solver ({}), or ",
+                            Argument::Solver.with_text("rk")
+                        ),
                     ),
-                    UnsupportedSticking::Formula => {
-                        ("for a speed with piecewise functions or an exponent", "")
-                    }
+                    UnsupportedSticking::Formula => (
+                        "for a speed with piecewise functions or an exponent",
+                        String::new(),
+                    ),
                 };
                 format!("{STICKING} {reason}; {cure}{SMOOTH_LAW}")
             }

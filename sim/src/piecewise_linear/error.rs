@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use eomgen_model_spec::argument::Argument;
+
 use crate::ode::{Names, SolveError};
 
 /// Reason why a motion cannot be propagated exactly; times in s.
@@ -54,20 +56,34 @@ impl ExactError {
 
     /// Returns the message with cause, time, place and cure.
     pub fn format_named(&self, names: &Names<'_>) -> String {
+        let cause = self.format_cause(names);
+        let advantage = match self {
+            Self::NotLinear { .. } => ", which supports any model",
+            Self::Constrained | Self::Impacts | Self::Corners { .. } => "",
+            Self::NotConverged => ", which needs no eigenvalues",
+            _ => return cause,
+        };
+        let general = Argument::Solver.with_text("rk");
+        format!("{cause}; use the general solver ({general}){advantage}")
+    }
+
+    /// Returns the cause, with time and place.
+    pub fn format_cause(&self, names: &Names<'_>) -> String {
         match self {
-            Self::NotLinear { formula } => format!(
-                "the model is not piecewise linear, because of `{formula}`; use the general solver \
-                 (--solver rk), which supports any model"
-            ),
-            Self::Constrained => "the model has constraints, which the exact solver does not \
-                 support; use the general solver (--solver rk)"
-                .to_owned(),
-            Self::Impacts => "the model has impacts, at which rates jump. The exact solver \
-                 does not support them; use the general solver (--solver rk)"
-                .to_owned(),
+            Self::NotLinear { formula } => {
+                format!("the model is not piecewise linear, because of `{formula}`")
+            }
+            Self::Constrained => {
+                "the model has constraints, which the exact solver does not support".to_owned()
+            }
+            Self::Impacts => {
+                "the model has impacts, at which rates jump. The exact solver does not \
+                              support them"
+                    .to_owned()
+            }
             Self::Corners { surface } => format!(
                 "the energies of the model jump where `{surface}` is zero, so that rates jump there. The \
-                 exact solver does not support this; use the general solver (--solver rk)"
+                 exact solver does not support this"
             ),
             Self::Model(message) => message.clone(),
             Self::NotFinite => "a coefficient of the equations of motion is not finite: check \
@@ -77,9 +93,9 @@ impl ExactError {
             Self::NegativeHalfWidth => {
                 "the half-width of a dead zone is negative; expected 0 or more".to_owned()
             }
-            Self::NotConverged => "the eigenvalue iteration of the equations of motion did not \
-                 converge; use the general solver (--solver rk), which needs no eigenvalues"
-                .to_owned(),
+            Self::NotConverged => {
+                "the eigenvalue iteration of the equations of motion did not converge".to_owned()
+            }
             Self::Sticking { t, guard } => format!(
                 "at t = {t:?} s the motion sticks on the switching surface on which {}, with forces that are not \
                  linear there; the exact solver supports sticking with a constant friction level only",

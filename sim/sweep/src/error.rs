@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use eomgen_model_spec::argument::Argument;
 use thiserror::Error;
 
 const MAX_SHOWN_GAPS: usize = 5;
@@ -26,17 +27,22 @@ pub enum SweepError {
     },
     /// Folder with a different sweep.
     #[error(
-        "{} contains a different sweep (differences: {}); give another --out, or remove that folder",
+        "{} contains a different sweep (differences: {}); give another {}, or remove that folder",
         folder.display(),
-        differences.join(", ")
+        differences.join(", "),
+        Argument::Out
     )]
     OtherJob {
         /// Path of the folder.
         folder: PathBuf,
         /// Options that differ.
-        differences: Vec<&'static str>,
+        differences: Vec<String>,
     },
-    #[error("{} belongs to a different sweep; remove it, or give another --out", path.display())]
+    #[error(
+        "{} belongs to a different sweep; remove it, or give another {}",
+        path.display(),
+        Argument::Out
+    )]
     /// Finished chunk of a different sweep.
     OtherPart {
         /// Path of the file.

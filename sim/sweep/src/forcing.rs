@@ -1,5 +1,6 @@
 //! Forcing of a model: its angular frequency and its period.
 
+use eomgen_model_spec::argument::Argument;
 use std::f64::consts::TAU;
 
 use eomgen_compiled_model::Instance;
@@ -14,16 +15,18 @@ pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
     let parameters = &model.parameters;
     let Some(place) = parameters.iter().position(|known| known.name == name) else {
         return Err(SweepError::Request(format!(
-            "the model `{}` has no parameter `{name}`: give --frequency NAME, the parameter \
+            "the model `{}` has no parameter `{name}`: give {}, the parameter \
              that is the angular frequency of the forcing in rad/s",
-            model.name
+            model.name,
+            Argument::Frequency.with_text("NAME")
         )));
     };
     let unit = &parameters[place].unit;
     let expected = Unit::parse("rad/s").map(|unit| unit.dimension);
     if Ok(unit.dimension) != expected {
         return Err(SweepError::Request(format!(
-            "--frequency {name}: its unit is {unit}, expected rad/s for an angular frequency"
+            "{}: its unit is {unit}, expected rad/s for an angular frequency",
+            Argument::Frequency.with_text(name)
         )));
     }
     Ok(Frequency {

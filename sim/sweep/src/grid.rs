@@ -1,5 +1,6 @@
 //! Grid of parameter values, spanned by axes.
 
+use eomgen_model_spec::argument::Argument;
 use serde::{Deserialize, Serialize};
 
 use super::error::SweepError;
@@ -50,8 +51,9 @@ impl Axis {
     pub fn parse(text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
-                "--vary {text}: {reason}; expected NAME[,NAME...]=FROM:TO:COUNT or \
-                 FROM:TO:COUNT:log, such as b_sp,b_pr=0:100e-6:200"
+                "{}: {reason}; expected NAME[,NAME...]=FROM:TO:COUNT or \
+                 FROM:TO:COUNT:log, such as b_sp,b_pr=0:100e-6:200",
+                Argument::Vary.with_text(text)
             ))
         };
         let (names, range) = text
@@ -159,7 +161,10 @@ impl Grid {
     pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
         let refused = |reason: String| Err(SweepError::Request(reason));
         if axes.is_empty() {
-            return refused("nothing is varied: give --vary NAME=FROM:TO:COUNT".to_owned());
+            return refused(format!(
+                "nothing is varied: give {}",
+                Argument::Vary.with_text("NAME=FROM:TO:COUNT")
+            ));
         }
         if let Some(problem) = axes.iter().find_map(|axis| axis.check().err()) {
             return refused(problem);

@@ -1,5 +1,6 @@
 //! Sweep as data: everything that its numbers depend on, with an identifying hash.
 
+use eomgen_model_spec::argument::Argument;
 use std::ops::Range;
 
 use eomgen_model_spec::source::Source;
@@ -103,30 +104,43 @@ impl Plan {
     }
 
     /// Returns the options in which two plans differ, as on the command line.
-    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
+    pub fn differences(&self, other: &Self) -> Vec<String> {
         let same = [
             (
-                "the program's version",
-                (self.schema, &self.version) == (other.schema, &other.version),
+                "the program's version".to_owned(),
+                (self.schema, &self.version, &self.statuses)
+                    == (other.schema, &other.version, &other.statuses),
             ),
             (
-                "the specification",
+                "the specification".to_owned(),
                 self.specification == other.specification,
             ),
-            ("--order", self.orders == other.orders),
-            ("--set", self.set == other.set),
-            ("--vary", self.vary == other.vary),
-            ("--samples or --seed", self.samples == other.samples),
-            ("--input", self.conditions.inputs == other.conditions.inputs),
+            (Argument::Order.to_string(), self.orders == other.orders),
+            (Argument::Parameters.to_string(), self.set == other.set),
+            (Argument::Vary.to_string(), self.vary == other.vary),
             (
-                "--record",
+                format!("{} or {}", Argument::Samples, Argument::Seed),
+                self.samples == other.samples,
+            ),
+            (
+                Argument::Inputs.to_string(),
+                self.conditions.inputs == other.conditions.inputs,
+            ),
+            (
+                Argument::Record.to_string(),
                 self.conditions.record == other.conditions.record,
             ),
-            ("--state", self.conditions.state == other.conditions.state),
-            ("--measure or its options", self.measures == other.measures),
+            (
+                Argument::InitialState.to_string(),
+                self.conditions.state == other.conditions.state,
+            ),
+            (
+                format!("{} or its options", Argument::Measure),
+                self.measures == other.measures,
+            ),
         ];
-        let different = same.iter().filter(|(_, same)| !same);
-        different.map(|(what, _)| *what).collect()
+        let different = same.into_iter().filter(|(_, same)| !same);
+        different.map(|(what, _)| what).collect()
     }
 }
 

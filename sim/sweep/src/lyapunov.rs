@@ -2,6 +2,7 @@
 //! is linear between its switches, [`eomgen_sim::piecewise_linear`] propagates the tangent vector
 //! exactly. Other models use the variational equation, [`eomgen_sim::variational`].
 
+use eomgen_model_spec::argument::Argument;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -37,23 +38,24 @@ impl<'a> Lyapunov<'a> {
         let known = (model.model(), conditions);
         let times = Times::from_window(known, window, "lyapunov", MIN_GROWTHS)?;
         reject_controllers(model, "lyapunov")?;
+        let asked = Argument::Measure.with_text("lyapunov");
         if let Some(constraint) = model.model().constraints.first() {
             return Err(SweepError::Request(format!(
-                "--measure lyapunov: the model has constraints (`{}`), which this measure does not \
+                "{asked}: the model has constraints (`{}`), which this measure does not \
                  support yet",
                 constraint.name
             )));
         }
         if let Some(impact) = model.model().impacts.first() {
             return Err(SweepError::Request(format!(
-                "--measure lyapunov: the model has impacts (`{}`), which this measure does not \
+                "{asked}: the model has impacts (`{}`), which this measure does not \
                  support yet",
                 impact.name
             )));
         }
         if let Some(surface) = model.first_corner() {
             return Err(SweepError::Request(format!(
-                "--measure lyapunov: the energies of the model jump where `{surface}` is zero, and the \
+                "{asked}: the energies of the model jump where `{surface}` is zero, and the \
                  rates with them, which this measure does not support yet"
             )));
         }
@@ -63,7 +65,7 @@ impl<'a> Lyapunov<'a> {
             times,
         };
         if !measure.is_exact() {
-            let refused = |error| SweepError::Request(format!("--measure lyapunov: {error}"));
+            let refused = |error| SweepError::Request(format!("{asked}: {error}"));
             model.differentiate().map_err(refused)?;
         }
         Ok(measure)

@@ -1,5 +1,6 @@
 //! Measures `max:NAME` and `rms:NAME`, of the entire motion, and `final:NAME`, the last row of `simulate`.
 
+use eomgen_model_spec::argument::Argument;
 use std::collections::BTreeMap;
 
 use eomgen_compiled_model::{
@@ -64,7 +65,10 @@ fn split_name(asked: &str) -> Option<(Number, &str)> {
 
 fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, SweepError> {
     let Some((number, name)) = split_name(asked) else {
-        let message = format!("--measure {asked}: expected a measure over time");
+        let message = format!(
+            "{}: expected a measure over time",
+            Argument::Measure.with_text(asked)
+        );
         return Err(SweepError::Request(message));
     };
     let (states, observables) = (model.state_names(), model.observable_names());
@@ -83,7 +87,8 @@ fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, S
             )
         });
         return Err(SweepError::Request(format!(
-            "--measure {asked}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
+            "{}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
+            Argument::Measure.with_text(asked),
             model.model().name
         )));
     };

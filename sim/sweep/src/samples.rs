@@ -5,6 +5,7 @@
 //! number depends only on the seed, the parameter's name and the sample. Shards are therefore
 //! independent, and a further uncertain parameter does not change the samples of the others.
 
+use eomgen_model_spec::argument::Argument;
 use std::f64::consts::TAU;
 
 use eomgen_codegen::stable_hash::StableHash;
@@ -90,8 +91,9 @@ impl Samples {
         let spreads = spreads.map_err(|error| SweepError::Request(error.to_string()))?;
         if spreads.is_empty() {
             return Err(SweepError::Request(format!(
-                "--samples: the model `{}` has no uncertain parameter: give at least one parameter an \
+                "{}: the model `{}` has no uncertain parameter: give at least one parameter an \
                  uncertainty, such as k = {{ value = 50, unit = \"N/m\", uncertainty = {{ relative = 0.02 }} }}",
+                Argument::Samples,
                 model.name
             )));
         }
@@ -109,8 +111,8 @@ impl Samples {
             return Ok(());
         }
         Err(SweepError::Request(format!(
-            "--samples {}: expected a number from 1 to {MAX_POINTS}",
-            self.count
+            "{}: expected a number from 1 to {MAX_POINTS}",
+            Argument::Samples.with_number(self.count)
         )))
     }
 

@@ -1,6 +1,7 @@
 //! Transient and measured time, in forcing periods.
 
 use super::error::SweepError;
+use eomgen_model_spec::argument::Argument;
 
 /// Maximum number of periods of a measurement; rounding dominates long before.
 pub const MAX_PERIODS: usize = 1_000_000;
@@ -21,8 +22,10 @@ impl Span {
             return Ok(());
         }
         Err(SweepError::Request(format!(
-            "--measure {measure}: expected at least {least} --periods, and --transient and \
-             --periods of at most {MAX_PERIODS} together"
+            "{}: expected at least {least} {periods}, and {} and {periods} of at most {MAX_PERIODS} together",
+            Argument::Measure.with_text(measure),
+            Argument::Transient,
+            periods = Argument::Periods
         )))
     }
 }

@@ -1,5 +1,6 @@
 //! Sweep of a model: points, conditions and measures from texts, as on the command line.
 
+use eomgen_model_spec::argument::Argument;
 use std::path::Path;
 
 use eomgen_compiled_model::{
@@ -90,7 +91,7 @@ impl Sweep {
         let at = |point: usize| [&set[..], &points.settings(point)].concat();
         with_parameters(declared, &at(points.count() - 1))?;
         let first = at(0);
-        let given = split_assignments("--input", &request.inputs)?;
+        let given = split_assignments(Argument::Inputs.name(), &request.inputs)?;
         let (model, inputs) = driven_model(declared, &given, &request, &first)?;
         let driven: Vec<&str> = given.iter().map(Assignment::name).collect();
         let (record, warnings) = match &request.record {
@@ -101,7 +102,7 @@ impl Sweep {
             None => (None, list_undriven_inputs(model.model(), &driven)),
         };
         let conditions = Conditions {
-            state: StateRequest::parse("--state", &request.state)?,
+            state: StateRequest::parse(Argument::InitialState.name(), &request.state)?,
             inputs,
             settings: request.set.clone(),
             record,
@@ -180,7 +181,9 @@ impl Sweep {
             },
             (Some(event), None) => {
                 return Err(SweepError::Request(format!(
-                    "--section {event}: --until is missing: the time in s in which crossings are located"
+                    "{}: {} is missing: the time in s in which crossings are located",
+                    Argument::Section.with_text(event),
+                    Argument::Until
                 )));
             }
         };
@@ -227,7 +230,9 @@ fn points(declared: &Model, request: &SweepRequest, set: &[(&str, f64)]) -> Resu
     let mut given = set.iter();
     if let Some((name, _)) = given.find(|(name, _)| grid.names().any(|varied| varied == *name)) {
         return Err(Error::Request(format!(
-            "`{name}` is both set and varied; give only one of --set and --vary"
+            "`{name}` is both set and varied; give only one of {} and {}",
+            Argument::Parameters,
+            Argument::Vary
         )));
     }
     Ok(Points::Grid(grid))
@@ -272,7 +277,8 @@ fn unknown_measure(name: &str) -> SweepError {
     let known = MEASURES.into_iter().map(str::to_owned);
     let known: Vec<String> = known.chain(measure_names()).collect();
     SweepError::Request(format!(
-        "--measure {name}: unknown measure; expected one of {}",
+        "{}: unknown measure; expected one of {}",
+        Argument::Measure.with_text(name),
         known.join(", ")
     ))
 }

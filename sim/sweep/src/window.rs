@@ -1,6 +1,7 @@
 //! Time window of a measure: forcing periods after a transient, or a time from the start.
 
 use eomgen_compiled_model::{CompiledModel, Instance};
+use eomgen_model_spec::argument::Argument;
 use eomgen_model_spec::model::Model;
 use eomgen_sim::variational::MeasurementTimes;
 
@@ -53,7 +54,9 @@ impl Times {
                 span.check(asked, least)?;
                 let known = frequency(model, forcing).map_err(|error| {
                     SweepError::Request(format!(
-                        "--measure {asked}: {error}; or give --until, the measured time in s"
+                        "{}: {error}; or give {}, the measured time in s",
+                        Argument::Measure.with_text(asked),
+                        Argument::Until
                     ))
                 })?;
                 Ok(Self::Periods(known, *span))
@@ -135,13 +138,15 @@ pub fn check_end(until: f64, conditions: &Conditions) -> Result<f64, SweepError>
     let start = conditions.start();
     if !(until > start && until.is_finite()) {
         return Err(SweepError::Request(format!(
-            "--until {until:?}: expected a time in s greater than {start}"
+            "{}: expected a time in s greater than {start}",
+            Argument::Until.with_number(format_args!("{until:?}"))
         )));
     }
     match conditions.end().filter(|end| until > *end) {
         None => Ok(until),
         Some(end) => Err(SweepError::Request(format!(
-            "--until {until:?}: the record ends at {end:?} s; give an earlier time"
+            "{}: the record ends at {end:?} s; give an earlier time",
+            Argument::Until.with_number(format_args!("{until:?}"))
         ))),
     }
 }
@@ -163,5 +168,9 @@ pub fn require_inputs(end: f64, conditions: &Conditions) -> Result<(), Failure> 
 /// The first controller.
 pub fn reject_controllers(model: &CompiledModel, measure: &str) -> Result<(), SweepError> {
     let controlled = model.model().reject_controllers("this measure");
-    controlled.map_err(|error| SweepError::Request(format!("--measure {measure}: {error}")))
+    let refused = |error| {
+        let measure = Argument::Measure.with_text(measure);
+        SweepError::Request(format!("{measure}: {error}"))
+    };
+    controlled.map_err(refused)
 }

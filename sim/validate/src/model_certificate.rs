@@ -25,6 +25,7 @@ use crate::outputs::Outputs;
 use crate::references::reference_equations;
 use crate::variant::Variant;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
+use eomgen_sim::ode::Names;
 use eomgen_sim::piecewise_linear::Propagator;
 
 /// Certifies a model as emitted with `outputs`, by an oracle and by the hand-written equations that
@@ -259,7 +260,8 @@ fn build_propagator(model: &Model, order: usize) -> Result<Propagator, String> {
     let instance = compiled
         .with_declared_parameters()
         .map_err(|error| error.to_string())?;
-    instance.propagator().map_err(|error| error.to_string())
+    let propagator = instance.propagator();
+    propagator.map_err(|error| error.format_cause(&Names::default()))
 }
 
 fn scaled_rates(

@@ -4,6 +4,7 @@ use eomgen_codegen::program::Program;
 
 use crate::error::{EmissionError, Result};
 use crate::file::EmittedFile;
+use eomgen_model_spec::argument::Argument;
 
 /// Module with `@key@` for each text of a program.
 const TEMPLATE: &str = include_str!("model.py");
@@ -16,8 +17,9 @@ pub(crate) fn file(program: &Program) -> Result<EmittedFile> {
     let mut jacobians = program.outputs.jacobians.iter();
     if jacobians.any(|known| known.name == "rates_by_time" && known.nonzeros() > 0) {
         return Err(EmissionError::Request(format!(
-            "--target acados: the rates of `{}` depend on time, and the dynamics of acados do not; replace t by an \
+            "{}: the rates of `{}` depend on time, and the dynamics of acados do not; replace t by an \
              input, or by a state with the rate 1",
+            Argument::Target.with_text("acados"),
             program.name
         )));
     }

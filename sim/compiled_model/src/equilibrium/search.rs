@@ -7,6 +7,7 @@
 //! point is moved onto them, so that the path is that of independent coordinates.
 
 use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_model_spec::argument::Argument;
 use eomgen_sim::ode::ROUNDING_FACTOR;
 use nalgebra::{DMatrix, DVector};
 
@@ -622,8 +623,10 @@ impl<'i, 'm> Search<'i, 'm> {
         let (name, value) = self.row_quantity(at, row);
         let reason = format!(
             "no equilibrium was found near the initial state: the search ended at {name} = {value:e}{range}, \
-             with the acceleration or rate {left:e} (SI) of {name}; start nearer to an equilibrium (--state), or fix \
-             a coordinate (--fix) so that inputs hold it"
+             with the acceleration or rate {left:e} (SI) of {name}; start nearer to an equilibrium ({}), or fix \
+             a coordinate ({}) so that inputs hold it",
+            Argument::OperatingState,
+            Argument::Fixed
         );
         Error::Stopped { t: None, reason }
     }
@@ -685,10 +688,11 @@ fn main_coordinate(direction: &[f64]) -> usize {
 }
 
 fn unsatisfied_constraints_error() -> Error {
-    let reason = "no state near the start satisfies the constraints at the fixed values: start nearer to a solution \
-                  (--state), or fix other values (--fix)";
-    Error::Stopped {
-        t: None,
-        reason: reason.to_owned(),
-    }
+    let reason = format!(
+        "no state near the start satisfies the constraints at the fixed values: start nearer to a solution ({}), or fix \
+         other values ({})",
+        Argument::OperatingState,
+        Argument::Fixed
+    );
+    Error::Stopped { t: None, reason }
 }

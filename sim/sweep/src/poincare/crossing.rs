@@ -1,6 +1,7 @@
 //! Sections by an event: a coordinate or a rate that crosses a value in one direction. A periodic
 //! angle crosses it once per turn. The general solver locates these events like its switches.
 
+use eomgen_model_spec::argument::Argument;
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -35,8 +36,9 @@ impl Crossing {
     pub fn parse(model: &CompiledModel, text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
-                "--section {text}: {reason}; expected NAME=VALUE, NAME=VALUE:up or \
-                 NAME=VALUE:down, such as theta_dot=0:down"
+                "{}: {reason}; expected NAME=VALUE, NAME=VALUE:up or \
+                 NAME=VALUE:down, such as theta_dot=0:down",
+                Argument::Section.with_text(text)
             ))
         };
         let (name, rest) = text
@@ -52,7 +54,8 @@ impl Crossing {
         let state = state_index(model, name).map_err(refused)?;
         let units = model.model().state_units(model.orders());
         let wrong = |found: Diagnostics| SweepError::Request(found.to_string());
-        let given = Assignment::split("--section", &format!("{name}={value}")).map_err(wrong)?;
+        let given = Assignment::split(Argument::Section.name(), &format!("{name}={value}"));
+        let given = given.map_err(wrong)?;
         let reader = QuantityReader::new(model.model()).map_err(wrong)?;
         Ok(Self {
             state,

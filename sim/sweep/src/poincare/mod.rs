@@ -8,6 +8,7 @@ mod numbers;
 mod quantity;
 mod rotation;
 
+use eomgen_model_spec::argument::Argument;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -107,21 +108,22 @@ impl<'a> Poincare<'a> {
         span.check(asked, 2)?;
         if keep_points && span.periods > MAX_POINTS_KEPT {
             return Err(refused(format!(
-                "--periods {}: expected at most {MAX_POINTS_KEPT}, because each point becomes a column",
-                span.periods
+                "{}: expected at most {MAX_POINTS_KEPT}, because each point becomes a column",
+                Argument::Periods.with_number(span.periods)
             )));
         }
         let states = model.state_names();
         let name = name.or(states.first().map(String::as_str));
-        let name = name
-            .ok_or_else(|| refused("--measure poincare: the model has no coordinate".to_owned()))?;
+        let of_measure = Argument::Measure.with_text(asked);
+        let name =
+            name.ok_or_else(|| refused(format!("{of_measure}: the model has no coordinate")))?;
         let quantity = Quantity::from_name(model, name);
         let places = match section {
             Section::Forcing(parameter) => {
                 let known = frequency(model.model(), parameter).map_err(|error| {
                     refused(format!(
-                        "--measure {asked}: {error}; or give --section NAME=VALUE, \
-                         the event of the section"
+                        "{of_measure}: {error}; or give {}, the event of the section",
+                        Argument::Section.with_text("NAME=VALUE")
                     ))
                 })?;
                 ResolvedSection::Forcing(known)
@@ -132,7 +134,7 @@ impl<'a> Poincare<'a> {
             ),
         };
         Ok(Self {
-            quantity: quantity.map_err(|reason| refused(format!("--measure {asked}: {reason}")))?,
+            quantity: quantity.map_err(|reason| refused(format!("{of_measure}: {reason}")))?,
             places,
             measure_name: asked.to_owned(),
             model,
