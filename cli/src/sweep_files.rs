@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use eomgen_sweep::{Folder, Job, Table, merge};
+use eomgen_sweep::{Folder, Job, MissingNumbers, Table, merge};
 use serde_json::{Value, json};
 
 use crate::count::count;
@@ -22,24 +22,28 @@ pub struct FinalFiles {
     statistics: Option<Statistics>,
     /// Values of all points, if they are few.
     values: String,
+    /// True if no section has enough crossings, so that there is no number.
+    is_without_crossings: bool,
 }
 
 /// Maximum number of points whose values are printed.
 const MAX_PRINTED_POINTS: usize = 24;
 
-/// Writes the final files.
+/// Writes the final files, with a warning for points without numbers.
 ///
 /// # Errors
 /// Missing parts, or files that cannot be written.
 pub fn finish(folder: &Folder) -> Result<FinalFiles> {
     let job = folder.job();
     let table = merge(folder).map_err(|error| Error::input(error.to_string()))?;
+    let missing = MissingNumbers::find(job, &table);
     let mut finished = FinalFiles {
         files: Vec::new(),
         points: job.points().count(),
         failed: failures(job, &table),
         statistics: statistics(job, &table),
         values: print_values(&table),
+        is_without_crossings: missing.is_without_crossings,
     };
     if let Some(statistics) = &finished.statistics {
         for (name, svg) in statistics.figures() {
@@ -75,6 +79,14 @@ pub fn finish(folder: &Folder) -> Result<FinalFiles> {
         &crate::table::Table::from_columns(&columns).encode(&path)?,
     )?;
     finished.files.push(path);
+    let kind = if missing.is_without_crossings {
+        "error"
+    } else {
+        "warning"
+    };
+    for message in &missing.messages {
+        warn(&format!("{kind}: {message}"));
+    }
     Ok(finished)
 }
 
@@ -121,6 +133,14 @@ fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
 }
 
 impl FinalFiles {
+    /// Returns an error if no section has enough crossings; its message is printed with the files.
+    pub fn check(&self) -> Result {
+        match self.is_without_crossings {
+            true => Err(Error::Failed),
+            false => Ok(()),
+        }
+    }
+
     pub fn json(&self) -> Value {
         let files = self.files.iter().map(|file| file.display().to_string());
         let failed = self.failed.iter().cloned();

@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_compiled_model::Error;
-use eomgen_sweep::{Folder, Shard, Span, Sweep, SweepError, SweepRequest, Table, merge, run};
+use eomgen_sweep::{
+    Folder, MissingNumbers, Shard, Span, Sweep, SweepError, SweepRequest, Table, merge, run,
+};
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::interruption::{Connection, interruptible};
 use crate::model::Model;
 
-/// Names and units of the columns, the columns, and warnings about inputs.
+/// Names and units of the columns, the columns, and warnings about inputs and points without numbers.
 type SweepTuple = (Vec<NameAndUnit>, Vec<Vec<f64>>, Vec<String>);
 
 /// Name and unit of a column.
@@ -86,5 +88,10 @@ fn compute(
     };
     run(&folder, &measures, Shard::WHOLE, threads, &mut report)?;
     let table = merge(&folder).map_err(|error: SweepError| Error::from(error))?;
-    Ok((units, table, sweep.warnings.clone()))
+    let missing = MissingNumbers::find(folder.job(), &table);
+    if missing.is_without_crossings {
+        return Err(Error::Request(missing.messages.join("\n")));
+    }
+    let warnings = [&sweep.warnings[..], &missing.messages].concat();
+    Ok((units, table, warnings))
 }

@@ -11,7 +11,9 @@ pub fn run(options: &Merge) -> Result {
         Folder::open_existing(&options.dir).map_err(|error| Error::input(error.to_string()))?;
     let finished = finish(&folder)?;
     if options.output.json {
-        return print_json(&finished.json());
+        print_json(&finished.json())?;
+    } else {
+        print_text(&finished.text())?;
     }
-    print_text(&finished.text())
+    finished.check()
 }

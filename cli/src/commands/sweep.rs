@@ -62,7 +62,8 @@ pub fn run(options: &Sweep) -> Result {
         counts,
         finished.json(),
         &(summary + &finished.text()),
-    )
+    )?;
+    finished.check()
 }
 
 fn input_error(error: SweepError) -> Error {

@@ -11,7 +11,7 @@
 //! - [`job`]: all of this as data, with an identifying hash;
 //! - [`folder`] and `part`: the job and its finished chunks as files;
 //! - [`shard`]: selection of chunks for one run; [`run`](mod@run): their computation;
-//!   [`merge`](mod@merge): all chunks in one table.
+//!   [`merge`](mod@merge): all chunks in one table; `missing_numbers`: points without numbers.
 //!
 //! ```
 //! use eomgen_model_spec::source::Source;
@@ -54,6 +54,7 @@ pub mod job;
 pub mod lyapunov;
 pub mod measure;
 pub mod merge;
+mod missing_numbers;
 pub mod over_time;
 pub mod parameters;
 mod part;
@@ -74,6 +75,7 @@ pub use job::Job;
 pub use lyapunov::Lyapunov;
 pub use measure::{Column, Description, Failure, Measure, Worker};
 pub use merge::{Table, merge};
+pub use missing_numbers::MissingNumbers;
 pub use over_time::OverTime;
 pub use poincare::{Poincare, Section};
 pub use points::Points;

@@ -59,7 +59,8 @@ pub trait Worker {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure>;
 }
 
-/// Reason why a point has no number: the numbers are NaN, the status is [`Failure::code`].
+/// Reason why a point has no number: the numbers are NaN, except the number of crossings, and the status is
+/// [`Failure::code`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// Inadmissible parameters.
@@ -72,11 +73,13 @@ pub enum Failure {
     Switching,
     /// Motion for which the measure has no value.
     Undefined,
+    /// Section that the motion crosses too rarely; contains the number of crossings.
+    FewCrossings(usize),
 }
 
 impl Failure {
     /// Codes of the statuses with their texts; 0 is success.
-    pub const CODES: [(u8, &'static str); 6] = [
+    pub const CODES: [(u8, &'static str); 7] = [
         (0, "measured"),
         (1, "the parameters are no admissible model"),
         (2, "rates of the motion are infinite or not numbers"),
@@ -86,6 +89,7 @@ impl Failure {
             "switching surfaces are crossed too fast, or hold the motion",
         ),
         (5, "the measure has no value for this motion"),
+        (6, "the section has too few crossings"),
     ];
 
     /// Returns the number in the status column.
@@ -96,6 +100,7 @@ impl Failure {
             Self::Limit => 3,
             Self::Switching => 4,
             Self::Undefined => 5,
+            Self::FewCrossings(_) => 6,
         }
     }
 }

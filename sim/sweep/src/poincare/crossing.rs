@@ -107,6 +107,9 @@ pub struct CrossingResult {
 }
 
 /// Returns `kept` crossings after the first `transient`, in every turn of a periodic angle. `span` is in s.
+///
+/// # Errors
+/// [`Failure::FewCrossings`], or a motion that cannot be followed.
 pub fn find_crossings(
     driven: (&Instance<'_>, &Start),
     crossing: &Crossing,
@@ -123,7 +126,7 @@ pub fn find_crossings(
         seen = find(false)?;
     }
     if seen.points.len() < transient + kept {
-        return Err(Failure::Undefined);
+        return Err(Failure::FewCrossings(seen.points.len()));
     }
     for crossed in [transient + kept..seen.points.len(), 0..transient] {
         seen.points.drain(crossed.clone());

@@ -37,6 +37,14 @@ const EXACT_RESOLUTION: f64 = 1e-12;
 
 const NAME: &str = "poincare";
 
+/// Ending of the column with the number of crossings.
+const CROSSINGS: &str = "crossings";
+
+/// Returns the column with the number of crossings of a measure.
+pub(crate) fn crossings_column(measure: &str) -> String {
+    format!("{measure}_{CROSSINGS}")
+}
+
 /// Section of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
@@ -176,15 +184,23 @@ impl<'a> Poincare<'a> {
         ];
         let time = match self.places {
             ResolvedSection::Forcing(_) => None,
-            ResolvedSection::Crossing(..) => {
-                Some(("time", "s", "mean time between crossings".to_owned()))
-            }
+            ResolvedSection::Crossing(..) => Some([
+                ("time", "s", "mean time between crossings".to_owned()),
+                (
+                    CROSSINGS,
+                    "1",
+                    format!(
+                        "number of crossings, to {}",
+                        self.span.transient + self.span.periods
+                    ),
+                ),
+            ]),
         };
         let about = format!("{name} on the section, {after}");
         let points = self.point_columns().into_iter();
         columns
             .into_iter()
-            .chain(time)
+            .chain(time.into_iter().flatten())
             .map(|(part, unit, about)| Column::new(self.column(part), unit, about))
             .chain(points.map(|point| Column::new(point, unit, &about)))
             .collect()
@@ -192,6 +208,12 @@ impl<'a> Poincare<'a> {
 
     fn column(&self, part: &str) -> String {
         format!("{}_{part}", self.measure_name)
+    }
+
+    /// Returns the place of the number of crossings among the columns; `None` for a section per forcing period.
+    fn crossings_place(&self) -> Option<usize> {
+        let name = crossings_column(&self.measure_name);
+        self.columns().iter().position(|column| column.name == name)
     }
 
     fn point_columns(&self) -> Vec<String> {
@@ -271,24 +293,31 @@ impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with_parameters(settings)?;
         let start = self.conditions.start_at(&instance, settings)?;
+        let found = match &self.places {
+            ResolvedSection::Forcing(frequency) => {
+                self.points_per_period(&instance, &start, frequency)
+            }
+            ResolvedSection::Crossing(crossing, until) => {
+                self.points_at_crossings(&instance, &start, crossing, *until)
+            }
+        };
+        if let Err(Failure::FewCrossings(count)) = found
+            && let Some(place) = self.crossings_place()
+        {
+            out[place] = count as f64;
+        }
         let SectionPoints {
             points,
             repetition,
             time,
-        } = match &self.places {
-            ResolvedSection::Forcing(frequency) => {
-                self.points_per_period(&instance, &start, frequency)?
-            }
-            ResolvedSection::Crossing(crossing, until) => {
-                self.points_at_crossings(&instance, &start, crossing, *until)?
-            }
-        };
+        } = found?;
+        let crossings = (self.span.transient + self.span.periods) as f64;
         let statistics = statistics(&points).ok_or(Failure::Undefined)?;
         let points = points.iter().map(|[x, _]| *x);
         let numbers = repetition
             .into_iter()
             .chain(statistics)
-            .chain(time)
+            .chain(time.into_iter().flat_map(|time| [time, crossings]))
             .chain(points);
         for (place, number) in out.iter_mut().zip(numbers) {
             *place = number;

@@ -1,6 +1,6 @@
 //! `--measure poincare:NAME` and `--section`: any coordinate, and models without forcing.
 
-use eomgen_tests::program::{run_accepted, run_rejected};
+use eomgen_tests::program::{run, run_accepted, run_rejected};
 
 use super::place::{SweepFolder, accept, column, table};
 
@@ -104,6 +104,62 @@ fn poincare_of_another_coordinate_samples_once_per_period() {
     let found = table(&place.path_to("map"));
     let rate = column(&found, "poincare:x_dot_mean")[0];
     assert!(rate.abs() < 1e-9, "{rate}");
+}
+
+/// Falling through 0 at t = pi sqrt(m) (2 k + 1): three crossings before 19 s with m = 1, two with m = 1.5.
+#[test]
+fn points_with_few_crossings_are_named() {
+    let section = [
+        "--measure",
+        "poincare:y",
+        "--section",
+        "x=0:down",
+        "--until",
+        "19",
+    ];
+    for (span, code, message) in [
+        (
+            ["1", "2"],
+            0,
+            "warning: poincare:y: 1 of 2 points has no number, because the section has too few crossings: 2 of 3 at m = 1.5.",
+        ),
+        (
+            ["0", "3"],
+            0,
+            "2 of 3 at m = 1.5. Give a later end (--until), fewer crossings (--transient, --periods), or another section",
+        ),
+        (["0", "2"], 0, ""),
+        (
+            ["3", "2"],
+            1,
+            "error: poincare:y: 2 of 2 points have no number, because the section has too few crossings: 3 of 5 at m = 1; 2 of 5 at m = 1.5.",
+        ),
+    ] {
+        let place = SweepFolder::new();
+        let span = ["--transient", span[0], "--periods", span[1]];
+        let output = run(&as_strs(&sweep_two(
+            &place,
+            &[&section[..], &span].concat(),
+        )));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{span:?}: {said}");
+        assert!(said.contains(message), "{span:?}: {said}");
+        assert_eq!(said.contains("crossings"), !message.is_empty(), "{said}");
+        let found = table(&place.path_to("two"));
+        let few = column(&found, "poincare:y_status")
+            .iter()
+            .filter(|status| **status == 6.0);
+        assert_eq!(
+            few.count(),
+            usize::from(!message.is_empty()) + usize::from(code == 1)
+        );
+        let wanted: f64 =
+            span[1].parse::<f64>().unwrap_or(0.0) + span[3].parse::<f64>().unwrap_or(0.0);
+        let crossings = column(&found, "poincare:y_crossings");
+        assert_eq!(crossings, [wanted.min(3.0), wanted.min(2.0)], "{span:?}");
+        let merged = run(&["merge", &place.path_to("two").display().to_string()]);
+        assert_eq!(merged.status.code(), Some(code));
+    }
 }
 
 #[test]
