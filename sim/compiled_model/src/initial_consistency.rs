@@ -132,7 +132,12 @@ impl dyn MotionModel + '_ {
         let mut found = state.to_vec();
         let at = (t, &inputs[..]);
         if projection
-            .correct(&mut own, at, &mut found, MAX_INITIAL_CORRECTIONS)
+            .correct(
+                &mut own,
+                at,
+                &mut found,
+                (MAX_INITIAL_CORRECTIONS, &mut |_| {}),
+            )
             .is_none()
         {
             let error = match self.describe_dependent_constraint(t, state, inputs)? {
@@ -167,6 +172,26 @@ impl dyn MotionModel + '_ {
                 used: *to,
             });
         Ok((found.clone(), moved.collect()))
+    }
+
+    /// Returns the states before each correction that moves a state at a time (s) onto the constraints.
+    ///
+    /// # Errors
+    /// Same as [`MotionModel::evaluator`].
+    pub(crate) fn list_corrected_states(
+        &self,
+        (t, state): (f64, &[f64]),
+        inputs: &HeldInputs,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        let Some(projection) = self.projection()? else {
+            return Ok(Vec::new());
+        };
+        let (mut states, mut moved) = (Vec::new(), state.to_vec());
+        let mut keep = |state: &[f64]| states.push(state.to_vec());
+        let (mut own, inputs) = (self.evaluator()?, inputs.evaluate(t));
+        let most = (MAX_INITIAL_CORRECTIONS, &mut keep as &mut dyn FnMut(&[f64]));
+        projection.correct(&mut own, (t, &inputs[..]), &mut moved, most);
+        Ok(states)
     }
 
     /// Moves a state so that no distance of an impact is negative by rounding.

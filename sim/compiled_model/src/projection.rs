@@ -88,19 +88,20 @@ fn round_to_six_digits(value: f64) -> f64 {
 }
 
 impl Projection {
-    /// Corrects a state in place with at most `most` corrections. Returns the number of
-    /// evaluations of the rates, or `None` if the corrections do not converge. The state stays
+    /// Corrects a state in place with at most `most` corrections. Calls `observe` with the state before each of them.
+    /// Returns the number of evaluations of the rates, or `None` if the corrections do not converge. The state stays
     /// finite if it was.
     pub(crate) fn correct(
         &self,
         own: &mut Evaluator,
         (t, inputs): (f64, &[f64]),
         state: &mut [f64],
-        most: usize,
+        (most, observe): (usize, &mut dyn FnMut(&[f64])),
     ) -> Option<u64> {
         let degrees = own.program().degrees_of_freedom();
         let mut rates = [(); 3].map(|()| vec![0.0; state.len()]);
         for correction in 1..=most as u64 {
+            observe(state);
             let [largest, largest_rate] = [0, 1].map(|kind| {
                 let entries = state[kind * degrees..(kind + 1) * degrees].iter();
                 entries.fold(self.unmoved_sizes[kind], |most, entry| {
@@ -191,7 +192,9 @@ impl Projection {
         state: &mut [f64],
     ) -> u64 {
         let arrived = state.to_vec();
-        let evaluations = self.correct(own, (t, &inputs.evaluate(t)), state, MAX_STEP_CORRECTIONS);
+        let given = inputs.evaluate(t);
+        let evaluations =
+            self.correct(own, (t, &given), state, (MAX_STEP_CORRECTIONS, &mut |_| {}));
         let reached = match evaluations {
             Some(_) => &*state,
             None => &arrived,

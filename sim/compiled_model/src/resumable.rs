@@ -254,7 +254,7 @@ impl Simulation<'_> {
         &self.surfaces
     }
 
-    /// Returns the changes of the first state that made the constraints hold.
+    /// Returns the changes of the first state, or of the last one that was set, that made the constraints hold.
     pub fn initial_changes(&self) -> &[InitialChange] {
         &self.initial_changes
     }
@@ -458,15 +458,20 @@ impl Simulation<'_> {
     }
 
     /// Continues with a general solver from a state at the time reached.
-    fn restart_general(&mut self, solver: Solver, state: &[f64]) -> Result<(), Error> {
+    fn restart_general(
+        &mut self,
+        solver: Solver,
+        state: &[f64],
+    ) -> Result<Vec<InitialChange>, Error> {
         let settings = self.options.settings(general_method(solver));
         let start = (self.time(), state);
-        let (mut motion, _) = GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
+        let started = GeneralMotion::start(&self.instance, start, &self.inputs, &settings)?;
+        let (mut motion, changes) = started;
         let mut observers = self.take_observers();
         observers.continue_with(self.options.tolerance);
         motion.replace_observers(observers);
         self.engine = Engine::General(motion);
-        Ok(())
+        Ok(changes)
     }
 
     /// Observes the motion from the time reached on: with the energy audit if `audits` is true, and with measurements.
@@ -629,9 +634,9 @@ impl Simulation<'_> {
             Solver::Exact => {
                 let start = (self.time(), state);
                 self.engine = self.instance.start_exact(start, &self.inputs)?;
-                Ok(())
             }
-            solver => self.restart_general(solver, state),
+            solver => self.initial_changes = self.restart_general(solver, state)?,
         }
+        Ok(())
     }
 }

@@ -4,12 +4,14 @@
 //! every step and multiplies by the transposed Jacobians of its stages; `events` multiplies by the transposed saltation
 //! matrix of every event (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*,
 //! Springer 2004, section 7.3), and `surfaces` rejects motions that touch a surface. `start` follows the correction of the
-//! initial state onto the constraints. `mode_evaluator` evaluates rates and products in the mode of a step: with the sides
-//! of the step, and those of surfaces that hold the motion. The work does not depend on the number of parameters.
+//! initial state onto the constraints, and `moved_start` that of a state far from them. `mode_evaluator` evaluates rates
+//! and products in the mode of a step: with the sides of the step, and those of surfaces that hold the motion. The work
+//! does not depend on the number of parameters.
 
 mod derivatives;
 mod events;
 mod mode_evaluator;
+mod moved_start;
 mod pull_back;
 mod recorder;
 mod start;
@@ -33,6 +35,9 @@ use support::check_support;
 pub struct RecordedMotion<'m> {
     instance: Instance<'m>,
     motion: Motion,
+    /// Requested state at the start.
+    requested: Vec<f64>,
+    /// State at the start, on the constraints.
     initial: Vec<f64>,
     tolerance: f64,
     recording: Recording,
@@ -50,7 +55,8 @@ pub struct SampleWeights {
 /// Gradient of a number L of the samples of a motion, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrajectoryGradient {
-    /// By the state at the first sample. `None` if friction holds the motion from there: its speed cannot change then.
+    /// By the requested state at the first sample, which is moved onto the constraints. `None` if friction holds the motion
+    /// from there: its speed cannot change then.
     pub initial_state: Option<Vec<f64>>,
     /// By the independent parameters, at constant initial state, in the order of
     /// [`CompiledModel::parameter_names`](crate::CompiledModel::parameter_names).
@@ -61,12 +67,12 @@ pub struct TrajectoryGradient {
 
 impl<'m> Instance<'m> {
     /// Simulates a request with the Runge-Kutta method and records it for gradients. The motion is that of
-    /// [`Instance::simulate_until_stop`]. Calls `progress` with the time reached, s.
+    /// [`Instance::simulate_until_stop`]: it may stop early, and then has no gradient. Calls `progress` with the time
+    /// reached, s.
     ///
     /// # Errors
-    /// The errors of a simulation, one that stops early, an initial state that violates the constraints, and models without
-    /// gradients: controllers, friction of contacts, jumps of the energies, friction along v/norm(v), and switching functions
-    /// over modes.
+    /// The errors of a simulation, and models without gradients: controllers, friction of contacts, jumps of the energies,
+    /// friction along v/norm(v), and switching functions over modes.
     pub fn record_motion(
         &self,
         request: &Request<'_>,
@@ -94,31 +100,28 @@ impl<'m> Instance<'m> {
             request.inputs,
             &settings,
         )?;
-        if let Some(change) = run.initial_changes.first() {
-            return Err(Error::Request(format!(
-                "no gradient of the trajectory: the initial state does not satisfy the constraints; `{}` = {:?} does, \
-                 instead of {:?}",
-                change.name, change.used, change.requested
-            )));
-        }
         let recorder = Recorder::new(&run.system);
         let mut trajectory = Trajectory::default();
         let asked = (&run.initial[..], span, request.times);
         let ended = simulate_into(&mut trajectory, &recorder, asked, &settings, progress);
         let recording = recorder.finish();
         let found = (trajectory, run.surfaces.clone());
-        let motion = new_motion(found, request, Solver::Rk, (None, Results::default()));
+        let motion = Motion {
+            initial_changes: run.initial_changes.clone(),
+            ..new_motion(found, request, Solver::Rk, (None, Results::default()))
+        };
         let motion = match ended {
             Ok(()) => motion,
             Err(error) => {
                 let reached = (span.0, &motion.trajectory.final_state[..]);
                 let stop = run.early_stop(self, &error, reached);
-                with_early_stop(motion, stop)?.into_complete()?
+                with_early_stop(motion, stop)?
             }
         };
         Ok(RecordedMotion {
             instance: self.clone(),
             motion,
+            requested: request.initial.to_vec(),
             initial: run.initial.clone(),
             tolerance: request.tolerance,
             recording,
@@ -135,10 +138,14 @@ impl RecordedMotion<'_> {
     /// Returns the gradient of a number of which `weights` are the derivatives by the samples.
     ///
     /// # Errors
-    /// Weights of another shape or that are not finite, and derivatives that are not finite. No gradient exists if the
-    /// motion touches a switching surface, crosses several at once, or rests in a contact.
+    /// [`Error::Stopped`] for a motion that stopped early, weights of another shape or that are not finite, and derivatives
+    /// that are not finite. No gradient exists if the motion touches a switching surface, crosses several at once, or rests
+    /// in a contact.
     pub fn gradient(&self, weights: &SampleWeights) -> Result<TrajectoryGradient, Error> {
-        pull_back::pull_back(self, weights)
+        match &self.motion.early_stop {
+            Some(stop) => Err(stop.clone().into()),
+            None => pull_back::pull_back(self, weights),
+        }
     }
 
     fn inputs(&self) -> &HeldInputs {

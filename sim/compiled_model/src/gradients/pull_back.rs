@@ -222,6 +222,7 @@ impl<'r, 'm> BackwardPass<'r, 'm> {
             add(&mut self.adjoint, &by_state);
         }
         self.follow_start()?;
+        self.follow_corrections()?;
         let first = recorded.recording.parts.first();
         let is_held = first.is_some_and(|first| first.modes.contains(&SurfaceMode::Held));
         for row in &mut self.inputs {

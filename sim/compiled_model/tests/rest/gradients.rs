@@ -576,3 +576,113 @@ fn gradients_with_constraints_equal_differences() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Pendulum in Cartesian coordinates, with a mass that slides on an inclined rail.
+const LINKED: &str = r#"
+[model]
+name = "linked"
+[parameters]
+m = { value = 2, unit = "kg" }
+M = { value = 3, unit = "kg" }
+l = { value = 700, unit = "mm" }
+b = { value = 0.3, unit = "N s/m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+s = { unit = "m" }
+x = { unit = "m", initial = 0.3 }
+y = { unit = "m", initial = -0.6 }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+masses = "1/2*M*dot(s)^2 + 1/2*m*(dot(x)^2 + dot(y)^2)*(1 + (x/l)^2)"
+[potential]
+weight = "m*g*y"
+[dissipation]
+air = "1/2*b*(dot(x)^2 + dot(s)^2)"
+[forces]
+drive = { on = "s", value = "u" }
+[constraints]
+rod = { zero = "(x - s)^2 + y^2 - l^2" }
+"#;
+
+#[test]
+fn gradients_from_states_off_the_constraints_equal_differences() -> Result<(), Error> {
+    let model = CompiledModel::from_text("linked.toml", LINKED, Orders::Declared)?;
+    let run = model.with_declared_parameters()?;
+    for initial in [
+        [0.0, 0.3, -0.6, 0.0, 0.0, 0.0],
+        [0.1, 0.5, -0.8, 0.0, 0.0, 0.0],
+        [0.0, 0.42, -0.56, 0.2, 0.7, 0.3],
+        [-0.2, 0.1, -0.3, 0.5, -0.4, 1.0],
+    ] {
+        let case = Case {
+            run: run.clone(),
+            initial: initial.to_vec(),
+            inputs: HeldInputs::new(vec![0.0, 0.3], vec![0.5, -1.2], 1).expect("rows"),
+            times: times(0.8),
+        };
+        let request = case.request(&case.initial, &case.inputs);
+        let recorded = case.run.record_motion(&request, &mut |_| {})?;
+        assert!(!recorded.motion().initial_changes.is_empty(), "{initial:?}");
+        compare_with_differences(&case)?;
+    }
+    Ok(())
+}
+
+/// Two points of a sledge: one does not move across its blade, the other is at a distance.
+const SLEDGE: &str = r#"
+[model]
+name = "sledge"
+[parameters]
+m = { value = 2, unit = "kg" }
+J = { value = 0.1, unit = "kg m^2" }
+d = { value = 0.2, unit = "m" }
+F = { value = 3, unit = "N" }
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+phi = { unit = "rad", initial = 0.4 }
+[kinetic]
+body = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*J*dot(phi)^2 + m*d*dot(phi)*(dot(y)*cos(phi) - dot(x)*sin(phi))/4"
+[forces]
+push = { on = "x", value = "F*cos(phi)" }
+[constraints]
+blade = { zero = "dot(x)*sin(phi) - dot(y)*cos(phi)" }
+"#;
+
+#[test]
+fn gradients_from_rates_across_a_blade_equal_differences() -> Result<(), Error> {
+    let model = CompiledModel::from_text("sledge.toml", SLEDGE, Orders::Declared)?;
+    let run = model.with_declared_parameters()?;
+    for rates in [[1.0, 0.3, 0.2], [0.5, -0.8, 1.0], [0.2, 0.6, -2.0]] {
+        let case = Case {
+            inputs: run.default_inputs(),
+            run: run.clone(),
+            initial: [&[0.0, 0.1, 0.4], &rates[..]].concat(),
+            times: times(0.8),
+        };
+        compare_with_differences(&case)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn motion_that_stops_early_has_samples_and_no_gradient() -> Result<(), Error> {
+    let text = oscillator(1.0, 0.0, 9.0, "").replace("-F*above(x - p)", "2*k*x^3/p^2*81");
+    let model = CompiledModel::from_text("oscillator.toml", &text, Orders::Declared)?;
+    let run = model.with_declared_parameters()?;
+    let case = Case {
+        initial: run.initial_state().to_vec(),
+        inputs: run.default_inputs(),
+        times: times(40.0),
+        run,
+    };
+    let request = case.request(&case.initial, &case.inputs);
+    let recorded = case.run.record_motion(&request, &mut |_| {})?;
+    let motion = recorded.motion();
+    assert!(motion.early_stop.is_some() && !motion.trajectory.times.is_empty());
+    let weights = SampleWeights::default();
+    let found = recorded.gradient(&weights);
+    assert!(matches!(found, Err(Error::Stopped { .. })), "{found:?}");
+    Ok(())
+}
