@@ -19,6 +19,7 @@ mod interruption;
 mod linearisation;
 mod model;
 mod modes;
+mod operating_point;
 mod resumable;
 mod simulation;
 mod sweeping;
@@ -49,11 +50,13 @@ mod _native {
     #[pymodule_export]
     use crate::inputs::{RefusedType, RefusedValue};
     #[pymodule_export]
-    use crate::linearisation::{discretise, linearise, move_onto_constraints};
+    use crate::linearisation::{discretise, linearise};
     #[pymodule_export]
     use crate::model::{Model, nearest};
     #[pymodule_export]
     use crate::modes::modes;
+    #[pymodule_export]
+    use crate::operating_point::move_onto_constraints;
     #[pymodule_export]
     use crate::resumable::Simulation;
     #[pymodule_export]
@@ -69,10 +72,10 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        eomgen_model_spec::argument::name_python_arguments();
         // Exceptions without samples.
         module
             .getattr("SimulationError")?
-        eomgen_model_spec::argument::name_python_arguments();
             .setattr("trajectory", module.py().None())
     }
 }

@@ -1,13 +1,12 @@
 //! Natural modes of a model.
 
 use eomgen_analysis::natural_modes::NaturalMode;
-use eomgen_codegen::program::evaluator::Point;
 use numpy::PyReadonlyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::model::Model;
+use crate::operating_point::point;
 
 /// Frequency (Hz), damping ratio, eigenvalue (1/s), shape and greatest frequency (Hz) of a rigid motion. Complex
 /// numbers are real and imaginary parts.
@@ -25,15 +24,7 @@ pub fn modes(
     x: PyReadonlyArray1<'_, f64>,
     u: PyReadonlyArray1<'_, f64>,
 ) -> PyResult<(Vec<NameAndUnit>, Vec<ModeTuple>)> {
-    let point = Point {
-        t,
-        state: x.as_slice()?,
-        inputs: u.as_slice()?,
-    };
-    let program = model.compiled().program();
-    if point.state.len() != program.states() || point.inputs.len() != program.inputs.len() {
-        return Err(PyValueError::new_err("state or inputs of another model"));
-    }
+    let point = point(model, t, &x, &u)?;
     let found = py.detach(|| {
         let run = model.instance()?;
         run.natural_modes(&run.linearise(point)?, point)
