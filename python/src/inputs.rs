@@ -26,9 +26,12 @@ struct Failure {
     what: String,
     t: f64,
     error: PyErr,
+    /// True for a `BaseException` such as `KeyboardInterrupt`, which ends the motion at once.
+    is_interrupt: bool,
 }
 
-/// First failure among the functions of a motion, which a failed call records.
+/// Failure at the earliest time among the functions of a motion. Solvers then shorten their steps, so that the motion ends
+/// there.
 #[derive(Clone, Default)]
 pub struct Failures(Arc<Mutex<Option<Failure>>>);
 
@@ -37,18 +40,39 @@ impl Failures {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Records the failed call of a function with this role at a time (s).
+    /// Records the failed call of a function with this role at a time (s), unless another failed before that time.
     pub fn note(&self, what: &str, t: f64, error: PyErr) {
-        let what = what.to_owned();
-        self.lock().get_or_insert(Failure { what, t, error });
+        if self.prevents_call(t) {
+            return;
+        }
+        let is_interrupt = Python::attach(|py| !error.is_instance_of::<PyException>(py));
+        *self.lock() = Some(Failure {
+            what: what.to_owned(),
+            t,
+            error,
+            is_interrupt,
+        });
     }
 
-    /// Returns the exception of the first failure, if any. It names the function and the time; its cause is the
+    /// Returns true if the motion ends at or before a time (s).
+    fn prevents_call(&self, t: f64) -> bool {
+        let failure = self.lock();
+        failure
+            .as_ref()
+            .is_some_and(|failure| failure.is_interrupt || t >= failure.t)
+    }
+
+    /// Returns the exception of the earliest failure, if any. It names the function and the time; its cause is the
     /// exception of the function. A `BaseException` that is no `Exception`, such as `KeyboardInterrupt`, is
     /// returned unchanged.
     pub fn take(&self, py: Python<'_>) -> Option<PyErr> {
-        let Failure { what, t, error } = self.lock().take()?;
-        if !error.is_instance_of::<PyException>(py) {
+        let Failure {
+            what,
+            t,
+            error,
+            is_interrupt,
+        } = self.lock().take()?;
+        if is_interrupt {
             return Some(error);
         }
         let message = format!("{what} at t = {t}: {}", error.value(py));
@@ -109,7 +133,7 @@ impl InputFunction for PythonFunction {
             return out.copy_from_slice(&values[..out.len()]);
         }
         out.fill(f64::NAN);
-        if self.failures.lock().is_some() {
+        if self.failures.prevents_call(t) {
             return;
         }
         match Python::attach(|py| self.call(py, t, out)) {

@@ -161,6 +161,42 @@ def test_input_exceptions_are_chained(cart):
     assert isinstance(raised.value.__cause__, KeyError)
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [{}, {"gradients": True}, {"solver": "radau"}, {"solver": "adams"}, {"solver": "fixed", "max_step": 1e-3}],
+)
+@pytest.mark.parametrize("end", [0.3, 0.77, 2.5])
+def test_samples_before_a_failed_call_are_kept(cart, arguments, end):
+    name = cart.inputs[0]
+    force = lambda t: 1 / 0 if t > end else np.sin(t)
+    with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = ") as raised:
+        cart.simulate(until=4, interval=0.01, inputs={name: force}, **arguments)
+    so_far = raised.value.trajectory
+    step = 1e-3 if arguments.get("solver") == "fixed" else 1e-6
+    failed = float(str(raised.value).split("t = ")[1].split()[0])
+    assert end < failed <= end + step
+    whole = cart.simulate(until=end, interval=0.01, inputs={name: lambda t: np.sin(t)}, **arguments)
+    assert so_far.t[-1] >= end - 0.01 - 1e-9 and np.array_equal(so_far.t, whole.t[: len(so_far)])
+    assert np.allclose(so_far.states, whole.states[: len(so_far)], rtol=1e-6, atol=1e-6)
+
+
+def test_a_failed_call_ends_the_motion_at_the_earliest_failure(cart):
+    name = cart.inputs[0]
+    calls = []
+
+    def force(t):
+        calls.append(t)
+        if 0.3 < t < 0.4 or t > 1.0:
+            raise RuntimeError("no value")
+        return 0.0
+
+    with pytest.raises(eomgen.SimulationError, match=f"the input {name} at t = 0.300") as raised:
+        cart.simulate(until=4, interval=0.01, inputs={name: force})
+    assert 0.28 < raised.value.trajectory.t[-1] <= 0.3
+    first = next(place for place, t in enumerate(calls) if 0.3 < t < 0.4 or t > 1.0)
+    assert all(t < calls[first] for t in calls[first + 1 :])
+
+
 def test_inputs_without_a_finite_value_are_named_with_their_time(cart):
     name = cart.inputs[0]
     force = np.zeros(101)
@@ -299,6 +335,12 @@ away = { on = "x", value = "k*x^2" }
     so_far = raised.value.trajectory
     assert 100 < len(so_far) < 2000 and so_far["x"][-1] > 1.0
     assert np.isfinite(so_far.states).all()
+    with pytest.raises(eomgen.SimulationError) as raised:
+        eomgen.load(runaway).simulate(until=100, interval=0.01, gradients=True)
+    recorded = raised.value.trajectory
+    assert np.array_equal(recorded.t, so_far.t)
+    with pytest.raises(eomgen.SimulationError, match="no step meets the tolerance"):
+        recorded.gradient({"x": np.ones(len(recorded))})
 
 
 @pytest.fixture(scope="module")
