@@ -1,6 +1,6 @@
 //! Simulations that continue from call to call, as a Python class.
 
-use eomgen_compiled_model::{LoggedEvent, Simulation as Continued, SolverOptions};
+use eomgen_compiled_model::{InitialChange, LoggedEvent, Simulation as Continued, SolverOptions};
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyReadonlyArray1, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -45,6 +45,12 @@ impl Simulation {
             continued: continued.map_err(error::model)?,
             observables: vec![0.0; program.observables.len()],
         })
+    }
+
+    /// Sentence about the constraints that moved the first state, or the last one that was set.
+    #[getter]
+    fn initial_changes(&self) -> Option<String> {
+        InitialChange::describe_all("state", self.continued.initial_changes())
     }
 
     /// Continues to a time, s.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{
-    Audit, Error, FunctionInputs, InputRole, Instance, LoggedEvent, Motion, Overlap,
+    Audit, Error, FunctionInputs, InitialChange, InputRole, Instance, LoggedEvent, Motion, Overlap,
     RecordedMotion as Recorded, Request, SampledController, Solver, SolverChoice,
     split_assignments,
 };
@@ -267,7 +267,8 @@ fn observe(instance: &Instance<'_>, motion: Motion, request: &Request<'_>) -> Re
     instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
     let overlap = instance.find_first_overlap(&motion, request.tolerance)?;
     let energy = motion.audit.as_ref().and_then(Audit::warning_message);
-    let warnings = energy.into_iter();
+    let moved = InitialChange::describe_all("initial state", &motion.initial_changes);
+    let warnings = moved.into_iter().chain(energy);
     let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
     Ok(Found {
         warnings: warnings.collect(),

@@ -1,5 +1,7 @@
 """Gradients of simulated motions against differences of motions."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -99,6 +101,72 @@ def test_expressions_of_time_count_their_parameters(block):
     assert np.isclose(g.parameters["F_c"], difference(moved, 3.0), rtol=1e-6)
 
 
+LINKED = """
+[model]
+name = "linked"
+[parameters]
+m = { value = 2, unit = "kg" }
+M = { value = 3, unit = "kg" }
+l = { value = 700, unit = "mm" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+s = { unit = "m" }
+x = { unit = "m", initial = 0.42 }
+y = { unit = "m", initial = -0.56 }
+[kinetic]
+masses = "1/2*M*dot(s)^2 + 1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[constraints]
+rod = { zero = "(x - s)^2 + y^2 - l^2" }
+"""
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        {"x": 0.5},
+        {"x": 0.1, "y": -0.3},
+        {"x": 0.42, "y": -0.56, "x_dot": 0.7},
+        {"s": 0.2, "x": 0.5, "y": -0.7, "s_dot": -0.4, "x_dot": 0.3, "y_dot": 0.9},
+    ],
+)
+def test_gradient_from_a_start_off_the_constraints_equals_differences(start):
+    linked = eomgen.load(LINKED)
+    initial = linked.state(start)
+    arguments = {"until": 1, "interval": 0.1, "solver": "rk", "tolerance": 1e-12}
+    with pytest.warns(UserWarning, match="the initial state was moved onto the constraints"):
+        r = linked.simulate(state=initial, gradients=True, **arguments)
+    g = r.gradient({"s": np.ones(len(r)), "x": np.cos(r.t)})
+
+    def moved(model, state):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            r = model.simulate(state=state, **arguments)
+        return float(np.sum(r["s"]) + np.sum(np.cos(r.t) * r["x"]))
+
+    for place, name in enumerate(linked.states):
+        unit = np.eye(len(linked.states))[place]
+        found = difference(lambda by: moved(linked, initial + by * unit), 20.0)
+        assert np.isclose(g.state[place], found, rtol=1e-6, atol=1e-7), name
+    for name in ("m", "M", "l", "g"):
+        own = linked.parameters[name]
+        found = difference(lambda by: moved(linked.with_parameters(**{name: own + by}), initial), own)
+        assert np.isclose(g.parameters[name], found, rtol=1e-6, atol=1e-7), name
+
+
+def test_continued_simulation_warns_of_a_moved_state():
+    linked = eomgen.load(LINKED)
+    with pytest.warns(UserWarning, match="the state was moved onto the constraints: .*x from 0.5 to"):
+        s = linked.simulation(state={"x": 0.5})
+    assert (s["x"] - s["s"]) ** 2 + s["y"] ** 2 == pytest.approx(0.49)
+    with pytest.warns(UserWarning, match="the state was moved onto the constraints"):
+        s.set_state({"x": 0.7})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        linked.simulation()
+
+
 def test_invalid_requests_are_rejected(block):
     r = block.simulate(until=1, interval=0.1, inputs={"u": 9.0})
     with pytest.raises(ValueError, match="gradients=True"):
@@ -108,7 +176,7 @@ def test_invalid_requests_are_rejected(block):
         r.gradient({"y": r["x"]})
     with pytest.raises(ValueError, match="expected .11,."):
         r.gradient({"x": 1.0})
-    with pytest.raises(ValueError, match="not finite"):
+    with pytest.raises(ValueError, match="a weight of x is nan: expected finite numbers"):
         r.gradient({"x": np.full(11, np.nan)})
     with pytest.raises(TypeError, match="weights"):
         r.gradient([1.0])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
+import warnings
 from typing import TYPE_CHECKING, Any, List, Mapping, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _arguments, _native
-from .trajectory import Event
+from .trajectory import Event, solver_settings
 
 if TYPE_CHECKING:
     from .model import Model
@@ -43,17 +43,22 @@ class Simulation:
         max_step: Optional[float],
     ):
         self._model = model
-        longest = math.inf if max_step is None else float(max_step)
-        settings = (solver, _arguments.real("tolerance", tolerance), longest)
-        start = _arguments.real("start", start)
-        values = self._with(np.zeros(len(model.inputs)), inputs)
+        settings = solver_settings(solver, tolerance, max_step)
+        start = _arguments.real("start", start, "a time in s")
+        _arguments.require_finite("state", model.states, state)
+        values = np.zeros(len(model.inputs))
+        values = values if inputs is None else self._with(values, inputs)
         self._native = _native.Simulation(model._native, start, state, values, settings)
+        self._warn_of_moved_state(4)
+
+    def _warn_of_moved_state(self, level: int) -> None:
+        moved = self._native.initial_changes
+        if moved is not None:
+            warnings.warn(moved, stacklevel=level)
 
     def _with(self, values: Array, inputs: Any) -> Array:
         names = self._model.inputs
         driven = self._model._native.controlled_inputs
-        if inputs is None:
-            return values
         if isinstance(inputs, Mapping):
             _arguments.check_names("input", inputs, names)
             values = values.copy()
@@ -62,9 +67,13 @@ class Simulation:
                     raise ValueError(f"the input {name} is driven by a controller of the specification")
                 values[names.index(name)] = _arguments.real(f"the input {name}", value)
             return values
-        given = _arguments.numbers("the inputs", inputs).reshape(-1)
+        expected = "an array of numbers, or a mapping of names to numbers"
+        given = _arguments.numbers("inputs", inputs, expected).reshape(-1)
         if len(given) != len(names):
-            raise ValueError(f"{len(given)} inputs: expected {len(names)}, for {', '.join(names)}")
+            raise ValueError(
+                f"inputs has {len(given)} numbers: expected {len(names)}, for {', '.join(names) or '(none)'}"
+            )
+        _arguments.require_finite("input", names, given)
         for name, before, value in zip(names, values, given):
             if name in driven and value != before:
                 raise ValueError(f"the input {name} is driven by a controller of the specification")
@@ -116,7 +125,7 @@ class Simulation:
 
         Raises SimulationError if the solver stops; the simulation then keeps the time and state that it reached.
         """
-        self._native.advance(until)
+        self._native.advance(_arguments.number("until", until, "a time in s"))
 
     def set_inputs(self, inputs: Any) -> None:
         """Changes inputs from the time reached on: (inputs,), or a mapping of names to numbers; other inputs keep their
@@ -125,15 +134,20 @@ class Simulation:
 
     def set_state(self, state: Any) -> None:
         """Continues from another state: (states,), or a mapping of names to numbers; other states keep their values.
-        Controllers keep their states."""
+        Controllers keep their states. A state that does not satisfy the constraints is moved onto them, with a warning."""
         if isinstance(state, Mapping):
             names = self._model.states
             _arguments.check_names("state", state, names)
             values = self.state.copy()
             for name, value in state.items():
-                values[names.index(name)] = _arguments.real(name, value)
+                values[names.index(name)] = _arguments.real(f"the state {name}", value)
             state = values
-        self._native.set_state(self._model.state(state))
+        if state is None:
+            raise TypeError(_arguments.rejected("state", state, "an array, or a mapping of names to numbers"))
+        given = self._model.state(state)
+        _arguments.require_finite("state", self._model.states, given)
+        self._native.set_state(given)
+        self._warn_of_moved_state(3)
 
     def take_events(self) -> List[Event]:
         """Returns the events since the last call, in order of time."""
