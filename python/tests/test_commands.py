@@ -207,9 +207,9 @@ def test_sweep_of_one_axis_needs_no_folder(chain):
         ({"vary": {"k": (1, 2)}}, TypeError, "from, to, count"),
         ({"vary": {"kk": (1, 2, 3)}}, ValueError, "kk"),
         ({"vary": "k=1:2:3", "measure": "mean:x"}, ValueError, "unknown measure"),
-        ({"vary": "k=1:2:3", "inputs": {"v": 1}}, ValueError, "--input:1:1"),
-        ({"vary": "k=1:2:3", "state": {"x": "2*kk"}}, ValueError, "--state:1:5"),
-        ({"vary": "k=1:2:3", "until": -1}, ValueError, "--until"),
+        ({"vary": "k=1:2:3", "inputs": {"v": 1}}, ValueError, "inputs:1:1"),
+        ({"vary": "k=1:2:3", "state": {"x": "2*kk"}}, ValueError, "state:1:5"),
+        ({"vary": "k=1:2:3", "until": -1}, ValueError, "until=-1.0"),
         ({"samples": 10}, ValueError, "uncertainty"),
     ],
 )

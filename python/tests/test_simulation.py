@@ -123,7 +123,7 @@ def test_earlier_names_of_arguments_work(pendulum):
         ({"until": 1, "tolerance": 0}, ValueError, "tolerance"),
         ({"until": 1, "state": {"thetta": 1}}, ValueError, "did you mean `theta`"),
         ({"until": 1, "state": [1.0]}, ValueError, "expected (2,)"),
-        ({"until": 1, "state": [float("nan"), 0]}, ValueError, "not finite: theta"),
+        ({"until": 1, "state": [float("nan"), 0]}, ValueError, "the state theta = nan: expected a finite number"),
         ({"until": 1, "inputs": {"u": 1.0}}, ValueError, "the model has no input `u`"),
         ({"until": 1, "inputs": 3}, TypeError, "inputs"),
         ({"until": 1, "solver": "exact"}, ValueError, "sin"),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import operator
-from typing import Any, Iterable, Mapping, Sequence
+import os
+import reprlib
+from typing import Any, Iterable, List, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +18,23 @@ Array = NDArray[np.float64]
 FLOAT = np.dtype(np.float64)
 
 
-def numbers(what: str, given: ArrayLike) -> Array:
+# Longest value in a message, in characters.
+MAX_SHOWN = 60
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = MAX_SHOWN
+
+
+def rejected(what: str, given: Any, expected: str) -> str:
+    """Returns the message about a value that an argument does not accept."""
+    if isinstance(given, np.ndarray) and given.ndim > 0:
+        shown = f"an array of {given.dtype} with the shape {given.shape}"
+    else:
+        shown = repr(given.item()) if isinstance(given, np.generic) else _SHORT.repr(given)
+    return f"{what} = {shown}: expected {expected}"
+
+
+def numbers(what: str, given: ArrayLike, expected: str = "real numbers") -> Array:
     """Converts to a contiguous float64 array. Raises TypeError unless all entries are real numbers."""
     if type(given) is np.ndarray and given.dtype is FLOAT and given.flags.c_contiguous:
         return given
@@ -27,33 +45,100 @@ def numbers(what: str, given: ArrayLike) -> Array:
     except ValueError as error:
         raise TypeError(f"{what}: expected an array of numbers: {error}") from None
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{what}: expected real numbers, not {array.dtype}")
+        raise TypeError(rejected(what, given, expected))
     return np.asarray(array, dtype=np.float64, order="C")
 
 
-def real(what: str, given: Any) -> float:
-    """Converts to one finite number."""
-    array = numbers(what, given)
+def number(what: str, given: Any, expected: str = "one number") -> float:
+    """Converts to one number, which may be infinite or NaN."""
+    array = numbers(what, given, expected)
     if array.size != 1:
-        raise TypeError(f"{what}: expected one number, not an array of shape {array.shape}")
-    value = float(array.reshape(()))
+        raise TypeError(rejected(what, given, expected))
+    return float(array.reshape(()))
+
+
+def real(what: str, given: Any, expected: str = "a finite number") -> float:
+    """Converts to one finite number."""
+    value = number(what, given, expected)
     if not math.isfinite(value):
-        raise ValueError(f"{what} = {value}: expected a finite number")
+        raise ValueError(f"{what} = {value}: expected {expected}")
     return value
 
 
-def whole(what: str, given: Any, most: int = 2**63 - 1) -> int:
-    """Converts to a whole number from 0 to `most`."""
-    expected = f"expected a whole number from 0 to {most}"
+def whole(what: str, given: Any, most: int = 2**63 - 1, least: int = 0) -> int:
+    """Converts to a whole number from `least` to `most`."""
+    expected = f"a whole number from {least} to {most}"
     if isinstance(given, (bool, np.bool_)):
-        raise TypeError(f"{what} = {given}: {expected}")
+        raise TypeError(rejected(what, given, expected))
     try:
         value = operator.index(given)
     except TypeError:
-        raise TypeError(f"{what} = {given!r}: {expected}") from None
-    if not 0 <= value <= most:
-        raise ValueError(f"{what} = {value}: {expected}")
+        raise TypeError(rejected(what, given, expected)) from None
+    if not least <= value <= most:
+        raise ValueError(rejected(what, value, expected))
     return value
+
+
+def flag(what: str, given: Any) -> bool:
+    """Converts to True or False."""
+    if not isinstance(given, (bool, np.bool_)):
+        raise TypeError(rejected(what, given, "True or False"))
+    return bool(given)
+
+
+def text(what: str, given: Any, expected: str = "a text") -> str:
+    """Returns a text that is not empty."""
+    if not isinstance(given, str):
+        raise TypeError(rejected(what, given, expected))
+    if not given:
+        raise ValueError(rejected(what, given, expected))
+    return given
+
+
+def texts(what: str, given: Any, expected: str) -> List[str]:
+    """Converts one text or several texts to a list."""
+    if isinstance(given, str):
+        given = [given]
+    if isinstance(given, (bytes, Mapping)) or not isinstance(given, Iterable):
+        raise TypeError(rejected(what, given, expected))
+    return [text(what, one, expected) for one in given]
+
+
+def path_text(what: str, given: Any, expected: str) -> str:
+    """Returns a path as text, which may be empty."""
+    found = os.fspath(given) if isinstance(given, os.PathLike) else given
+    if not isinstance(found, str):
+        raise TypeError(rejected(what, given, expected))
+    return found
+
+
+def path(what: str, given: Any, expected: str) -> str:
+    """Returns a path as text that is not empty."""
+    return text(what, path_text(what, given, expected), expected)
+
+
+def function(what: str, given: Any, expected: str) -> Any:
+    """Returns a function, or None."""
+    if given is not None and not callable(given):
+        raise TypeError(rejected(what, given, f"{expected}, or None"))
+    return given
+
+
+def mapping(what: str, given: Any, expected: str) -> Mapping[Any, Any]:
+    """Returns a mapping; None is an empty one."""
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise TypeError(rejected(what, given, expected))
+    return given
+
+
+def require_finite(kind: str, names: Sequence[str], values: Array) -> None:
+    """Raises ValueError for values that are not finite. A row of `values` has one value for each name."""
+    for name, column in zip(names, values.reshape(-1, len(names)).T if len(names) else ()):
+        wrong = column[~np.isfinite(column)]
+        if wrong.size:
+            raise ValueError(f"the {kind} {name} = {wrong[0]}: expected a finite number")
 
 
 def renamed(name: str, given: Any, old: str, given_as_old: Any) -> Any:

@@ -6,6 +6,8 @@ import sys
 import time
 from typing import Any, Callable, Optional
 
+from . import _arguments
+
 # Shortest work with a progress line, s.
 PATIENCE = 2.0
 
@@ -57,7 +59,8 @@ class Fraction:
     """Reports the completed fraction, 0 to 1, to `progress`, or on a line."""
 
     def __init__(self, what: str, whole: float, progress: Optional[Callable[[float], object]]):
-        self._what, self._whole, self._progress = what, whole, progress
+        self._what, self._whole = what, whole
+        self._progress = _arguments.function("progress", progress, "a function of the completed fraction")
         self._line = _Line()
 
     def __enter__(self) -> "Fraction":
@@ -78,7 +81,7 @@ class Lines:
     """Reports messages to `progress`, or shows the last one on a line."""
 
     def __init__(self, progress: Optional[Callable[[str], object]]):
-        self._progress = progress
+        self._progress = _arguments.function("progress", progress, "a function of a message")
         self._line = _Line()
 
     def __enter__(self) -> "Lines":

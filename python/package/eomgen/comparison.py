@@ -8,7 +8,7 @@ import time
 from typing import Any, Callable, Dict, Mapping, Optional, Union
 
 from . import _arguments, _native
-from ._files import write_all
+from ._files import FOLDER, write_all
 from ._progress import Lines
 
 # Names of the files of a comparison.
@@ -59,12 +59,14 @@ def compare(
     progress: Optional[Callable[[str], object]],
 ) -> Comparison:
     """Compares a model with records. See `Model.compare`."""
+    path = _arguments.path("dataset", dataset, "the path of a dataset file")
+    folder = None if out is None else _arguments.path("out", out, FOLDER)
     seed = _arguments.whole("seed", seed)
     begin = time.monotonic()
     with Lines(progress) as lines:
-        document, report = _native.compare(native, os.fspath(dataset), seed, lines.tell)
+        document, report = _native.compare(native, path, seed, lines.tell)
     found = Comparison(json.loads(document), report)
     found.document["seconds"] = time.monotonic() - begin
-    if out is not None:
-        found.write(out)
+    if folder is not None:
+        found.write(folder)
     return found

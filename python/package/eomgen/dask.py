@@ -16,9 +16,14 @@ import argparse
 import os
 import subprocess
 import sys
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Iterable, List, Mapping, Optional, Sequence
+
+from . import _arguments
 
 __all__ = ["SweepError", "sweep"]
+
+# Largest number of shards.
+MAX_SHARDS = 100_000
 
 
 class SweepError(RuntimeError):
@@ -35,6 +40,14 @@ def _run(command: Sequence[str], folder: Optional[str] = None) -> str:
         why = done.stderr.strip() or f"exit status {done.returncode}"
         raise SweepError(f"{' '.join(command)}: {why}")
     return done.stdout
+
+
+def _texts(arguments: Any) -> List[str]:
+    """Returns the arguments of the program as texts."""
+    expected = "the arguments of eomgen sweep, such as [\"arm.toml\", \"--out\", \"map\"]"
+    if isinstance(arguments, (str, bytes, Mapping)) or not isinstance(arguments, Iterable):
+        raise TypeError(_arguments.rejected("arguments", arguments, expected))
+    return [_arguments.path("arguments", argument, expected) for argument in arguments]
 
 
 def _folder(arguments: Sequence[str]) -> str:
@@ -64,11 +77,14 @@ def sweep(
     Raises SweepError if a shard fails. Exceptions of Dask are passed on, such as KilledWorker if the workers of
     a shard are lost repeatedly.
     """
+    arguments = _texts(arguments)
+    shards = _arguments.whole("shards", shards, MAX_SHARDS, 1)
+    program = _arguments.path("program", program, "the path of the program eomgen")
+    _arguments.function("progress", progress, "a function of two numbers of shards")
+    if not hasattr(client, "map"):
+        raise TypeError(_arguments.rejected("client", client, "a dask.distributed.Client"))
     from dask.distributed import as_completed
 
-    arguments = [os.fspath(argument) for argument in arguments]
-    if not isinstance(shards, int) or isinstance(shards, bool) or not 1 <= shards <= 100_000:
-        raise ValueError(f"shards = {shards!r}: expected a whole number from 1 to 100000")
     folder, here = _folder(arguments), os.getcwd()
     numbered = [f"{number}/{shards}" for number in range(1, shards + 1)]
     commands = [[program, "sweep", *arguments, "--shard", shard] for shard in numbered]

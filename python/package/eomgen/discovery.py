@@ -8,7 +8,7 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, Optional, Union
 
 from . import _arguments, _native
-from ._files import write_all
+from ._files import FOLDER, write_all
 from ._progress import Lines
 from .model import Model, load
 
@@ -114,17 +114,19 @@ def discover(
     if the model cannot be simulated over the records. Ctrl-C interrupts the search.
     """
     if not isinstance(model, Model):
-        raise TypeError(f"expected a model from eomgen.load(), not {type(model).__name__}")
+        raise TypeError(_arguments.rejected("model", model, "a model from eomgen.load()"))
+    path = _arguments.path("dataset", dataset, "the path of a dataset file")
+    folder = None if out is None else _arguments.path("out", out, FOLDER)
     seed = _arguments.whole("seed", seed)
     begin = time.monotonic()
     with Lines(progress) as lines:
         document, extended, report, experiments = _native.discover(
-            model._native, os.fspath(dataset), seed, lines.tell
+            model._native, path, seed, lines.tell
         )
     found = Discovery(
         json.loads(document), extended, report, dict(experiments), model._native.order
     )
     found.document["seconds"] = time.monotonic() - begin
-    if out is not None:
-        found.write(out)
+    if folder is not None:
+        found.write(folder)
     return found

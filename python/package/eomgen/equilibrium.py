@@ -7,6 +7,8 @@ from typing import Sequence, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arguments
+
 Array = NDArray[np.float64]
 
 
@@ -49,7 +51,7 @@ class Equilibrium:
         for names, values in ((self.states, self.x), (self.inputs, self.u)):
             if name in names:
                 return float(values[names.index(name)])
-        raise KeyError(name)
+        raise KeyError(_arguments.unknown("state or input", name, self.states + self.inputs))
 
     def __repr__(self) -> str:
         motion = f"steady motion: {', '.join(self.steady_rates)}" if self.steady_rates else "at rest"

@@ -29,8 +29,9 @@ class Gradient:
         weights: Mapping[str, Any],
     ):
         native, model, inputs, columns = recorded
+        expected = "a mapping of names of states and observables to arrays"
         if not isinstance(weights, Mapping):
-            raise TypeError("weights: expected names of states and observables to arrays")
+            raise TypeError(_arguments.rejected("weights", weights, expected))
         tables = [np.zeros((samples, len(group))) for group in names]
         for name, given in weights.items():
             # Observables take precedence, as in a trajectory.
@@ -43,6 +44,8 @@ class Gradient:
                 raise ValueError(
                     f"the weights of {name} have the shape {column.shape}: expected ({samples},), one for each sample"
                 )
+            if not np.isfinite(column).all():
+                raise ValueError(f"a weight of {name} is {column[~np.isfinite(column)][0]}: expected finite numbers")
             tables[group][:, names[group].index(name)] = column
         state, parameters, by_inputs = native.gradient(model, *tables)
         self.state: Optional[Array] = state

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments, _native
 from ._arguments import Call
-from ._files import write_all
+from ._files import FOLDER, write_all
 from .certificate import Certificate
 from .comparison import Comparison, compare
 from .equilibrium import Equilibrium
@@ -31,6 +31,12 @@ Array = NDArray[np.float64]
 # File name in messages about a specification given as text.
 TEXT = "<text>"
 
+# Values of arguments, in messages.
+BY = '"state", "inputs", "parameters" or "time"'
+FORMATS = '"text", "latex" or "json"'
+EXTRAS = "names of functions to emit, such as [\"jacobians\"]"
+DATASET = "the path of a dataset file"
+
 
 class SpecificationWarning(UserWarning):
     """A specification is valid, but possibly not as intended."""
@@ -46,9 +52,7 @@ def load(path_or_text: Union[str, "os.PathLike[str]"], order: Optional[int] = No
     """
     if order is not None:
         order = _arguments.whole("order", order, _native.MAX_ORDER)
-    given = os.fspath(path_or_text)
-    if not isinstance(given, str):
-        raise TypeError(f"expected a path or a text, not {type(given).__name__}")
+    given = _arguments.path_text("path_or_text", path_or_text, "a path, or the text of a specification")
     if "\n" in given or "\r" in given:
         native = _native.Model.of_text(TEXT, given, order)
     else:
@@ -130,7 +134,7 @@ class Model:
 
         Raises SpecificationError for an unknown name or an inadmissible value.
         """
-        settings = [(name, _number(name, value)) for name, value in values.items()]
+        settings = [(name, _arguments.number(name, value)) for name, value in values.items()]
         return Model(self._native.with_parameters(settings))
 
     def rates(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:
@@ -172,8 +176,8 @@ class Model:
             "parameters": len(self._native.independent_parameters),
             "time": 1,
         }
-        if by not in columns:
-            raise ValueError(f'by = {by!r}: expected "state", "inputs", "parameters" or "time"')
+        if _arguments.text("by", by, BY) not in columns:
+            raise ValueError(_arguments.rejected("by", by, BY))
         call = self._call(t, x, u)
         shape = (len(call.x), len(self._states), columns[by])
         found = np.empty((shape[0], shape[1] * shape[2]))
@@ -196,7 +200,7 @@ class Model:
         """Returns the equations of motion with their coefficients: "text" and "latex" give a text, "json" the content
         of the document of `eomgen derive --format json`.
         """
-        text = _native.derive(self._native, format)
+        text = _native.derive(self._native, _arguments.text("format", format, FORMATS))
         return json.loads(text) if format == "json" else text
 
     def linearise(
@@ -213,8 +217,10 @@ class Model:
         return Linearisation(self._native, self._states, self._inputs, self._observables, state, inputs, *found)
 
     def _operating_point(self, t: Any, x: Any, u: Any) -> Tuple[float, "np.ndarray", "np.ndarray"]:
-        time = _arguments.real("t", t)
+        time = _arguments.real("t", t, "a time in s")
         call = self._call(time, self.state(x), u)
+        _arguments.require_finite("state", self._states, call.x)
+        _arguments.require_finite("input", self._inputs, call.u)
         state, moved = _native.move_onto_constraints(self._native, time, call.x[0], call.u[0])
         if moved is not None:
             warnings.warn(moved, stacklevel=3)
@@ -237,7 +243,8 @@ class Model:
 
         extras: additional emitted functions, as in `generate`.
         """
-        return Certificate(json.loads(_native.validate(self._native, list(extras))))
+        extras = _arguments.texts("extras", extras, EXTRAS)
+        return Certificate(json.loads(_native.validate(self._native, extras)))
 
     def generate(
         self,
@@ -251,10 +258,12 @@ class Model:
         target: "rust", "c99", "cuda", "casadi" or "acados". extras: functions to emit in addition to the usual ones,
         such as "jacobians"; the names are those of `eomgen generate --with`.
         """
-        files, noted = _native.generate(self._native, target, list(extras))
+        folder = _arguments.path("out", out, FOLDER)
+        target = _arguments.text("target", target, "the name of a target, such as \"rust\"")
+        files, noted = _native.generate(self._native, target, _arguments.texts("extras", extras, EXTRAS))
         for warning in noted:
             warnings.warn(warning, stacklevel=2)
-        return write_all(out, {name: bytes(contents) for name, contents in files})
+        return write_all(folder, {name: bytes(contents) for name, contents in files})
 
     def compare(
         self,
@@ -343,26 +352,26 @@ class Model:
         Raises ValueError for an unknown name, a value that is not finite or outside its range, and a fixed rate
         that cannot be constant. Raises SimulationError if no equilibrium is found.
         """
-        start = self._named("state", self._states, x) + self._named("input", self._inputs, u)
-        start.append(("t", _arguments.real("t", t)))
-        kept = self._named("state or input", self._states + self._inputs, fixed or {})
+        start = self._named("x", "state", self._states, x) + self._named("u", "input", self._inputs, u)
+        start.append(("t", _arguments.real("t", t, "a time in s")))
+        kept = self._named("fixed", "state or input", self._states + self._inputs, fixed)
         found = _native.trim(self._native, start, kept)
         return Equilibrium(self._states, self._inputs, *found)
 
     @staticmethod
-    def _named(kind: str, names: Tuple[str, ...], given: Any) -> List[Tuple[str, float]]:
+    def _named(what: str, kind: str, names: Tuple[str, ...], given: Any) -> List[Tuple[str, float]]:
         if given is None:
             return []
         if not isinstance(given, Mapping):
-            values = _arguments.numbers(f"the {kind}", given)
+            values = _arguments.numbers(what, given, "an array of numbers, or a mapping of names to numbers")
             if values.shape != (len(names),):
                 raise ValueError(
-                    f"the {kind} has the shape {values.shape}: expected ({len(names)},), "
+                    f"{what} has the shape {values.shape}: expected ({len(names)},), "
                     f"for {', '.join(names) or '(none)'}"
                 )
             given = dict(zip(names, values))
         _arguments.check_names(kind, given, names)
-        return [(name, _arguments.real(name, value)) for name, value in given.items()]
+        return [(name, _arguments.real(f"{what}[{name!r}]", value)) for name, value in given.items()]
 
     def simulate(
         self,
@@ -396,7 +405,7 @@ class Model:
         all steps.
 
         state: initial state, (states,), or a mapping of names to numbers; missing states have the
-        specification's initial values.
+        specification's initial values. A state that does not satisfy the constraints is moved onto them, with a warning.
 
         inputs: mapping of names to a number, to an array with a number per sample, to an expression such as
         "0.3*sin(50*t)" with t in s, or to a function of t (s). An array value is constant from its sample to
@@ -416,7 +425,7 @@ class Model:
         progress: function of the completed fraction, 0 to 1, called about ten times a second. Default: a
         progress line in terminals and notebooks for simulations longer than two seconds.
 
-        Warns if the energy changes without work or if bodies overlap.
+        Warns if the initial state is moved onto the constraints, if the energy changes without work or if bodies overlap.
 
         Raises SimulationError if the solver stops; its `trajectory` holds the samples up to then. An exception
         of an input function or of the controller is its cause. Ctrl-C interrupts the simulation.
@@ -428,7 +437,7 @@ class Model:
         settings = (solver, tolerance, max_step)
         control = (controller, period, offset, delay, controls)
         driven = (inputs, breaks)
-        return simulate(self, span, settings, self.state(state), driven, control, bool(gradients), progress)
+        return simulate(self, span, settings, self.state(state), driven, control, _arguments.flag("gradients", gradients), progress)
 
     def simulation(
         self,
@@ -459,9 +468,10 @@ class Model:
             _arguments.check_names("state", values, self._states)
             state = self.initial
             for name, value in values.items():
-                state[self._states.index(name)] = _arguments.real(name, value)
+                state[self._states.index(name)] = _arguments.real(f"the state {name}", value)
             return state
-        state = _arguments.numbers("the state", values)
+        expected = "an array of numbers, or a mapping of names to numbers"
+        state = _arguments.numbers("the state", values, expected)
         if state.shape != (len(self._states),):
             raise ValueError(
                 f"the state has the shape {state.shape}: expected ({len(self._states)},), "
@@ -475,7 +485,8 @@ class Model:
         """
         from .casadi import Rates
 
-        return Rates(self, name or self.name)
+        chosen = self.name if name is None else _arguments.text("name", name, "the name of a function")
+        return Rates(self, chosen)
 
     def _call(self, t: Any, x: Any, u: Any) -> Call:
         return Call(self._states, self._inputs, t, x, u)
@@ -492,11 +503,3 @@ class Model:
 
     def _repr_html_(self) -> str:
         return f"<div>{_native.equations(self._native)}</div>"
-
-
-def _number(name: str, given: Any) -> float:
-    # Values that are not finite are rejected later, with the bounds of the parameter.
-    array = _arguments.numbers(name, given)
-    if array.size != 1:
-        raise TypeError(f"{name}: expected one number, not an array of shape {array.shape}")
-    return float(array.reshape(()))

@@ -11,6 +11,8 @@ from typing import Dict, Iterable, List, Optional, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arguments
+
 Path = Union[str, "os.PathLike[str]"]
 
 # First bytes of a MATLAB 7.3 file. It is HDF5, which SciPy does not read.
@@ -27,8 +29,11 @@ def record_to_csv(source: Path, out: Path, columns: Optional[Iterable[str]] = No
     Raises ValueError for a file of another kind, a file without arrays, and columns of different lengths or
     of unsuitable types. Raises ImportError if SciPy is needed and missing.
     """
+    source = _arguments.path("source", source, "the path of a .npz or .mat file")
+    out = _arguments.path("out", out, "the path of a CSV file")
+    named = None if columns is None else _arguments.texts("columns", columns, "names of arrays")
     arrays = _arrays(pathlib.Path(source))
-    wanted = list(arrays) if columns is None else list(columns)
+    wanted = list(arrays) if named is None else named
     for name in wanted:
         if name not in arrays:
             raise ValueError(f"{source} has no array {name!r}; it has {', '.join(arrays)}")

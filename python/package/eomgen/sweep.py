@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arguments, _native
+from ._files import FOLDER
 from ._progress import Fraction
 
 Array = NDArray[np.float64]
@@ -67,25 +68,24 @@ def sweep(
     inputs, record, state = conditions
     out, threads = run
     if (vary is None) == (samples is None):
-        raise TypeError("expected either vary or samples")
-    if record is not None and not isinstance(record, tuple):
-        record = (record, FIRST_RECORD)
+        given = "neither is given" if vary is None else "both are given"
+        raise TypeError(f"expected either vary or samples: {given}")
     request = (
         _axes(vary),
         None if samples is None else _arguments.whole("samples", samples),
         _arguments.whole("seed", seed),
-        [measure] if isinstance(measure, str) else list(measure),
-        frequency,
+        _arguments.texts("measure", measure, "names of measures, such as \"max:x\""),
+        _arguments.text("frequency", frequency, "the name of a parameter"),
         (_arguments.whole("transient", transient), _arguments.whole("periods", periods)),
-        None if until is None else _arguments.real("until", until),
-        section,
+        None if until is None else _arguments.real("until", until, "a time in s"),
+        None if section is None else _arguments.text("section", section, "a text such as \"x=0:up\""),
         _assignments("inputs", inputs),
-        None if record is None else (os.fspath(record[0]), record[1]),
+        None if record is None else _record(record),
         [state] if isinstance(state, str) else _assignments("state", state),
     )
     workers = 0 if threads is None else _arguments.whole("threads", threads, 1024)
     with Fraction("sweeping", 1.0, progress) as shown, tempfile.TemporaryDirectory() as unused:
-        folder = os.path.join(unused, "sweep") if out is None else os.fspath(out)
+        folder = os.path.join(unused, "sweep") if out is None else _arguments.path("out", out, FOLDER)
 
         def tell(computed: int, whole: int) -> None:
             shown.tell(computed / whole)
@@ -96,33 +96,37 @@ def sweep(
     return Sweep(units, columns)
 
 
+def _record(given: Any) -> Tuple[str, str]:
+    """Returns the dataset file and the name of a record."""
+    expected = "the path of a dataset file, or (path, name of a record)"
+    path, name = given if isinstance(given, tuple) and len(given) == 2 else (given, FIRST_RECORD)
+    return _arguments.path("record", path, expected), _arguments.text("record", name, expected)
+
+
 def _axes(vary: Any) -> List[str]:
     """Converts axes to texts `NAME[,NAME...]=FROM:TO:COUNT[:log]`."""
     if vary is None:
         return []
-    if isinstance(vary, str):
-        return [vary]
     if not isinstance(vary, Mapping):
-        return list(vary)
+        return _arguments.texts("vary", vary, "a mapping of names to (from, to, count) or (from, to, count, \"log\")")
     texts = []
     for name, axis in vary.items():
-        expected = f"vary[{name!r}] = {axis!r}: expected (from, to, count) or (from, to, count, \"log\")"
-        if isinstance(axis, str) or len(axis) not in (3, 4):
-            raise TypeError(expected)
-        first, last = (_arguments.real(name, end) for end in axis[:2])
-        count = _arguments.whole(f"count of {name}", axis[2])
+        _arguments.text("vary", name, "names of parameters")
+        what, expected = f"vary[{name!r}]", "(from, to, count) or (from, to, count, \"log\")"
+        is_axis = isinstance(axis, (Sequence, np.ndarray)) and not isinstance(axis, str)
+        if not is_axis or len(axis) not in (3, 4) or len(axis) == 4 and axis[3] != "log":
+            raise TypeError(_arguments.rejected(what, axis, expected))
+        first, last = (_arguments.real(f"{what}[{place}]", axis[place]) for place in (0, 1))
+        count = _arguments.whole(f"{what}[2]", axis[2])
         texts.append(":".join([f"{name}={first!r}", repr(last), str(count), *axis[3:]]))
     return texts
 
 
 def _assignments(kind: str, given: Any) -> List[str]:
     """Converts a mapping of names to numbers or expressions to texts `NAME=EXPR`."""
-    if given is None:
-        return []
-    if not isinstance(given, Mapping):
-        raise TypeError(f"{kind}: expected a mapping of names to numbers or expressions")
     texts = []
-    for name, value in given.items():
+    for name, value in _arguments.mapping(kind, given, "a mapping of names to numbers or expressions").items():
+        _arguments.text(kind, name, "names as keys")
         text = value if isinstance(value, str) else repr(_arguments.real(f"{kind}[{name!r}]", value))
         texts.append(f"{name}={text}")
     return texts

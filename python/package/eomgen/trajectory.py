@@ -131,6 +131,9 @@ class Trajectory:
                 len(names), 1, sharex=True, squeeze=False, figsize=size, layout="constrained"
             )
         axes = np.atleast_1d(axes).ravel()
+        for axis in axes:
+            if not hasattr(axis, "plot"):
+                raise TypeError(_arguments.rejected("axes", axis, "matplotlib axes"))
         if len(axes) != len(names):
             raise ValueError(f"{len(axes)} axes for {len(names)} columns")
         for axis, name, column in zip(axes, names, columns):
@@ -159,18 +162,8 @@ def simulate(
     """Simulates a model over a span (start, until, interval) with settings (solver, tolerance, max_step),
     driven by (inputs, breaks) and by a controller with (function, period, offset, delay, inputs). `Model.simulate`
     describes the arguments."""
-    solver, tolerance, max_step = settings
-    if not isinstance(solver, str):
-        raise TypeError(f"solver = {solver!r}: expected the name of a solver")
-    if not np.isfinite(initial).all():
-        wrong = [name for name, x in zip(model.states, initial) if not np.isfinite(x)]
-        raise ValueError(f"the initial state is not finite: {', '.join(wrong)}")
-    tolerance = _arguments.real("tolerance", tolerance)
-    if not 0.0 < tolerance < 1.0:
-        raise ValueError(f"tolerance = {tolerance}: expected a number between 0 and 1")
-    longest = np.inf if max_step is None else _arguments.real("max_step", max_step)
-    if longest <= 0.0:
-        raise ValueError(f"max_step = {longest}: expected a time in s above 0")
+    solver, tolerance, longest = solver_settings(*settings)
+    _arguments.require_finite("state", model.states, initial)
     times = sample_times(*span, len(model.states) + len(model.observable_names))
     given, breaks = driven
     # Controllers measure the inputs, and fixed steps hold them, so that these remain inputs.
@@ -216,6 +209,22 @@ def simulate(
     return trajectory
 
 
+def solver_settings(solver: Any, tolerance: Any, max_step: Any) -> Tuple[str, float, float]:
+    """Returns the name of a solver, its relative tolerance and its longest step, s."""
+    solver = _arguments.text("solver", solver, "the name of a solver, such as \"auto\"")
+    expected = "a number between 0 and 1"
+    tolerance = _arguments.real("tolerance", tolerance, expected)
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(_arguments.rejected("tolerance", tolerance, expected))
+    if max_step is None:
+        return solver, tolerance, np.inf
+    expected = "a time in s above 0"
+    longest = _arguments.number("max_step", max_step, expected)
+    if not longest > 0.0:
+        raise ValueError(_arguments.rejected("max_step", longest, expected))
+    return solver, tolerance, longest
+
+
 def controller_entry(
     names: Sequence[str],
     given: Mapping[str, Any],
@@ -230,12 +239,11 @@ def controller_entry(
         if period is not None or controls is not None:
             raise TypeError("period and controls need controller, a function of (t, x, y)")
         return None
-    if not callable(function):
-        raise TypeError(f"controller: expected a function, not {type(function).__name__}")
+    _arguments.function("controller", function, "a function of (t, x, y)")
     if period is None:
         raise TypeError("controller needs period, the time between two samples in s")
     schedule = tuple(
-        _arguments.real(what, time)
+        _arguments.real(what, time, "a time in s")
         for what, time in (("period", period), ("offset", offset), ("delay", delay))
     )
     if schedule[0] <= 0.0:
@@ -247,7 +255,7 @@ def controller_entry(
         others = (*given, *controlled, *prescribed)
         driven = [name for name in names if name not in others]
     else:
-        driven = [controls] if isinstance(controls, str) else list(controls)
+        driven = _arguments.texts("controls", controls, "names of inputs")
         _arguments.check_names("input", driven, names)
     for name in driven:
         if name in prescribed:
@@ -280,13 +288,14 @@ def controller_entry(
 
 def sample_times(start: Any, until: Any, interval: Any, columns: int) -> Array:
     """Returns the times of the samples, s. They have the same bits as on the command line."""
-    begin, end = _arguments.real("start", start), _arguments.real("until", until)
+    begin, end = (_arguments.real(what, time, "a time in s") for what, time in (("start", start), ("until", until)))
     if end <= begin:
         raise ValueError(f"until = {end}: expected a time in s after {begin:g}")
     whole = end - begin
-    step = whole / DEFAULT_INTERVALS if interval is None else _arguments.real("interval", interval)
+    expected = f"a time in s above 0 and at most {whole}"
+    step = whole / DEFAULT_INTERVALS if interval is None else _arguments.real("interval", interval, expected)
     if not 0.0 < step <= whole:
-        raise ValueError(f"interval = {step}: expected a time in s above 0 and at most {whole}")
+        raise ValueError(_arguments.rejected("interval", step, expected))
     steps = np.floor(whole / step * (1.0 + 1e-12))
     if (steps + 1.0) * columns > MAX_VALUES:
         raise ValueError(
@@ -318,9 +327,10 @@ def break_times(given: Any) -> List[float]:
     """Returns the times at which input functions jump, s."""
     if given is None:
         return []
-    breaks = _arguments.numbers("breaks", given).reshape(-1)
+    expected = "times in s"
+    breaks = _arguments.numbers("breaks", given, expected).reshape(-1)
     if not np.isfinite(breaks).all():
-        raise ValueError("breaks: expected finite times in s")
+        raise ValueError(_arguments.rejected("breaks", breaks[~np.isfinite(breaks)][0], f"finite {expected}"))
     return [float(time) for time in breaks]
 
 
@@ -330,14 +340,8 @@ def prescribe(
     """Replaces inputs that are given as expressions by definitions, unless `keep` is true. Returns the compiled model,
     the names of its inputs, the values of those without an expression, and the expressions that were kept."""
     names = model.inputs
-    if given is None:
-        given = {}
-    if not isinstance(given, Mapping):
-        raise TypeError(
-            f"inputs: expected names to values, such as {{{names[0]!r}: 0.0}}"
-            if names
-            else "inputs: the model has none"
-        )
+    expected = f"a mapping of names to values, such as {{{names[0]!r}: 0.0}}" if names else "nothing: the model has none"
+    given = _arguments.mapping("inputs", given, expected)
     _arguments.check_names("input", given, names)
     check_no_rates(given, model._native.prescribed_inputs)
     expressions = [(name, value) for name, value in given.items() if isinstance(value, str)]
@@ -383,7 +387,8 @@ def driving(names: Sequence[str], given: Mapping[str, Any], times: Array) -> Tup
 
 
 def _column(name: str, given: Any, times: Array) -> Array:
-    column = _arguments.numbers(f"the input {name}", given).reshape(-1)
+    expected = "a number, an array with a number for each sample, an expression or a function of t"
+    column = _arguments.numbers(f"the input {name}", given, expected).reshape(-1)
     if np.ndim(given) > 1 or len(column) not in (1, len(times)):
         raise ValueError(
             f"the input {name} has the shape {np.shape(given)}: expected a number, or "
