@@ -437,7 +437,8 @@ class Model:
         settings = (solver, tolerance, max_step)
         control = (controller, period, offset, delay, controls)
         driven = (inputs, breaks)
-        return simulate(self, span, settings, self.state(state), driven, control, _arguments.flag("gradients", gradients), progress)
+        gradients = _arguments.flag("gradients", gradients)
+        return simulate(self, span, settings, self.state(state), driven, control, gradients, progress)
 
     def simulation(
         self,

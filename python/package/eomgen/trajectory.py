@@ -340,7 +340,8 @@ def prescribe(
     """Replaces inputs that are given as expressions by definitions, unless `keep` is true. Returns the compiled model,
     the names of its inputs, the values of those without an expression, and the expressions that were kept."""
     names = model.inputs
-    expected = f"a mapping of names to values, such as {{{names[0]!r}: 0.0}}" if names else "nothing: the model has none"
+    example = f"a mapping of names to values, such as {{{names[0]!r}: 0.0}}" if names else None
+    expected = example or "nothing: the model has none"
     given = _arguments.mapping("inputs", given, expected)
     _arguments.check_names("input", given, names)
     check_no_rates(given, model._native.prescribed_inputs)
