@@ -658,7 +658,7 @@ fn gradients_from_rates_across_a_blade_equal_differences() -> Result<(), Error> 
         let case = Case {
             inputs: run.default_inputs(),
             run: run.clone(),
-            initial: [&[0.0, 0.1, 0.4], &rates[..]].concat(),
+            initial: [&[0.0, 0.1, 0.4][..], &rates].concat(),
             times: times(0.8),
         };
         compare_with_differences(&case)?;
