@@ -52,7 +52,7 @@ pub(super) struct Run<M> {
     earlier_modes: Vec<SurfaceMode>,
     /// True if the scales of the errors have roundings of a motion at rest.
     has_roundings: bool,
-    /// Surfaces that returned the motion in the last step over them.
+    /// Surfaces that returned the motion with a jump in the last step over them.
     pub(super) rebounds: Vec<usize>,
     /// A step that leads beyond the end of a call.
     pending: Option<PendingStep>,
@@ -513,14 +513,16 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         self.samples.get(self.taken).copied()
     }
 
-    /// Records the jump of the state at an event, unless it is below the tolerance.
-    pub(super) fn record_jump(&mut self, t: f64, before: &[f64], after: &[f64]) {
+    /// Records the jump of the state at an event, unless it is below the tolerance. Returns true if it did.
+    pub(super) fn record_jump(&mut self, t: f64, before: &[f64], after: &[f64]) -> bool {
         let magnitudes = self.run.stepper.magnitudes();
         let changes = before.iter().zip(after).map(|(a, b)| b - a);
         let change = magnitudes.round_to_tolerance(changes, after);
-        if change.iter().any(|entry| *entry != 0.0) {
+        let is_jump = change.iter().any(|entry| *entry != 0.0);
+        if is_jump {
             self.trajectory.jumps.push(Jump { t, change });
         }
+        is_jump
     }
 
     /// Finds the surfaces here near which the rates grow as a root.
@@ -533,7 +535,8 @@ impl<'a, S: System + ?Sized, M: Stepper> Driver<'a, S, M> {
         }
     }
 
-    /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion.
+    /// Enters the regime of the point here, and records the surfaces whose mode changed and those that returned the motion
+    /// with a jump.
     fn enter_regime(&mut self) -> Result<(), SolveError> {
         let here = self.run.stepper.current_point();
         let t = here.t;

@@ -115,7 +115,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     /// Applies the event at the crossed surfaces between `start` and `point`, and records those that returned the motion to
-    /// its side.
+    /// its side with a jump.
     fn apply_event(&mut self, crossed: &[usize], start: &Point, point: &mut Point) {
         let allowed = self.allowed(&point.y);
         let surfaces = (crossed, &allowed[..]);
@@ -124,12 +124,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         let arrived = self.crossed_guards(point);
         let before = point.y.clone();
         let start = (start.t, &start.y[..]);
-        if self.watched.apply_event(start, point.t, &mut point.y) {
-            self.record_jump(point.t, &before, &point.y);
-        }
+        let jumps = self.watched.apply_event(start, point.t, &mut point.y)
+            && self.record_jump(point.t, &before, &point.y);
         let beyond = self.crossed_guards(point);
         self.run.rebounds = arrived;
-        self.run.rebounds.retain(|guard| !beyond.contains(guard));
+        (self.run.rebounds).retain(|guard| jumps && !beyond.contains(guard));
     }
 
     /// Returns the surfaces of the present regime that a point is beyond.
