@@ -282,6 +282,18 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         (t, state): (f64, &[f64]),
         act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
     ) -> T {
+    /// Notes the directions in which surfaces hold bodies that touch open contacts.
+    fn note_drifts(&self, at: (f64, &[f64])) {
+        let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
+            return;
+        };
+        let held = sliding.borrow().held_directions();
+        self.with_contacts(contacts, at, |contacts, own, inputs| {
+            let (t, state) = at;
+            contacts.note_drifts(own, Point { t, state, inputs }, &held);
+        });
+    }
+
         let inputs = &self.inputs.borrow().evaluate(t);
         let sliding = self.surface_states();
         let contacts = &mut contacts.borrow_mut();
@@ -497,6 +509,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
     fn bound_guards(&self, (begin, end): (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
         let stretch = Stretch {
             t: Enclosure::time(begin, end),
+                self.note_drifts((t, y));
             state,
             inputs: &self.inputs.borrow().bound(begin, end),
         };
@@ -707,6 +720,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         if let Some(contacts) = &self.contacts {
             contacts.borrow().write_modes(&mut modes[own..]);
         }
+            self.note_drifts((t, y));
         if let Some(sliding) = &self.sliding {
             sliding.borrow().write_modes(modes);
         }

@@ -1,6 +1,6 @@
 //! Bodies that dry friction holds while they touch a wall, or that a moving wall hits.
 
-use eomgen_compiled_model::{CompiledModel, Orders, Request, Solver};
+use eomgen_compiled_model::{CompiledModel, EventKind, Orders, Request, Solver};
 use eomgen_tests::random_numbers::Numbers;
 
 /// Units of length and mass.
@@ -82,6 +82,61 @@ fn held_body_stays_at_a_wall() {
                 let name = format!("{case}, {solver}, {t} s");
                 assert!(x.abs() < 1e-12, "{name}: the held body moves by {x:e}");
                 assert!((z - free).abs() < 1e-6 * amplitude, "{name}: {z} {free}");
+            }
+        }
+    }
+}
+
+/// A force presses a body at a wall and pulls it off by turns, by less than the friction. The rounding of its rest leads
+/// neither to impacts nor to overlaps, also beside a zero coordinate.
+#[test]
+fn held_body_at_a_wall_has_one_event() {
+    for case in 0..12 {
+        let numbers = &mut Numbers(case as u64 + 100);
+        let m = between(numbers, 0.3, 3.0);
+        let push = between(numbers, 0.5, 5.0);
+        let friction = push * between(numbers, 1.1, 2.5);
+        let frequency = between(numbers, 2.0, 12.0);
+        let wall = [0.0, 1e-7, 0.2][case % 3];
+        let restitution = [0.0, 0.3, 1.0][case / 3 % 3];
+        for (length, mass) in [(1.0, 1.0), (1e-4, 1.0), (1e-6, 1e-3), (1e6, 1.0)] {
+            let text = format!(
+                "[model]\nname = \"held\"\n[parameters]\n\
+                 m = {{ value = {:?}, unit = \"kg\" }}\nF = {{ value = {:?}, unit = \"N\" }}\n\
+                 P = {{ value = {:?}, unit = \"N\" }}\nw = {{ value = {frequency:?}, unit = \"rad/s\" }}\n\
+                 c = {{ value = {:?}, unit = \"m\" }}\n[coordinates]\nx = {{ unit = \"m\", initial = {:?} }}\n\
+                 [kinetic]\nx = \"1/2*m*dot(x)^2\"\n[forces]\n\
+                 push = {{ on = \"x\", value = \"-P*cos(w*t)\" }}\n\
+                 friction = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
+                 [impacts]\nwall = {{ when = \"x - c\", restitution = {restitution} }}\n",
+                m * mass,
+                friction * mass * length,
+                push * mass * length,
+                wall * length,
+                wall * length
+            );
+            for solver in SOLVERS {
+                let model = CompiledModel::from_text("held.toml", &text, Orders::Declared);
+                let model = model.unwrap();
+                let run = model.with_declared_parameters().unwrap();
+                let times: Vec<f64> = (0..=40).map(|step| 0.1 * f64::from(step)).collect();
+                let request = Request {
+                    initial: run.initial_state(),
+                    times: &times,
+                    inputs: &run.default_inputs(),
+                    solver,
+                    tolerance: 1e-9,
+                    max_step: f64::INFINITY,
+                    audit: false,
+                };
+                let motion = run.simulate_until_stop(&request, &mut |_| {}).unwrap();
+                let name = format!("{case}, {length:e} m, {solver}");
+                assert_eq!(motion.early_stop, None, "{name}");
+                let overlap = run.find_first_overlap(&motion, 1e-9).unwrap();
+                assert_eq!(overlap, None, "{name}");
+                let kinds = motion.event_log(1).into_iter().map(|event| event.kind);
+                let kinds: Vec<EventKind> = kinds.collect();
+                assert_eq!(kinds, [EventKind::Separation], "{name}");
             }
         }
     }

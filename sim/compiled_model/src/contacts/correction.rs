@@ -31,11 +31,24 @@ impl Contacts {
         self.uncorrected_redundant.clone_from(&self.redundant);
         let mut arrived = vec![0.0; self.names.len()];
         own.distances(Point { t, state, inputs }, &mut arrived);
+        let here = state.to_vec();
+        let point = Point {
+            t,
+            state: &here,
+            inputs,
+        };
+        let corrected = self.remove_drift(own, point, (&arrived, &mut state[..degrees]));
+        if corrected > 0 {
+            own.distances(Point { t, state, inputs }, &mut arrived);
+        }
+        for (size, distance) in self.sizes.iter_mut().zip(&arrived) {
+            *size = size.max(distance.abs());
+        }
         if let Some(place) = self.overlapping_open(own, Point { t, state, inputs }, &arrived) {
             return self.stop_overlapping(place, state);
         }
         if self.closed.is_empty() {
-            return 0;
+            return corrected;
         }
         for _ in 0..CORRECTIONS {
             own.impacts(Point { t, state, inputs }, &mut self.at);
@@ -59,8 +72,8 @@ impl Contacts {
             return self.stop_overlapping(*place, state);
         }
         self.release_independent(state);
-        self.keep_open_sides(&arrived);
-        CORRECTIONS as u64 + 1
+        self.keep_open_sides(t, &arrived);
+        corrected + CORRECTIONS as u64 + 1
     }
 
     /// Marks the coordinates and the rates on which the corrections onto closed contacts act.
@@ -89,9 +102,9 @@ impl Contacts {
 
     /// Offsets the distances of open contacts that a correction makes zero or negative, because the motion has not hit
     /// them yet. A distance of zero has no side, and no impact would be found.
-    fn keep_open_sides(&mut self, before: &[f64]) {
+    fn keep_open_sides(&mut self, t: f64, before: &[f64]) {
         let was_passed = |place: &usize| {
-            let offset = self.offsets[*place];
+            let offset = self.offset(*place, t);
             let was_open = !self.closed.contains(place) && before[*place] + offset >= 0.0;
             was_open && self.at[*place].distance + offset <= 0.0
         };

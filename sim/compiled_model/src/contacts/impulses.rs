@@ -66,7 +66,7 @@ impl Contacts {
         let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
         own.distances(Point { t, state, inputs }, &mut beyond);
         let is_hit = |place: &usize, contacts: &Self| {
-            !contacts.rests(*place) && beyond[*place] + contacts.offsets[*place] < 0.0
+            !contacts.rests(*place) && beyond[*place] + contacts.offset(*place, t) < 0.0
         };
         let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
             let located = Point {
@@ -109,8 +109,8 @@ impl Contacts {
             .collect();
         // How long ago the first of them hit.
         let ago = |place: &usize| {
-            let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
-            let to = to + self.offsets[*place];
+            let (from, to) = (near[*place] + self.offset(*place, before.t), beyond[*place]);
+            let to = to + self.offset(*place, t);
             (t - before.t) * (to / (to - from)).clamp(0.0, 1.0)
         };
         let ago = hits.iter().map(ago).fold(0.0, f64::max);

@@ -10,6 +10,7 @@
 
 mod complementarity;
 mod correction;
+mod drift;
 mod friction;
 mod impulses;
 mod power;
@@ -21,6 +22,7 @@ mod tangents;
 use std::collections::VecDeque;
 
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Point, Stretch};
+use eomgen_model_spec::interval::Interval;
 
 use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode, UNMOVED_SIZE_FRACTION};
@@ -28,6 +30,8 @@ use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode, UNMOVED_SIZE_FRACTION};
 pub(crate) use complementarity::{solve_complementarity, solve_rows};
 pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
 pub(crate) use start::Start;
+use drift::Drift;
+pub(crate) use drift::HeldDirection;
 use tangents::{ContactForces, Tangent};
 
 /// Largest distance that counts as rounding, relative to its terms.
@@ -62,6 +66,8 @@ pub(crate) struct Contacts {
     uncorrected_offsets: Vec<f64>,
     /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
     allowances: Vec<f64>,
+    /// Drifts of each distance by the rounding of rates that surfaces hold.
+    drifts: Vec<Vec<Drift>>,
     /// Impacts at the point of the last evaluation.
     at: Vec<ImpactValues>,
     /// Sizes of coordinates that have not moved.
@@ -121,6 +127,7 @@ impl Contacts {
             at: Vec::new(),
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
             has_restitution: true,
+            drifts: vec![Vec::new(); count],
             impact_work: 0.0,
             overlap: None,
             tangents: Vec::new(),
@@ -177,8 +184,8 @@ impl Contacts {
                 *slot = impact.distance;
             }
         }
-        for (slot, offset) in out.iter_mut().zip(&self.offsets) {
-            *slot += offset;
+        for (place, slot) in out[..self.names.len()].iter_mut().enumerate() {
+            *slot += self.offset(place, point.t);
         }
         let forces = self.forces();
         for (place, force) in self.closed.iter().zip(&forces.normal) {
@@ -193,8 +200,9 @@ impl Contacts {
     /// Writes the bounds of the guards; those of closed contacts are unknown.
     pub fn bound_guards(&self, own: &mut Evaluator, stretch: &Stretch<'_>, out: &mut [Enclosure]) {
         own.bound_distances(stretch, out);
-        for (slot, offset) in out.iter_mut().zip(&self.offsets) {
-            *slot = slot.add_enclosure(Enclosure::constant(*offset));
+        let Interval { low, high } = stretch.t.value();
+        for (place, slot) in out[..self.names.len()].iter_mut().enumerate() {
+            *slot = slot.add_enclosure(self.bound_offset(place, low, high));
         }
         for place in &self.closed {
             out[*place] = Enclosure::UNKNOWN;

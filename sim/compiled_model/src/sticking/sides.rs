@@ -1,5 +1,7 @@
 //! Sides at a point of the motion, and corrections of states onto surfaces that hold.
 
+use crate::contacts::HeldDirection;
+
 use super::discs::{Disc, DiscState};
 use super::sided_model::CORRECTION_COUNT;
 use super::surface_state::SurfaceState;
@@ -68,6 +70,25 @@ impl SurfaceStates {
         surfaces
             .chain(discs.flat_map(|disc| disc.rows.clone()))
             .collect()
+    }
+
+    /// Returns the directions in which surfaces hold the motion, as last evaluated.
+    pub fn held_directions(&self) -> Vec<HeldDirection> {
+        let degrees = self.sided.degrees_of_freedom();
+        let rows = self.holding_rows().into_iter();
+        let direction = |row: usize| {
+            let by_force = self.sided.own_force_rate(row);
+            let values = self.sided.at.get(row).filter(|_| by_force > 0.0)?;
+            Some(HeldDirection {
+                column: values.column[..degrees].to_vec(),
+                since: self.held_since(row)?,
+                roundings: [
+                    MAX_DRIFT_FRACTION * self.sizes[row] / by_force,
+                    MAX_FORCE_DRIFT_FRACTION,
+                ],
+            })
+        };
+        rows.filter_map(direction).collect()
     }
 
     /// Returns the time since which the surface or the disc of a row holds, s.

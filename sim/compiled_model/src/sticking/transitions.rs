@@ -3,8 +3,8 @@
 use eomgen_sim::friction_discs::DiscArrival;
 use eomgen_sim::sliding_modes::{Arrival, Verdict};
 
-use super::discs::{Disc, DiscState, norm, signs, unit_vector};
-use super::surface_state::{SurfaceState, side_of_arrival};
+use super::discs::{Disc, DiscState, norm, unit_vector};
+use super::surface_state::{SurfaceState, find_allowed, side_of_arrival};
 use super::surface_states::{
     KnownSides, MAX_DRIFT_FRACTION, MAX_FORCE_DRIFT_FRACTION, SurfaceStates,
 };
@@ -133,6 +133,18 @@ impl SurfaceStates {
         let mut allowed = self.sided.function_roundings(at, inputs);
         for (allowed, size) in allowed.iter_mut().zip(&self.sizes) {
             *allowed += MAX_DRIFT_FRACTION * size;
+        }
+        for (surface, place) in self.places.iter().enumerate() {
+            allowed[surface] += match *place {
+                SurfaceState::Holding { since, .. } => {
+                    let by_force = self.sided.own_force_rate(surface) * (at.0 - since).abs();
+                    MAX_FORCE_DRIFT_FRACTION * by_force
+                }
+                SurfaceState::Unloaded { since, allowed, .. } => {
+                    find_allowed(allowed, at.0 - since)
+                }
+                _ => 0.0,
+            };
         }
         (functions, allowed)
     }
