@@ -132,9 +132,13 @@ impl<'m> Instance<'m> {
             Some(choice) => *choice == SolverChoice::PiecewiseLinear,
             None => options.solver == Solver::Exact,
         };
+        let (exact, choice) = match is_exact {
+            true => self.try_exact((t, state), &inputs, choice)?,
+            false => (None, choice),
+        };
         let is_fixed = options.solver == Solver::Fixed;
-        let (engine, initial_changes) = match (is_exact, is_fixed) {
-            (true, _) => (self.start_exact((t, state), &inputs)?, Vec::new()),
+        let (engine, initial_changes) = match (exact, is_fixed) {
+            (Some(engine), _) => (engine, Vec::new()),
             (_, true) => {
                 let steps = self.start_fixed((t, state), options.max_step)?;
                 (Engine::Fixed(Box::new(steps)), Vec::new())
@@ -183,10 +187,35 @@ impl<'m> Instance<'m> {
         Ok(DrivenModel::new(&evaluator, inputs).surfaces())
     }
 
-    fn start_exact(&self, (t, state): (f64, &[f64]), inputs: &HeldInputs) -> Result<Engine, Error> {
-        let mut propagator = self.propagator().map_err(|error| Error::from(&error))?;
-        let motion = propagator.start(t, state, inputs);
-        let motion = motion.map_err(|error| Error::from(&error))?;
+    /// Starts the exact solver with the reason of its choice, `None` if it was requested. A chosen solver that cannot follow
+    /// the motion is replaced by a general one: the result is `None` and the reason.
+    fn try_exact(
+        &self,
+        start: (f64, &[f64]),
+        inputs: &HeldInputs,
+        choice: Option<SolverChoice>,
+    ) -> Result<(Option<Engine>, Option<SolverChoice>), Error> {
+        let started = self.propagator().and_then(|mut propagator| {
+            let motion = propagator.start(start.0, start.1, inputs)?;
+            Ok((propagator, motion))
+        });
+        match started {
+            Ok(started) => Ok((Some(self.exact_engine(start, inputs, started)?), choice)),
+            Err(error) if choice.is_some() && may_be_supported_by_general(&error) => {
+                let labels = self.model().labels();
+                let reason = describe_exact_stop(labels, &self.surfaces(inputs)?, &error);
+                Ok((None, Some(SolverChoice::NotSupportedByExact(reason))))
+            }
+            Err(error) => Err(Error::from(&error)),
+        }
+    }
+
+    fn exact_engine(
+        &self,
+        (t, state): (f64, &[f64]),
+        inputs: &HeldInputs,
+        (propagator, motion): (Propagator, ExactMotion),
+    ) -> Result<Engine, Error> {
         let start = Trajectory {
             times: vec![t],
             states: vec![state.to_vec()],
@@ -603,10 +632,16 @@ impl Simulation<'_> {
                 propagator, motion, ..
             } => {
                 let followed = propagator.follow_input_jump(motion, &self.inputs);
-                followed.map_err(|error| Error::Stopped {
-                    t: Some(begin),
-                    reason: describe_exact_stop(model.labels(), &self.surfaces, &error),
-                })
+                let Err(error) = followed else { return Ok(()) };
+                let reason = describe_exact_stop(model.labels(), &self.surfaces, &error);
+                let is_free = self.options.solver == Solver::Auto;
+                if !(is_free && may_be_supported_by_general(&error)) {
+                    let t = Some(begin);
+                    return Err(Error::Stopped { t, reason });
+                }
+                let state = motion.state().to_vec();
+                self.solver_choice = Some(SolverChoice::NotSupportedByExact(reason));
+                self.restart_general(Solver::Rk, &state)
             }
             Engine::General(motion) => {
                 motion.follow_inputs(&self.instance, self.inputs.clone(), &mut self.log)
@@ -632,8 +667,13 @@ impl Simulation<'_> {
         }
         match self.solver() {
             Solver::Exact => {
-                let start = (self.time(), state);
-                self.engine = self.instance.start_exact(start, &self.inputs)?;
+let (start, choice) = ((self.time(), state), self.solver_choice.clone());
+                let (exact, choice) = self.instance.try_exact(start, &self.inputs, choice)?;
+                self.solver_choice = choice;
+                match exact {
+                    Some(engine) => self.engine = engine,
+                    None => self.initial_changes = self.restart_general(Solver::Rk, state)?,
+                }
             }
             solver => self.initial_changes = self.restart_general(solver, state)?,
         }

@@ -215,12 +215,22 @@ impl Instance<'_> {
             return Ok(new_motion(found, request, Solver::Exact, (choice, results)));
         };
         let reason = describe_exact_stop(self.model().labels(), &surfaces, &error);
+        let t = error.time();
         if is_free && may_be_supported_by_general(&error) {
-            let choice = Some(SolverChoice::NotSupportedByExact(reason));
-            return self.simulate_automatically(observed, choice, progress);
+            let choice = Some(SolverChoice::NotSupportedByExact(reason.clone()));
+            let motion = self.simulate_automatically(observed, choice, progress);
+            let ended_at = match &motion {
+                Ok(motion) => motion.early_stop.as_ref().map(|stop| stop.t),
+                Err(Error::Stopped { t, .. }) => Some(*t),
+                Err(_) => None,
+            };
+            // Both solvers cannot follow it; the farther one states the reason.
+            let is_farther = ended_at.is_none_or(|ended_at| ended_at >= t);
+            if is_farther || matches!(error, ExactError::Sticking { .. }) {
+                return motion;
+            }
         }
         let choice = is_free.then_some(SolverChoice::PiecewiseLinear);
-        let t = error.time();
         let cause = find_exact_stop_cause(self.model().labels(), &error, &surfaces);
         let found = (trajectory, surfaces);
         let so_far = new_motion(found, request, Solver::Exact, (choice, results));

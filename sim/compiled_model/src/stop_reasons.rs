@@ -66,10 +66,16 @@ pub(crate) fn describe_exact_stop(
 /// Returns true if another solver may follow the motion.
 #[cfg(feature = "derive")]
 pub(crate) fn may_be_supported_by_general(error: &ExactError) -> bool {
-    matches!(
-        error,
-        ExactError::Sticking { .. } | ExactError::NotConverged
-    )
+    match error {
+        ExactError::Sticking { .. } | ExactError::NotConverged => true,
+        ExactError::Stopped(error) => !matches!(
+            error,
+            SolveError::Request { .. }
+                | SolveError::NotFinite { .. }
+                | SolveError::NotPositiveDefinite { .. }
+        ),
+        _ => false,
+    }
 }
 
 /// Formats an error of a solver with the names of the states and of these switching functions.

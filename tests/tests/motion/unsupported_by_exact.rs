@@ -1,0 +1,84 @@
+//! Motions that the exact solver cannot follow: `auto` computes them with another solver.
+
+use eomgen_compiled_model::{
+    CompiledModel, Motion, Orders, Request, Solver, SolverChoice, SolverOptions,
+};
+
+/// A mass at rest on the surface of a relay force, with damping, and an oscillator that moves.
+fn relay(mass: f64, force: f64, damping: f64) -> CompiledModel {
+    let text = format!(
+        "[model]\nname = \"relay\"\n[parameters]\nm = {{ value = {mass}, unit = \"kg\" }}\n\
+         F = {{ value = {force}, unit = \"N\" }}\nc = {{ value = {damping}, unit = \"N s/m\" }}\n\
+         k = {{ value = 4, unit = \"N/m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\n\
+         y = {{ unit = \"m\", initial = 0.3 }}\n[kinetic]\nx = \"1/2*m*dot(x)^2\"\ny = \"1/2*m*dot(y)^2\"\n\
+         [potential]\nspring = \"1/2*k*y^2\"\n[forces]\n\
+         relay = {{ on = \"x\", value = \"-F*sign(x) - c*dot(x)\" }}\n"
+    );
+    CompiledModel::from_text("relay.toml", &text, Orders::Declared).expect("a model")
+}
+
+const MACHINES: [[f64; 3]; 4] = [
+    [1.4, 0.6, 1.7],
+    [0.1, 5.0, 0.2],
+    [20.0, 0.01, 3.0],
+    [1.0, 1.0, 40.0],
+];
+
+const TIMES: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+
+fn simulate(model: &CompiledModel, solver: Solver) -> Motion {
+    let run = model.with_declared_parameters().expect("an instance");
+    let request = Request {
+        initial: run.initial_state(),
+        times: &TIMES,
+        inputs: &run.default_inputs(),
+        solver,
+        tolerance: 1e-9,
+        max_step: f64::INFINITY,
+        audit: false,
+    };
+    let motion = run.simulate_until_stop(&request, &mut |_| {});
+    motion.expect("a motion")
+}
+
+#[test]
+fn auto_follows_motions_with_too_many_switches_for_exact() {
+    for [mass, force, damping] in MACHINES {
+        let model = relay(mass, force, damping);
+        let name = format!("{mass} kg, {force} N, {damping} N s/m");
+        let exact = simulate(&model, Solver::Exact);
+        assert!(exact.early_stop.is_some(), "{name}: exact follows it");
+        let motion = simulate(&model, Solver::Auto);
+        assert_eq!(motion.early_stop, None, "{name}");
+        assert_eq!(motion.solver, Solver::Rk, "{name}");
+        let choice = &motion.solver_choice;
+        assert!(
+            matches!(choice, Some(SolverChoice::NotSupportedByExact(_))),
+            "{name}: {choice:?}"
+        );
+        for (t, state) in TIMES.iter().zip(&motion.trajectory.states) {
+            let expected = 0.3 * ((4.0 / mass).sqrt() * t).cos();
+            assert!((state[1] - expected).abs() < 1e-7, "{name}: {state:?}");
+            assert!(state[0].abs() < 1e-9, "{name}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn continued_simulation_follows_motions_with_too_many_switches_for_exact() {
+    for [mass, force, damping] in MACHINES {
+        let model = relay(mass, force, damping);
+        let run = model.with_declared_parameters().expect("an instance");
+        let start = (0.0, run.initial_state());
+        let options = SolverOptions::default();
+        let mut simulation = run
+            .start_simulation(start, run.default_inputs(), options)
+            .expect("a start");
+        for t in &TIMES[1..] {
+            simulation.advance(*t).expect("a step");
+            let expected = 0.3 * ((4.0 / mass).sqrt() * t).cos();
+            assert!((simulation.state()[1] - expected).abs() < 1e-7);
+        }
+        assert_eq!(simulation.solver(), Solver::Rk);
+    }
+}
