@@ -180,7 +180,7 @@ fn opposite_side(graph: &mut Graph, side: NodeId) -> NodeId {
 }
 
 /// Returns the sign 2 side - 1.
-pub(crate) fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
+fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.combine(&[(2.0, side), (-1.0, one)])
 }

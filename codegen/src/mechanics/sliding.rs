@@ -8,8 +8,9 @@
 //! its side: a velocity's surface can, a position's cannot. The simulator decides which surfaces hold, and
 //! when they release.
 //!
-//! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see the module `discs`. Each of
-//! its components has a side, which is 0 to 1 for -1 to 1, and the component of v as its function.
+//! The unit vector v/norm(v) of a velocity is set-valued at v = 0 as well; see the module `discs`. The side of each
+//! component is the component itself, -1 to 1: a number from 0 to 1 would round a small component. Its function is the
+//! component of v.
 //!
 //! The sides of all other surfaces are inputs, too. With constant sides the rates are smooth across the surfaces, so
 //! that a step may cross one before the crossing is located. Continuous functions of a surface that can hold the motion
@@ -27,7 +28,7 @@ use crate::mechanics::forces::{can_be_constant, depends_on_motion};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::outputs::{Side, SlidingSurface, guard_rate};
 use crate::mechanics::rows::RowNodes;
-use crate::mechanics::sides::{Sides, sign};
+use crate::mechanics::sides::Sides;
 use crate::symbolic::differentiate::derive_by_scalar;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 use crate::symbolic::substitute::substitute;
@@ -182,10 +183,7 @@ fn add_unit_vectors(
         let first = first_side + functions.len();
         let graph = &mut equations.graph;
         let unit: Vec<NodeId> = (0..disc.components.len())
-            .map(|component| {
-                let side = graph.intern(Operation::Input(InputId::new(first + component)));
-                sign(graph, side)
-            })
+            .map(|component| graph.intern(Operation::Input(InputId::new(first + component))))
             .collect();
         let nodes = (&equations.rate_nodes()[..], &roots(equations)[..]);
         let mut known = HashMap::new();

@@ -275,13 +275,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         contacts.borrow_mut().refuse_modes();
     }
 
-    /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
-    fn with_contacts<T>(
-        &self,
-        contacts: &RefCell<Contacts>,
-        (t, state): (f64, &[f64]),
-        act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
-    ) -> T {
     /// Notes the directions in which surfaces hold bodies that touch open contacts.
     fn note_drifts(&self, at: (f64, &[f64])) {
         let (Some(sliding), Some(contacts)) = (&self.sliding, &self.contacts) else {
@@ -301,6 +294,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             return act(contacts, &mut self.evaluator(), inputs);
         };
         let mut sliding = sliding.borrow_mut();
+    /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
+    fn with_contacts<T>(
+        &self,
+        contacts: &RefCell<Contacts>,
+        (t, state): (f64, &[f64]),
+        act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
+    ) -> T {
         let (evaluator, inputs) = sliding.evaluator_with_sides((t, state), inputs);
         act(contacts, evaluator, inputs)
     }
@@ -450,11 +450,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let mut has_own_sides = true;
         if let Some(sliding) = &self.sliding {
             let mut sliding = sliding.borrow_mut();
-            if !sliding.is_free() && !self.has_closed_contacts() {
+            has_own_sides = sliding.has_own_sides((t, y), inputs);
+            let is_turning = sliding.disc_count() > 0 && !has_own_sides;
+            if (!sliding.is_free() || is_turning) && !self.has_closed_contacts() {
                 let given = (&inputs[..], &self.typical_sizes()[..]);
                 return sliding.write_jacobian((t, y), given, out);
             }
-            has_own_sides = sliding.has_own_sides((t, y), inputs);
         }
         match &self.jacobians {
             Some(jacobians) if has_own_sides && !self.has_closed_contacts() => {
@@ -508,8 +509,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn bound_guards(&self, (begin, end): (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
         let stretch = Stretch {
-            t: Enclosure::time(begin, end),
                 self.note_drifts((t, y));
+            t: Enclosure::time(begin, end),
             state,
             inputs: &self.inputs.borrow().bound(begin, end),
         };
@@ -719,8 +720,8 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let own = self.evaluator().guard_count();
         if let Some(contacts) = &self.contacts {
             contacts.borrow().write_modes(&mut modes[own..]);
-        }
             self.note_drifts((t, y));
+        }
         if let Some(sliding) = &self.sliding {
             sliding.borrow().write_modes(modes);
         }

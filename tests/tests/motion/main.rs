@@ -31,4 +31,6 @@ mod release_from_friction;
 mod stopped;
 mod stops_without_play;
 mod taylor;
+mod unsupported_by_exact;
+mod vector_friction;
 mod woodpecker;

@@ -107,15 +107,21 @@ impl Disc {
         dot(self.velocity(functions), &self.along) + self.displacement()
     }
 
-    /// Appends the sides of the components; 0.5 if the disc holds. With fixed sides the unit vector
+    /// Appends the components of the unit vector; 0 if the disc holds. With fixed sides the unit vector
     /// continues smoothly beyond zero.
     pub fn write_sides(&self, functions: &[f64], is_fixed: bool, sides: &mut Vec<f64>) {
         if self.is_holding() {
-            return sides.extend(self.rows.clone().map(|_| 0.5));
+            return sides.extend(self.rows.clone().map(|_| 0.0));
         }
         if self.is_within_rounding(functions) {
-            return sides.extend(self.along.iter().map(|s| 0.5 + 0.5 * s));
+            return sides.extend(&self.along);
         }
+        let velocity = self.continued_velocity(functions, is_fixed);
+        sides.extend(unit_vector(&velocity, Some(&self.along)));
+    }
+
+    /// Returns the velocity whose unit vector acts. With fixed sides it has a positive component along the reference.
+    fn continued_velocity(&self, functions: &[f64], is_fixed: bool) -> Vec<f64> {
         let mut velocity = self.velocity(functions).to_vec();
         let ahead = dot(&velocity, &self.along);
         let even = ahead.abs().max(self.slowest);
@@ -124,7 +130,40 @@ impl Disc {
                 *v += (even - ahead) * along;
             }
         }
-        write_unit_vector(&velocity, Some(&self.along), sides);
+        velocity
+    }
+
+    /// Returns true if the velocity itself determines the unit vector with fixed sides.
+    pub fn has_own_direction(&self, functions: &[f64]) -> bool {
+        self.state == DiscState::Sliding
+            && dot(self.velocity(functions), &self.along) >= self.slowest
+    }
+
+    /// Returns the change of the unit vector with a `change` of the velocity.
+    pub fn change_of_sides(&self, functions: &[f64], is_fixed: bool, change: &[f64]) -> Vec<f64> {
+        if self.is_holding() || self.is_within_rounding(functions) {
+            return vec![0.0; change.len()];
+        }
+        let mut change = change.to_vec();
+        let ahead = dot(self.velocity(functions), &self.along);
+        let even = ahead.abs().max(self.slowest);
+        if is_fixed && ahead < even {
+            let along = dot(&change, &self.along);
+            let removed = if even > -ahead { along } else { 2.0 * along };
+            for (entry, along) in change.iter_mut().zip(&self.along) {
+                *entry -= removed * along;
+            }
+        }
+        let velocity = self.continued_velocity(functions, is_fixed);
+        let (unit, length) = (unit_vector(&velocity, Some(&self.along)), norm(&velocity));
+        if length == 0.0 {
+            return vec![0.0; change.len()];
+        }
+        let stretched = dot(&unit, &change);
+        let turned = change.iter().zip(&unit);
+        turned
+            .map(|(entry, s)| (entry - stretched * s) / length)
+            .collect()
     }
 
     /// Updates the direction of sliding. A released disc slides once its velocity exceeds rounding.
@@ -153,11 +192,6 @@ impl Disc {
     }
 }
 
-/// Appends the sides 0 to 1 of the components of v/norm(v).
-pub(super) fn write_unit_vector(v: &[f64], at_zero: Option<&[f64]>, sides: &mut Vec<f64>) {
-    sides.extend(unit_vector(v, at_zero).iter().map(|s| 0.5 + 0.5 * s));
-}
-
 /// Returns v/norm(v), or `at_zero` for v = 0.
 pub(super) fn unit_vector(v: &[f64], at_zero: Option<&[f64]>) -> Vec<f64> {
     let length = norm(v);
@@ -174,9 +208,4 @@ pub(super) fn norm(v: &[f64]) -> f64 {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Returns the components -1 to 1 of these sides.
-pub(super) fn signs(sides: &[f64]) -> Vec<f64> {
-    sides.iter().map(|side| 2.0 * side - 1.0).collect()
 }

@@ -11,7 +11,7 @@ use eomgen_sim::ode::Trajectory;
 use eomgen_sim::sliding_modes::Arrival;
 
 use super::SidedModel;
-use super::discs::{norm, unit_vector, write_unit_vector};
+use super::discs::{norm, unit_vector};
 
 /// Largest distance of a state on a surface, relative to the largest value of the function in the
 /// motion.
@@ -171,7 +171,7 @@ fn set_holding_sides(
         .map(|surface| sided.side_at_value(surface, functions[surface]))
         .collect();
     for rows in sided.discs() {
-        write_unit_vector(&functions[rows.clone()], None, &mut sides);
+        sides.extend(unit_vector(&functions[rows.clone()], None));
     }
     sided.set_sides(at, inputs, &sides);
     let reach: Vec<f64> = (0..functions.len())
@@ -219,7 +219,7 @@ fn set_holding_sides(
     }
     for (disc, verdict) in discs.iter().zip(vectors) {
         for (row, s) in disc.rows.clone().zip(verdict.vector()) {
-            sides[row] = 0.5 + 0.5 * s;
+            sides[row] = *s;
         }
     }
     sided.find_holding_sides(at, inputs, &sides, &[]);

@@ -39,8 +39,8 @@ pub struct SidedModel {
     model_input_count: usize,
     /// Index of the first side that is set among the inputs.
     first_side: usize,
-    /// Inputs of the model, then the sides: those of surfaces that cannot hold a motion, those that can, and those
-    /// of the components of discs.
+    /// Inputs of the model, then the sides: those of surfaces that cannot hold a motion, those that can, and the
+    /// components of the unit vectors of discs, -1 to 1.
     pub(super) inputs: Vec<f64>,
     /// Surfaces that cannot hold a motion; true if the side is fixed.
     others: Vec<(Side, bool)>,
@@ -298,11 +298,13 @@ impl SidedModel {
     /// Moves the sides of held surfaces that depend on each other as far from their limits as possible.
     fn share_forces(&mut self, held: &[usize]) {
         let first = self.first_side;
-        let signs = held.iter().map(|row| 2.0 * self.inputs[first + row] - 1.0);
+        let signs = held
+            .iter()
+            .map(|row| self.sign(*row, self.inputs[first + row]));
         let mut signs: Vec<f64> = signs.collect();
-        reduce_largest(&self.matrix(held), &mut signs);
+        reduce_largest(&self.matrix_by_signs(held), &mut signs);
         for (row, sign) in held.iter().zip(signs) {
-            self.inputs[first + row] = 0.5 + 0.5 * sign;
+            self.inputs[first + row] = self.side_of_sign(*row, sign);
         }
     }
 
@@ -358,10 +360,10 @@ impl SidedModel {
         let mut s = DVector::zeros(rows.len());
         for iteration in 0..self.iterations() {
             for (row, s) in rows.iter().zip(&s) {
-                self.inputs[self.first_side + row] = 0.5 + 0.5 * s;
+                self.inputs[self.first_side + row] = self.side_of_sign(*row, *s);
             }
             self.evaluate(at);
-            let w = self.matrix(&rows) * 0.5;
+            let w = self.matrix_by_signs(&rows);
             let rates = Rates {
                 c: self.surface_values(&rows, |surface| surface.rate) - &w * &s,
                 w,
@@ -457,6 +459,31 @@ impl SidedModel {
         DMatrix::from_fn(surfaces.len(), surfaces.len(), |row, column| {
             self.at[surfaces[row]].by_sides[surfaces[column]]
         })
+    }
+
+    /// Returns the effects of the signs of surfaces, -1 to 1, and of the components of discs.
+    fn matrix_by_signs(&self, rows: &[usize]) -> DMatrix<f64> {
+        let mut matrix = self.matrix(rows);
+        for (mut column, row) in matrix.column_iter_mut().zip(rows) {
+            column *= self.side_of_sign(*row, 1.0) - self.side_of_sign(*row, 0.0);
+        }
+        matrix
+    }
+
+    /// Returns the side of a surface with this sign, -1 to 1; the sides of discs are components of unit vectors.
+    fn side_of_sign(&self, row: usize, sign: f64) -> f64 {
+        match row < self.surface_count() {
+            true => 0.5 + 0.5 * sign,
+            false => sign,
+        }
+    }
+
+    /// Returns the sign of a surface, -1 to 1, with this side.
+    fn sign(&self, row: usize, side: f64) -> f64 {
+        match row < self.surface_count() {
+            true => 2.0 * side - 1.0,
+            false => side,
+        }
     }
 
     fn surface_values(

@@ -10,8 +10,8 @@ use super::surface_states::{
 };
 
 impl SurfaceStates {
-    /// Returns the sides of all surfaces at a point, 0.5 for those that hold. Functions are
-    /// evaluated only if needed.
+    /// Returns the sides of all surfaces at a point, 0.5 for those that hold, 0 for the components of discs that hold.
+    /// Functions are evaluated only if needed.
     pub(super) fn current_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> Vec<f64> {
         let kept = self.kept.clone().unwrap_or_default();
         let mut functions = Vec::new();

@@ -4,7 +4,7 @@ use eomgen_codegen::program::evaluator::{Enclosure, Evaluator};
 use eomgen_sim::contact_friction::ContactMode;
 use eomgen_sim::ode::{SurfaceMode, difference_step};
 
-use super::discs::{Disc, DiscState, norm, signs};
+use super::discs::{Disc, DiscState, norm};
 use super::sided_model::SidedModel;
 use super::surface_state::{SurfaceState, find_allowed};
 
@@ -15,6 +15,9 @@ pub(super) const MAX_DRIFT_FRACTION: f64 = 1e-12;
 /// Additional distance, relative to the effect of the surface's own force on its function since
 /// the surface holds.
 pub(super) const MAX_FORCE_DRIFT_FRACTION: f64 = 1e-13;
+
+/// Change of a component of a unit vector for its effect on the rates.
+const SIDE_DIFFERENCE: f64 = 1e-6;
 
 /// Points at which the sides of the model are right.
 pub(super) enum KnownSides {
@@ -223,10 +226,19 @@ impl SurfaceStates {
         });
     }
 
-    /// Returns true if no surface holds the motion and the sides at a point are the fixed ones.
+    /// Returns true if no surface holds the motion, the sides at a point are the fixed ones, and velocities determine
+    /// their unit vectors.
     pub fn has_own_sides(&mut self, at: (f64, &[f64]), inputs: &[f64]) -> bool {
         let kept = self.kept.clone().unwrap_or_default();
-        self.is_free() && self.sided.has_own_sides(at, inputs, &kept)
+        if !self.is_free() || !self.sided.has_own_sides(at, inputs, &kept) {
+            return false;
+        }
+        let functions = match self.discs.is_empty() {
+            true => Vec::new(),
+            false => self.sided.evaluate_functions(at, inputs),
+        };
+        let mut discs = self.discs.iter();
+        discs.all(|disc| disc.has_own_direction(&functions))
     }
 
     /// Writes the rates, if this is active.
@@ -242,36 +254,68 @@ impl SurfaceStates {
     }
 
     /// Computes the derivatives of the rates with respect to the state by finite differences, if
-    /// this is active. Sides and sticking remain unchanged.
+    /// this is active. Sides and sticking remain unchanged. Unit vectors are differentiated exactly, because they turn within
+    /// their velocity.
     pub fn write_jacobian(
         &mut self,
         (t, state): (f64, &[f64]),
         (inputs, typical_sizes): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        let (mut sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
+        let (sides, held) = (self.current_sides((t, state), inputs), self.holding_rows());
         self.known = KnownSides::Nothing;
         let count = state.len();
-        let mut rates = |state: &[f64], out: &mut [f64]| {
-            if !self.discs.iter().any(Disc::is_leaving) {
-                sides.truncate(self.places.len());
-                self.append_disc_sides((t, state), inputs, &mut sides);
-            }
+        let mut rates = |state: &[f64], sides: &[f64], out: &mut [f64]| {
             self.sided
-                .find_holding_sides((t, state), inputs, &sides, &held);
+                .find_holding_sides((t, state), inputs, sides, &held);
             self.sided.write_rates((t, state), inputs, out);
         };
         let (mut base, mut moved_rates) = (vec![0.0; count], vec![0.0; count]);
-        rates(state, &mut base);
+        rates(state, &sides, &mut base);
+        let sliding = self.discs.iter().filter(|disc| !disc.is_holding());
+        let turning: Vec<usize> = sliding.flat_map(|disc| disc.rows.clone()).collect();
+        let mut by_sides = Vec::with_capacity(turning.len());
+        for row in &turning {
+            let mut turned = sides.clone();
+            turned[*row] += SIDE_DIFFERENCE;
+            rates(state, &turned, &mut moved_rates);
+            let changes = moved_rates.iter().zip(&base);
+            by_sides.push(
+                changes
+                    .map(|(a, b)| (a - b) / SIDE_DIFFERENCE)
+                    .collect::<Vec<f64>>(),
+            );
+        }
         let mut moved = state.to_vec();
+        let mut steps = vec![0.0; count];
         for column in 0..count {
             moved[column] = state[column] + difference_step(state[column], typical_sizes[column]);
-            rates(&moved, &mut moved_rates);
-            let step = moved[column] - state[column];
+            rates(&moved, &sides, &mut moved_rates);
+            steps[column] = moved[column] - state[column];
             for row in 0..count {
-                out[row * count + column] = (moved_rates[row] - base[row]) / step;
+                out[row * count + column] = (moved_rates[row] - base[row]) / steps[column];
             }
             moved[column] = state[column];
+        }
+        if turning.is_empty() {
+            return;
+        }
+        let functions = self.sided.evaluate_functions((t, state), inputs);
+        for (column, step) in steps.iter().enumerate() {
+            moved[column] = state[column] + step;
+            let there = self.sided.evaluate_functions((t, &moved), inputs);
+            moved[column] = state[column];
+            let change = there.iter().zip(&functions);
+            let change: Vec<f64> = change.map(|(a, b)| (a - b) / step).collect();
+            let sliding = self.discs.iter().filter(|disc| !disc.is_holding());
+            let turned = sliding.flat_map(|disc| {
+                disc.change_of_sides(&functions, self.kept.is_some(), disc.velocity(&change))
+            });
+            for (turned, by_side) in turned.zip(&by_sides) {
+                for (row, effect) in by_side.iter().enumerate() {
+                    out[row * count + column] += effect * turned;
+                }
+            }
         }
     }
 
@@ -360,7 +404,7 @@ impl SurfaceStates {
         let slots = &mut out[self.first_disc_guard..];
         for (slot, disc) in slots.iter_mut().zip(&self.discs) {
             *slot = match disc.is_holding() {
-                true => 1.0 - norm(&signs(&sides[disc.rows.clone()])),
+                true => 1.0 - norm(&sides[disc.rows.clone()]),
                 false => disc.guard(&functions),
             };
         }

@@ -202,11 +202,11 @@ impl SurfaceStates {
         let holding = self.discs.iter().enumerate();
         let holding = holding.filter(|(_, disc)| disc.is_holding());
         let arrivals = holding.map(|(index, disc)| {
-            let needed = signs(&sides[disc.rows.clone()]);
+            let needed = &sides[disc.rows.clone()];
             let arrival = DiscArrival {
                 rows: disc.rows.clone(),
-                along: unit_vector(&needed, Some(&disc.along)),
-                exceeds_limit: norm(&needed) > 1.0,
+                along: unit_vector(needed, Some(&disc.along)),
+                exceeds_limit: norm(needed) > 1.0,
             };
             (index, arrival)
         });
