@@ -310,7 +310,8 @@ impl Checker<'_, '_> {
             let help = "its rate must be given: declare the input with rates = 2";
             Some((place, "this input has no given rate", help))
         } else if let Some(place) = motion.switch {
-            let help = "give the velocity with its sign: friction acts against it";
+            let help = "a slip is smooth: give the velocity with its sign, because friction acts against it. Declare a motion \
+                        that switches with the time, as of a belt, as an input with rates = 2";
             Some((place, "this switches", help))
         } else if motion.rates.is_empty() {
             let help = "give a velocity, for example dot(x) - r*dot(phi)";
