@@ -1,7 +1,8 @@
 //! Simulation with a progress bar, and its table.
 
 use eomgen_compiled_model::{
-    InitialChange, Instance, Motion, Request, SampledController, Solver, SolverChoice,
+    FrictionChoice, InitialChange, Instance, Motion, Request, SampledController, Solver,
+    SolverChoice,
 };
 
 use crate::count::count;
@@ -55,6 +56,9 @@ fn note_choices(motion: &Motion) {
         warn(&format!("note: solved with radau, because {reason}"));
     }
     note_moved("initial state", &motion.initial_changes);
+    if let Some(text) = FrictionChoice::describe_all(&motion.friction_choices) {
+        warn(&format!("note: {text}"));
+    }
 }
 
 /// Prints a note about states that were moved onto the constraints.

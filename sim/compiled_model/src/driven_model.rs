@@ -15,6 +15,7 @@ use crate::audit::{Auditor, EnergyAndPower};
 use crate::contacts::Contacts;
 use crate::corners::{CornerEnergy, Corners};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
+use crate::motion::FrictionChoice;
 use crate::observers::{Observers, Results};
 use crate::projection::Projection;
 use crate::statistics::{Meters, Observables};
@@ -194,6 +195,12 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         self.contacts.as_ref()?.borrow().overlap()
     }
 
+    /// Returns the instants at which contact friction admitted several motions.
+    pub fn friction_choices(&self) -> Vec<FrictionChoice> {
+        let contacts = self.contacts.as_ref();
+        contacts.map_or_else(Vec::new, |contacts| contacts.borrow().choices().to_vec())
+    }
+
     /// Returns cause and cure if the motion stopped at a corner.
     pub(crate) fn corner_message(&self) -> Option<String> {
         let corners = self.corners.as_ref()?.borrow();
@@ -287,13 +294,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         });
     }
 
-        let inputs = &self.inputs.borrow().evaluate(t);
-        let sliding = self.surface_states();
-        let contacts = &mut contacts.borrow_mut();
-        let Some(sliding) = sliding else {
-            return act(contacts, &mut self.evaluator(), inputs);
-        };
-        let mut sliding = sliding.borrow_mut();
     /// Calls `act` with the contacts, the evaluator that determines the rates at a time and a state, and its inputs.
     fn with_contacts<T>(
         &self,
@@ -301,6 +301,13 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         (t, state): (f64, &[f64]),
         act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
     ) -> T {
+        let inputs = &self.inputs.borrow().evaluate(t);
+        let sliding = self.surface_states();
+        let contacts = &mut contacts.borrow_mut();
+        let Some(sliding) = sliding else {
+            return act(contacts, &mut self.evaluator(), inputs);
+        };
+        let mut sliding = sliding.borrow_mut();
         let (evaluator, inputs) = sliding.evaluator_with_sides((t, state), inputs);
         act(contacts, evaluator, inputs)
     }
@@ -502,6 +509,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             if self.contacts.is_some() && sliding.borrow().has_decided() {
                 // The motion has started.
                 self.settle_modes((t, y), inputs);
+                self.note_drifts((t, y));
                 self.guards(t, y, out);
             }
         }
@@ -509,7 +517,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
 
     fn bound_guards(&self, (begin, end): (f64, f64), state: &[Enclosure], out: &mut [Enclosure]) {
         let stretch = Stretch {
-                self.note_drifts((t, y));
             t: Enclosure::time(begin, end),
             state,
             inputs: &self.inputs.borrow().bound(begin, end),
@@ -713,6 +720,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
                 .borrow_mut()
                 .update((t, y), (earlier.as_ref(), inputs));
             self.settle_modes((t, y), inputs);
+            self.note_drifts((t, y));
         }
     }
 
@@ -720,7 +728,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let own = self.evaluator().guard_count();
         if let Some(contacts) = &self.contacts {
             contacts.borrow().write_modes(&mut modes[own..]);
-            self.note_drifts((t, y));
         }
         if let Some(sliding) = &self.sliding {
             sliding.borrow().write_modes(modes);

@@ -149,7 +149,9 @@ pub use jacobians::{Jacobian, JacobianEvaluator};
 pub use linearisation::Linearisation;
 #[cfg(feature = "derive")]
 pub use model::{CompiledModel, Orders};
-pub use motion::{ControllerStates, EarlyStop, Motion, Solver, SolverChoice, StopCause};
+pub use motion::{
+    ControllerStates, EarlyStop, FrictionChoice, Motion, Solver, SolverChoice, StopCause,
+};
 #[cfg(feature = "derive")]
 pub use operating_point::{OperatingPoint, Setting};
 #[cfg(feature = "derive")]

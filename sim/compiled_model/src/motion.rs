@@ -85,6 +85,43 @@ pub struct Motion {
     pub measured: Vec<Option<f64>>,
     /// States of the controllers.
     pub controller_states: ControllerStates,
+    /// Instants at which contact friction admitted several motions.
+    pub friction_choices: Vec<FrictionChoice>,
+}
+
+/// Instant at which contact friction admitted several motions. The motion with the fewest changes of modes was taken, and
+/// among several of these the one with the smallest forces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionChoice {
+    /// Time, s.
+    pub t: f64,
+    /// Names of the impacts that were decided together.
+    pub impacts: Vec<String>,
+    /// Number of motions.
+    pub motions: usize,
+}
+
+impl FrictionChoice {
+    /// Returns a sentence about all choices of a motion; `None` without any.
+    pub fn describe_all(all: &[Self]) -> Option<String> {
+        let first = all.first()?;
+        let impacts: Vec<String> = first
+            .impacts
+            .iter()
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let later = match all.len() {
+            1 => String::new(),
+            count => format!(", and {} times later", count - 1),
+        };
+        Some(format!(
+            "at t = {:?} s contact friction at {} admits {} motions{later}: the one with the fewest changes of rest and \
+             sliding is taken, then the one with the smallest forces",
+            first.t,
+            impacts.join(", "),
+            first.motions
+        ))
+    }
 }
 
 /// States of the controllers of a motion.

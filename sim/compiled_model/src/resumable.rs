@@ -15,7 +15,7 @@ use crate::exact_observers::ExactObservers;
 use crate::fixed_steps::FixedSteps;
 use crate::general_motion::GeneralMotion;
 use crate::instance::Instance;
-use crate::motion::{EarlyStop, Solver, SolverChoice};
+use crate::motion::{EarlyStop, FrictionChoice, Solver, SolverChoice};
 use crate::observers::{Observers, Results};
 use crate::projection::InitialChange;
 use crate::simulation::TIME_VARYING_INPUTS_MESSAGE;
@@ -535,6 +535,14 @@ impl Simulation<'_> {
             Engine::Fixed(_) => {}
         }
         Ok(())
+    }
+
+    /// Returns the instants at which contact friction admitted several motions.
+    pub(crate) fn friction_choices(&self) -> Vec<FrictionChoice> {
+        match &self.engine {
+            Engine::General(motion) => motion.run().system.friction_choices(),
+            Engine::Exact { .. } | Engine::Fixed(_) => Vec::new(),
+        }
     }
 
     /// Returns the results of the observers so far.

@@ -288,6 +288,7 @@ impl Instance<'_> {
         let results = run.system.results();
         let so_far = Motion {
             initial_changes: run.initial_changes.clone(),
+            friction_choices: run.system.friction_choices(),
             ..new_motion(
                 (trajectory, run.surfaces.clone()),
                 request,
@@ -384,6 +385,7 @@ pub(crate) fn new_motion(
         audit: results.audit,
         measured: results.measured,
         controller_states: ControllerStates::default(),
+        friction_choices: Vec::new(),
     }
 }
 

@@ -28,6 +28,9 @@ const MAX_ENUMERATED_CONTACTS: usize = 4;
 /// Difference of scaled impulses below which two solutions count as equal.
 const EQUAL_IMPULSE_FRACTION: f64 = 1e-7;
 
+/// Difference of scaled rates below which two solutions are the same motion, relative to the rates without impulses.
+const EQUAL_RATE_FRACTION: f64 = 1e-6;
+
 /// Mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactMode {
@@ -86,6 +89,8 @@ pub struct ContactDecision {
     pub modes: Vec<ContactMode>,
     /// Normal, then tangential impulses.
     pub impulses: Vec<f64>,
+    /// Number of solutions with other rates among all that were tried.
+    pub others: usize,
 }
 
 impl ContactProblem {
@@ -174,6 +179,7 @@ impl ContactProblem {
         excluded: &[(usize, ContactMode)],
     ) -> Option<ContactDecision> {
         let mut best: Option<(usize, f64, ContactDecision)> = None;
+        let mut motions: Vec<Vec<f64>> = Vec::new();
         let count: usize = self.friction.iter().map(|one| one.modes().len()).product();
         for case in 0..count {
             let modes = self.modes_of_case(case);
@@ -189,6 +195,7 @@ impl ContactProblem {
             };
             let changes = previous.map_or(0, is_changed);
             let size = self.scaled_size(&found.impulses);
+            self.add_distinct_motion(&found.impulses, &mut motions);
             let is_better = best.as_ref().is_none_or(|(fewest, least, _)| {
                 changes < *fewest
                     || changes == *fewest && size < (1.0 - EQUAL_IMPULSE_FRACTION) * least
@@ -197,7 +204,24 @@ impl ContactProblem {
                 best = Some((changes, size, found));
             }
         }
-        best.map(|(_, _, found)| found)
+        best.map(|(_, _, found)| ContactDecision {
+            others: motions.len() - 1,
+            ..found
+        })
+    }
+
+    /// Adds the rates after these impulses to `motions` unless they are among them.
+    fn add_distinct_motion(&self, impulses: &[f64], motions: &mut Vec<Vec<f64>>) {
+        let scaled = impulses.iter().zip(&self.scale).map(|(p, scale)| p * scale);
+        let rates = self.rates(&scaled.collect::<Vec<f64>>());
+        let equal = EQUAL_RATE_FRACTION * DVector::from_column_slice(&self.c).amax();
+        let is_known = motions.iter().any(|known| {
+            let mut pairs = known.iter().zip(&rates);
+            pairs.all(|(a, b)| (a - b).abs() <= equal)
+        });
+        if !is_known {
+            motions.push(rates);
+        }
     }
 
     fn modes_of_case(&self, mut case: usize) -> Vec<ContactMode> {
@@ -224,6 +248,7 @@ impl ContactProblem {
         (self.violation(modes, &scaled) <= MAX_VIOLATION).then(|| ContactDecision {
             modes: modes.to_vec(),
             impulses: self.unscaled(&scaled),
+            others: 0,
         })
     }
 

@@ -962,3 +962,49 @@ side = "b*sin(w*t)"
         }
     }
 }
+
+/// A rod that leans on a rough floor at rest, and a force that lifts it. Above a coefficient of friction it can lift off or
+/// slide and jam.
+#[test]
+fn several_motions_are_noted_and_the_smallest_forces_are_taken() {
+    for (friction, is_noted) in [
+        (0.5, false),
+        (1.0, false),
+        (1.5, true),
+        (2.0, true),
+        (3.0, true),
+    ] {
+        let text = format!(
+            "[model]\nname = \"rod\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             l = {{ value = 1, unit = \"m\" }}\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n\
+             F = {{ value = 12, unit = \"N\" }}\nmu = {{ value = {friction}, unit = \"1\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\" }}\ny = {{ unit = \"m\", initial = \"l*sin(pi/3)\" }}\n\
+             phi = {{ unit = \"rad\", initial = \"pi/3\" }}\n[kinetic]\n\
+             rod = \"1/2*m*(dot(x)^2 + dot(y)^2) + 1/6*m*l^2*dot(phi)^2\"\n[potential]\nweight = \"m*g*y\"\n\
+             [forces]\nlift = {{ on = \"y\", value = \"F\" }}\n[impacts]\n\
+             floor = {{ when = \"y - l*sin(phi)\", restitution = 0, friction = \"mu\", \
+             slip = \"dot(x) + l*sin(phi)*dot(phi)\" }}\n"
+        );
+        let model = CompiledModel::from_text("rod.toml", &text, Orders::Declared);
+        let model = model.unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let run = model.with_declared_parameters().expect("an instance");
+        let times = [0.0, 0.1];
+        let motion = run.simulate(
+            run.initial_state(),
+            &times,
+            &run.default_inputs(),
+            Solver::Rk,
+        );
+        let motion = motion.unwrap_or_else(|error| panic!("{friction}: {error}"));
+        let choices = &motion.friction_choices;
+        assert_eq!(!choices.is_empty(), is_noted, "{friction}: {choices:?}");
+        if let Some(choice) = choices.first() {
+            assert_eq!(choice.t, 0.0);
+            assert_eq!(choice.impacts, ["floor"]);
+            assert!(choice.motions > 1);
+        }
+        let risen = motion.trajectory.final_state[1] - (std::f64::consts::PI / 3.0).sin();
+        let expected = 0.5 * (12.0 - 9.81) * 0.01;
+        assert!((risen - expected).abs() < 1e-9, "{friction}: {risen}");
+    }
+}

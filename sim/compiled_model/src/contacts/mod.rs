@@ -24,14 +24,16 @@ use std::collections::VecDeque;
 use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, ImpactValues, Point, Stretch};
 use eomgen_model_spec::interval::Interval;
 
-use eomgen_sim::contact_friction::ContactMode;
+use eomgen_sim::contact_friction::{ContactDecision, ContactMode};
 use eomgen_sim::ode::{Surface, SurfaceKind, SurfaceMode, UNMOVED_SIZE_FRACTION};
 
+use crate::motion::FrictionChoice;
+
 pub(crate) use complementarity::{solve_complementarity, solve_rows};
-pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
-pub(crate) use start::Start;
 use drift::Drift;
 pub(crate) use drift::HeldDirection;
+pub(crate) use friction::{contact_problem, free_accelerations, rates_and_slips};
+pub(crate) use start::Start;
 use tangents::{ContactForces, Tangent};
 
 /// Largest distance that counts as rounding, relative to its terms.
@@ -64,10 +66,10 @@ pub(crate) struct Contacts {
     offsets: Vec<f64>,
     /// The same before the last correction of a state.
     uncorrected_offsets: Vec<f64>,
-    /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
-    allowances: Vec<f64>,
     /// Drifts of each distance by the rounding of rates that surfaces hold.
     drifts: Vec<Vec<Drift>>,
+    /// What is added to the force of each that is closed: rounding of accelerations makes no pull.
+    allowances: Vec<f64>,
     /// Impacts at the point of the last evaluation.
     at: Vec<ImpactValues>,
     /// Sizes of coordinates that have not moved.
@@ -86,6 +88,8 @@ pub(crate) struct Contacts {
     overlap: Option<(usize, Overlap)>,
     /// Tangential motion of the contacts with friction.
     tangents: Vec<Tangent>,
+    /// Instants at which friction admitted several motions.
+    choices: Vec<FrictionChoice>,
     /// True if no contact forces were found between steps, so that the rates have no value.
     has_no_forces: bool,
 }
@@ -123,14 +127,15 @@ impl Contacts {
             uncorrected_redundant: Vec::new(),
             offsets: vec![0.0; count],
             uncorrected_offsets: vec![0.0; count],
+            drifts: vec![Vec::new(); count],
             allowances: vec![0.0; count],
             at: Vec::new(),
             recent: VecDeque::with_capacity(MAX_CONSECUTIVE_IMPACTS),
             has_restitution: true,
-            drifts: vec![Vec::new(); count],
             impact_work: 0.0,
             overlap: None,
             tangents: Vec::new(),
+            choices: Vec::new(),
             has_no_forces: false,
         }
     }
@@ -152,6 +157,23 @@ impl Contacts {
             kind: SurfaceKind::HeldSpeed,
         });
         distances.chain(slips).collect()
+    }
+
+    /// Returns the instants at which friction admitted several motions.
+    pub fn choices(&self) -> &[FrictionChoice] {
+        &self.choices
+    }
+
+    /// Notes a decision at a time (s) if it admits several motions.
+    fn note_choice(&mut self, t: f64, (places, decision): (&[usize], &ContactDecision)) {
+        if decision.others > 0 {
+            let names = places.iter().map(|place| self.names[*place].clone());
+            self.choices.push(FrictionChoice {
+                t,
+                impacts: names.collect(),
+                motions: decision.others + 1,
+            });
+        }
     }
 
     /// Returns the number of guards.

@@ -73,6 +73,7 @@ impl Instance<'_> {
             solver_choice: simulation.solver_choice().cloned(),
             early_stop: None,
             initial_changes: simulation.initial_changes().to_vec(),
+            friction_choices: simulation.friction_choices(),
             audit,
             measured,
             controller_states: ControllerStates {

@@ -55,6 +55,7 @@ impl Contacts {
         let decided = problem.decide(Some(&modes), &excluded);
         let decided = decided.or_else(|| problem.decide(Some(&modes), &[]));
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
+        self.note_choice(point.t, (&places, &decision));
         self.enter_modes(own, (&places, &decision), &roundings, (point, located));
         Ok(())
     }
@@ -77,6 +78,7 @@ impl Contacts {
         let decided = problem.decide(Some(&modes), &[]);
         let decision = decided.ok_or((places[0], Overlap::NoForces))?;
         if decision.modes != modes {
+            self.note_choice(point.t, (&places, &decision));
             self.enter_modes(own, (&places, &decision), &roundings, (point, point));
             return Ok(());
         }

@@ -24,6 +24,7 @@ impl Contacts {
         }
         let roundings = self.slip_roundings(own, point);
         let decision = self.decide_resting(still, (small, &roundings))?;
+        self.note_choice(point.t, (still, &decision));
         self.enter_modes(own, (still, &decision), &roundings, (point, point));
         Ok(())
     }
@@ -72,6 +73,7 @@ impl Contacts {
         let Some(mut decision) = decision else {
             return Ok(());
         };
+        self.note_choice(point.t, (&resting, &decision));
         // Contacts that move on together without a force stay closed.
         let decided = resting.iter().zip(&decision.modes);
         let pushing = decided.filter(|(_, mode)| **mode != ContactMode::Open);
