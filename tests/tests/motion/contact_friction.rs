@@ -963,8 +963,8 @@ side = "b*sin(w*t)"
     }
 }
 
-/// A rod that leans on a rough floor at rest, and a force that lifts it. Above a coefficient of friction it can lift off or
-/// slide and jam.
+/// A rod that slides over a rough floor, and a force that lifts it. Above a coefficient of friction it can lift off or
+/// jam.
 #[test]
 fn several_motions_are_noted_and_the_smallest_forces_are_taken() {
     for (friction, is_noted) in [
@@ -978,7 +978,7 @@ fn several_motions_are_noted_and_the_smallest_forces_are_taken() {
             "[model]\nname = \"rod\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
              l = {{ value = 1, unit = \"m\" }}\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n\
              F = {{ value = 12, unit = \"N\" }}\nmu = {{ value = {friction}, unit = \"1\" }}\n[coordinates]\n\
-             x = {{ unit = \"m\" }}\ny = {{ unit = \"m\", initial = \"l*sin(pi/3)\" }}\n\
+             x = {{ unit = \"m\", initial_rate = -1 }}\ny = {{ unit = \"m\", initial = \"l*sin(pi/3)\" }}\n\
              phi = {{ unit = \"rad\", initial = \"pi/3\" }}\n[kinetic]\n\
              rod = \"1/2*m*(dot(x)^2 + dot(y)^2) + 1/6*m*l^2*dot(phi)^2\"\n[potential]\nweight = \"m*g*y\"\n\
              [forces]\nlift = {{ on = \"y\", value = \"F\" }}\n[impacts]\n\

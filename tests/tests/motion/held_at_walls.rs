@@ -142,6 +142,44 @@ fn held_body_at_a_wall_has_one_event() {
     }
 }
 
+/// A periodic force slides a body from a wall and back to it, where it comes to rest. Samples inside the step that ends there
+/// are beyond the wall by errors of the step.
+#[test]
+fn sliding_body_returns_to_a_wall() {
+    let (m, push, friction, frequency) = (
+        0.9993229276317789,
+        3.434043772798134,
+        2.173572673440952,
+        6.844462270317201,
+    );
+    for (length, mass) in [(1.0, 1.0), (1e-4, 1.0), (1e-6, 1e-3), (1e6, 1.0)] {
+        for restitution in [0.0, 0.3, 1.0] {
+            let text = format!(
+                "[model]\nname = \"held\"\n[parameters]\n\
+                 m = {{ value = {:?}, unit = \"kg\" }}\nF = {{ value = {:?}, unit = \"N\" }}\n\
+                 P = {{ value = {:?}, unit = \"N\" }}\nw = {{ value = {frequency:?}, unit = \"rad/s\" }}\n\
+                 [coordinates]\nx = {{ unit = \"m\" }}\n[kinetic]\nx = \"1/2*m*dot(x)^2\"\n[forces]\n\
+                 push = {{ on = \"x\", value = \"-P*cos(w*t)\" }}\n\
+                 friction = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
+                 [impacts]\nwall = {{ when = \"x\", restitution = {restitution} }}\n",
+                m * mass,
+                friction * mass * length,
+                push * mass * length
+            );
+            for until in [1.3, 1.9, 2.6] {
+                let (_, expected) = simulate(&text, until, Solver::Radau);
+                for solver in [Solver::Rk, Solver::Auto] {
+                    let (times, found) = simulate(&text, until, solver);
+                    for ((t, found), expected) in times.iter().zip(&found).zip(&expected) {
+                        let difference = (found[0] - expected[0]).abs() / length;
+                        assert!(difference < 1e-6, "{solver}, {length:e} m, {t} s");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// A body at rest by friction on two surfaces is hit by an oscillating wall, and again before it stops. The durations vary
 /// the lengths of the steps.
 #[test]
