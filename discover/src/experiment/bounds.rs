@@ -6,6 +6,7 @@ use eomgen_records::samples::{MIN_SAMPLES, typical_step};
 use crate::ids::ChannelId;
 use crate::interval::Interval;
 use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::ExpectedSensor;
 use crate::thresholds;
 
 /// Bounds of an experiment, SI.
@@ -42,8 +43,13 @@ pub struct InputBounds {
 }
 
 impl Bounds {
-    /// Computes the bounds of a dataset. `inputs`: names of the inputs of the model.
-    pub fn from_dataset(problem: &EstimationProblem<'_>, inputs: &[String]) -> Self {
+    /// Computes the bounds of a dataset. `inputs`: names of the inputs of the model; `sensors`:
+    /// expected sensor of each channel.
+    pub fn from_dataset(
+        problem: &EstimationProblem<'_>,
+        inputs: &[String],
+        sensors: &[ExpectedSensor],
+    ) -> Self {
         let dataset = problem.dataset;
         let said = &dataset.experiment;
         let recorded_step = typical_step(&dataset.train[0].times);
@@ -106,7 +112,7 @@ impl Bounds {
             said.map_or_else(
                 || {
                     from_records.push(format!("the limits of {}", channel.name));
-                    find_channel_range(problem, id)
+                    find_channel_range(problem, id, &sensors[id.index()])
                 },
                 |(low, high)| Interval::new(low, high),
             )
@@ -184,12 +190,17 @@ fn find_input_range(problem: &EstimationProblem<'_>, place: usize) -> (Interval,
 }
 
 /// Between what values a channel's quantity was, noise aside.
-fn find_channel_range(problem: &EstimationProblem<'_>, channel: ChannelId) -> Interval {
+fn find_channel_range(
+    problem: &EstimationProblem<'_>,
+    channel: ChannelId,
+    sensor: &ExpectedSensor,
+) -> Interval {
     let records = problem.dataset.train.iter().chain(&problem.dataset.test);
     let values = records.flat_map(|record| record.channels[channel].iter());
     let values = values.filter(|value| value.is_finite());
-    let both = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(*value), high.max(*value))
+    let quantities = values.map(|value| sensor.quantity(*value));
+    let both = quantities.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
     });
     let margin = thresholds::LIMIT_MARGIN_FRACTION * (both.1 - both.0);
     Interval::new(both.0 - margin, both.1 + margin)

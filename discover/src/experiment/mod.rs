@@ -48,7 +48,7 @@ pub fn propose_experiments(context: RoundContext<'_>, found: &SearchResult) -> E
     let units = units.map(|input| Unit::coherent(input.unit.dimension).text);
     let units: Vec<String> = units.collect();
     let inputs: Vec<String> = inputs.iter().map(|input| input.name.clone()).collect();
-    let bounds = Bounds::from_dataset(problem, &inputs);
+    let bounds = Bounds::from_dataset(problem, &inputs, &found.null_fit.model.sensors);
     let times = bounds.sample_times();
     let impossible = match problem.dataset.gives_motion() {
         true => Some("no experiment is computed for a given motion".to_owned()),

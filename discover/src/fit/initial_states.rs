@@ -347,7 +347,10 @@ fn read_smoothed(
         let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
             .iter()
             .map(|source| {
-                let values = smooth_column(&record.times, &record.channels[*source]);
+                let sensor = model.sensors[*source];
+                let measured = smooth_column(&record.times, &record.channels[*source]);
+                let quantities = measured.iter().map(|value| sensor.quantity(*value));
+                let values: Vec<f64> = quantities.collect();
                 let slopes = differentiate_column(&record.times, &values);
                 (values, slopes)
             })

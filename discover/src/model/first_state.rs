@@ -56,7 +56,7 @@ fn measured_states(quantity: Quantity, degrees: usize) -> [Option<usize>; 2] {
     }
 }
 
-/// Replaces parts of a state by the measurements at the beginning of a record.
+/// Replaces parts of a state by the quantities that sensors measure at the beginning of a record.
 fn apply_measurements(
     model: &EstimationModel,
     record: &Record,
@@ -64,11 +64,14 @@ fn apply_measurements(
     mut state: Vec<f64>,
 ) -> Vec<f64> {
     let degrees = model.degrees_of_freedom();
-    for (channel, column) in channels.iter().zip(&record.channels) {
+    let sensors = channels.iter().zip(&model.sensors);
+    for ((channel, sensor), column) in sensors.zip(&record.channels) {
         let (value, slope) = fit_first_samples(&record.times, column);
+        let (value, slope) = (sensor.quantity(value), slope / sensor.gain);
         let places = measured_states(channel.quantity, degrees);
         for (place, number) in places.into_iter().zip([value, slope]) {
-            if let Some(place) = place {
+            // A sensor of gain 0 does not show its quantity.
+            if let Some(place) = place.filter(|_| number.is_finite()) {
                 state[place] = number;
             }
         }

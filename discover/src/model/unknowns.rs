@@ -274,6 +274,11 @@ pub struct ExpectedSensor {
 }
 
 impl ExpectedSensor {
+    /// Returns the quantity for a measured value, SI. The delay is not considered.
+    pub fn quantity(&self, measured: f64) -> f64 {
+        (measured - self.bias) / self.gain
+    }
+
     /// Returns the values of the specification, otherwise of the dataset, otherwise of an ideal
     /// sensor. A later search so continues from the values that a fit has written into the
     /// specification.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use eomgen_model_spec::model::Model;
 
 use crate::model::smoothing::{differentiate_column, smooth_column};
+use crate::model::unknowns::ExpectedSensor;
 use eomgen_records::dataset::{Dataset, Quantity};
 
 /// Returns the usual rate of each measured observable and coordinate, by its name in the model: the
@@ -18,7 +19,9 @@ pub fn compute_usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String,
     }
     let channels = dataset.channels.iter().zip(&record.channels);
     for (channel, column) in channels {
+        let sensor = ExpectedSensor::from_channel(channel, model);
         let smooth = smooth_column(&record.times, column);
+        let smooth: Vec<f64> = smooth.iter().map(|value| sensor.quantity(*value)).collect();
         let (name, slopes) = match channel.quantity {
             // How fast something moves is not known from how its speed changes, and nothing else moves.
             Quantity::Acceleration(_) | Quantity::State(_) | Quantity::Input(_) => continue,

@@ -13,6 +13,7 @@ mod common_lag;
 mod discovery;
 mod experiment;
 mod held_input;
+mod high_floor;
 mod initial_states;
 mod json;
 pub mod location;

@@ -27,6 +27,7 @@ use crate::report::discovery::{
 };
 use crate::report::experiment::draw_experiments;
 use crate::report::held_input::note_held_input;
+use crate::report::high_floor::note_high_floor;
 use crate::report::initial_states::describe_contradicted_initial_states;
 use crate::report::location::describe_location;
 use crate::report::motion_noise::note_motion_noise;
@@ -92,6 +93,10 @@ pub fn compare(
     notes.extend(note_common_delay(&problem, &fit));
     notes.extend(note_held_input(&problem, &fit));
     notes.extend(note_motion_noise(&problem, &fit));
+    for note in note_high_floor(&problem, &floor) {
+        progress(&format!("note: {note}"));
+        notes.push(note);
+    }
     notes.extend(contradicting(&problem, &fit, floor.rms, progress));
     Ok(Comparison {
         has_gap: !fit.is_at_floor(floor.rms),
@@ -218,6 +223,7 @@ pub fn discover_until(
         .chain(note_held_input(&problem, best))
         .chain(RemainingGap::from_channels(&gap, ModelStage::Extended).note_missing_in_training())
         .chain(note_motion_noise(&problem, best))
+        .chain(note_high_floor(&problem, &floor))
         .chain(note_wrong_units(&problem, &found))
     {
         progress(&format!("note: {note}"));

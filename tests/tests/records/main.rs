@@ -6,5 +6,6 @@ mod free_decays;
 mod measured_quantities;
 mod parquet;
 mod refused_records;
+mod sensor_errors;
 mod several_records;
 mod time_origins;
