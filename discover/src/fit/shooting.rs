@@ -209,7 +209,7 @@ impl<'a> Shooting<'a> {
         let mut seen = vec![0.0; samples * channels];
         for channel in ChannelId::first(channels) {
             let column = Column {
-                times: &times.times,
+                times,
                 values: quantities,
                 channels,
                 channel,
@@ -284,16 +284,16 @@ pub(crate) fn count_samples(window: &Window, part: f64) -> usize {
 
 /// A channel's quantity along a window.
 struct Column<'q> {
-    times: &'q [f64],
+    times: &'q OutputTimes<'q>,
     /// Those of all channels, a row per time.
     values: &'q [f64],
     channels: usize,
     channel: ChannelId,
 }
 
-/// A channel's quantity at a time near one of the others, by the cubic through its four neighbours.
+/// A channel's quantity at a time near one of the others, by the cubic through four neighbours.
 fn interpolate_column(column: &Column<'_>, at: f64, near: usize) -> f64 {
-    let times = column.times;
+    let times = &column.times.times;
     let last = times.len() - 1;
     let mut before = near.min(last);
     while before > 0 && times[before] > at {
@@ -303,7 +303,7 @@ fn interpolate_column(column: &Column<'_>, at: f64, near: usize) -> f64 {
         before += 1;
     }
     let count = times.len().min(4);
-    let first = before.saturating_sub(1).min(times.len() - count);
+    let first = column.times.first_node(before, count);
     let nodes = first..first + count;
     nodes
         .clone()

@@ -2,7 +2,8 @@
 //! ([`estimation_model`], [`simulation`]), records divided into
 //! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, errors of inputs
 //! ([`input_faults`]), and the [`problem`] that all fits to one dataset share. [`channel_checks`]
-//! compares columns with the model; [`output_times`] are the times of computed outputs;
+//! compares columns with the model; [`output_times`] are the times of computed outputs, `input_jumps`
+//! the error between them;
 //! `given_motion` contains the inverse dynamics; [`smoothing`] has no delay; [`stop`] ends a search
 //! early, `work` a fit that costs too much.
 
@@ -12,6 +13,7 @@ pub mod estimation_model;
 pub mod first_state;
 pub(crate) mod given_motion;
 pub mod input_faults;
+pub(crate) mod input_jumps;
 pub mod input_occurrences;
 pub mod linear_outputs;
 pub(crate) mod longest_step;

@@ -25,9 +25,11 @@ impl OutputRate {
     pub const SAMPLES: Self = Self(1);
 
     /// Selects the rate at which a cubic through four neighbours has an error below a fraction of
-    /// the noise. The error is estimated from the records: every other sample predicts the one
-    /// between them with sixteen times the error, less the contribution of the noise.
-    pub fn of(dataset: &Dataset) -> Self {
+    /// the noise. The error of a smooth motion is estimated from the records: every other sample
+    /// predicts the one between them with sixteen times the error, less the contribution of the
+    /// noise. `jump_errors`: error of each channel due to jumps of the inputs at the samples, SI.
+    /// At [`RATE_BETWEEN_SAMPLES`] no cubic crosses a sample, which removes this error.
+    pub fn select(dataset: &Dataset, jump_errors: &[f64]) -> Self {
         // A motion that is given is known at its samples.
         if dataset.gives_motion() {
             return Self(1);
@@ -45,6 +47,11 @@ impl OutputRate {
         {
             rate *= 2;
             error /= ORDER;
+        }
+        let jumps = dataset.channels.iter().zip(jump_errors);
+        let mut jumps = jumps.map(|(channel, error)| error / channel.noise);
+        if jumps.any(|error| error > thresholds::MAX_INTERPOLATION_ERROR) {
+            rate = rate.max(RATE_BETWEEN_SAMPLES);
         }
         Self(rate)
     }
@@ -81,11 +88,27 @@ impl OutputTimes<'_> {
         all.into_iter().step_by(self.rate).collect()
     }
 
+    /// Returns the first of `count` neighbouring times whose polynomial is evaluated in the interval
+    /// that begins at index `before`. The times are in one sample interval if it has enough of them.
+    pub fn first_node(&self, before: usize, count: usize) -> usize {
+        let last = self.times.len() - count;
+        let centred = before.saturating_sub(count / 2 - 1).min(last);
+        if self.rate + 1 < count {
+            return centred;
+        }
+        let sample = (before / self.rate * self.rate).min(self.times.len() - 1 - self.rate);
+        centred.clamp(sample, sample + self.rate + 1 - count)
+    }
+
     /// Returns the index of a sample among the times.
     pub fn of_sample(&self, sample: usize) -> usize {
         sample * self.rate
     }
 }
+
+/// Least rate at which the four points of a cubic are in one sample interval. Held inputs jump at
+/// samples only.
+const RATE_BETWEEN_SAMPLES: usize = 4;
 
 /// By so much the error of a cubic falls where its points are twice as dense.
 const ORDER: f64 = 16.0;
@@ -151,5 +174,18 @@ mod tests {
         assert_eq!(times.samples(), 3);
         assert_eq!(times.times[times.of_sample(2)], 3.0);
         assert_eq!(*OutputRate::SAMPLES.times(&samples).times, samples);
+    }
+
+    #[test]
+    fn cubics_cross_samples_only_if_an_interval_has_too_few_times() {
+        let samples = [0.0, 1.0, 2.0, 3.0];
+        let nodes = |rate: usize| {
+            let times = OutputRate(rate).times(&samples);
+            let nodes = (0..times.times.len()).map(|before| times.first_node(before, 4));
+            nodes.collect::<Vec<usize>>()
+        };
+        assert_eq!(nodes(1), [0, 0, 0, 0]);
+        assert_eq!(nodes(2), [0, 0, 1, 2, 3, 3, 3]);
+        assert_eq!(nodes(4), [0, 0, 1, 1, 4, 4, 5, 5, 8, 8, 9, 9, 9]);
     }
 }

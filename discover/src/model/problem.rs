@@ -8,6 +8,7 @@ use eomgen_model_spec::source::Source;
 use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
+use crate::model::input_jumps::compute_jump_errors;
 use crate::model::output_times::OutputRate;
 use crate::model::stop::StopRequest;
 use crate::model::work::WorkLimit;
@@ -64,6 +65,16 @@ impl TestCounter {
     }
 }
 
+/// Returns the interpolation error of each channel due to jumps of the inputs, SI; none if a given
+/// motion or an invalid text leaves it unknown.
+fn jump_errors(dataset: &Dataset, order: Option<usize>, path: &str, text: &str) -> Vec<f64> {
+    if dataset.gives_motion() {
+        return Vec::new();
+    }
+    let model = EstimationModel::derive_equations(text, path, order, &dataset.channels);
+    model.map_or_else(|_| Vec::new(), |model| compute_jump_errors(&model, dataset))
+}
+
 impl<'d> EstimationProblem<'d> {
     /// Prepares the problem of a dataset and of a specification.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
@@ -82,7 +93,7 @@ impl<'d> EstimationProblem<'d> {
                 .iter()
                 .map(|channel| channel.noise)
                 .collect(),
-            output_rate: OutputRate::of(dataset),
+            output_rate: OutputRate::select(dataset, &jump_errors(dataset, order, path, text)),
             train: Windows::split_records(&dataset.train, dataset.window),
             test: Windows::split_records(&dataset.test, dataset.window),
             order,

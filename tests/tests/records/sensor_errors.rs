@@ -233,3 +233,22 @@ fn declared_bias_and_gain_leave_smoothed_initial_states_unchanged() {
         }
     }
 }
+
+#[test]
+fn delayed_sensors_under_held_inputs_leave_no_gap() {
+    for parts in [0, 16, -16, 24, 40] {
+        let late = Sensor {
+            delay: parts,
+            ..IDEAL
+        };
+        let noises = [("th", NOISE[0]), ("v", NOISE[1])];
+        let found = compare([late, late], Channels::AngleAndRate, "fitted");
+        assert_no_gap(&found, &noises, &format!("{parts} of {PARTS} parts late"));
+        let delay = found["sensors"]["v"]["delay"].as_f64().expect("a number");
+        let right = STEP * f64::from(parts) / PARTS as f64;
+        assert!(
+            (delay - right).abs() < 0.02 * STEP,
+            "{delay} instead of {right}"
+        );
+    }
+}
