@@ -48,17 +48,49 @@ pub(super) fn slopes(
     for (count, weight) in (1..).zip(WEIGHTS) {
         for side in [1.0, -1.0] {
             let values = at(side * f64::from(count) * step)?;
-            found.resize(values.len(), Slope::default());
-            for (slope, value) in found.iter_mut().zip(values) {
-                if !value.value.is_finite() {
-                    return None;
-                }
-                slope.value += side * weight * value.value / step;
-                slope.scale = slope.scale.max(value.scale);
-            }
+            add_point(&mut found, values, (side * weight, step))?;
         }
     }
     Some(found)
+}
+
+/// Number of points of [`one_sided_slopes`].
+const ONE_SIDED_POINTS: u32 = 8;
+
+/// Returns differences of seventh order from points on the side of the sign of `step`, without the middle; `None` if a
+/// value is missing or not finite.
+pub(super) fn one_sided_slopes(
+    step: f64,
+    mut at: impl FnMut(f64) -> Option<Vec<Slope>>,
+) -> Option<Vec<Slope>> {
+    let count = f64::from(ONE_SIDED_POINTS);
+    let harmonic: f64 = (1..=ONE_SIDED_POINTS).map(|k| 1.0 / f64::from(k)).sum();
+    let mut found: Vec<Slope> = Vec::new();
+    // Derivative at 0 of the Lagrange polynomial of node k among 1 .. n: (-1)^k binomial(n, k) (H_n - 1/k).
+    let mut binomial = 1.0;
+    for k in (1..=ONE_SIDED_POINTS).map(f64::from) {
+        binomial *= -(count + 1.0 - k) / k;
+        let weight = binomial * (harmonic - 1.0 / k);
+        add_point(&mut found, at(k * step)?, (weight, step))?;
+    }
+    Some(found)
+}
+
+/// Adds weighted values to slopes; `None` if a value is not finite.
+fn add_point(
+    slopes: &mut Vec<Slope>,
+    values: Vec<Slope>,
+    (weight, step): (f64, f64),
+) -> Option<()> {
+    slopes.resize(values.len(), Slope::default());
+    for (slope, value) in slopes.iter_mut().zip(values) {
+        if !value.value.is_finite() {
+            return None;
+        }
+        slope.value += weight * value.value / step;
+        slope.scale = slope.scale.max(value.scale);
+    }
+    Some(())
 }
 
 pub(super) struct DifferencePoint<'s> {
@@ -161,6 +193,18 @@ mod tests {
         let error = |step| (slopes(step, sine).expect("a slope")[0].value - 0.7_f64.cos()).abs();
         let order = (error(0.5) / error(0.25)).log2();
         assert!((order - 8.0).abs() < 0.2, "{order}");
+    }
+
+    #[test]
+    fn one_sided_differences_converge_to_the_slope_of_their_side() {
+        let kink = |x: f64| {
+            let value = if x < 0.0 { (0.7 + x).sin() } else { x.exp() };
+            Some(vec![Slope { value, scale: 1.0 }])
+        };
+        for (step, expected) in [(1.0 / 64.0, 1.0), (-1.0 / 64.0, 0.7_f64.cos())] {
+            let slope = one_sided_slopes(step, kink).expect("a slope")[0];
+            assert!((slope.value - expected).abs() < 1e-9, "{step}: {slope:?}");
+        }
     }
 
     #[test]

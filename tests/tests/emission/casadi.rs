@@ -232,3 +232,37 @@ fn family_certifies_functions_for_casadi() {
         "{said}"
     );
 }
+
+/// Second derivatives at the kink of a piecewise function of parameters: a half-width 0, a stiffness 0, equal limits.
+#[test]
+fn hessians_at_kinks_of_parameters_pass() {
+    if !has_compiler() {
+        return;
+    }
+    for (b, k, potential) in [
+        ("0", "100", "1/2*k*deadzone(x, b)^2"),
+        ("1e-12", "100", "1/2*k*deadzone(x, b)^2"),
+        ("0", "100", "1/2*k*deadzone(x - b, max(b, 0))^2"),
+        ("0.1", "0", "1/2*(k + abs(k))*(x - b)^2"),
+        ("0.1", "0", "1/2*max(k, -k)*sin(x/b)*x^2"),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let text = format!(
+            "[model]\nname = \"block\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             k = {{ value = {k}, unit = \"N/m\" }}\nb = {{ value = {b}, unit = \"m\" }}\n\
+             [coordinates]\nx = {{ unit = \"m\" }}\n[kinetic]\nblock = \"1/2*m*dot(x)^2\"\n\
+             [potential]\nspring = \"{potential}\"\n"
+        );
+        std::fs::write(folder.path().join("block.toml"), text).expect("written");
+        let generate = [
+            "generate",
+            "block.toml",
+            "--target",
+            "casadi",
+            "--with",
+            "hessians",
+        ];
+        let arguments = [&generate[..], &["--certify", "--out", "."]].concat();
+        expect(folder.path(), 0, &arguments);
+    }
+}

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::super::interface::arguments;
 use super::expected::rate_jacobians;
-use crate::differences::{Slope, slopes};
+use crate::differences::{Slope, one_sided_slopes, slopes};
 use crate::sampler::Sample;
 
 /// Tolerance of differences, relative to the largest addend for a change of the variable by its size. The rates contain a
@@ -56,11 +56,12 @@ impl Weighted {
             })?;
             Some(deviations(by_time.as_slice(), 1.0, &changes, &[]))
         });
-        best(found)
+        best(found).map(|entries| worst_deviation(&entries))
     }
 
     /// Returns the largest deviation of the second derivatives from differences of the gradient; `None` close to a
-    /// switching surface.
+    /// switching surface. A piecewise function of parameters alone has no surface, so at its kink, such as the half-width
+    /// 0 of a dead zone, an entry is the derivative of one side.
     pub fn deviation(
         &mut self,
         parameters: &[f64],
@@ -82,17 +83,26 @@ impl Weighted {
         for (place, from) in whole.iter().enumerate() {
             let size = size(*from);
             let column: Vec<f64> = hessian.column(place).iter().copied().collect();
-            let found = STEPS.into_iter().filter_map(|step| {
-                let changes = slopes(step, |length| {
-                    let mut moved = whole.clone();
-                    moved[place] += length * size;
-                    let (sample, parameters) = split(&moved, lengths);
-                    self.evaluator.prepare(parameters);
-                    (self.signs(&sample) == here).then(|| self.gradient(&sample))
-                })?;
-                Some(deviations(&column, size, &changes, &least))
-            });
-            let found = best(found)?;
+            let mut along = |length: f64| {
+                let mut moved = whole.clone();
+                moved[place] += length * size;
+                let (sample, parameters) = split(&moved, lengths);
+                self.evaluator.prepare(parameters);
+                (self.signs(&sample) == here).then(|| self.gradient(&sample))
+            };
+            let compare = |changes: Vec<Slope>| deviations(&column, size, &changes, &least);
+            let central = STEPS
+                .into_iter()
+                .filter_map(|step| slopes(step, &mut along));
+            let mut entries = best(central.map(compare))?;
+            let is_parameter = place >= whole.len() - parameters.len();
+            if is_parameter && worst_deviation(&entries) > DERIVATIVE_TOLERANCE {
+                let steps = STEPS.into_iter().flat_map(|step| [step, -step]);
+                let one_sided = steps.filter_map(|step| one_sided_slopes(step, &mut along));
+                let all = std::iter::once(entries.clone()).chain(one_sided.map(compare));
+                entries = best(all).unwrap_or(entries);
+            }
+            let found = worst_deviation(&entries);
             worst = Some(worst.map_or(found, |worst| worst.max(found)));
         }
         worst
@@ -169,8 +179,8 @@ fn deviations(derivatives: &[f64], size: f64, changes: &[Slope], least: &[f64]) 
         .collect()
 }
 
-/// Returns the largest deviation, each with its best step; `None` without a step.
-fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<f64> {
+/// Returns the deviations, each with its best step; `None` without a step.
+fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<Vec<f64>> {
     let mut smallest: Option<Vec<f64>> = None;
     for found in found {
         let best = match smallest {
@@ -186,10 +196,14 @@ fn best(found: impl Iterator<Item = Vec<f64>>) -> Option<f64> {
             break;
         }
     }
-    let smallest = smallest?;
-    let is_known = smallest.iter().all(|deviation| !deviation.is_nan());
-    let largest = smallest.into_iter().fold(0.0, f64::max);
-    Some(if is_known { largest } else { f64::INFINITY })
+    smallest
+}
+
+/// Returns the largest deviation, infinite if one is unknown.
+fn worst_deviation(deviations: &[f64]) -> f64 {
+    let is_known = deviations.iter().all(|deviation| !deviation.is_nan());
+    let largest = deviations.iter().copied().fold(0.0, f64::max);
+    if is_known { largest } else { f64::INFINITY }
 }
 
 fn point(sample: &Sample) -> Point<'_> {
