@@ -13,6 +13,7 @@ mod count;
 mod discovery;
 mod document;
 mod emission;
+mod emitted_files;
 mod engines;
 mod error;
 mod event_log;

@@ -13,6 +13,7 @@ use crate::bench_files;
 use crate::certification::document;
 use crate::document::SCHEMA;
 use crate::emission;
+use crate::emitted_files::{CERTIFICATE, check_names};
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::family;
 use crate::model::{load, orders};
@@ -87,6 +88,8 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         let trace = trace_file::document(&variant.program, sources)?;
         emitted.push((TRACE.to_owned(), trace.into_bytes()));
     }
+    let contents = emitted.iter().map(|(name, text)| (&**name, &**text));
+    check_names(contents.chain(options.certify.then_some((CERTIFICATE, &[][..]))))?;
     let mut certificate = None;
     if options.certify {
         let instructions = instruction_bounds(&sources, &options.instructions)?;
@@ -110,7 +113,7 @@ fn generate(options: &Generate, spec: &Path, out: &Path) -> Result {
         files.extend(bench_files::write(&model, &variant, &outputs, out)?);
     }
     if let Some(certificate) = &certificate {
-        let path = out.join("certificate.json");
+        let path = out.join(CERTIFICATE);
         write_file(&path, document(certificate)?.as_bytes())?;
         files.push(path);
     }

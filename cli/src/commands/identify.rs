@@ -7,11 +7,9 @@ use serde_json::{Value, json};
 
 use crate::arguments::Identify;
 use crate::document::SCHEMA;
+use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result, print_json, print_text, warn};
 use crate::input_file::read_file;
-
-/// Name of a certificate.
-const CERTIFICATE: &str = "certificate.json";
 
 /// Largest depth of folders that are searched for certificates.
 const MAX_DEPTH: usize = 8;

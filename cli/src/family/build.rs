@@ -18,13 +18,11 @@ use super::options::Options;
 use crate::arguments::{Extra, Packaging, Target};
 use crate::certification::document;
 use crate::emission::{self, c_source, header_only_source};
+use crate::emitted_files::{CERTIFICATE, check_names};
 use crate::error::{Error, Result};
 use crate::settings::with_settings;
 use crate::test_vectors;
 use crate::trace_file::{self, TRACE};
-
-/// Name of a certificate.
-pub const CERTIFICATE: &str = "certificate.json";
 
 /// Emitted files of a variant.
 pub struct Built {
@@ -111,6 +109,7 @@ impl Emitted {
         let outputs = Extra::outputs(&others);
         let derived = derive(&outputs)?;
         let program = &derived.program;
+        let mut files: Vec<(String, Vec<u8>)> = Vec::new();
         let mut this = Self {
             files: BTreeMap::new(),
             sources: Sources::default(),
@@ -124,10 +123,9 @@ impl Emitted {
                 false => (rust::Packaging::Crate, "lib.rs"),
             };
             let text = emission::source(program, packaging)?;
-            this.files
-                .insert(file.to_owned(), text.clone().into_bytes());
+            files.push((file.to_owned(), text.clone().into_bytes()));
             this.sources.rust = Some(text);
-            this.files.extend(test_vectors::files(
+            files.extend(test_vectors::files(
                 model,
                 orders,
                 program,
@@ -138,46 +136,50 @@ impl Emitted {
         if variant.has(Target::C99) {
             emission::outputs(Target::C99, &others, false)?;
             for (prefix, precision) in variant.c_prefixes() {
-                this.emit_c(&derived, (&prefix, variant.packaging), precision)?;
+                files.extend(this.emit_c(&derived, (&prefix, variant.packaging), precision)?);
                 let mut program = program.clone();
                 program.name.clone_from(&prefix);
-                let files = test_vectors::files(model, orders, &program, &others, Target::C99)?;
-                for (name, contents) in files {
-                    // The variant's own prefix has `vectors.h`, that of another precision `PREFIX_vectors.h`.
-                    let name = match this.files.contains_key(&name) && name == "vectors.h" {
-                        true => format!("{prefix}_{name}"),
-                        false => name,
-                    };
-                    this.files.insert(name, contents);
+                let vectors = test_vectors::files(model, orders, &program, &others, Target::C99)?;
+                for (name, contents) in vectors {
+                    // `vectors.json` has both precisions. The variant's own prefix has `vectors.h`, that of another
+                    // precision `PREFIX_vectors.h`.
+                    match (prefix == variant.prefix, &*name) {
+                        (false, "vectors.json") => {}
+                        (false, "vectors.h") => files.push((format!("{prefix}_{name}"), contents)),
+                        _ => files.push((name, contents)),
+                    }
                 }
             }
         }
         if variant.has(Target::Cuda) {
-            this.files
-                .extend(emission::files(model, &derived, (Target::Cuda, None))?);
+            files.extend(emission::files(model, &derived, (Target::Cuda, None))?);
         }
         if others.contains(&Extra::Trace) {
-            let sources = this.files.iter().map(|(name, text)| (&**name, &**text));
+            let sources = files.iter().map(|(name, text)| (&**name, &**text));
             let trace = trace_file::document(program, sources)?;
-            this.files.insert(TRACE.to_owned(), trace.into_bytes());
+            files.push((TRACE.to_owned(), trace.into_bytes()));
         }
         if let Some(target) = for_optimisers {
             let outputs = emission::outputs(target, &of_casadi, false)?;
             let derived = derive(&outputs)?;
-            let files = emission::files(model, &derived, (target, None))?;
-            let sources = emission::sources(&variant.prefix, target, &files, &outputs)?;
+            let emitted = emission::files(model, &derived, (target, None))?;
+            let sources = emission::sources(&variant.prefix, target, &emitted, &outputs)?;
             this.sources.casadi = sources.casadi;
-            this.files.extend(files);
+            files.extend(emitted);
         }
+        let contents = files.iter().map(|(name, text)| (&**name, &**text));
+        check_names(contents.chain([(CERTIFICATE, &[][..])]))?;
+        this.files.extend(files);
         Ok(this)
     }
 
+    /// Adds the source to certify, and returns the files.
     fn emit_c(
         &mut self,
         derived: &Derived,
         (prefix, packaging): (&str, Packaging),
         precision: Precision,
-    ) -> Result {
+    ) -> Result<Vec<(String, Vec<u8>)>> {
         let real = match precision {
             Precision::Double => Real::Double,
             Precision::Single => Real::Single,
@@ -202,8 +204,7 @@ impl Emitted {
         self.sources.c.push(source);
         let named =
             |(ending, text): (&str, String)| (format!("{prefix}.{ending}"), text.into_bytes());
-        self.files.extend(files.into_iter().map(named));
-        Ok(())
+        Ok(files.into_iter().map(named).collect())
     }
 }
 

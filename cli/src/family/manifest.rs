@@ -7,9 +7,10 @@ use std::path::Path;
 use eomgen_model_spec::source::sha256;
 use serde_json::{Value, json};
 
-use super::build::{Built, CERTIFICATE};
+use super::build::Built;
 use super::description::{Family, Variant};
 use crate::document::SCHEMA;
+use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result};
 
 /// Name of the manifest.

@@ -20,6 +20,7 @@ use eomgen_validate::meaning::describe;
 use eomgen_validate::model_certificate::certify_model;
 
 use crate::count::count;
+use crate::emitted_files::CERTIFICATE;
 use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{describe_work, simulate, table};
@@ -148,10 +149,7 @@ fn write_files(
         compiled.model().source.text.as_bytes(),
     )?;
     write_file(&out.join("lib.rs"), rust.as_bytes())?;
-    write_file(
-        &out.join("certificate.json"),
-        format!("{json}\n").as_bytes(),
-    )?;
+    write_file(&out.join(CERTIFICATE), format!("{json}\n").as_bytes())?;
     let trajectory = out.join("trajectory.csv");
     write_file(&trajectory, &table.encode(Path::new("trajectory.csv"))?)?;
     write_file(&out.join("trajectory.svg"), figure.as_bytes())

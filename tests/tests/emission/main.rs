@@ -9,6 +9,7 @@ mod closed_loop;
 mod controllers;
 mod families;
 mod family_interface;
+mod file_names;
 mod header_only;
 mod instruction_bounds;
 mod machine_code;

@@ -1,0 +1,93 @@
+//! Names of emitted files: none is written twice, and no header replaces one of the system.
+
+use std::path::Path;
+use std::process::Command;
+
+use eomgen_tests::program::eomgen;
+
+/// Wheel with this name of the model.
+fn wheel(name: &str) -> String {
+    format!(
+        "[model]\nname = \"{name}\"\n[parameters]\nJ = {{ value = 2, unit = \"kg m^2\" }}\n\
+         [coordinates]\nphi = {{ unit = \"rad\" }}\n[kinetic]\nwheel = \"1/2*J*dot(phi)^2\"\n"
+    )
+}
+
+/// Runs the program in a folder. Returns its status and output.
+fn run(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = eomgen().current_dir(folder).args(arguments).output();
+    let output = output.expect("the program can be run");
+    let said = [output.stdout, output.stderr].concat();
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&said).into_owned(),
+    )
+}
+
+/// Writes the wheel and emits it to `out`.
+fn generate(folder: &Path, name: &str, more: &[&str]) -> (Option<i32>, String) {
+    std::fs::write(folder.join("wheel.toml"), wheel(name)).expect("written");
+    let arguments = [&["generate", "wheel.toml", "--out", "out"], more].concat();
+    run(folder, &arguments)
+}
+
+/// Writes a family of one variant of the wheel and emits it to a folder with the name of the family.
+fn family(folder: &Path, name: &str, variant: &str) -> (Option<i32>, String) {
+    std::fs::write(folder.join("wheel.toml"), wheel("wheel")).expect("written");
+    let text = format!(
+        "[family]\nname = \"{name}\"\n[[variant]]\nspec = \"wheel.toml\"\ntargets = [\"c99\"]\n{variant}"
+    );
+    std::fs::write(folder.join("family.toml"), text).expect("written");
+    run(folder, &["family", "family.toml", "--out", name])
+}
+
+#[test]
+fn two_files_with_one_name_are_rejected_before_any_is_written() {
+    for (name, status) in [
+        ("vectors", 2),
+        ("Vectors", 2),
+        ("vectors_1", 0),
+        ("baked", 0),
+        ("certificate", 0),
+        ("trace", 0),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let given = ["--target", "c99", "--with", "self_test,trace"];
+        let (found, said) = generate(folder.path(), name, &given);
+        assert_eq!(found, Some(status), "{name}\n{said}");
+        let variant = format!("name = \"a\"\nprefix = \"{name}\"\nwith = [\"self_test\"]\n");
+        let (found, in_family) = family(folder.path(), "wheels", &variant);
+        assert_eq!(found, Some(status), "{name}\n{in_family}");
+        if status == 2 {
+            for said in [said, in_family] {
+                let message =
+                    "two of the files would have the name `vectors.h`: give the model another name";
+                assert!(said.contains(message), "{said}");
+            }
+            for out in ["out", "wheels"] {
+                assert!(!folder.path().join(out).exists(), "{name}: {out}");
+            }
+        }
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let (status, said) = generate(folder.path(), "vectors", &["--target", "c99"]);
+    assert_eq!(status, Some(0), "{said}");
+}
+
+#[test]
+fn vectors_of_both_precisions_belong_to_the_prefix_of_the_variant() {
+    for precision in ["[\"f64\", \"f32\"]", "[\"f32\", \"f64\"]"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let variant = format!("name = \"a\"\nprecision = {precision}\nwith = [\"self_test\"]\n");
+        let (status, said) = family(folder.path(), "wheels", &variant);
+        assert_eq!(status, Some(0), "{said}");
+        for (file, part) in [
+            ("vectors.json", "\"model\": \"a\""),
+            ("vectors.h", "#include \"a_baked.h\""),
+            ("a_f32_vectors.h", "#include \"a_f32_baked.h\""),
+        ] {
+            let text = std::fs::read_to_string(folder.path().join("wheels/a").join(file));
+            assert!(text.expect(file).contains(part), "{precision}: {file}");
+        }
+    }
+}
