@@ -3,7 +3,7 @@
 use crate::statements::Words;
 
 /// Rules for names in Rust. Keywords are those of any edition; taken names are variables, helpers, constants
-/// and fields, and values of Rust's prelude.
+/// (also those of generics) and fields, and values of Rust's prelude.
 pub(super) const WORDS: Words = Words {
     language: "Rust",
     keywords: "_ abstract as async await become box break const continue crate do dyn else enum \
@@ -18,7 +18,7 @@ pub(super) const WORDS: Words = Words {
         pivot_reciprocal positive_definite ORDERS DEGREES_OF_FREEDOM STATES STATE_NAMES \
         OBSERVABLES OBSERVABLE_NAMES GUARDS SPECIFICATION_SHA256 GENERATOR_VERSION IDENTITY STATE_UNITS \
         INPUT_UNITS PARAMETER_UNITS OBSERVABLE_UNITS INITIAL_STATE STATE_LOWER STATE_UPPER \
-        INPUT_LOWER INPUT_UPPER Some None \
+        INPUT_LOWER INPUT_UPPER REGIME Some None \
         Ok Err",
     prefixed: false,
 };

@@ -15,6 +15,7 @@ mod instruction_bounds;
 mod machine_code;
 mod misra;
 mod regimes;
+mod reserved_names;
 mod routes;
 mod settings;
 mod single_precision;
