@@ -91,3 +91,35 @@ fn vectors_of_both_precisions_belong_to_the_prefix_of_the_variant() {
         }
     }
 }
+
+#[test]
+fn headers_of_several_families_compile_in_one_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for name in ["first", "second", "third"] {
+        let variant = format!("name = \"{name}_wheel\"\n");
+        let (status, said) = family(folder, name, &variant);
+        assert_eq!(status, Some(0), "{said}");
+    }
+    let text = "#include \"first/models.h\"\n#include \"second/models.h\"\n#include \"third/models.h\"\n\
+                #include \"first/models.h\"\n\
+                int states(void);\n\
+                int states(void) { return first_wheel_model.states + second_wheel_model.states + third_wheel_model.states; }\n";
+    std::fs::write(folder.join("all.c"), text).expect("written");
+    for (compiler, language) in [
+        ("cc", ["-std=c99", "-xc"]),
+        ("c++", ["-std=c++11", "-xc++"]),
+    ] {
+        let mut command = Command::new(compiler);
+        command.current_dir(folder).args(language);
+        let compiled = command.args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "all.c"]);
+        let Ok(output) = compiled.output() else {
+            skips::skip(
+                "headers of families were not compiled: cc is missing (Debian: apt-get install gcc)",
+            );
+            return;
+        };
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{compiler}: {said}");
+    }
+}

@@ -1,11 +1,12 @@
 /** Variants of the family `FAMILY` as tables of function pointers. Do not edit: generate again. */
-#ifndef EOMGEN_MODEL
-#define EOMGEN_MODEL
 #include <stddef.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* The headers of all families have the same type. */
+#ifndef EOMGEN_MODEL
+#define EOMGEN_MODEL
 /** Model of any order in double precision: one observer, one solver or one test serves all variants. Numbers are in SI. The
  * caller provides memory of the given sizes, aligned for double. */
 typedef struct {
@@ -48,9 +49,9 @@ typedef struct {
     /** Returns the power of all non-conservative forces, in W. */
     double (*power)(double t, const double *state, const void *inputs, const void *coefficients);
 } eomgen_model;
+#endif
 
 DECLARATIONS
 #ifdef __cplusplus
 }
-#endif
 #endif
