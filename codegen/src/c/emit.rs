@@ -3,6 +3,7 @@ use std::collections::BTreeSet;
 use super::comments::comment;
 use super::controllers;
 use super::expression::{initialiser, number};
+use super::file_names::check_header;
 use super::functions::functions;
 use super::header::{self, UNBOUNDED, documentation, lists};
 use super::jacobians;
@@ -34,7 +35,7 @@ pub struct Files {
 /// Writes a program as C99 that is also valid C++, in double precision.
 ///
 /// # Errors
-/// A name of the program that is a word of C or C++.
+/// A name of the program that is a word of C or C++, or the name of a system header.
 pub fn emit(program: &Program) -> Result<Files, EmitError> {
     emit_with(program, Real::Double)
 }
@@ -44,6 +45,7 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
 /// # Errors
 /// As for [`emit`].
 pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
+    check_header(&program.name)?;
     let parts = Parts::new(program, real)?;
     let notes = header::notes(program, real, header::TWO_FILES);
     let include = format!("#include \"{}.h\"\n", program.name);
@@ -60,6 +62,7 @@ pub fn emit_with(program: &Program, real: Real) -> Result<Files, EmitError> {
 /// # Errors
 /// As for [`emit`].
 pub fn emit_header_only(program: &Program, real: Real) -> Result<String, EmitError> {
+    check_header(&program.name)?;
     let Parts {
         declarations,
         definitions,

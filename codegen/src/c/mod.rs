@@ -1,11 +1,11 @@
 //! C backend: a header and one source file for each variant, in C99 that is also valid C++, without
 //! allocation or library calls. Its results have the same bits as the emitted Rust.
 //!
-//! `emit` arranges both files: `header` declares, `types` prepares the coefficients, `stages`, `regimes`,
-//! `jacobians` and `controllers` write functions, `functions` their helpers, with the operations on bits of
-//! `primitives`; `vectors` writes test vectors. `casadi` and `cuda` are additional interfaces. `expression` writes
-//! statements, `comments` documentation, `names` all names; `standard_macros` hides macros
-//! of the caller with these names. [`statements`](crate::statements) decides
+//! `emit` arranges both files: `file_names` checks the name of the header, `header` declares, `types` prepares the
+//! coefficients, `stages`, `regimes`, `jacobians` and `controllers` write functions, `functions` their helpers,
+//! with the operations on bits of `primitives`; `vectors` writes test vectors. `casadi` and `cuda` are additional
+//! interfaces. `expression` writes statements, `comments` documentation, `names` all names; `standard_macros` hides
+//! macros of the caller with these names. [`statements`](crate::statements) decides
 //! the order of computation.
 
 mod casadi;
@@ -14,6 +14,7 @@ mod controllers;
 mod cuda;
 mod emit;
 mod expression;
+mod file_names;
 mod functions;
 mod header;
 mod jacobians;

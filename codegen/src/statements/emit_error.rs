@@ -12,6 +12,13 @@ pub enum EmitError {
         /// The language.
         language: &'static str,
     },
+    /// Header that would replace a header of the system.
+    Header {
+        /// Name of the model.
+        name: String,
+        /// Name of the other header, without its ending.
+        hidden: String,
+    },
     /// Two entries of the specification with an item of the same name in the emitted source.
     Collision {
         /// Name of both items.
@@ -36,6 +43,10 @@ impl std::fmt::Display for EmitError {
             Self::Name { name, language } => write!(
                 f,
                 "`{name}` is not a valid {language} identifier: rename it in the specification"
+            ),
+            Self::Header { name, hidden } => write!(
+                f,
+                "`{name}.h` would replace the system header <{hidden}.h>: give the model another name"
             ),
             Self::Collision {
                 name,

@@ -93,6 +93,48 @@ fn vectors_of_both_precisions_belong_to_the_prefix_of_the_variant() {
 }
 
 #[test]
+fn names_of_system_headers_are_rejected_for_c() {
+    for (name, hidden) in [
+        ("stdint", Some("stdint")),
+        ("stddef", Some("stddef")),
+        ("Math", Some("math")),
+        ("string", Some("string")),
+        ("features", Some("features")),
+        ("stdint_", None),
+        ("strings_2", None),
+        ("arm", None),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder.path();
+        let (status, said) = generate(folder, name, &["--target", "c99"]);
+        let header = ["--target", "c99", "--packaging", "header-only"];
+        let (of_header, _) = generate(folder, name, &header);
+        let variant = format!("name = \"a\"\nprefix = \"{name}\"\n");
+        let (of_family, in_family) = family(folder, "wheels", &variant);
+        let expected = hidden.map_or(Some(0), |_| Some(2));
+        assert_eq!(
+            [status, of_header, of_family],
+            [expected; 3],
+            "{name}\n{said}{in_family}"
+        );
+        if let Some(hidden) = hidden {
+            let message = format!(
+                "`{name}.h` would replace the system header <{hidden}.h>: give the model another name"
+            );
+            assert!(
+                said.contains(&message) && in_family.contains(&message),
+                "{said}{in_family}"
+            );
+            assert!(!folder.join("out").exists(), "{name}");
+        }
+        let (status, said) = generate(folder, name, &["--target", "casadi"]);
+        assert_eq!(status, expected, "{name}\n{said}");
+        let (status, said) = generate(folder, name, &["--target", "rust"]);
+        assert_eq!(status, Some(0), "{name}\n{said}");
+    }
+}
+
+#[test]
 fn headers_of_several_families_compile_in_one_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
