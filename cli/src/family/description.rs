@@ -286,6 +286,16 @@ impl Reader<'_> {
                 .push(error.with_help("add \"c99\" to `targets`, or remove `packaging`"));
             return None;
         }
+        let precision = precision?;
+        if precision.contains(&Precision::Single) && !targets.contains(&Target::C99) {
+            let message = "`f32` is a number type of emitted C, and the variant has no C";
+            let span = record.get("precision").map_or(name.span, Entry::span);
+            let error = Diagnostic::error(message).with_span(span, "no target has this precision");
+            self.found.push(error.with_help(
+                "add \"c99\" to `targets`, or remove `precision`: emitted Rust is generic over `f64` and `f32`",
+            ));
+            return None;
+        }
         let variant = Variant {
             line: self.source.place(name.span.start).line,
             prefix: prefix.text.clone(),
@@ -295,7 +305,7 @@ impl Reader<'_> {
             targets,
             with,
             with_names: with_names.into_iter().map(|word| word.text).collect(),
-            precision: precision?,
+            precision,
             packaging: packaging.unwrap_or(Packaging::Module),
             name: name.text.clone(),
         };

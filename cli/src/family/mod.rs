@@ -104,8 +104,9 @@ pub fn run(options: &Options<'_>) -> Result {
     if options.check && is_different {
         let shown: Vec<&str> = different.iter().map(String::as_str).take(12).collect();
         warn(&format!(
-            "error: {} differ: {}{}; run the command without --check",
+            "error: {} {}: {}{}; run the command without --check",
             count(different.len(), "file"),
+            differ(different.len()),
             shown.join(", "),
             if different.len() > shown.len() {
                 " and others"
@@ -116,6 +117,11 @@ pub fn run(options: &Options<'_>) -> Result {
         return Err(Error::Failed);
     }
     Ok(())
+}
+
+/// Returns the verb for a number of files.
+fn differ(count: usize) -> &'static str {
+    if count == 1 { "differs" } else { "differ" }
 }
 
 /// Generates the chosen variants in parallel, in their order.
@@ -188,7 +194,11 @@ fn print(
 ) -> Result {
     if !options.json {
         let text = table(family, manifest, findings, is_written);
-        let verb = if is_written { "written" } else { "differ" };
+        let verb = if is_written {
+            "written"
+        } else {
+            differ(different.len())
+        };
         let files = count(manifest.file_count(), "file");
         return print_text(&format!("{text}{files}, {} {verb}\n", different.len()));
     }

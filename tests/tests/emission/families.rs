@@ -386,8 +386,20 @@ fn wrong_families_are_rejected_with_their_place() {
             "two variants have the prefix `a`",
         ),
         (
-            twice("precision = [\"f64\", \"f32\"]\n", "name = \"a_f32\"\n"),
+            twice(
+                "targets = [\"c99\"]\nprecision = [\"f64\", \"f32\"]\n",
+                "name = \"a_f32\"\n",
+            ),
             "two variants have the prefix `a_f32`",
+        ),
+        (variant("precision = [\"f32\"]\n"), "family.toml:6:13"),
+        (
+            variant("precision = [\"f64\", \"f32\"]\ntargets = [\"rust\", \"cuda\"]\n"),
+            "`f32` is a number type of emitted C, and the variant has no C",
+        ),
+        (
+            variant("targets = [\"casadi\"]\nprecision = [\"f32\"]\n"),
+            "add \"c99\" to `targets`, or remove `precision`",
         ),
         (
             variant("").replace("beam.toml", "family.toml"),
@@ -610,7 +622,7 @@ fn comparison_names_edited_certificate() {
         assert_eq!(status, Some(1), "{said}");
         assert!(
             said.contains("beam_1: edited: beam_1/certificate.json")
-                && said.contains("error: 1 file differ: beam_1/certificate.json;"),
+                && said.contains("error: 1 file differs: beam_1/certificate.json;"),
             "{said}"
         );
     }
