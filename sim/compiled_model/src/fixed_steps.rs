@@ -155,8 +155,8 @@ impl FixedSteps {
                 if let Some(place) = self.take_step(&held) {
                     let (t, names) = (self.time(), names());
                     let reason = format!(
-                        "at t = {t:?} s the state `{}` is not finite: the steps are too long, the state diverged, or a \
-                         function left its domain",
+                        "at t = {t:?} s the state `{}` is not finite: the steps are too long, the state diverged, a \
+                         number overflowed, or a function left its domain",
                         names.get(place).map_or("", |name| name)
                     );
                     let cause = StopCause::NotFinite;

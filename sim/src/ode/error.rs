@@ -111,10 +111,10 @@ impl SolveError {
         match self {
             Self::Request { problem } => problem.clone(),
             Self::NotFinite { t, state } => format!(
-                "the state diverged at t = {t:?} s, or a function left its domain (for example sqrt \
-                 of a negative number) in the rate of {}; check the parameters and the initial \
-                 state, keep the function in its domain (as sqrt(max(x, 0)) does), or shorten the \
-                 time",
+                "the state diverged at t = {t:?} s, a number overflowed (a parameter is far too large or \
+                 too small), or a function left its domain (for example sqrt of a negative number) in \
+                 the rate of {}; check the parameters and the initial state, keep the function in its \
+                 domain (as sqrt(max(x, 0)) does), or shorten the time",
                 names.state_name(*state)
             ),
             Self::NotPositiveDefinite { t, coordinate } => format!(
