@@ -93,3 +93,57 @@ fn edits_of_emitted_c_controllers_and_step_fail() {
         assert!(!passes(&model, &sources(edited)), "{before}: {after}");
     }
 }
+
+/// Controller whose outputs hide moderate changes of the gains in their arguments.
+const HIDDEN_GAINS: &str = r#"
+[model]
+name = "hidden"
+[parameters]
+J = { value = 2, unit = "kg m^2" }
+r = { value = 1, unit = "N m" }
+limit = { value = 0.5, unit = "N m" }
+resolution = { value = 0.1, unit = "N m" }
+T = { value = 1, unit = "s" }
+[coordinates]
+y = { unit = "rad" }
+[inputs]
+u = { unit = "N m" }
+v = { unit = "N m" }
+w = { unit = "N m" }
+[kinetic]
+wheel = "1/2*J*dot(y)^2"
+[forces]
+all = { on = "y", value = "u + v + w" }
+[controllers.one]
+period = 0.01
+states = { e = { unit = "rad", next = "e + y*(period/T)" } }
+[controllers.one.outputs]
+u = "quantise(clamp(r*(1.375*(0.3 - y) - 0.625*dot(y)*T + 10.25*e), -limit, limit), resolution)"
+v = "r*sign(3.125*y + dot(y)*T) - clamp(r*4.875*e, -1e-6*limit, 1e-6*limit)"
+w = "r*above(y - 7.75*e)"
+"#;
+
+#[test]
+fn edits_of_gains_inside_limits_and_quantisation_fail() {
+    let source = Source::new("hidden.toml", HIDDEN_GAINS);
+    let model = eomgen_model_spec::check(source).expect("a model").model;
+    let variant = Variant::derive_with(&model, &[], &OUTPUTS).expect("equations");
+    let text = rust::emit(&variant.program, Packaging::Crate).expect("Rust");
+    let sources = |text: String| Sources {
+        rust: Some(text),
+        ..Sources::default()
+    };
+    assert!(passes(&model, &sources(text.clone())));
+    for (before, after) in [
+        ("10.25", "10.35"),
+        ("1.375", "1.376"),
+        ("0.625", "0.624"),
+        ("3.125", "3.126"),
+        ("4.875", "4.925"),
+        ("7.75", "7.751"),
+    ] {
+        let edited = edit(&text, ("controller_one", before, after));
+        let edited = edited.unwrap_or_else(|| panic!("no `{before}`"));
+        assert!(!passes(&model, &sources(edited)), "{before}: {after}");
+    }
+}

@@ -1,8 +1,10 @@
 //! Functions of sampled controllers: start and update, compared with the operations of the program in double precision, bit
 //! for bit. Measured quantities and states are random, from far below to far above 1, so that limits and quantisation act.
+//! Two samples of each call are next to a decision of an operation, one on either side.
 
 use eomgen_codegen::program::{ControlValues, Program, ProgramController, Quantity};
 
+use super::controller_decisions::Decisions;
 use super::linked_program::format_bits;
 use crate::random::Random;
 
@@ -10,6 +12,12 @@ const SEED: u64 = 0x5a3d_c0de;
 
 /// Number of samples after each start.
 const UPDATES: usize = 6;
+
+/// Places of the updates of a call next to a decision; both have given states.
+const BESIDE_DECISION: [usize; 2] = [3, 5];
+
+/// Number of pairs of samples that are drawn for different decisions.
+const MAX_DRAWS: usize = 16;
 
 /// Largest decimal exponent of a measured quantity and of a state.
 const LARGEST_EXPONENT: f64 = 4.0;
@@ -25,8 +33,8 @@ pub struct ControllerCalls<'p> {
 }
 
 impl<'p> ControllerCalls<'p> {
-    /// Draws the samples of so many calls.
-    pub fn new(program: &'p Program, calls: usize) -> Self {
+    /// Draws the samples of calls with these independent parameters, SI.
+    pub fn new(program: &'p Program, calls: &[&[f64]]) -> Self {
         let mut random = Random::new(SEED);
         let mut draw = |controller: &ProgramController| -> Vec<Row> {
             let width = controller.measured.len() + controller.states.len();
@@ -34,9 +42,22 @@ impl<'p> ControllerCalls<'p> {
                 let exponent = LARGEST_EXPONENT * random.symmetric();
                 random.symmetric() * 10.0_f64.powf(exponent)
             };
-            (0..calls * UPDATES)
-                .map(|_| (0..width).map(|_| number()).collect())
-                .collect()
+            let mut row = || -> Row { (0..width).map(|_| number()).collect() };
+            let mut rows = Vec::new();
+            for (call, parameters) in calls.iter().enumerate() {
+                let mut own: Vec<Row> = (0..UPDATES).map(|_| row()).collect();
+                if let Some(op) = Decisions::choose(controller, call) {
+                    let mut decisions = Decisions::new(controller, parameters);
+                    let mut pairs = (0..MAX_DRAWS).map(|_| [row(), row()]);
+                    let found = pairs.find_map(|[a, b]| decisions.bracket(op, [&a, &b]));
+                    for (place, row) in BESIDE_DECISION.into_iter().zip(found.into_iter().flatten())
+                    {
+                        own[place] = row;
+                    }
+                }
+                rows.extend(own);
+            }
+            rows
         };
         let rows = program.controllers.iter().map(&mut draw).collect();
         Self { program, rows }

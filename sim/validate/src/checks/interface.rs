@@ -93,9 +93,10 @@ impl<'p> Calls<'p> {
                 });
             }
         }
+        let parameters: Vec<&[f64]> = calls.iter().map(|call| &*call.parameters).collect();
         Self {
             program,
-            controllers: ControllerCalls::new(program, calls.len()),
+            controllers: ControllerCalls::new(program, &parameters),
             calls,
         }
     }

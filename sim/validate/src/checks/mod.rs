@@ -17,6 +17,7 @@
 
 pub mod balance;
 pub mod casadi;
+mod controller_decisions;
 mod controllers;
 pub mod emitted;
 pub mod emitted_c;
