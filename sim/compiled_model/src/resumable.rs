@@ -649,7 +649,8 @@ impl Simulation<'_> {
                 }
                 let state = motion.state().to_vec();
                 self.solver_choice = Some(SolverChoice::NotSupportedByExact(reason));
-                self.restart_general(Solver::Rk, &state)
+                self.restart_general(Solver::Rk, &state)?;
+                Ok(())
             }
             Engine::General(motion) => {
                 motion.follow_inputs(&self.instance, self.inputs.clone(), &mut self.log)
@@ -675,7 +676,7 @@ impl Simulation<'_> {
         }
         match self.solver() {
             Solver::Exact => {
-let (start, choice) = ((self.time(), state), self.solver_choice.clone());
+                let (start, choice) = ((self.time(), state), self.solver_choice.clone());
                 let (exact, choice) = self.instance.try_exact(start, &self.inputs, choice)?;
                 self.solver_choice = choice;
                 match exact {

@@ -30,9 +30,19 @@ fn sample(until: f64, count: usize) -> Vec<f64> {
 
 fn assert_equal(found: &Motion, right: &Motion, places: &[usize], error: f64, what: &str) {
     for place in places {
-        let sizes = right.trajectory.states.iter().map(|state| state[*place].abs());
+        let sizes = right
+            .trajectory
+            .states
+            .iter()
+            .map(|state| state[*place].abs());
         let size = sizes.fold(0.0, f64::max);
-        for (at, (a, b)) in found.trajectory.states.iter().zip(&right.trajectory.states).enumerate() {
+        for (at, (a, b)) in found
+            .trajectory
+            .states
+            .iter()
+            .zip(&right.trajectory.states)
+            .enumerate()
+        {
             let difference = (a[*place] - b[*place]).abs();
             assert!(
                 difference <= error * size,

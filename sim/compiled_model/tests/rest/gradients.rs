@@ -572,13 +572,13 @@ fn gradients_with_constraints_equal_differences() -> Result<(), Error> {
         ("twice = { zero = \"3*(x^2 + y^2) - 3*l^2\" }", 0.8),
     ] {
         let inputs = HeldInputs::new(vec![0.0, 0.4], vec![2.0, -3.0], 1);
-        compare_text(&LINKED.replace("CONSTRAINTS", more), inputs, until)?;
+        compare_text(&SWINGING.replace("CONSTRAINTS", more), inputs, until)?;
     }
     Ok(())
 }
 
 /// Pendulum in Cartesian coordinates, with a mass that slides on an inclined rail.
-const LINKED: &str = r#"
+const SWINGING: &str = r#"
 [model]
 name = "linked"
 [parameters]
@@ -607,7 +607,7 @@ rod = { zero = "(x - s)^2 + y^2 - l^2" }
 
 #[test]
 fn gradients_from_states_off_the_constraints_equal_differences() -> Result<(), Error> {
-    let model = CompiledModel::from_text("linked.toml", LINKED, Orders::Declared)?;
+    let model = CompiledModel::from_text("linked.toml", SWINGING, Orders::Declared)?;
     let run = model.with_declared_parameters()?;
     for initial in [
         [0.0, 0.3, -0.6, 0.0, 0.0, 0.0],
