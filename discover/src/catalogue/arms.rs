@@ -10,6 +10,7 @@ use eomgen_model_spec::model::{Expr, ExprKind, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::site::{Site, format_expression};
+use crate::catalogue::stiffness::find_stiffness;
 
 /// Returns the flexible bodies of a model.
 pub(super) fn find_arms(model: &Model) -> Vec<Site> {
@@ -37,7 +38,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
         let stiffness = model
             .potential
             .iter()
-            .find_map(|term| factor_of_square(&term.value, &bent));
+            .find_map(|term| find_stiffness(model, &term.value, &bent));
         let declared = &model.fields[field];
         // Masses, springs and bending at an end are of a deflection: a shaft that twists has none.
         if declared.unit.dimension != Dimension::LENGTH {
@@ -53,7 +54,7 @@ pub(super) fn find_arms(model: &Model) -> Vec<Site> {
         ]
         .into();
         arguments.extend(root.map(|root| ("root", root)));
-        arguments.extend(stiffness.map(|factor| ("stiffness", format_expression(model, factor))));
+        arguments.extend(stiffness.map(|stiffness| ("stiffness", stiffness)));
         let moving = model
             .kinetic
             .iter()
@@ -113,24 +114,6 @@ fn find_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m
         }
         ExprKind::Integral { integrand, .. } => find_square(integrand, wanted),
         ExprKind::Negate(inner) => find_square(inner, wanted),
-        _ => None,
-    }
-}
-
-/// Returns the factor, inside an integral, of a square that contains something `wanted`.
-fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
-    match &expr.kind {
-        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match find_square(right, wanted)
-        {
-            Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => {
-                Some(left)
-            }
-            _ => factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted)),
-        },
-        ExprKind::Binary(_, left, right) => {
-            factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted))
-        }
-        ExprKind::Integral { integrand, .. } => factor_of_square(integrand, wanted),
         _ => None,
     }
 }

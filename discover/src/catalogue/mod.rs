@@ -1,5 +1,5 @@
 //! Catalogue of missing effects: effects of the program and of the user ([`effect`]), the sites of
-//! a model ([`site`], [`sites`], `arms`, [`meshes`], `springs` and their `dampers`, the whole `machine`, read by
+//! a model ([`site`], [`sites`], `arms` with their `stiffness`, [`meshes`], `springs` and their `dampers`, the whole `machine`, read by
 //! `products` and `polynomial`), the `loads` at these sites and their [`usual_motion`]. A
 //! [`candidate`] is an effect at a site: the edits of a [`template`] and its parameters as unknowns
 //! ([`candidate_unknown`]). Effects are defined by edits of the specification only. A file of
@@ -24,6 +24,7 @@ mod products;
 pub mod site;
 pub mod sites;
 mod springs;
+mod stiffness;
 pub mod template;
 pub mod user_effects;
 pub mod usual_motion;

@@ -178,6 +178,77 @@ fn user_defined_effect_is_placed_on_springs() {
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
 }
 
+/// Beam on a joint with its bending energy.
+const BEAM: &str = r#"
+[model]
+name = "beam"
+
+[parameters]
+mu = { value = 1.5, unit = "kg/m" }
+E = { value = 2e9, unit = "Pa" }
+I = { value = 1e-9, unit = "m^4" }
+EI = { value = 2, unit = "N m^2" }
+l = { value = 0.8, unit = "m" }
+
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+unit = "m"
+basis = "clamped_free"
+coordinates = "q"
+order = 1
+
+[kinetic]
+mass = "1/2*integral(mu*dot(w)^2, w)"
+
+[potential]
+bending = "ENERGY"
+"#;
+
+#[test]
+fn bending_stiffness_is_recognised_in_all_notations() {
+    for (energy, stiffness) in [
+        ("1/2*integral(EI*diff(w, x, 2)^2, w)", "EI"),
+        ("integral(1/2*EI*diff(w, x, 2)^2, w)", "EI"),
+        ("1/2*EI*integral(diff(w, x, 2)^2, w)", "EI"),
+        ("integral(EI*diff(w, x, 2)^2, w)/2", "EI"),
+        ("integral(EI/2*diff(w, x, 2)^2, w)", "EI"),
+        ("integral(diff(w, x, 2)^2*EI, w)*0.5", "EI"),
+        ("EI*integral(diff(w, x, 2)^2/2, w)", "EI"),
+        ("0.5*integral(diff(w, x, 2)*EI*diff(w, x, 2), w)", "EI"),
+        ("integral(EI*diff(w, x, 2)^2, w)", "2*EI"),
+        ("1/2*E*integral(I*diff(w, x, 2)^2, w)", "E*I"),
+        ("1/2*integral(E*diff(w, x, 2)^2*I, w)", "E*I"),
+        ("1/2*integral((EI + E*I)*diff(w, x, 2)^2, w)", "(EI + E*I)"),
+        (
+            "1/2*integral(EI*(1 - x/l)^2*diff(w, x, 2)^2, w)",
+            "EI*(1 - x/l)^2",
+        ),
+        (
+            "1/2*integral(EI*l/(l + x)*diff(w, x, 2)^2, w)",
+            "EI*l/(l + x)",
+        ),
+        (
+            "1/2*integral(EI*w^2/l^4, w) + integral(EI*diff(w, x, 2)^2, w)/2",
+            "EI",
+        ),
+    ] {
+        let text = BEAM.replace("ENERGY", energy);
+        let model = check_model(&text);
+        let sites = find_sites(&model);
+        let mut arms = sites.iter().filter(|site| site.kind == SiteKind::Arm);
+        let arm = arms.next().unwrap_or_else(|| panic!("{energy}"));
+        let found = arm.arguments.get("stiffness").map(String::as_str);
+        assert_eq!(found, Some(stiffness), "{energy}");
+        let effects = load_effects(None).expect("the catalogue");
+        let mut effects = effects.iter().filter(|e| e.name == "structural_damping");
+        let damping = candidates_of(&model, effects.next().expect("an effect"));
+        let written = damping[0].write_effect(&text, "beam", &[1e-3], "a test");
+        check_model(&written.unwrap_or_else(|error| panic!("{energy}: {error}")));
+    }
+}
+
 /// Dampers parallel to a spring in several notations, and a force that resembles a damper.
 const DAMPERS: &str = r#"
 [model]
