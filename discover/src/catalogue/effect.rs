@@ -148,12 +148,20 @@ pub enum ShapeScale {
     Rate,
     /// Largest distance from 0.
     Travel,
+    /// Largest positive value.
+    PositiveTravel,
+    /// Largest absolute value of a negative position.
+    NegativeTravel,
 }
 
 impl ShapeScale {
     /// Scales by their keywords in a file.
-    pub const KEYWORDS: [(&'static str, Self); 2] =
-        [("rate", Self::Rate), ("travel", Self::Travel)];
+    pub const KEYWORDS: [(&'static str, Self); 4] = [
+        ("rate", Self::Rate),
+        ("travel", Self::Travel),
+        ("positive_travel", Self::PositiveTravel),
+        ("negative_travel", Self::NegativeTravel),
+    ];
 }
 
 /// A change of the specification.

@@ -40,6 +40,8 @@ impl UsualMotion {
             ShapeScale::Travel => self
                 .travel(site)
                 .map(|travel| travel.low.abs().max(travel.high.abs())),
+            ShapeScale::PositiveTravel => self.travel(site).map(|travel| travel.high),
+            ShapeScale::NegativeTravel => self.travel(site).map(|travel| -travel.low),
         };
         let known = known.filter(|scale| *scale > 0.0);
         known.unwrap_or_else(|| self.typical_size(unit))

@@ -113,22 +113,27 @@ fn response(
             theta[nuisances + number] = candidate_unknowns[number].base + size;
             theta
         };
-        // The size is found on the first, the middle and the last of the windows.
-        let few = [0, windows.len() / 2, windows.len() - 1];
+        // The size is found on the first, the middle and the last of the windows, or on all if these
+        // do not show the effect.
+        let few = vec![0, windows.len() / 2, windows.len() - 1];
+        let all = (0..windows.len()).collect();
         let is_known = number < sizes.len() || candidate_unknowns[number].base != 0.0;
         let scale = candidate_unknowns[number].unknown.scale;
-        let size = trial_size((scale, is_known), *level, |size| {
-            let changes = changes(
-                &shooting,
-                fit,
-                estimate,
-                &theta(size),
-                few.iter().map(|k| (windows[*k], &base[*k])),
-            )?;
-            let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
-            let square: f64 = changes.iter().map(DVector::norm_squared).sum();
-            Some((square / numbers).sqrt())
-        });
+        let find_size = |places: Vec<usize>| {
+            trial_size((scale, is_known), *level, |size| {
+                let changes = changes(
+                    &shooting,
+                    fit,
+                    estimate,
+                    &theta(size),
+                    places.iter().map(|k| (windows[*k], &base[*k])),
+                )?;
+                let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
+                let square: f64 = changes.iter().map(DVector::norm_squared).sum();
+                Some((square / numbers).sqrt())
+            })
+        };
+        let size = find_size(few).or_else(|| find_size(all));
         let Some(size) = size else {
             return Err(DiscoverError::NotExcited);
         };

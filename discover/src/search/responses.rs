@@ -10,9 +10,58 @@ use crate::model::problem::EstimationProblem;
 use crate::search::perturbed_response::simulate_responses;
 use crate::search::response::CandidateResponse;
 use crate::search::variational_response::integrate_responses;
+use crate::thresholds;
 
-/// Computes the responses of all candidates.
+/// Computes the responses of all candidates. A candidate whose initial shape the motion does not
+/// show, such as a stop beyond the travel, is tried at other shapes of the scanned range. Its
+/// response then has another initial shape.
 pub fn compute_responses(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+) -> Vec<Result<CandidateResponse, DiscoverError>> {
+    let mut found = compute_at_shapes(at, problem, fit, candidates);
+    for factor in other_shapes() {
+        let not_excited: Vec<(CandidateId, Candidate)> = CandidateId::first(candidates.len())
+            .filter(|id| matches!(found[id.index()], Err(DiscoverError::NotExcited)))
+            .filter_map(|id| Some((id, scale_shape(&candidates[id], factor)?)))
+            .collect();
+        let (ids, scaled): (Vec<CandidateId>, Vec<Candidate>) = not_excited.into_iter().unzip();
+        let responses = compute_at_shapes(at, problem, fit, &scaled);
+        for (id, response) in ids.into_iter().zip(responses) {
+            if response.is_ok() {
+                found[id.index()] = response;
+            }
+        }
+    }
+    found
+}
+
+/// Returns factors of the initial shape over the scanned range, half a decade apart, the nearest to
+/// 1 first.
+fn other_shapes() -> Vec<f64> {
+    let (low, high) = thresholds::SHAPE_SCAN_DECADES;
+    let mut halves: Vec<i32> = ((2.0 * low) as i32..=(2.0 * high) as i32).collect();
+    halves.retain(|half| *half != 0);
+    halves.sort_by_key(|half| half.abs());
+    let factors = halves
+        .into_iter()
+        .map(|half| 10f64.powf(0.5 * f64::from(half)));
+    factors.collect()
+}
+
+/// Returns a candidate with its shape parameters multiplied by a factor; `None` if it has none.
+fn scale_shape(candidate: &Candidate, factor: f64) -> Option<Candidate> {
+    let mut scaled = candidate.clone();
+    let shapes = scaled.parameters.iter_mut();
+    let shapes = shapes.filter_map(|parameter| parameter.shape_size.as_mut());
+    let count = shapes.map(|shape| *shape *= factor).count();
+    (count > 0).then_some(scaled)
+}
+
+/// Computes the responses of candidates at their initial shapes.
+fn compute_at_shapes(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,

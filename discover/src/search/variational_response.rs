@@ -2,6 +2,9 @@
 //! candidate's model and of the fitted model along the fitted motion drives a tangent vector.
 //! Hundreds of candidates are screened in one integration.
 
+use std::ops::Deref;
+use std::sync::LazyLock;
+
 use crate::ids::CandidateId;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
@@ -28,6 +31,22 @@ struct Points {
     rates: Vec<Vec<f64>>,
     /// The sum of squares of each acceleration and of the rate of each state of first order.
     squares: Vec<f64>,
+}
+
+/// Extent of the points of a motion.
+#[derive(Clone, Copy)]
+enum Extent {
+    /// Some samples of three windows.
+    Few,
+    /// All samples of all windows.
+    All,
+}
+
+/// Points at which sizes are tested. An effect that few of them do not show may still act in a part
+/// of the motion, such as a stop at one end of the travel.
+struct TestedPoints<'p> {
+    few: Points,
+    all: &'p (dyn Deref<Target = Option<Points>> + Sync),
 }
 
 /// A candidate's model with sizes at which it differs a little.
@@ -57,13 +76,15 @@ pub fn integrate_responses(
 ) -> Vec<Option<Result<CandidateResponse, DiscoverError>>> {
     let mut found: Vec<Option<Result<CandidateResponse, DiscoverError>>> =
         vec![None; candidates.len()];
-    let Some(points) = points(at, problem, fit) else {
+    let Some(few) = points(at, problem, fit, Extent::Few) else {
         return found;
     };
+    let all = LazyLock::new(|| points(at, problem, fit, Extent::All));
+    let tested = TestedPoints { few, all: &all };
     let ids: Vec<CandidateId> = CandidateId::first(candidates.len()).collect();
     let ready: Vec<Option<Result<Ready, DiscoverError>>> = ids
         .par_iter()
-        .map(|id| ready(problem, fit, candidates, *id, &points))
+        .map(|id| ready(problem, fit, candidates, *id, &tested))
         .collect();
     let mut all = Vec::new();
     for (id, ready) in ids.into_iter().zip(ready) {
@@ -115,7 +136,12 @@ fn scale_to_level(
 }
 
 /// Returns points of the fitted motion, or `None` if the model provides no neighbouring motions.
-fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Points> {
+fn points(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    extent: Extent,
+) -> Option<Points> {
     let shooting = fit.training_shooting(problem);
     let LinearisedFit {
         estimate, windows, ..
@@ -133,7 +159,14 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         rates: Vec::new(),
         squares: vec![0.0; fit.model.state_count() - first],
     };
-    for id in [0, windows.len() / 2, windows.len() - 1].map(|k| windows[k]) {
+    let (places, stride) = match extent {
+        Extent::Few => (
+            vec![0, windows.len() / 2, windows.len() - 1],
+            thresholds::SIZE_SAMPLE_STRIDE,
+        ),
+        Extent::All => ((0..windows.len()).collect(), 1),
+    };
+    for id in places.into_iter().map(|place| windows[place]) {
         let window = &problem.train.windows[id];
         let inputs = problem.train.inputs(window);
         let Ok(states) =
@@ -141,11 +174,7 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         else {
             continue;
         };
-        let samples = window
-            .times
-            .iter()
-            .zip(states)
-            .step_by(thresholds::SIZE_SAMPLE_STRIDE);
+        let samples = window.times.iter().zip(states).step_by(stride);
         for (t, state) in samples {
             let rates = simulation.compute_rates(*t, &state, inputs.last_sample(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[first..]) {
@@ -166,7 +195,7 @@ fn ready(
     fit: &Fit,
     candidates: &[Candidate],
     id: CandidateId,
-    points: &Points,
+    points: &TestedPoints<'_>,
 ) -> Option<Result<Ready, DiscoverError>> {
     if let Err(stopped) = problem.stop.check_not_stopped() {
         return Some(Err(stopped));
@@ -208,7 +237,11 @@ fn ready(
             values
         };
         let start = candidate_unknown.unknown.scale;
-        let Some(size) = find_small_size(&model, &at, (points, start)) else {
+        let size = find_small_size(&model, &at, (&points.few, start)).or_else(|| {
+            let all = points.all.deref().as_ref()?;
+            find_small_size(&model, &at, (all, start))
+        });
+        let Some(size) = size else {
             return Some(Err(DiscoverError::NotExcited));
         };
         moved.push(MovedValues {

@@ -9,6 +9,7 @@ use eomgen_discover::catalogue::effect::{Effect, SiteKind};
 use eomgen_discover::catalogue::load_effects;
 use eomgen_discover::catalogue::sites::find_sites;
 use eomgen_discover::catalogue::usual_motion::UsualMotion;
+use eomgen_discover::interval::Interval;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped_specifications;
@@ -246,6 +247,34 @@ fn bending_stiffness_is_recognised_in_all_notations() {
         let damping = candidates_of(&model, effects.next().expect("an effect"));
         let written = damping[0].write_effect(&text, "beam", &[1e-3], "a test");
         check_model(&written.unwrap_or_else(|error| panic!("{energy}: {error}")));
+    }
+}
+
+#[test]
+fn initial_place_of_a_stop_is_in_the_travel_of_its_side() {
+    let model = check_model(TWO_CARRIAGES);
+    let effects = load_effects(None).expect("the catalogue");
+    let stops = effects.iter().filter(|effect| effect.name == "end_stop");
+    let stops: Vec<&Effect> = stops.collect();
+    for (low, high) in [(-1.0, 1.0), (-0.5, 1.0), (-1.0, 0.2), (-0.01, 3.0)] {
+        let motion = UsualMotion {
+            ranges: [("(p - q)".to_owned(), Interval::new(low, high))].into(),
+            ..UsualMotion::default()
+        };
+        let sites = find_sites(&model);
+        let found = list_candidates(&model, stops.iter().copied(), &sites, &motion);
+        let places: Vec<f64> = found
+            .iter()
+            .filter(|candidate| candidate.site == "spring")
+            .flat_map(|candidate| &candidate.parameters)
+            .filter_map(|parameter| parameter.shape_size)
+            .collect();
+        let travels = [f64::max(-low, high), high, -low];
+        let right = travels.map(|travel| 0.6 * travel);
+        assert_eq!(places.len(), right.len(), "{low} to {high}");
+        for (place, right) in places.iter().zip(right) {
+            assert!((place - right).abs() < 1e-12, "{low} to {high}: {places:?}");
+        }
     }
 }
 

@@ -280,3 +280,73 @@ fn bristles_are_not_fitted_to_friction_without_memory() {
     let reason = reason.expect("a text");
     assert!(reason.contains("in short segments"), "{reason}");
 }
+
+const SPRUNG: &str = r#"
+[model]
+name = "sprung"
+
+[parameters]
+m = { value = 2.5, unit = "kg", min = 0 }
+c = { value = 9, unit = "N s/m", min = 0 }
+k = { value = 250, unit = "N/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+force = { unit = "N" }
+
+[kinetic]
+carriage = "1/2*m*dot(x)^2"
+
+[potential]
+spring = "1/2*k*x^2"
+
+[dissipation]
+guides = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "force" }
+"#;
+
+/// Returns a record of a mass on a spring with a stop on one side. The noise is 0.02 mm.
+fn stop_record(force: impl Fn(f64) -> f64, (side, place): (f64, f64), seed: u64) -> String {
+    let (mut noise, mut state) = (Noise(seed), [0.0; 2]);
+    let mut text = "t,F,x\n".to_owned();
+    for sample in 0..300 {
+        let t = 5e-3 * f64::from(sample);
+        let push = force(t);
+        let x = 1e3 * state[0] + 0.02 * noise.next();
+        text += &format!("{t:.4},{push:.12e},{x:.8e}\n");
+        step(&mut state, 5e-3, 50, |[x, v]| {
+            let stop = -side * 750.0 * f64::max(side * x - place, 0.0);
+            [*v, (push - 9.0 * v - 250.0 * x + stop) / 2.5]
+        });
+    }
+    text
+}
+
+/// The stop shortens the travel of its side: it is far below the largest distance from 0, which the
+/// motion reaches on the other side.
+#[test]
+fn stop_on_one_side_is_found_in_the_shorter_travel() {
+    for stop in [(-1.0, 0.03), (-1.0, 0.02), (1.0, 0.03)] {
+        let (side, place) = stop;
+        let train = |t: f64| 9.0 * (8.1 * t).sin() + 5.0 * (15.0 * t + 1.0).sin();
+        let test = |t: f64| 8.0 * (9.2 * t + 0.5).sin() + 4.0 * (17.3 * t).sin();
+        let records = [stop_record(train, stop, 1), stop_record(test, stop, 2)];
+        let found = discover(SPRUNG, STAGE_RECORDS, records);
+        assert_named(
+            &found,
+            "end_stop",
+            "spring",
+            &[("k_s", 750.0), ("p_s", place)],
+            0.05,
+        );
+        let term = found["effects"][0]["term"].as_str().expect("a term");
+        assert!(
+            term.contains(if side > 0.0 { "max(" } else { "min(" }),
+            "{term}"
+        );
+    }
+}
