@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::ids::CoordinateId;
 use eomgen_model_spec::model::{Expr, ExprKind, Input, Model};
 
@@ -66,6 +67,33 @@ fn collect_parts(model: &Model, expr: &Expr, into: &mut Parts) {
     });
 }
 
+/// Returns the degree of an expression in the coordinates; `None` if it is no polynomial of them.
+fn degree(model: &Model, expr: &Expr) -> Option<u32> {
+    let of = |expr: &Expr| degree(model, expr);
+    match &expr.kind {
+        ExprKind::Coordinate(_) => Some(1),
+        ExprKind::Definition(id) => of(&model.definitions[*id].value),
+        ExprKind::Negate(inner) => of(inner),
+        ExprKind::Binary(BinaryOperator::Add | BinaryOperator::Subtract, left, right) => {
+            Some(of(left)?.max(of(right)?))
+        }
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
+            of(left)?.checked_add(of(right)?)
+        }
+        ExprKind::Binary(BinaryOperator::Divide, left, right) if of(right) == Some(0) => of(left),
+        ExprKind::Binary(BinaryOperator::Power, base, exponent)
+            if exponent.kind == ExprKind::Number(1.0) =>
+        {
+            of(base)
+        }
+        _ => {
+            let mut parts = Parts::default();
+            collect_parts(model, expr, &mut parts);
+            (parts.coordinates.is_empty() && !parts.other).then_some(0)
+        }
+    }
+}
+
 fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
     let mut found = Vec::new();
     let mut shown = Vec::new();
@@ -84,7 +112,10 @@ fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
             continue;
         }
         if let Some(site) = axis(&observable.name, on, &observable.unit.text) {
-            if let [only] = of.coordinates[..] {
+            // A force on a nonlinear function of a coordinate is another than on the coordinate.
+            if let [only] = of.coordinates[..]
+                && degree(model, &observable.value) == Some(1)
+            {
                 shown.push(only);
             }
             found.push(site);

@@ -179,6 +179,58 @@ fn user_defined_effect_is_placed_on_springs() {
     assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
 }
 
+/// Pendulum with observables of its angle, on which friction would be another than at the angle, or
+/// the same.
+const BOB: &str = r#"
+[model]
+name = "bob"
+
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.3, unit = "m" }
+a = { value = 0.1, unit = "rad" }
+
+[coordinates]
+th = { unit = "rad" }
+
+[definitions]
+OBSERVED
+
+[kinetic]
+bob = "1/2*m*l^2*dot(th)^2"
+
+[observables]
+shown = { value = "y", unit = "UNIT" }
+"#;
+
+#[test]
+fn only_affine_observables_replace_a_coordinate_as_site() {
+    for (definitions, unit, replaces) in [
+        ("y = \"th\"", "rad", true),
+        ("y = \"2*th + a\"", "rad", true),
+        ("y = \"-l*(th - a)/2\"", "m", true),
+        ("x = \"th*cos(a)\"\ny = \"l*x - l\"", "m", true),
+        ("y = \"l*sin(th)\"", "m", false),
+        ("x = \"l*sin(th)\"\ny = \"2*x\"", "m", false),
+        ("y = \"th^2\"", "rad", false),
+        ("y = \"l*th*th\"", "m", false),
+        ("y = \"l/(1 + th)\"", "m", false),
+        ("y = \"l*th + l*cos(th)\"", "m", false),
+    ] {
+        let text = BOB.replace("OBSERVED", definitions).replace("UNIT", unit);
+        let sites = find_sites(&check_model(&text));
+        let axes = sites
+            .iter()
+            .filter(|site| matches!(site.kind, SiteKind::Axis | SiteKind::Angle));
+        let axes: Vec<&str> = axes.map(|site| site.name.as_str()).collect();
+        let expected = match replaces {
+            true => &["shown"][..],
+            false => &["shown", "th"],
+        };
+        assert_eq!(axes, expected, "{definitions}");
+    }
+}
+
 /// Beam on a joint with its bending energy.
 const BEAM: &str = r#"
 [model]
