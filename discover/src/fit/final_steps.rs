@@ -10,6 +10,7 @@ use crate::fit::gauss_newton::{
 };
 use crate::fit::information::compute_window_factor;
 use crate::fit::initial_states::update_carried_prior;
+use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::sensitivity::WindowDerivatives;
 use crate::fit::shooting::{Residual, Shooting};
@@ -135,6 +136,11 @@ fn central_differences(
         initial_states,
         ..
     } = estimate;
+    let residuals = shooting.compute_residuals(theta, initial_states);
+    let quotients = Quotients {
+        shooting,
+        residuals: &residuals,
+    };
     let by_unknown: Vec<Columns> = (UnknownId::first(theta.len()))
         .map(|id| {
             let unknown = &shooting.unknowns[id];
@@ -151,10 +157,9 @@ fn central_differences(
                 moved[id] = reach.clamp(theta[id] + change);
                 moved
             });
-            let span = ends[0][id] - ends[1][id];
-            let [after, before] =
-                ends.map(|theta| shooting.compute_residuals(&theta, initial_states));
-            columns_of(after, before, &vec![span; initial_states.len()])
+            let steps = [ends[0][id] - theta[id], theta[id] - ends[1][id]];
+            let ends = ends.map(|theta| shooting.compute_residuals(&theta, initial_states));
+            quotients.columns(ends, &vec![steps; initial_states.len()])
         })
         .collect();
     let by_state: Vec<Columns> = (shooting.ranges.unwrap_or_default().iter().enumerate())
@@ -164,17 +169,16 @@ fn central_differences(
                 small_change(*range, steepest.unwrap_or(0.0))
             });
             let sizes: Vec<f64> = sizes.collect();
-            let [after, before] = [1.0, -1.0].map(|sign| {
+            let ends = [1.0, -1.0].map(|sign| {
                 let mut moved = initial_states.clone();
                 let starts = moved.iter_mut().zip(&sizes);
                 starts.for_each(|(start, size)| start[state] += sign * size);
                 shooting.compute_residuals(theta, &moved)
             });
-            let spans: Vec<f64> = sizes.iter().map(|size| 2.0 * size).collect();
-            columns_of(after, before, &spans)
+            let steps: Vec<[f64; 2]> = sizes.iter().map(|size| [*size; 2]).collect();
+            quotients.columns(ends, &steps)
         })
         .collect();
-    let residuals = shooting.compute_residuals(theta, initial_states);
     let windows = residuals.into_iter().enumerate();
     windows
         .map(|(window, residual)| {
@@ -210,18 +214,44 @@ fn small_change(scale: f64, steepest: f64) -> f64 {
         .min(thresholds::QUOTIENT_OUTPUT_CHANGE / steepest)
 }
 
-/// Returns difference quotients of each window's residuals.
-fn columns_of(
-    after: Vec<Option<Residual>>,
-    before: Vec<Option<Residual>>,
-    spans: &[f64],
-) -> Columns {
-    let windows = after.into_iter().zip(before).zip(spans);
-    windows
-        .map(|((after, before), span)| {
-            let difference = DVector::from_vec(after?.values) - DVector::from_vec(before?.values);
-            let quotient = difference / *span;
-            (quotient.iter().all(|entry| entry.is_finite())).then_some(quotient)
-        })
-        .collect()
+/// Difference quotients about the residuals at a point.
+struct Quotients<'q> {
+    shooting: &'q Shooting<'q>,
+    residuals: &'q [Option<Residual>],
+}
+
+impl Quotients<'_> {
+    /// Returns the quotients of each window's residuals at both ends. `steps`: steps to the ends of
+    /// each window, both positive.
+    fn columns(&self, ends: [Vec<Option<Residual>>; 2], steps: &[[f64; 2]]) -> Columns {
+        let [after, before] = ends;
+        let windows = after.into_iter().zip(before).zip(self.residuals).zip(steps);
+        windows
+            .map(|(((after, before), own), steps)| {
+                self.column([after?, before?], own.as_ref()?, steps)
+            })
+            .collect()
+    }
+
+    fn column(
+        &self,
+        [after, before]: [Residual; 2],
+        own: &Residual,
+        [to_after, to_before]: &[f64; 2],
+    ) -> Option<DVector<f64>> {
+        let channels = self.shooting.channel_count();
+        let quotient = |row: usize| {
+            let [after, before] = [&after, &before].map(|end| end.values[row]);
+            let has_both_sides = *to_after > 0.0 && *to_before > 0.0;
+            match has_both_sides && self.shooting.model.has_jumps(row % channels) {
+                true => limit_quotient(
+                    (after - own.values[row]) / to_after,
+                    (own.values[row] - before) / to_before,
+                ),
+                false => (after - before) / (to_after + to_before),
+            }
+        };
+        let column = DVector::from_fn(own.values.len(), |row, _| quotient(row));
+        (column.iter().all(|entry| entry.is_finite())).then_some(column)
+    }
 }

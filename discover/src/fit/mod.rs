@@ -1,5 +1,5 @@
 //! Fits of a specification to records by multiple shooting: residuals of windows ([`shooting`]),
-//! their derivatives ([`sensitivity`]), elimination of initial states ([`variable_projection`]),
+//! their derivatives ([`sensitivity`], `jump_free_quotients` of accelerations), elimination of initial states ([`variable_projection`]),
 //! steps ([`gauss_newton`] with [`bounded_least_squares`], [`continuation`] for distant start
 //! values, `final_steps` for collinear unknowns), [`initial_states`], a [`preliminary_fit`] and a
 //! [`full_fit`] fit, the `uncertainty` of the estimates, the remaining [`residuals`], the
@@ -17,6 +17,7 @@ pub mod full_fit;
 pub mod gauss_newton;
 pub mod information;
 pub mod initial_states;
+pub(crate) mod jump_free_quotients;
 pub mod linearised_fit;
 pub mod noise_floor;
 pub mod null_model;

@@ -6,6 +6,7 @@ use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::acceleration_differences::{AccelerationDifferences, PerturbedEvaluator};
+use crate::fit::jump_free_quotients::limit_quotient;
 use crate::fit::shooting::{Residual, SensorValues, Shooting};
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::output_times::OutputTimes;
@@ -45,6 +46,8 @@ pub struct SensitivityEvaluator<'a> {
 struct SteppedNeighbour<'a> {
     neighbour: Neighbour<'a>,
     step: f64,
+    /// Model with the opposite step, if a channel jumps and the step is admissible.
+    opposite: Option<Box<Simulation<'a>>>,
 }
 
 /// A model at neighbouring parameters.
@@ -74,6 +77,9 @@ impl<'a> SensitivityEvaluator<'a> {
         if is_differentiated {
             base.differentiate_by(&values, moved_parameters(shooting, theta));
         }
+        let mut channels = 0..shooting.channel_count();
+        let has_jumps =
+            !base.has_tangents() && channels.any(|channel| shooting.model.has_jumps(channel));
         let mut neighbours = Vec::with_capacity(theta.len());
         for (number, unknown) in shooting.unknowns.iter().enumerate() {
             if !unknown.is_model_parameter() {
@@ -93,7 +99,19 @@ impl<'a> SensitivityEvaluator<'a> {
             } else {
                 Neighbour::Runs(Box::new(shooting.model.create_simulation(&values).ok()?))
             };
-            neighbours.push(Some(SteppedNeighbour { neighbour, step }));
+            let opposite = has_jumps.then(|| {
+                let reach = unknown.bounds.join(unknown.bounds_without_prior);
+                moved[number] = theta[number] - step;
+                let is_admissible = reach.contains(moved[number]);
+                let values = shooting.parameter_values(&moved);
+                let opposite = shooting.model.create_simulation(&values).ok();
+                opposite.filter(|_| is_admissible).map(Box::new)
+            });
+            neighbours.push(Some(SteppedNeighbour {
+                neighbour,
+                step,
+                opposite: opposite.flatten(),
+            }));
         }
         Some(Self {
             base,
@@ -187,7 +205,10 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut drive = 0;
         for (column, neighbour) in self.neighbours.iter().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
+            let Some(SteppedNeighbour {
+                neighbour, step, ..
+            }) = neighbour
+            else {
                 let derivative = self.by_sensor(samples, times, unknown, &integrated.outputs);
                 by_unknown.set_column(column, &derivative);
                 continue;
@@ -277,20 +298,37 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut sensed = Vec::new();
         for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
+            let Some(SteppedNeighbour {
+                neighbour,
+                step,
+                opposite,
+            }) = neighbour
+            else {
                 sensed.push((column, unknown));
                 continue;
             };
             let Neighbour::Runs(simulation) = neighbour else {
                 return None;
             };
-            let moved = simulation
-                .simulate_outputs(start, &times.times, inputs)
-                .ok()?;
-            let moved = shooting.apply_sensors(times, &self.sensors, &moved.values);
-            let moved = shooting.normalise_differences(samples, &moved);
-            for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
-                by_unknown[(row, column)] = (after - before) / *step;
+            let run = |simulation: &mut Simulation<'_>| {
+                let moved = simulation.simulate_outputs(start, &times.times, inputs);
+                let moved = shooting.apply_sensors(times, &self.sensors, &moved.ok()?.values);
+                Some(shooting.normalise_differences(samples, &moved))
+            };
+            let after = run(simulation)?;
+            let before = match opposite {
+                Some(opposite) => run(opposite),
+                None => None,
+            };
+            for (row, own) in residual.iter().enumerate() {
+                let quotient = (after[row] - own) / *step;
+                let has_jumps = shooting.model.has_jumps(row % shooting.channel_count());
+                by_unknown[(row, column)] = match &before {
+                    Some(before) if has_jumps => {
+                        limit_quotient(quotient, (own - before[row]) / *step)
+                    }
+                    _ => quotient,
+                };
             }
         }
         for (column, unknown) in sensed {

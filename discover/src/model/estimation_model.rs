@@ -191,6 +191,13 @@ impl EstimationModel {
         self.compiled.typical_sizes()
     }
 
+    /// Returns true if the quantity of a channel jumps at times that depend on the motion: an
+    /// acceleration with dry friction or impacts.
+    pub(crate) fn has_jumps(&self, channel: usize) -> bool {
+        let program = self.program();
+        self.measured.is_rate(channel) && !(program.guards.is_empty() && program.impacts.is_empty())
+    }
+
     /// Returns the program of the equations.
     pub(crate) fn program(&self) -> &Program {
         self.compiled.program()

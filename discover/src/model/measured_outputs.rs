@@ -105,8 +105,15 @@ impl MeasuredOutputs {
 
     /// Returns true if accelerations are measured. They jump with a force.
     pub fn has_rates(&self) -> bool {
-        let is_rate = |output: &Output| matches!(output, Output::Rate(_) | Output::Acceleration(_));
-        self.outputs.iter().any(is_rate)
+        (0..self.count()).any(|channel| self.is_rate(channel))
+    }
+
+    /// Returns true if a channel measures an acceleration.
+    pub fn is_rate(&self, channel: usize) -> bool {
+        matches!(
+            self.outputs[channel],
+            Output::Rate(_) | Output::Acceleration(_)
+        )
     }
 
     /// Returns the measured inputs, which a given motion determines.

@@ -295,3 +295,35 @@ fn initial_state_that_a_record_contradicts_is_named() {
         assert_eq!(records, contradicted, "{initial}: {found:#}");
     }
 }
+
+/// A reversal of the friction that moves past a sample changes the acceleration there by its jump:
+/// no difference quotient by a small step shows a derivative.
+#[test]
+fn jumps_of_an_acceleration_do_not_narrow_intervals() {
+    let with_friction = OSCILLATOR.replace(
+        "[coordinates]",
+        "F_c = { value = 2, unit = \"N\" }\n\n[coordinates]",
+    ) + "dry = { on = \"x\", value = \"-F_c*sign(dot(x))\" }\n";
+    let with_friction = with_friction.replace("value = 300", "value = 309");
+    let exact = "gain = { sd = 0 }\nbias = { sd = 0 }\ndelay = { sd = 0 }\n";
+    let dataset = format!("{DATASET}{POSITION}{exact}")
+        .replace("observable =", &format!("{exact}observable ="))
+        .replace(
+            "c = { relative = 0.05 }",
+            "k = { relative = 0.05 }\nm = { relative = 0.05 }",
+        );
+    for turn in [0.0, 2.0, 4.0, 6.0] {
+        let records = [
+            record(FRICTION, turn, false),
+            record(FRICTION, turn + 1.0, false),
+        ];
+        let found = run_on_records("compare", &with_friction, &dataset, records);
+        for (name, right) in [("k", 300.0), ("m", 2.0)] {
+            let estimate = &found["refitted"][name];
+            let [value, sd] = ["value", "sd"].map(|key| estimate[key].as_f64().expect("a number"));
+            let off = (value - right).abs() / sd;
+            assert!(off < 5.0, "{turn}: {name} = {value} +- {sd}");
+            assert!(sd > 1e-5 * right, "{turn}: {name} = {value} +- {sd}");
+        }
+    }
+}
