@@ -572,7 +572,7 @@ fn gradients_with_constraints_equal_differences() -> Result<(), Error> {
         ("twice = { zero = \"3*(x^2 + y^2) - 3*l^2\" }", 0.8),
     ] {
         let inputs = HeldInputs::new(vec![0.0, 0.4], vec![2.0, -3.0], 1);
-        compare_text(&SWINGING.replace("CONSTRAINTS", more), inputs, until)?;
+        compare_text(&LINKED.replace("CONSTRAINTS", more), inputs, until)?;
     }
     Ok(())
 }
