@@ -87,8 +87,9 @@ fn breakaway_does_not_depend_on_the_length_of_a_lever() {
     for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
         let right = simulate(&rotor(1.0), solver, &times, f64::INFINITY);
         for (time, state) in times.iter().zip(&right.trajectory.states) {
+            let is_released = state[1].abs() > 1e-12;
             assert_eq!(
-                state[1] != 0.0,
+                is_released,
                 *time > release,
                 "{solver}, {time} s: {state:?}"
             );
