@@ -288,9 +288,9 @@ mod tests {
             count += size;
         }
         let freedoms = 2 + (seed / 27 % 9) as usize;
-        let j = DMatrix::from_fn(count, freedoms, |_, _| numbers.next());
-        let load = DVector::from_fn(freedoms, |_, _| 3.0 * numbers.next());
-        let mut levels = DVector::from_fn(count, |_, _| 0.1 + numbers.next().abs());
+        let j = DMatrix::from_fn(count, freedoms, |_, _| numbers.draw());
+        let load = DVector::from_fn(freedoms, |_, _| 3.0 * numbers.draw());
+        let mut levels = DVector::from_fn(count, |_, _| 0.1 + numbers.draw().abs());
         for disc in &discs {
             let level = levels[disc.rows.start];
             levels

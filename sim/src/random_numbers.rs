@@ -10,7 +10,7 @@ impl Numbers {
     }
 
     /// Returns the next number between -1 and 1.
-    pub fn next(&mut self) -> f64 {
+    pub fn draw(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;

@@ -312,9 +312,9 @@ mod tests {
     /// Returns friction in random directions in a space of this dimension, with a load.
     fn frictions(seed: u64, count: usize, dimensions: usize) -> Rates {
         let mut numbers = Numbers::new(seed);
-        let j = DMatrix::from_fn(count, dimensions, |_, _| numbers.next());
-        let load = DVector::from_fn(dimensions, |_, _| 3.0 * numbers.next());
-        let levels = DVector::from_fn(count, |_, _| 0.1 + numbers.next().abs());
+        let j = DMatrix::from_fn(count, dimensions, |_, _| numbers.draw());
+        let load = DVector::from_fn(dimensions, |_, _| 3.0 * numbers.draw());
+        let levels = DVector::from_fn(count, |_, _| 0.1 + numbers.draw().abs());
         Rates {
             w: -(&j * j.transpose() * DMatrix::from_diagonal(&levels)),
             c: &j * load,

@@ -5,9 +5,9 @@ use crate::random_numbers::Numbers;
 fn random_problem(seed: u64, count: usize, degrees: usize, most: f64) -> ContactProblem {
     let mut numbers = Numbers::new(seed);
     let rows: Vec<Vec<f64>> = (0..2 * count)
-        .map(|_| (0..degrees).map(|_| numbers.next()).collect())
+        .map(|_| (0..degrees).map(|_| numbers.draw()).collect())
         .collect();
-    let motion: Vec<f64> = (0..degrees).map(|_| numbers.next()).collect();
+    let motion: Vec<f64> = (0..degrees).map(|_| numbers.draw()).collect();
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let w: Vec<f64> = rows
         .iter()
@@ -15,7 +15,7 @@ fn random_problem(seed: u64, count: usize, degrees: usize, most: f64) -> Contact
         .collect();
     let c: Vec<f64> = rows.iter().map(|row| product(row, &motion)).collect();
     let friction = (0..count).map(|_| ContactFriction {
-        coefficient: most * (0.5 + 0.5 * numbers.next()),
+        coefficient: most * (0.5 + 0.5 * numbers.draw()),
         direction: None,
     });
     ContactProblem::new(friction.collect(), &w, &c)
@@ -151,7 +151,7 @@ fn single_impact_follows_the_closed_forms_of_a_ball() {
 fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
     let mut numbers = Numbers::new(7);
     for case in 0..1000 {
-        let rows: Vec<[f64; 3]> = (0..2).map(|_| [0; 3].map(|_| numbers.next())).collect();
+        let rows: Vec<[f64; 3]> = (0..2).map(|_| [0; 3].map(|_| numbers.draw())).collect();
         let product = |a: usize, b: usize| (0..3).map(|k| rows[a][k] * rows[b][k]).sum::<f64>();
         let w = [
             [product(0, 0), product(0, 1)],
@@ -159,9 +159,9 @@ fn single_impacts_lose_energy_and_obey_the_ratio_of_works() {
         ];
         let impact = SingleImpact {
             w,
-            rates: [-numbers.next().abs(), numbers.next()],
-            friction: 1.0 + numbers.next(),
-            restitution: 0.5 + 0.5 * numbers.next(),
+            rates: [-numbers.draw().abs(), numbers.draw()],
+            friction: 1.0 + numbers.draw(),
+            restitution: 0.5 + 0.5 * numbers.draw(),
         };
         let p = energetic_impulse(&impact).expect("impulses");
         let after = [0, 1].map(|i| impact.rates[i] + w[i][0] * p[0] + w[i][1] * p[1]);

@@ -1,11 +1,11 @@
-//! Switching functions that vanish with those of the held surfaces, as dot(y) - dot(x) does if dot(x) and dot(y) are
-//! held. Their values are rounding, so their signs have no meaning.
+//! Switching functions that vanish with those of the held surfaces and with the rates of closed contacts, as
+//! dot(y) - dot(x) does if dot(x) and dot(y) are held. Their values are rounding, so their signs have no meaning.
 //!
 //! Such a function is the sum of constant multiples of the held functions. Equal values at random points prove it, except
 //! for a set of points of measure zero (J. T. Schwartz, J. ACM 27 (1980) 701-717).
 
 use eomgen_analysis::qr_iteration;
-use eomgen_codegen::program::evaluator::Point;
+use eomgen_codegen::program::evaluator::{ImpactValues, Point};
 use eomgen_sim::random_numbers::Numbers;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,20 +18,27 @@ const ADDITIONAL_POINTS: usize = 4;
 const MAX_DIFFERENCE: f64 = 1e-10;
 
 impl SidedModel {
-    /// Finds the guards that vanish with the functions of these held rows.
+    /// Finds the guards that vanish with the functions of these held rows and the rates of closed contacts.
     pub(super) fn find_implied_guards(&mut self, held: &[usize]) {
         self.implied_guards.clear();
-        if held.is_empty() {
+        let first_rate = self.guards.len();
+        let rates = self.closed_contacts().iter();
+        let rates = rates.map(|(contact, _)| first_rate + contact);
+        let own: Vec<usize> = held
+            .iter()
+            .map(|row| self.guard_index(*row))
+            .chain(rates)
+            .collect();
+        if own.is_empty() {
             return;
         }
-        if self.drawn_guards.is_empty() {
-            self.drawn_guards = self.evaluate_guards_at_random_points();
+        if self.drawn_values.is_empty() {
+            self.drawn_values = self.evaluate_at_random_points();
         }
-        let values = &self.drawn_guards;
+        let values = &self.drawn_values;
         let column =
-            |guard: usize| DVector::from_iterator(values.len(), values.iter().map(|at| at[guard]));
-        let own: Vec<usize> = held.iter().map(|row| self.guard_index(*row)).collect();
-        let columns: Vec<DVector<f64>> = own.iter().map(|guard| column(*guard)).collect();
+            |place: usize| DVector::from_iterator(values.len(), values.iter().map(|at| at[place]));
+        let columns: Vec<DVector<f64>> = own.iter().map(|place| column(*place)).collect();
         let Some(functions) = qr_iteration::svd(&DMatrix::from_columns(&columns)) else {
             return;
         };
@@ -50,20 +57,25 @@ impl SidedModel {
         self.implied_guards = others.filter(is_implied).collect();
     }
 
-    fn evaluate_guards_at_random_points(&mut self) -> Vec<Vec<f64>> {
+    /// Returns the guards and the rates of the contacts at random points.
+    fn evaluate_at_random_points(&mut self) -> Vec<Vec<f64>> {
         let mut numbers = Numbers::new(1);
-        let mut draw = |count: usize| (0..count).map(|_| numbers.next()).collect::<Vec<f64>>();
+        let mut draw = |count: usize| (0..count).map(|_| numbers.draw()).collect::<Vec<f64>>();
         let count = self.evaluator.program().states();
-        let mut all = vec![vec![0.0; self.guards.len()]; self.side_count() + ADDITIONAL_POINTS];
-        for guards in &mut all {
+        let contacts = self.evaluator.program().impacts.len();
+        let mut rates: Vec<ImpactValues> = Vec::new();
+        let points = 0..self.side_count() + contacts + ADDITIONAL_POINTS;
+        let values = points.map(|_| {
             let (t, state, inputs) = (draw(1)[0], draw(count), draw(self.inputs.len()));
-            let point = Point {
-                t,
-                state: &state,
-                inputs: &inputs,
-            };
-            self.evaluator.guards(point, guards);
-        }
-        all
+            let (state, inputs) = (&state[..], &inputs[..]);
+            let mut values = vec![0.0; self.guards.len()];
+            self.evaluator
+                .guards(Point { t, state, inputs }, &mut values);
+            self.evaluator
+                .impacts(Point { t, state, inputs }, &mut rates);
+            values.extend(rates.iter().map(|impact| impact.rate));
+            values
+        });
+        values.collect()
     }
 }

@@ -54,9 +54,9 @@ pub struct SidedModel {
     pub(super) impacts: Vec<ImpactValues>,
     /// Effect of each surface's force on its own function without contact forces.
     pub(super) own_effects: Vec<f64>,
-    /// Guards at random points; empty before the first use.
-    pub(super) drawn_guards: Vec<Vec<f64>>,
-    /// Guards that vanish with the held functions.
+    /// Guards and rates of the contacts at random points; empty before the first use.
+    pub(super) drawn_values: Vec<Vec<f64>>,
+    /// Guards that vanish with the held functions and the rates of closed contacts.
     pub(super) implied_guards: Vec<usize>,
 }
 
@@ -86,7 +86,7 @@ impl SidedModel {
             closed_contacts: Vec::new(),
             impacts: Vec::new(),
             own_effects: Vec::new(),
-            drawn_guards: Vec::new(),
+            drawn_values: Vec::new(),
             implied_guards: Vec::new(),
             evaluator,
         }

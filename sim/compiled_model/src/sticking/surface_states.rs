@@ -49,8 +49,8 @@ pub(crate) struct SurfaceStates {
     pub(super) known: KnownSides,
     /// True if surfaces were decided since the last call of [`SurfaceStates::take_decided`].
     pub(super) has_decided: bool,
-    /// Rows of the surfaces and discs of the implied guards.
-    held_rows: Vec<usize>,
+    /// Rows of surfaces and discs, and closed contacts, of the implied guards.
+    held: (Vec<usize>, Vec<(usize, ContactMode)>),
 }
 
 impl SurfaceStates {
@@ -68,7 +68,7 @@ impl SurfaceStates {
             kept: None,
             known: KnownSides::Nothing,
             has_decided: false,
-            held_rows: Vec::new(),
+            held: (Vec::new(), Vec::new()),
             sided,
         }
     }
@@ -361,10 +361,10 @@ impl SurfaceStates {
         let surfaces = surfaces.filter(|surface| self.places[*surface].is_on());
         let discs = self.discs.iter().filter(|disc| disc.is_holding());
         let rows = surfaces.chain(discs.flat_map(|disc| disc.rows.clone()));
-        let rows: Vec<usize> = rows.collect();
-        if rows != self.held_rows {
-            self.sided.find_implied_guards(&rows);
-            self.held_rows = rows;
+        let held = (rows.collect(), self.sided.closed_contacts().to_vec());
+        if held != self.held {
+            self.sided.find_implied_guards(&held.0);
+            self.held = held;
         }
     }
 
