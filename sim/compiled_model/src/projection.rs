@@ -87,6 +87,9 @@ fn round_to_six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
+/// Receiver of the states before corrections.
+type StateObserver<'o> = &'o mut dyn FnMut(&[f64]);
+
 impl Projection {
     /// Corrects a state in place with at most `most` corrections. Calls `observe` with the state before each of them.
     /// Returns the number of evaluations of the rates, or `None` if the corrections do not converge. The state stays
@@ -96,7 +99,7 @@ impl Projection {
         own: &mut Evaluator,
         (t, inputs): (f64, &[f64]),
         state: &mut [f64],
-        (most, observe): (usize, &mut dyn FnMut(&[f64])),
+        (most, observe): (usize, StateObserver<'_>),
     ) -> Option<u64> {
         let degrees = own.program().degrees_of_freedom();
         let mut rates = [(); 3].map(|()| vec![0.0; state.len()]);

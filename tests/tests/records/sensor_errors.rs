@@ -110,9 +110,9 @@ fn record(sensors: [Sensor; 2], seed: u64) -> String {
     let (states, inputs) = motion(seed);
     let mut noise = Noise(seed + 11);
     let mut text = "t,u,th,v\n".to_owned();
-    for sample in 2..SAMPLES + 2 {
+    for (sample, input) in inputs.iter().enumerate().skip(2).take(SAMPLES) {
         let t = STEP * (sample - 2) as f64;
-        text += &format!("{t:.4},{:.15e}", inputs[sample]);
+        text += &format!("{t:.4},{input:.15e}");
         for (place, sensor) in sensors.iter().enumerate() {
             let at = (sample * PARTS) as i32 - sensor.delay;
             let quantity = states[at as usize][place] + NOISE[place] * noise.next();

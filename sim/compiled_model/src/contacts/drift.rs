@@ -1,10 +1,4 @@
-//! Distances of open contacts at bodies that surfaces hold. Held rates have a rounding, which moves such a body over time: a
-//! distance that becomes negative by this drift is no impact, and the body is moved back.
-
-use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point};
-use eomgen_model_spec::interval::Interval;
-
-use super::{Contacts, ROUNDING};
+//! Drifts of distances by the rounding of rates that surfaces hold.
 
 /// Accelerations by the force of a surface that holds, and the rounding with which it holds the rates.
 pub(crate) struct HeldDirection {
@@ -20,117 +14,22 @@ pub(crate) struct HeldDirection {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     /// Time since which the surface holds, s.
-    since: f64,
+    pub since: f64,
     /// Rate, in the unit of the distance per second.
-    rate: f64,
+    pub rate: f64,
     /// Growth of the rate, per second.
-    growth: f64,
+    pub growth: f64,
 }
 
 impl Drift {
-    fn distance(self, t: f64) -> f64 {
+    /// Returns the largest drift of the distance at a time, s.
+    pub fn distance(self, t: f64) -> f64 {
         let elapsed = (t - self.since).max(0.0);
         elapsed * (self.rate + 0.5 * self.growth * elapsed)
     }
 
-    fn rate(self, t: f64) -> f64 {
+    /// Returns the largest rate of the drift at a time, s.
+    pub fn rate(self, t: f64) -> f64 {
         self.rate + self.growth * (t - self.since).max(0.0)
-    }
-}
-
-impl Contacts {
-    /// Notes the open contacts that touch bodies at rest in these directions, at a point between steps.
-    pub fn note_drifts(&mut self, own: &mut Evaluator, point: Point<'_>, held: &[HeldDirection]) {
-        if held.is_empty() && self.drifts.iter().all(Vec::is_empty) {
-            return;
-        }
-        own.impacts(point, &mut self.at);
-        let degrees = own.program().degrees_of_freedom();
-        let rates = point.state[degrees..2 * degrees].iter();
-        let rates = rates.zip(&self.unmoved_rates);
-        let rates: Vec<f64> = rates
-            .map(|(rate, unmoved)| rate.abs().max(*unmoved))
-            .collect();
-        for place in 0..self.names.len() {
-            let drifts = match self.rests(place) {
-                true => Vec::new(),
-                false => self.find_drifts(place, held),
-            };
-            let distance: f64 = drifts.iter().map(|drift| drift.distance(point.t)).sum();
-            let rate: f64 = drifts.iter().map(|drift| drift.rate(point.t)).sum();
-            let size = self.sizes[place].max(self.distance_size(place, &point.state[..degrees]));
-            let touches = self.at[place].distance <= ROUNDING * size + distance;
-            let rests =
-                self.at[place].rate.abs() <= ROUNDING * self.rate_size(place, &rates) + rate;
-            let before = std::mem::take(&mut self.drifts[place]);
-            if touches && rests {
-                self.drifts[place] = drifts;
-            } else if !before.is_empty() && !self.rests(place) {
-                let offset = &mut self.offsets[place];
-                *offset = offset.max((-self.at[place].distance).next_up());
-            }
-        }
-    }
-
-    fn find_drifts(&self, place: usize, held: &[HeldDirection]) -> Vec<Drift> {
-        let drift = |held: &HeldDirection| {
-            let terms = self.at[place].row.iter().zip(&held.column);
-            let effect = terms.map(|(row, column)| row * column).sum::<f64>().abs();
-            let [rate, growth] = held.roundings.map(|rounding| rounding * effect);
-            Drift {
-                since: held.since,
-                rate,
-                growth,
-            }
-        };
-        let drifts = held.iter().map(drift);
-        let moves = |drift: &Drift| drift.rate + drift.growth > 0.0;
-        drifts.filter(moves).collect()
-    }
-
-    /// Returns the value that the guard of an open contact adds to its distance at a time, s.
-    pub(super) fn offset(&self, place: usize, t: f64) -> f64 {
-        let drifts = self.drifts[place].iter();
-        self.offsets[place] + drifts.map(|drift| drift.distance(t)).sum::<f64>()
-    }
-
-    /// Returns the bounds of this value from `begin` to `end`, s.
-    pub(super) fn bound_offset(&self, place: usize, begin: f64, end: f64) -> Enclosure {
-        if self.drifts[place].is_empty() {
-            return Enclosure::constant(self.offsets[place]);
-        }
-        let rate = |t: f64| self.drifts[place].iter().map(|drift| drift.rate(t)).sum();
-        let value = Interval {
-            low: self.offset(place, begin),
-            high: self.offset(place, end),
-        };
-        let rate = Interval {
-            low: 0.0,
-            high: rate(end),
-        };
-        Enclosure::from_bounds(value, rate)
-    }
-
-    /// Moves a state onto the contacts whose distances became negative by drift. Returns the number of evaluations.
-    pub(super) fn remove_drift(
-        &mut self,
-        own: &mut Evaluator,
-        point: Point<'_>,
-        (distances, coordinates): (&[f64], &mut [f64]),
-    ) -> u64 {
-        let has_drifted = |place: &usize| {
-            let distance = distances[*place];
-            !self.drifts[*place].is_empty()
-                && distance < 0.0
-                && distance + self.offset(*place, point.t) >= 0.0
-        };
-        let drifted: Vec<usize> = (0..distances.len()).filter(has_drifted).collect();
-        if drifted.is_empty() {
-            return 0;
-        }
-        own.impacts(point, &mut self.at);
-        let corrections = self.solve_balance(&drifted, |impact| impact.distance);
-        self.add_impulses(&drifted, &corrections, coordinates);
-        1
     }
 }

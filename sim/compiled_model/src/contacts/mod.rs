@@ -11,6 +11,7 @@
 mod complementarity;
 mod correction;
 mod drift;
+mod drift_correction;
 mod friction;
 mod impulses;
 mod power;
