@@ -28,7 +28,7 @@ impl OutputRate {
     /// the noise. The error of a smooth motion is estimated from the records: every other sample
     /// predicts the one between them with sixteen times the error, less the contribution of the
     /// noise. `jump_errors`: error of each channel due to jumps of the inputs at the samples, SI.
-    /// At [`RATE_BETWEEN_SAMPLES`] no cubic crosses a sample, which removes this error.
+    /// At `RATE_BETWEEN_SAMPLES` no cubic crosses a sample, which removes this error.
     pub fn select(dataset: &Dataset, jump_errors: &[f64]) -> Self {
         // A motion that is given is known at its samples.
         if dataset.gives_motion() {
