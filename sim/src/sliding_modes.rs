@@ -16,6 +16,9 @@ pub(crate) const RATE_ROUNDING: f64 = 1e-10;
 /// Singular values below this fraction of the largest belong to dependent surfaces.
 pub const MIN_SINGULAR_VALUE_FRACTION: f64 = 1e-10;
 
+/// Error of a row of a solved system, in roundings of its terms.
+const ROW_ROUNDINGS: f64 = 64.0;
+
 /// Number of changes per surface that select the largest error. After these, the first error is
 /// selected, which is guaranteed to terminate (K. G. Murty, *Linear Complementarity*, chapter 11).
 const LARGEST_FIRST_CHANGES: usize = 4;
@@ -211,25 +214,48 @@ pub fn divide_rows(w: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     (divided, sizes)
 }
 
-/// Returns the smallest least-squares solution x of W x = b, with each row divided by its largest magnitude. A step of
-/// refinement makes the error of each row a rounding of its own terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
+/// Returns the smallest least-squares solution x of W x = b. If a row is not solved to rounding and the rows can be solved
+/// with each divided by its largest magnitude, that solution is returned: rows may have units that differ by decades.
 pub fn solve_least_squares(w: &DMatrix<f64>, b: DVector<f64>) -> DVector<f64> {
     if b.len() <= 1 {
         let divided = b.zip_map(&w.column_sum(), |b, w| b / w);
         return divided.map(|x| if x.is_finite() { x } else { 0.0 });
     }
+    let plain = solve_refined(w, &b);
+    if are_rows_solved(w, &b, &plain) {
+        return plain;
+    }
+    let (divided, sizes) = divide_rows(w);
+    let scaled = solve_refined(&divided, &b.component_div(&sizes));
+    match are_rows_solved(w, &b, &scaled) {
+        true => scaled,
+        false => plain,
+    }
+}
+
+/// Returns the smallest least-squares solution; 0 if there is none. A step of refinement makes the error of each row a
+/// rounding of its own terms (R. D. Skeel, Math. Comp. 35 (1980) 817-832).
+fn solve_refined(w: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let zero = || DVector::zeros(b.len());
-    let (w, sizes) = divide_rows(w);
-    let Some(svd) = qr_iteration::svd(&w).filter(|_| b.iter().all(|entry| entry.is_finite()))
-    else {
+    let Some(svd) = qr_iteration::svd(w).filter(|_| b.iter().all(|entry| entry.is_finite())) else {
         return zero();
     };
-    let b = b.component_div(&sizes);
     let least = MIN_SINGULAR_VALUE_FRACTION * svd.singular_values.max();
     let solve = |right: &DVector<f64>| svd.solve(right, least).unwrap_or_else(|_| zero());
-    let solution = solve(&b);
-    let correction = solve(&(b - &w * &solution));
+    let solution = solve(b);
+    let correction = solve(&(b - w * &solution));
     solution + correction
+}
+
+/// Returns true if each row of W x = b holds up to rounding of its terms.
+fn are_rows_solved(w: &DMatrix<f64>, b: &DVector<f64>, x: &DVector<f64>) -> bool {
+    w.row_iter().zip(b).all(|(row, right)| {
+        let terms = row.iter().zip(x).map(|(entry, x)| entry * x);
+        let (sum, size) = terms.fold((-right, right.abs()), |(sum, size), term| {
+            (sum + term, size + term.abs())
+        });
+        sum.abs() <= ROW_ROUNDINGS * f64::EPSILON * size
+    })
 }
 
 /// Largest number of passes over the directions in which values may change.

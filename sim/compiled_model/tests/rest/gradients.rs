@@ -629,43 +629,6 @@ fn gradients_from_states_off_the_constraints_equal_differences() -> Result<(), E
     Ok(())
 }
 
-/// Two points of a sledge: one does not move across its blade, the other is at a distance.
-const SLEDGE: &str = r#"
-[model]
-name = "sledge"
-[parameters]
-m = { value = 2, unit = "kg" }
-J = { value = 0.1, unit = "kg m^2" }
-d = { value = 0.2, unit = "m" }
-F = { value = 3, unit = "N" }
-[coordinates]
-x = { unit = "m" }
-y = { unit = "m" }
-phi = { unit = "rad", initial = 0.4 }
-[kinetic]
-body = "1/2*m*(dot(x)^2 + dot(y)^2) + 1/2*J*dot(phi)^2 + m*d*dot(phi)*(dot(y)*cos(phi) - dot(x)*sin(phi))/4"
-[forces]
-push = { on = "x", value = "F*cos(phi)" }
-[constraints]
-blade = { zero = "dot(x)*sin(phi) - dot(y)*cos(phi)" }
-"#;
-
-#[test]
-fn gradients_from_rates_across_a_blade_equal_differences() -> Result<(), Error> {
-    let model = CompiledModel::from_text("sledge.toml", SLEDGE, Orders::Declared)?;
-    let run = model.with_declared_parameters()?;
-    for rates in [[1.0, 0.3, 0.2], [0.5, -0.8, 1.0], [0.2, 0.6, -2.0]] {
-        let case = Case {
-            inputs: run.default_inputs(),
-            run: run.clone(),
-            initial: [&[0.0, 0.1, 0.4][..], &rates].concat(),
-            times: times(0.8),
-        };
-        compare_with_differences(&case)?;
-    }
-    Ok(())
-}
-
 #[test]
 fn motion_that_stops_early_has_samples_and_no_gradient() -> Result<(), Error> {
     let text = oscillator(1.0, 0.0, 9.0, "").replace("-F*above(x - p)", "2*k*x^3/p^2*81");
