@@ -15,11 +15,7 @@ impl Contacts {
         }
         own.impacts(point, &mut self.at);
         let degrees = own.program().degrees_of_freedom();
-        let rates = point.state[degrees..2 * degrees].iter();
-        let rates = rates.zip(&self.unmoved_rates);
-        let rates: Vec<f64> = rates
-            .map(|(rate, unmoved)| rate.abs().max(*unmoved))
-            .collect();
+        let rates = self.rate_magnitudes(own, point.state);
         for place in 0..self.names.len() {
             let drifts = match self.rests(place) {
                 true => Vec::new(),

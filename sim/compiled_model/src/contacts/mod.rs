@@ -382,18 +382,22 @@ impl Contacts {
         }
     }
 
+    /// Returns the magnitudes of the rates of a state, at least those of rates that do not move.
+    fn rate_magnitudes(&self, own: &Evaluator, state: &[f64]) -> Vec<f64> {
+        let degrees = own.program().degrees_of_freedom();
+        let rates = state[degrees..2 * degrees].iter().zip(&self.unmoved_rates);
+        rates
+            .map(|(rate, unmoved)| rate.abs().max(*unmoved))
+            .collect()
+    }
+
     /// Closes the contacts that touch at rest at the start, and those assumed to be closed, if they push.
     fn start_motion(&mut self, own: &mut Evaluator, point: Point<'_>) {
         self.start = Some(point.t);
         self.open_since.fill(point.t);
         own.impacts(point, &mut self.at);
         self.note_sizes(point.state);
-        let degrees = own.program().degrees_of_freedom();
-        let rates = point.state[degrees..2 * degrees].iter();
-        let rates = rates.zip(&self.unmoved_rates);
-        let rates: Vec<f64> = rates
-            .map(|(rate, unmoved)| rate.abs().max(*unmoved))
-            .collect();
+        let rates = self.rate_magnitudes(own, point.state);
         let small: Vec<f64> = (0..self.at.len())
             .map(|place| ROUNDING * self.rate_size(place, &rates))
             .collect();
