@@ -5,7 +5,9 @@ use std::cell::RefCell;
 use std::fmt::Write;
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
-use eomgen_compiled_model::{CompiledModel, DrivenModel, Orders, SidedModel};
+use eomgen_compiled_model::{
+    CompiledModel, DrivenModel, Motion, Orders, Request, SidedModel, Solver,
+};
 use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -231,6 +233,36 @@ impl TestMotion {
         };
         pairs.map(energy).collect()
     }
+}
+
+/// Simulates a machine from its declared initial state with its declared inputs and parameters, with this relative
+/// tolerance and longest step (s). The solver may stop early.
+pub fn simulate_declared(
+    text: &str,
+    times: &[f64],
+    solver: Solver,
+    (tolerance, max_step): (f64, f64),
+) -> Motion {
+    let model = CompiledModel::from_text("machine.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let run = model.with_declared_parameters().expect("an instance");
+    let request = Request {
+        initial: run.initial_state(),
+        times,
+        inputs: &run.default_inputs(),
+        solver,
+        tolerance,
+        max_step,
+        audit: false,
+    };
+    let motion = run.simulate_until_stop(&request, &mut |_| {});
+    motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
+}
+
+/// Simulates as [`simulate_declared`] up to the last time.
+pub fn simulate_to_end(text: &str, times: &[f64], solver: Solver, settings: (f64, f64)) -> Motion {
+    let motion = simulate_declared(text, times, solver, settings).into_complete();
+    motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
 }
 
 /// Returns `count` equal steps from 0 to `until`, both included.

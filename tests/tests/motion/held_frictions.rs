@@ -1,55 +1,24 @@
 //! Dry frictions that hold a machine: levers of any length, loads with short peaks, and states that depend on a speed that
 //! the held frictions make zero.
 
-use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
-use eomgen_sim::inputs::HeldInputs;
+use eomgen_compiled_model::{Motion, Solver};
+use eomgen_tests::motions::{difference, grid, simulate_to_end};
+
+const TOLERANCE: f64 = 1e-9;
 
 fn simulate(text: &str, solver: Solver, times: &[f64], max_step: f64) -> Motion {
-    let model = CompiledModel::from_text("machine.toml", text, Orders::Declared)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let run = model.with_declared_parameters().expect("an instance");
-    let request = Request {
-        initial: run.initial_state(),
-        times,
-        inputs: &HeldInputs::constant(Vec::new()),
-        solver,
-        tolerance: 1e-9,
-        max_step,
-        audit: false,
-    };
-    let motion = run.simulate_until_stop(&request, &mut |_| {});
-    let motion = motion.and_then(Motion::into_complete);
-    motion.unwrap_or_else(|error| panic!("{solver}: {error}\n{text}"))
+    simulate_to_end(text, times, solver, (TOLERANCE, max_step))
 }
 
-fn sample(until: f64, count: usize) -> Vec<f64> {
-    (0..=count)
-        .map(|k| until * k as f64 / count as f64)
-        .collect()
-}
-
+/// Asserts that these states of two motions differ by at most `error` of their largest magnitudes.
 fn assert_equal(found: &Motion, right: &Motion, places: &[usize], error: f64, what: &str) {
-    for place in places {
-        let sizes = right
-            .trajectory
-            .states
-            .iter()
-            .map(|state| state[*place].abs());
-        let size = sizes.fold(0.0, f64::max);
-        for (at, (a, b)) in found
-            .trajectory
-            .states
-            .iter()
-            .zip(&right.trajectory.states)
-            .enumerate()
-        {
-            let difference = (a[*place] - b[*place]).abs();
-            assert!(
-                difference <= error * size,
-                "{what}, row {at}, state {place}: {difference:e} of {size:e}"
-            );
-        }
-    }
+    let [found, right] = [found, right].map(|motion| {
+        let states = motion.trajectory.states.iter();
+        let selected = states.map(|state| places.iter().map(|place| state[*place]).collect());
+        selected.collect::<Vec<Vec<f64>>>()
+    });
+    let worst = difference(&found, &right, 0.0);
+    assert!(worst <= error, "{what}: {worst:e}");
 }
 
 /// A carriage with friction and an unbalanced rotor with friction, driven by a torque of three times its friction.
@@ -82,7 +51,7 @@ bearing = {{ on = "theta", value = "-T*sign(dot(theta)) + 3*T*sin(w*t)" }}
 
 #[test]
 fn breakaway_does_not_depend_on_the_length_of_a_lever() {
-    let times = sample(2.0, 40);
+    let times = grid(2.0, 40);
     let release = (1.0_f64 / 3.0).asin();
     for solver in [Solver::Rk, Solver::Radau, Solver::Exact] {
         let right = simulate(&rotor(1.0), solver, &times, f64::INFINITY);
@@ -170,7 +139,7 @@ fn short_peaks_of_a_load_release_a_held_mass() {
             0.654012639158295,
         ),
     ];
-    let times = sample(10.0, 40);
+    let times = grid(10.0, 40);
     for text in machines {
         let right = simulate(&text, Solver::Rk, &times, 0.01);
         let found = simulate(&text, Solver::Rk, &times, f64::INFINITY);
@@ -211,7 +180,7 @@ y = {{ on = "y", value = "-G*sign(dot(y)) + A*sin(w*t)" }}
 z = {{ on = "y - x", value = "-z" }}
 "#
         );
-        let times = sample(5.0, 50);
+        let times = grid(5.0, 50);
         let found = simulate(&text, Solver::Rk, &times, f64::INFINITY);
         let right = simulate(&text, Solver::Radau, &times, f64::INFINITY);
         assert_equal(&found, &right, &[0, 1, 4], 1e-6, &text);

@@ -1,18 +1,18 @@
 //! Motions that the exact solver cannot follow: `auto` computes them with another solver.
 
-use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver, SolverChoice};
+use eomgen_compiled_model::{Motion, Solver, SolverChoice};
+use eomgen_tests::motions::simulate_declared;
 
 /// A mass at rest on the surface of a relay force, with damping, and an oscillator that moves.
-fn relay(mass: f64, force: f64, damping: f64) -> CompiledModel {
-    let text = format!(
+fn relay(mass: f64, force: f64, damping: f64) -> String {
+    format!(
         "[model]\nname = \"relay\"\n[parameters]\nm = {{ value = {mass}, unit = \"kg\" }}\n\
          F = {{ value = {force}, unit = \"N\" }}\nc = {{ value = {damping}, unit = \"N s/m\" }}\n\
          k = {{ value = 4, unit = \"N/m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\n\
          y = {{ unit = \"m\", initial = 0.3 }}\n[kinetic]\nx = \"1/2*m*dot(x)^2\"\ny = \"1/2*m*dot(y)^2\"\n\
          [potential]\nspring = \"1/2*k*y^2\"\n[forces]\n\
          relay = {{ on = \"x\", value = \"-F*sign(x) - c*dot(x)\" }}\n"
-    );
-    CompiledModel::from_text("relay.toml", &text, Orders::Declared).expect("a model")
+    )
 }
 
 const MACHINES: [[f64; 3]; 4] = [
@@ -24,29 +24,18 @@ const MACHINES: [[f64; 3]; 4] = [
 
 const TIMES: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
 
-fn simulate(model: &CompiledModel, solver: Solver) -> Motion {
-    let run = model.with_declared_parameters().expect("an instance");
-    let request = Request {
-        initial: run.initial_state(),
-        times: &TIMES,
-        inputs: &run.default_inputs(),
-        solver,
-        tolerance: 1e-9,
-        max_step: f64::INFINITY,
-        audit: false,
-    };
-    let motion = run.simulate_until_stop(&request, &mut |_| {});
-    motion.expect("a motion")
+fn simulate(text: &str, solver: Solver) -> Motion {
+    simulate_declared(text, &TIMES, solver, (1e-9, f64::INFINITY))
 }
 
 #[test]
 fn auto_follows_motions_with_too_many_switches_for_exact() {
     for [mass, force, damping] in MACHINES {
-        let model = relay(mass, force, damping);
+        let text = relay(mass, force, damping);
         let name = format!("{mass} kg, {force} N, {damping} N s/m");
-        let exact = simulate(&model, Solver::Exact);
+        let exact = simulate(&text, Solver::Exact);
         assert!(exact.early_stop.is_some(), "{name}: exact follows it");
-        let motion = simulate(&model, Solver::Auto);
+        let motion = simulate(&text, Solver::Auto);
         assert_eq!(motion.early_stop, None, "{name}");
         assert_eq!(motion.solver, Solver::Rk, "{name}");
         let choice = &motion.solver_choice;

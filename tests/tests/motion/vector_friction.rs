@@ -1,6 +1,7 @@
 //! Friction against the direction of sliding, with a velocity across the motion of any size.
 
-use eomgen_compiled_model::{CompiledModel, Motion, Orders, Request, Solver};
+use eomgen_compiled_model::{Motion, Solver};
+use eomgen_tests::motions::{grid, simulate_to_end};
 
 /// Deceleration by friction, m/s^2.
 const DECELERATION: f64 = 2.0;
@@ -17,24 +18,7 @@ fn simulate(across: f64, forces: &str, solver: Solver, until: f64) -> Motion {
          along = {{ on = \"x\", value = \"-F*dot(x)/norm([dot(x), dot(y)])\" }}\n\
          across = {{ on = \"y\", value = \"-F*dot(y)/norm([dot(x), dot(y)])\" }}\n{forces}"
     );
-    let model = CompiledModel::from_text("puck.toml", &text, Orders::Declared);
-    let model = model.unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let run = model.with_declared_parameters().expect("an instance");
-    let times: Vec<f64> = (0..=20)
-        .map(|step| until * f64::from(step) / 20.0)
-        .collect();
-    let request = Request {
-        initial: run.initial_state(),
-        times: &times,
-        inputs: &run.default_inputs(),
-        solver,
-        tolerance: 1e-9,
-        max_step: f64::INFINITY,
-        audit: false,
-    };
-    let motion = run.simulate_until_stop(&request, &mut |_| {});
-    let motion = motion.and_then(Motion::into_complete);
-    motion.unwrap_or_else(|error| panic!("{solver}, {across:e}: {error}"))
+    simulate_to_end(&text, &grid(until, 20), solver, (1e-9, f64::INFINITY))
 }
 
 const ACROSS: [f64; 9] = [0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 0.0];
