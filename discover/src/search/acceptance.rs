@@ -148,6 +148,16 @@ pub fn compute_t_value(fit: &Fit, own: &[EffectUnknown], effect: EffectId) -> f6
     ratios.map(|t| t * t).sum::<f64>().sqrt()
 }
 
+/// Returns true if the records do not distinguish the shape of an effect from 0. The effect is then
+/// one without that parameter: a spring that softens beyond a deflection of 0 is a softer spring.
+pub fn has_vanishing_shape(fit: &Fit, own: &[EffectUnknown]) -> bool {
+    let mut shapes = own.iter().filter(|own| own.is_shape);
+    shapes.any(|own| {
+        let shape = fit.train.estimate.theta[own.unknown].abs();
+        shape < thresholds::MIN_REDUCTION_STANDARD_ERRORS * fit.effect_sd[own.unknown]
+    })
+}
+
 /// A parameter that a bound holds.
 fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own

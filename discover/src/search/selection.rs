@@ -8,7 +8,7 @@ use crate::catalogue::candidate::Candidate;
 use crate::fit::fit_result::Fit;
 use crate::fit::residuals::Residuals;
 use crate::model::unknowns::UnknownKind;
-use crate::search::acceptance::{EffectUnknown, compute_test_statistics};
+use crate::search::acceptance::{EffectUnknown, compute_test_statistics, has_vanishing_shape};
 use crate::search::context::RoundContext;
 use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::pairs::fit_other_halves;
@@ -173,7 +173,11 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
         .map(|response| candidate(*response).clone())
         .collect();
     let mut equivalent = vec![Vec::new(); own.len()];
-    for other in &fitted_hypotheses {
+    let is_the_same = |other: &FittedHypothesis| {
+        other.effect_unknowns.len() > fitted.effect_unknowns.len()
+            && has_vanishing_shape(&other.fit, &other.effect_unknowns)
+    };
+    for other in fitted_hypotheses.iter().filter(|other| !is_the_same(other)) {
         let Some(half) = indistinguishable_half(&fitted, other, &candidates, &screening) else {
             continue;
         };
