@@ -86,7 +86,8 @@ pub struct EquilibriumRequest<'r> {
 
 impl Instance<'_> {
     /// Finds the equilibrium nearest to the start. Coordinates and first-order states are
-    /// unknowns, except fixed ones. Inputs have their default or given values. If coordinates,
+    /// unknowns, except fixed ones. A first-order state whose rate is 0 at rest for any value, such
+    /// as that of a hysteresis, keeps its value if an equilibrium has it. Inputs have their default or given values. If coordinates,
     /// speeds or first-order states are fixed, the inputs that are not fixed are unknowns too and
     /// hold the machine there.
     ///
@@ -109,13 +110,22 @@ impl Instance<'_> {
         let [fixed, given] = [request.fixed_values, &given].map(|values| self.find_rates(values));
         self.project_rates(&mut at, &directions, &[fixed?, given?]);
         self.check_fixed_rates(&at, request.fixed_values)?;
-        let mut search = Search::new(
-            &holding,
-            &directions,
-            self.find_unknowns(&at, request.fixed_values)?,
-        )?;
+        let mut unknowns = self.find_unknowns(&at, request.fixed_values)?;
+        let mut search = Search::new(&holding, &directions, unknowns.clone())?;
         let start = at.clone();
-        let first = search.run(&mut at);
+        let lasting = search.find_lasting_states(&at);
+        unknowns.retain(|unknown| !lasting.contains(unknown));
+        let mut others = Search::new(&holding, &directions, unknowns)?;
+        let first = match others.run(&mut at) {
+            Err(_) if !lasting.is_empty() => {
+                at = start.clone();
+                search.run(&mut at)
+            }
+            first => {
+                search = others;
+                first
+            }
+        };
         let held = match &first {
             Err(_) if request.fixed_values.is_empty() => holding.find_held_rates(&start)?,
             _ => None,

@@ -415,6 +415,22 @@ impl<'i, 'm> Search<'i, 'm> {
         (way.amax() > 0.0).then_some((trial, there))
     }
 
+    /// Returns the first-order states among the unknowns whose rates are 0 whatever the unknowns are, to first order.
+    pub fn find_lasting_states(&mut self, at: &OperatingPoint) -> Vec<Unknown> {
+        let degrees = self.instance.degrees();
+        let Some(here) = self.try_linearised(at) else {
+            return Vec::new();
+        };
+        let lasts = |unknown: &&Unknown| match unknown {
+            Unknown::Setting(Setting::State(place)) if *place >= 2 * degrees => {
+                let row = place - degrees;
+                here.accelerations[row] == 0.0 && here.matrix.row(row).amax() == 0.0
+            }
+            _ => false,
+        };
+        self.unknowns.iter().filter(lasts).copied().collect()
+    }
+
     /// Returns the accelerations at a point and their derivatives with respect to the unknowns.
     pub fn linearise(&mut self, at: &OperatingPoint) -> Result<LinearisedEquations, Error> {
         let found = self.try_linearised(at);

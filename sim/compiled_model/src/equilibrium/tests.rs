@@ -439,3 +439,60 @@ fn fixed_rate_of_a_steady_motion_determines_the_others() {
         "{message}"
     );
 }
+
+/// A mass on a spring with Dahl friction, whose state `z` keeps any value at rest.
+const BRISTLE: &str = r#"
+[model]
+name = "bristle"
+[parameters]
+m = { value = 2, unit = "kg", min = 0 }
+k = { value = 100, unit = "N/m", min = 0 }
+F_c = { value = 3, unit = "N", min = 0 }
+x_c = { value = 1e-3, unit = "m", min = 0 }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N", value = 5 }
+[states]
+z = { unit = "N", initial = 1, rate = "F_c/x_c*(dot(x) - abs(dot(x))*z/F_c)" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[forces]
+drive = { on = "x", value = "u" }
+bristle = { on = "x", value = "-z" }
+"#;
+
+#[test]
+fn state_of_hysteresis_keeps_its_value_at_equilibrium() {
+    for (unit, size) in [("N", 1.0), ("kN", 1e3), ("mN", 1e-3)] {
+        let text = BRISTLE
+            .replace(
+                "[states]\nz = { unit = \"N\"",
+                &format!("[states]\nz = {{ unit = \"{unit}\""),
+            )
+            .replace("initial = 1,", &format!("initial = {:e},", 1.0 / size));
+        let model = compiled(&text);
+        let run = model.with_declared_parameters().expect("an instance");
+        let found = fixed(&run, &[]).expect("an equilibrium");
+        assert!(
+            (found.point.state[2] - 1.0).abs() < 1e-14,
+            "{unit}: {found:?}"
+        );
+        assert!(
+            (found.point.state[0] - 0.04).abs() < 1e-14,
+            "{unit}: {found:?}"
+        );
+        assert_eq!(found.unknowns, ["x"]);
+    }
+}
+
+#[test]
+fn state_of_hysteresis_balances_the_load_of_a_free_mass() {
+    let model = compiled(&BRISTLE.replace("1/2*k*x^2", "0*k*x^2"));
+    let run = model.with_declared_parameters().expect("an instance");
+    let found = from(&run, &[("u", 2.5)]).expect("an equilibrium");
+    assert!((found.point.state[2] - 2.5).abs() < 1e-12, "{found:?}");
+    assert_eq!(found.unknowns, ["x", "z"]);
+}
