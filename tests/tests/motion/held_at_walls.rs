@@ -233,3 +233,43 @@ fn held_body_is_hit_by_a_moving_wall() {
         }
     }
 }
+
+/// A body hits a wall without restitution, where dry friction holds it. Another one of any mass then hits it: the wall takes
+/// the impulse at once, and the other body returns with its speed.
+#[test]
+fn body_that_friction_holds_at_a_wall_stays_in_contact() {
+    for case in 0..MACHINES {
+        let numbers = &mut Numbers(case as u64 + 1);
+        let (length, mass) = UNITS[case % 2];
+        let [m, other] = [(); 2].map(|()| between(numbers, 0.3, 3.0));
+        let friction = m * between(numbers, 0.3, 0.8);
+        let (speed, other_speed) = (between(numbers, 1.0, 3.0), between(numbers, 0.3, 0.8));
+        let text = format!(
+            "[model]\nname = \"held\"\n[parameters]\n\
+             m = {{ value = {:?}, unit = \"kg\" }}\nM = {{ value = {:?}, unit = \"kg\" }}\n\
+             F = {{ value = {:?}, unit = \"N\" }}\n\
+             [coordinates]\n\
+             a = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+             b = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+             [kinetic]\na = \"1/2*m*dot(a)^2\"\nb = \"1/2*M*dot(b)^2\"\n\
+             [forces]\nfriction = {{ on = \"a\", value = \"-F*sign(dot(a))\" }}\n\
+             [impacts]\nwall = {{ when = \"a\", restitution = 0 }}\nhit = {{ when = \"b - a\", restitution = 1 }}\n",
+            m * mass,
+            other * mass,
+            friction * mass * length,
+            0.14 * length,
+            -speed * length,
+            1.1 * length,
+            -other_speed * length,
+        );
+        for solver in SOLVERS {
+            let (_, states) = simulate(&text, 5.0, solver);
+            let end = states.last().expect("a state");
+            assert!(
+                (end[3] - other_speed * length).abs() < 1e-9 * length
+                    && end[2].abs() < 1e-12 * length,
+                "{solver}: {end:?}\n{text}"
+            );
+        }
+    }
+}

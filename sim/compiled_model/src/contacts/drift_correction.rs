@@ -53,6 +53,11 @@ impl Contacts {
         drifts.filter(moves).collect()
     }
 
+    /// Returns true if an open contact touches a body that surfaces hold.
+    pub(super) fn is_held_beside(&self, place: usize) -> bool {
+        !self.drifts[place].is_empty()
+    }
+
     /// Returns the value that the guard of an open contact adds to its distance at a time, s.
     pub(super) fn offset(&self, place: usize, t: f64) -> f64 {
         let drifts = self.drifts[place].iter();

@@ -104,6 +104,7 @@ impl Contacts {
                 self.rests(*place)
                     || hits.contains(place)
                     || collapsing.contains(place)
+                    || self.is_held_beside(*place)
                     || impact.distance <= within
             })
             .collect();

@@ -258,9 +258,16 @@ impl Contacts {
 
     /// Adds the roundings of the accelerations by the forces of closed contacts.
     pub fn add_rate_roundings(&self, accelerations: &mut [f64]) {
-        let normal = self.forces().normal;
-        for (place, force) in self.closed.iter().zip(normal) {
-            for (slot, entry) in accelerations.iter_mut().zip(&self.at[*place].column) {
+        let forces = self.forces();
+        let normal = self.closed.iter().zip(&forces.normal);
+        let normal = normal.map(|(place, force)| (&self.at[*place].column, force));
+        let tangential = self.closed.iter().zip(&forces.tangential);
+        let tangential = tangential.filter_map(|(place, force)| {
+            let friction = self.friction_at(*place)?;
+            Some((&friction.column, force))
+        });
+        for (column, force) in normal.chain(tangential) {
+            for (slot, entry) in accelerations.iter_mut().zip(column) {
                 *slot += f64::EPSILON * (entry * force).abs();
             }
         }

@@ -449,40 +449,38 @@ m = { value = 2, unit = "kg", min = 0 }
 k = { value = 100, unit = "N/m", min = 0 }
 F_c = { value = 3, unit = "N", min = 0 }
 x_c = { value = 1e-3, unit = "m", min = 0 }
+n = { value = 1 }
 [coordinates]
 x = { unit = "m" }
 [inputs]
-u = { unit = "N", value = 5 }
+u = { unit = "N" }
 [states]
-z = { unit = "N", initial = 1, rate = "F_c/x_c*(dot(x) - abs(dot(x))*z/F_c)" }
+z = { unit = "N", initial = 1, rate = "F_c/x_c*(dot(x)/n - abs(dot(x))*z/F_c)" }
 [kinetic]
 mass = "1/2*m*dot(x)^2"
 [potential]
 spring = "1/2*k*x^2"
 [forces]
 drive = { on = "x", value = "u" }
-bristle = { on = "x", value = "-z" }
+bristle = { on = "x", value = "-n*z" }
 "#;
 
 #[test]
 fn state_of_hysteresis_keeps_its_value_at_equilibrium() {
-    for (unit, size) in [("N", 1.0), ("kN", 1e3), ("mN", 1e-3)] {
+    for size in [1.0, 1e3, 1e-3] {
         let text = BRISTLE
-            .replace(
-                "[states]\nz = { unit = \"N\"",
-                &format!("[states]\nz = {{ unit = \"{unit}\""),
-            )
+            .replace("n = { value = 1 }", &format!("n = {{ value = {size:e} }}"))
             .replace("initial = 1,", &format!("initial = {:e},", 1.0 / size));
         let model = compiled(&text);
         let run = model.with_declared_parameters().expect("an instance");
-        let found = fixed(&run, &[]).expect("an equilibrium");
+        let found = from(&run, &[("u", 5.0)]).expect("an equilibrium");
         assert!(
-            (found.point.state[2] - 1.0).abs() < 1e-14,
-            "{unit}: {found:?}"
+            (size * found.point.state[2] - 1.0).abs() < 1e-14,
+            "{size}: {found:?}"
         );
         assert!(
             (found.point.state[0] - 0.04).abs() < 1e-14,
-            "{unit}: {found:?}"
+            "{size}: {found:?}"
         );
         assert_eq!(found.unknowns, ["x"]);
     }

@@ -53,7 +53,7 @@ impl Contacts {
     }
 
     /// Returns the friction of a contact with friction at the last point.
-    fn friction_at(&self, place: usize) -> Option<&FrictionValues> {
+    pub(super) fn friction_at(&self, place: usize) -> Option<&FrictionValues> {
         self.at[place].friction.as_ref()
     }
 

@@ -73,6 +73,7 @@ impl Contacts {
         let Some(mut decision) = decision else {
             return Ok(());
         };
+        let forces = ContactForces::from_directions(decision.impulses.clone());
         self.note_choice(point.t, (&resting, &decision));
         // Contacts that move on together without a force stay closed.
         let decided = resting.iter().zip(&decision.modes);
@@ -85,14 +86,8 @@ impl Contacts {
                 .any(|(_, a)| *a <= even[*place]);
             let is_free = !self.is_blocked_by(&pushing, *place);
             if *mode == ContactMode::Open && is_even && is_free {
-                let is_slipping = self.tangent_index(*place).is_some_and(|index| {
-                    self.slip(*place).abs() > roundings[index].max(flight.rate_roundings[*place])
-                });
-                *mode = match (self.tangent_index(*place), is_slipping) {
-                    (None, _) => ContactMode::Slides(0.0),
-                    (Some(_), true) => ContactMode::Slides(self.slip(*place).signum()),
-                    (Some(_), false) => ContactMode::Sticks,
-                };
+                let small = flight.rate_roundings[*place];
+                *mode = self.force_free_mode(*place, (&resting, &forces), (&roundings, small));
             }
         }
         self.enter_modes(own, (&resting, &decision), &roundings, (point, point));
@@ -107,24 +102,60 @@ impl Contacts {
         Ok(())
     }
 
+    /// Returns the mode of a closed contact without a normal force: its friction is zero, so that it sticks only if its
+    /// slip neither moves nor accelerates. Slips up to their roundings or the `small` rate are zero.
+    fn force_free_mode(
+        &self,
+        place: usize,
+        (resting, forces): (&[usize], &ContactForces),
+        (roundings, small): (&[f64], f64),
+    ) -> ContactMode {
+        let Some(index) = self.tangent_index(place) else {
+            return ContactMode::Slides(0.0);
+        };
+        let slip = self.slip(place);
+        if slip.abs() > roundings[index].max(small) {
+            return ContactMode::Slides(slip.signum());
+        }
+        let Some(friction) = self.friction_at(place) else {
+            return ContactMode::Sticks;
+        };
+        let own = &friction.delassus;
+        let (pushes, sizes) = self.pushes(own, (resting, forces));
+        let acceleration = friction.acceleration + pushes;
+        let size = friction.acceleration.abs() + sizes;
+        match acceleration.abs() > DISTANCE_ROUNDING * size {
+            true => ContactMode::Slides(acceleration.signum()),
+            false => ContactMode::Sticks,
+        }
+    }
+
     /// Returns the accelerations of the distances of contacts with these forces at others.
     fn resting_accelerations(
         &self,
         touching: &[usize],
         (resting, forces): (&[usize], &ContactForces),
     ) -> Vec<f64> {
-        let impacts = self.names.len();
         let acceleration = |place: &usize| {
             let impact = &self.at[*place];
-            let normal = resting.iter().zip(&forces.normal);
-            let normal = normal.map(|(other, force)| impact.delassus[*other] * force);
-            let along = resting.iter().zip(&forces.tangential);
-            let along = along.filter_map(|(other, force)| {
-                let column = impacts + self.tangent_index(*other)?;
-                Some(impact.delassus[column] * force)
-            });
-            impact.acceleration + normal.chain(along).sum::<f64>()
+            impact.acceleration + self.pushes(&impact.delassus, (resting, forces)).0
         };
         touching.iter().map(acceleration).collect()
+    }
+
+    /// Returns the acceleration by these forces of the direction with this row of Delassus' matrix, and the sum of its terms'
+    /// magnitudes.
+    fn pushes(&self, row: &[f64], (resting, forces): (&[usize], &ContactForces)) -> (f64, f64) {
+        let normal = resting.iter().zip(&forces.normal);
+        let normal = normal.map(|(other, force)| row[*other] * force);
+        let along = resting.iter().zip(&forces.tangential);
+        let along = along.filter_map(|(other, force)| {
+            let column = self.names.len() + self.tangent_index(*other)?;
+            Some(row[column] * force)
+        });
+        let terms = normal.chain(along);
+        terms.fold((0.0, 0.0), |(sum, size), term| {
+            (sum + term, size + term.abs())
+        })
     }
 }
