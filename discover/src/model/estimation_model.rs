@@ -341,10 +341,7 @@ impl EstimationModel {
         }
         let (linear, own) = match &self.linear {
             None => {
-                // A model without a derivation with sides is simulated without them.
-                if let Ok(Some(sided)) = self.compiled.sided_model(values) {
-                    simulation.use_sticking(sided);
-                }
+                self.add_sticking(&mut simulation, values);
                 return Ok(simulation);
             }
             Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),
@@ -378,9 +375,17 @@ impl EstimationModel {
                 let remainder = NonlinearRemainder::new(whole, linear.evaluator(&own));
                 simulation.use_integrator(integrator, Some(remainder));
             }
-            (Err(_), false) => {}
+            (Err(_), false) => self.add_sticking(&mut simulation, values),
         }
         Ok(simulation)
+    }
+
+    /// Adds surfaces that hold the motion to a simulation. A model without a derivation with sides is simulated without
+    /// them.
+    fn add_sticking(&self, simulation: &mut Simulation<'_>, values: &[f64]) {
+        if let Ok(Some(sided)) = self.compiled.sided_model(values) {
+            simulation.use_sticking(sided);
+        }
     }
 
     /// Creates an evaluator of the equations at these parameter values.

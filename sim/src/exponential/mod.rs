@@ -17,6 +17,8 @@
 
 mod crossing;
 mod differences;
+#[cfg(test)]
+mod holding_tests;
 mod kernels;
 mod parameter_derivatives;
 mod partial_steps;
@@ -39,6 +41,7 @@ use crossing::first_crossing;
 pub use parameter_derivatives::MovedParameters;
 use parameter_derivatives::regime_derivatives;
 use regime::Regime;
+use regime_rates::is_held_by_varying_forces;
 pub use remainder::Force;
 use remainder::{RegimeDifference, Remainder};
 use slopes::Slopes;
@@ -62,6 +65,10 @@ const MOST_STEPS: f64 = 256.0;
 /// times of records with rounded or jittering clocks, which err by no more than that.
 const JITTER: f64 = 1e-4;
 
+/// Message of a regime without matrices.
+const UNSUPPORTED_REGIME: &str =
+    "the matrices of a regime are not finite, or a surface holds the motion in an unsupported way";
+
 impl ExponentialIntegrator {
     /// Prepares a model at its parameters, for samples with the distance `sample` (s).
     /// `refinement` multiplies the number of steps that the linear part needs.
@@ -80,6 +87,13 @@ impl ExponentialIntegrator {
             || !evaluator.pivots_are_positive()
         {
             return Err(UnsupportedModel::UnsupportedTerms);
+        }
+        let mut held = (0..surfaces.guards.len())
+            .flat_map(|surface| [Side::Below, Side::Above].map(|others| (surface, others)));
+        if held.any(|(surface, others)| {
+            is_held_by_varying_forces(&mut evaluator, &surfaces, surface, others)
+        }) {
+            return Err(UnsupportedModel::VaryingHoldingForces);
         }
         let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / MAX_TURN_RAD;
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;
@@ -122,8 +136,7 @@ impl ExponentialIntegrator {
         self.moved = moved;
     }
 
-    /// Limits the number of surface crossings of a motion. Friction that sticks in an unsupported
-    /// way crosses its surface in every step, which takes a hundred times as long.
+    /// Limits the number of surface crossings of a motion.
     pub fn limit_crossings(&mut self, most: usize) {
         self.most_crossings = most;
     }
@@ -242,7 +255,7 @@ impl ExponentialIntegrator {
     /// The regime with these sides.
     fn regime(&mut self, sides: &[Side]) -> Result<usize, String> {
         self.known_regime(sides)
-            .ok_or_else(|| "the matrices of a regime are not finite, or a surface holds the motion in an unsupported way".to_owned())
+            .ok_or_else(|| UNSUPPORTED_REGIME.to_owned())
     }
 
     fn known_regime(&mut self, sides: &[Side]) -> Option<usize> {

@@ -299,10 +299,7 @@ impl ExponentialIntegrator {
         );
         if there * outward < -MIN_RETURN_RATE * size && here * outward > 0.0 {
             motion.sides[surface] = Side::Held;
-            match self.known_regime(&motion.sides) {
-                Some(held) => motion.regime = held,
-                None => motion.sides[surface] = beyond,
-            }
+            motion.regime = self.regime(&motion.sides)?;
             self.find_remainder_beside(motion, (t, OFFSET_STEPS), &rates, options)?;
             self.rates(motion, &mut after);
         } else if old == Side::Below && here == 0.0 && there <= 0.0 {

@@ -2,7 +2,7 @@
 //! their exponential is taken.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, RowDVector};
 
 use crate::balancing::{MAX_ENTRY_PER_S, balance, scale_matrix};
 
@@ -100,16 +100,11 @@ fn hold(
         });
     }
     let mut jumps = DMatrix::zeros(n, places.len());
-    let scale = state_scale(&rates.state);
     for (column, held) in places.iter().enumerate() {
         let numbers = surfaces.guard_sides(sides, |place| f64::from(u8::from(place == *held)));
         let other = Rates::new(&evaluator.system(&numbers));
-        let difference = scale_matrix(&(&other.state - &rates.state), &scale);
-        let sizes = [&other, rates].map(|rates| scale_matrix(&rates.state, &scale).amax());
-        if difference.amax() > MIN_RELATIVE_JUMP * sizes[0].max(sizes[1]) {
-            return None;
-        }
-        jumps.set_column(column, &(other.given.column(0) - rates.given.column(0)));
+        let difference = SideDifference::new(rates, &other, &functions[*held]);
+        jumps.set_column(column, &difference.constant_jump()?);
     }
     let rows = DMatrix::from_fn(places.len(), n, |r, c| functions[places[r]].state[c]);
     let inverse = (&rows * &jumps).try_inverse()?;
@@ -128,6 +123,105 @@ fn hold(
         factor,
         jumps,
     })
+}
+
+/// Returns true if the forces of a surface can hold a motion but depend on the state or the inputs on the surface: its
+/// share is then not linear.
+pub(super) fn is_held_by_varying_forces(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    surface: usize,
+    others: Side,
+) -> bool {
+    let count = surfaces.guards.len();
+    let mut rates_on = |side: Side| {
+        let sides: Vec<Side> = (0..count)
+            .map(|place| if place == surface { side } else { others })
+            .collect();
+        let system = evaluator.system(&surfaces.guard_sides(&sides, |_| 0.0));
+        (Rates::new(&system), surfaces.rows(&system))
+    };
+    let (above, _) = rates_on(Side::Above);
+    let (below, functions) = rates_on(Side::Below);
+    let difference = SideDifference::new(&below, &above, &functions[surface]);
+    difference.constant_jump().is_none() && difference.changes_function()
+}
+
+/// Difference between the rates above a surface and those below, on the surface.
+struct SideDifference<'f> {
+    function: &'f Row,
+    /// Powers of two that bring states of different units to like size.
+    scale: Vec<f64>,
+    /// Difference by the state, without the part that vanishes on the surface.
+    state: DMatrix<f64>,
+    /// Difference by a unit constant and the inputs, in the same way.
+    given: DMatrix<f64>,
+    /// Largest scaled rate by the state.
+    state_size: f64,
+    /// Magnitudes of the rates by a unit constant and the inputs.
+    given_sizes: DMatrix<f64>,
+}
+
+impl<'f> SideDifference<'f> {
+    fn new(below: &Rates, above: &Rates, function: &'f Row) -> Self {
+        let scale = state_scale(&below.state);
+        let [one, other] = [below, above].map(|rates| scale_matrix(&rates.state, &scale).amax());
+        let mut found = Self {
+            state: &above.state - &below.state,
+            given: &above.given - &below.given,
+            state_size: one.max(other),
+            given_sizes: above.given.abs().sup(&below.given.abs()),
+            scale,
+            function,
+        };
+        found.remove_multiples();
+        found
+    }
+
+    /// Subtracts the multiples of the function, which vanish on the surface.
+    fn remove_multiples(&mut self) {
+        let entries = self.function.state.iter().zip(&self.scale);
+        let sizes = entries.map(|(entry, scale)| (entry * scale).abs());
+        let largest = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((place, _)) = largest.filter(|(_, size)| *size > 0.0) else {
+            return;
+        };
+        let multiple = self.state.column(place) / self.function.state[place];
+        for (matrix, row) in [
+            (&mut self.state, &self.function.state),
+            (&mut self.given, &self.function.given),
+        ] {
+            for (mut column, entry) in matrix.column_iter_mut().zip(row) {
+                column -= &multiple * *entry;
+            }
+        }
+    }
+
+    /// Returns the difference if it is constant on the surface.
+    fn constant_jump(&self) -> Option<DVector<f64>> {
+        let state = scale_matrix(&self.state, &self.scale);
+        let is_constant = state.amax() <= MIN_RELATIVE_JUMP * self.state_size;
+        let inputs = 1..self.given.ncols();
+        let mut inputs = inputs.map(|input| {
+            let sizes = self.given_sizes.column(input);
+            self.given.column(input).amax() <= MIN_RELATIVE_JUMP * sizes.amax()
+        });
+        (is_constant && inputs.all(|is_constant| is_constant)).then(|| self.given.column(0).into())
+    }
+
+    /// Returns true if the difference changes the rate of the function.
+    fn changes_function(&self) -> bool {
+        let row = RowDVector::from_row_slice(&self.function.state);
+        let changes = |difference: &DMatrix<f64>| {
+            let change = &row * difference;
+            let size = row.abs() * difference.abs();
+            let mut entries = change.iter().zip(size.iter());
+            entries.any(|(change, size)| change.abs() > MIN_RELATIVE_JUMP * size)
+        };
+        let state = scale_matrix(&self.state, &self.scale);
+        let is_rounding = state.amax() <= MIN_RELATIVE_JUMP * self.state_size;
+        !is_rounding && changes(&self.state) || changes(&self.given)
+    }
 }
 
 /// Powers of two that bring states of different units to like size.
