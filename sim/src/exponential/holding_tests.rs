@@ -68,19 +68,75 @@ fn friction_holds_beside_damping_that_differs_by_direction() {
     }
 }
 
-/// The share of such a force that holds the motion is not linear in the state and the inputs.
+/// The forces of both sides have the same direction.
 #[test]
-fn holding_forces_that_depend_on_state_or_input_are_rejected() {
+fn friction_holds_with_forces_that_depend_on_input_and_position() {
+    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * SAMPLE).collect();
+    let changes = vec![0.0, 0.3, 0.8, 1.2, 1.5];
+    let inputs = HeldInputs::new(changes, vec![8.0, -1.0, -7.0, 2.0, 6.0], 1).expect("inputs");
     for friction in [
-        "-0.1*u*sign(dot(x))",
         "-(T + 0.1*u)*sign(dot(x)) - c*abs(dot(x))",
         "-(T + T*x/l)*sign(dot(x))",
+        "-T*abs(x - l)/l*sign(dot(x))",
     ] {
-        let found = integrator(friction).err();
-        assert_eq!(
-            found,
-            Some(UnsupportedModel::VaryingHoldingForces),
-            "{friction}"
-        );
+        let mut states = Vec::new();
+        let options = Options {
+            force: None,
+            tangents: None,
+        };
+        integrator(friction)
+            .expect("can be integrated")
+            .simulate(&[0.0, 0.0], &times, &inputs, options, &mut |_, state, _| {
+                states.push(state.to_vec());
+            })
+            .expect("a motion");
+        let expected = step_implicitly(friction, &times, &inputs);
+        for (t, (found, expected)) in times.iter().zip(states.iter().zip(&expected)) {
+            let difference = (found[0] - expected).abs();
+            assert!(difference < 1e-5, "{friction} at {t} s: {difference:e}");
+        }
     }
+}
+
+/// Returns positions by small steps that are implicit in the dry friction.
+fn step_implicitly(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<f64> {
+    const PARTS: u32 = 10_000;
+    let [mass, limit, damping, length] = VALUES;
+    let h = SAMPLE / f64::from(PARTS);
+    let (mut x, mut v) = (0.0_f64, 0.0_f64);
+    let mut found = Vec::new();
+    for t in times {
+        found.push(x);
+        let u = inputs.last_sample(t + 0.5 * SAMPLE)[0];
+        for _ in 0..PARTS {
+            let (dry, viscous) = match friction {
+                text if text.contains("abs(dot") => (limit + 0.1 * u, damping * v.abs()),
+                text if text.contains("abs(x") => (limit * (x - length).abs() / length, 0.0),
+                _ => (limit + limit * x / length, 0.0),
+            };
+            let free = v + h * (u - viscous) / mass;
+            let most = h * dry / mass;
+            v = free - free.clamp(-most, most);
+            x += h * v;
+        }
+    }
+    found
+}
+
+/// The force of the second mass changes its share with the position.
+#[test]
+fn holding_forces_of_varying_direction_are_rejected() {
+    let text = "[model]\nname = \"two\"\n[parameters]\n\
+                m = { value = 2, unit = \"kg\" }\nT = { value = 3, unit = \"N\" }\n\
+                l = { value = 0.5, unit = \"m\" }\n\
+                [coordinates]\nx = { unit = \"m\" }\ny = { unit = \"m\" }\n\
+                [kinetic]\nT = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n\
+                [forces]\nfriction = { on = \"x\", value = \"-T*sign(dot(x))\" }\n\
+                other = { on = \"y\", value = \"-T*y/l*sign(dot(x))\" }\n";
+    let model = eomgen_model_spec::check(Source::new("two", text))
+        .expect("valid")
+        .model;
+    let exact = PiecewiseLinear::derive(&model, &[]).expect("piecewise linear");
+    let found = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0, 0.5]), SAMPLE, 1.0).err();
+    assert_eq!(found, Some(UnsupportedModel::VaryingHoldingDirection));
 }

@@ -41,7 +41,7 @@ use crossing::first_crossing;
 pub use parameter_derivatives::MovedParameters;
 use parameter_derivatives::regime_derivatives;
 use regime::Regime;
-use regime_rates::is_held_by_varying_forces;
+use regime_rates::is_held_in_varying_direction;
 pub use remainder::Force;
 use remainder::{RegimeDifference, Remainder};
 use slopes::Slopes;
@@ -91,9 +91,9 @@ impl ExponentialIntegrator {
         let mut held = (0..surfaces.guards.len())
             .flat_map(|surface| [Side::Below, Side::Above].map(|others| (surface, others)));
         if held.any(|(surface, others)| {
-            is_held_by_varying_forces(&mut evaluator, &surfaces, surface, others)
+            is_held_in_varying_direction(&mut evaluator, &surfaces, surface, others)
         }) {
-            return Err(UnsupportedModel::VaryingHoldingForces);
+            return Err(UnsupportedModel::VaryingHoldingDirection);
         }
         let turns = sample * regime::fastest_rate(&mut evaluator, &surfaces) / MAX_TURN_RAD;
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;

@@ -14,7 +14,7 @@ const MOST_CROSSINGS: usize = 12;
 /// The motion itself is right to this part of its size.
 const ROUNDING: f64 = 1e-16;
 
-/// Delay of a release after the share reaches its bound, in steps: the motion then leaves the
+/// Delay of a release after the holding force reaches its bound, in steps: the motion then leaves the
 /// surface by more than rounding.
 const RELEASE_DELAY_STEPS: f64 = 1e-6;
 
@@ -177,8 +177,9 @@ impl ExponentialIntegrator {
             }
             Event::Release(release) => {
                 let borne = motion.remainder.borne.get(release.place);
-                let offset = borne.copied().unwrap_or(0.0) - release.bound();
-                (&regime.held[release.place].share, offset, release.slope)
+                let offset = borne.copied().unwrap_or(0.0);
+                let force = regime.held[release.place].force_to(release.to);
+                (&force.value, offset, release.slope)
             }
         };
         let tau = event.tau();

@@ -13,13 +13,11 @@ use super::parameter_derivatives::RegimeDerivative;
 use super::regime_rates::{DOUBLINGS, HeldRates, Rates, flow_scale, held_rates, state_scale};
 use super::surfaces::{Row, Side, Surfaces, dot};
 
-/// Distance from a holding surface at which a model is evaluated on one side, as a fraction of the
-/// effect of the jump on the surface's function in one step.
-const OFFSET_IN_JUMPS: f64 = 1e-6;
-
 /// A regime.
 #[derive(Clone, Debug)]
 pub struct Regime {
+    /// Length of a step, s.
+    pub length: f64,
     /// The rates' matrix, states x states.
     pub matrix: Columns,
     /// Effect of a unit constant and the inputs on the rates.
@@ -57,21 +55,67 @@ pub struct DoubledStep {
     pub force: Columns,
 }
 
-/// A surface that holds a motion.
+/// A surface that holds a motion. Its holding force is between those on both sides; it is measured by the
+/// reduction of the function's rate, from the lower side.
 #[derive(Clone, Debug)]
 pub struct HeldSurface {
     /// Its place among the surfaces.
     pub surface: usize,
-    /// Share of the upper side in the convex combination that keeps the motion on the surface. The
-    /// surface holds the motion as long as the share is between 0 and 1.
-    pub share: Row,
-    /// Rate of that share, 1/s.
-    pub share_rate: Row,
+    /// Holding force. The surface releases the motion to the lower side if it is negative.
+    pub above_low: HoldingForce,
+    /// Holding force minus the force on the upper side. The surface releases the motion to the upper side if it is positive.
+    pub above_high: HoldingForce,
     /// Change of the state that raises the surface's function by one.
     pub across: Vec<f64>,
-    /// Distance from the surface, in the function's unit, at which a model is evaluated on one side
-    /// of it.
-    pub distance: f64,
+}
+
+/// A holding force, and its rate per second.
+#[derive(Clone, Debug)]
+pub struct HoldingForce {
+    pub value: Row,
+    pub rate: Row,
+}
+
+impl HeldSurface {
+    fn new(
+        surface: usize,
+        (force, difference): (Row, &Row),
+        function: &Row,
+        rates: &Rates,
+    ) -> Self {
+        let above_high = force.subtract(difference);
+        let holding = |value: Row| HoldingForce {
+            rate: along(&value, rates),
+            value,
+        };
+        Self {
+            surface,
+            above_low: holding(force),
+            above_high: holding(above_high),
+            across: across(&function.state),
+        }
+    }
+
+    /// Returns the holding force above that of a side.
+    pub fn force_to(&self, side: Side) -> &HoldingForce {
+        match side {
+            Side::Above => &self.above_high,
+            Side::Below | Side::Held => &self.above_low,
+        }
+    }
+
+    /// Returns the difference of the forces on both sides, and the share of the upper side in the holding force.
+    pub fn difference_and_share(&self, state: &[f64], inputs: &[f64]) -> (f64, f64) {
+        let [low, high] = [&self.above_low, &self.above_high]
+            .map(|force| force.value.evaluate_with_inputs(state, inputs));
+        let difference = low - high;
+        let share = if difference == 0.0 {
+            0.0
+        } else {
+            low / difference
+        };
+        (difference, share)
+    }
 }
 
 impl Regime {
@@ -85,32 +129,23 @@ impl Regime {
     ) -> Option<Self> {
         let (rates, functions, held) = held_rates(evaluator, surfaces, sides)?;
         let HeldRates {
-            sides: held,
+            forces,
             factor,
-            jumps,
+            directions,
         } = held;
         if !rates.are_finite() {
             return None;
         }
-        let held = held.into_iter().enumerate();
-        let held = held
-            .map(|(place, (surface, share))| {
-                let jump = dot(&functions[surface].state, jumps.column(place).as_slice());
-                HeldSurface {
-                    surface,
-                    share_rate: along(&share, &rates),
-                    share,
-                    across: across(&functions[surface].state),
-                    distance: OFFSET_IN_JUMPS * step * jump.abs(),
-                }
-            })
-            .collect();
+        let held = forces.into_iter().map(|(surface, force, difference)| {
+            HeldSurface::new(surface, (force, &difference), &functions[surface], &rates)
+        });
+        let held = held.collect();
         let n = rates.state.nrows();
         let degrees = evaluator.degrees_of_freedom();
         let forced = n - degrees;
         let borne = (
             factor.columns(degrees, forced).into_owned(),
-            jumps.rows(degrees, forced).into_owned(),
+            directions.rows(degrees, forced).into_owned(),
         );
         let given = rates.given.ncols();
         let columns = n + given + forced;
@@ -141,6 +176,7 @@ impl Regime {
         };
         let rows = n + below.len();
         Some(Self {
+            length: step,
             matrix: Columns::from_entries(n, n, |r, c| rates.state[(r, c)]),
             step: Columns::from_entries(rows, n, |r, c| row_of(r, c, None)),
             step_given: Columns::from_entries(rows, given, |r, c| row_of(r, n + c, Some(c))),
@@ -158,20 +194,20 @@ impl Regime {
 
 impl Regime {
     /// Subtracts the reaction of holding surfaces from external accelerations, and writes the
-    /// change of their sides to `sides`.
-    pub fn subtract_held(&self, accelerations: &mut [f64], sides: &mut Vec<f64>) {
-        sides.clear();
+    /// change of their holding forces to `forces`.
+    pub fn subtract_held(&self, accelerations: &mut [f64], forces: &mut Vec<f64>) {
+        forces.clear();
         if self.held.is_empty() {
             return;
         }
-        let (factor, jumps) = &self.force_effects;
+        let (factor, directions) = &self.force_effects;
         for row in factor.row_iter() {
             let products = row.iter().zip(accelerations.iter());
-            sides.push(products.map(|(a, b)| a * b).sum());
+            forces.push(products.map(|(a, b)| a * b).sum());
         }
-        for (column, side) in jumps.column_iter().zip(sides.iter()) {
+        for (column, force) in directions.column_iter().zip(forces.iter()) {
             let sums = accelerations.iter_mut().zip(column.iter());
-            sums.for_each(|(slot, jump)| *slot += jump * side);
+            sums.for_each(|(slot, entry)| *slot += entry * force);
         }
     }
 

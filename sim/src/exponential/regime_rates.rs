@@ -70,14 +70,15 @@ pub(super) fn held_rates(
     Some((rates, functions, held))
 }
 
-/// Surfaces that hold a motion.
+/// Surfaces that hold a motion. Their holding forces are measured by the reduction of the rates of their functions.
 pub(super) struct HeldRates {
-    /// For each of them its place and its side.
-    pub sides: Vec<(usize, Row)>,
-    /// Effect of the rates on these sides, a row for each.
+    /// For each of them its place, its holding force above that on the lower side, and the difference of the forces on
+    /// both sides.
+    pub forces: Vec<(usize, Row, Row)>,
+    /// Effect of the rates on the holding forces, a row for each.
     pub factor: DMatrix<f64>,
-    /// Effect of a side on the rates, a column for each.
-    pub jumps: DMatrix<f64>,
+    /// Effect of a holding force on the rates, a column for each.
+    pub directions: DMatrix<f64>,
 }
 
 /// Makes the rates those of a state that is held where the sides say so.
@@ -92,42 +93,41 @@ fn hold(
         .filter(|place| sides[*place] == Side::Held)
         .collect();
     let n = rates.state.nrows();
-    if places.is_empty() {
-        return Some(HeldRates {
-            sides: Vec::new(),
-            factor: DMatrix::zeros(0, n),
-            jumps: DMatrix::zeros(n, 0),
-        });
-    }
-    let mut jumps = DMatrix::zeros(n, places.len());
+    let mut directions = DMatrix::zeros(n, places.len());
+    let mut differences = Vec::with_capacity(places.len());
     for (column, held) in places.iter().enumerate() {
         let numbers = surfaces.guard_sides(sides, |place| f64::from(u8::from(place == *held)));
         let other = Rates::new(&evaluator.system(&numbers));
         let difference = SideDifference::new(rates, &other, &functions[*held]);
-        jumps.set_column(column, &difference.constant_jump()?);
+        directions.set_column(column, &difference.find_direction()?);
+        differences.push(difference.function_reduction());
     }
     let rows = DMatrix::from_fn(places.len(), n, |r, c| functions[places[r]].state[c]);
-    let inverse = (&rows * &jumps).try_inverse()?;
-    let factor = -inverse * rows;
+    let factor = match places.is_empty() {
+        true => rows,
+        false => -(&rows * &directions).try_inverse()? * rows,
+    };
     let of_state = &factor * &rates.state;
     let of_given = &factor * &rates.given;
-    rates.state += &jumps * &of_state;
-    rates.given += &jumps * &of_given;
+    rates.state += &directions * &of_state;
+    rates.given += &directions * &of_given;
     let row = |place: usize| Row {
         state: of_state.row(place).iter().copied().collect(),
         given: of_given.row(place).iter().copied().collect(),
     };
-    let held = places.iter().enumerate();
+    let forces = places.iter().zip(differences).enumerate();
     Some(HeldRates {
-        sides: held.map(|(k, p)| (*p, row(k))).collect(),
+        forces: forces
+            .map(|(index, (place, difference))| (*place, row(index), difference))
+            .collect(),
         factor,
-        jumps,
+        directions,
     })
 }
 
-/// Returns true if the forces of a surface can hold a motion but depend on the state or the inputs on the surface: its
-/// share is then not linear.
-pub(super) fn is_held_by_varying_forces(
+/// Returns true if the forces of a surface can hold a motion but change their direction with the state or the inputs: the
+/// held motion is then not linear.
+pub(super) fn is_held_in_varying_direction(
     evaluator: &mut AffineEvaluator,
     surfaces: &Surfaces,
     surface: usize,
@@ -144,83 +144,122 @@ pub(super) fn is_held_by_varying_forces(
     let (above, _) = rates_on(Side::Above);
     let (below, functions) = rates_on(Side::Below);
     let difference = SideDifference::new(&below, &above, &functions[surface]);
-    difference.constant_jump().is_none() && difference.changes_function()
+    difference.find_direction().is_none() && difference.changes_function()
 }
 
-/// Difference between the rates above a surface and those below, on the surface.
-struct SideDifference<'f> {
-    function: &'f Row,
-    /// Powers of two that bring states of different units to like size.
+/// Difference between the rates above a surface and those below, on the surface. States are scaled to like size.
+struct SideDifference {
+    /// Columns by the states, a unit constant and the inputs. Those of rounding are 0.
+    columns: DMatrix<f64>,
+    /// Rounding of each column.
+    roundings: Vec<f64>,
+    /// Function of the surface, by the states.
+    function: RowDVector<f64>,
+    /// Powers of two that scale the states.
     scale: Vec<f64>,
-    /// Difference by the state, without the part that vanishes on the surface.
-    state: DMatrix<f64>,
-    /// Difference by a unit constant and the inputs, in the same way.
-    given: DMatrix<f64>,
-    /// Largest scaled rate by the state.
-    state_size: f64,
-    /// Magnitudes of the rates by a unit constant and the inputs.
-    given_sizes: DMatrix<f64>,
 }
 
-impl<'f> SideDifference<'f> {
-    fn new(below: &Rates, above: &Rates, function: &'f Row) -> Self {
+impl SideDifference {
+    fn new(below: &Rates, above: &Rates, function: &Row) -> Self {
         let scale = state_scale(&below.state);
-        let [one, other] = [below, above].map(|rates| scale_matrix(&rates.state, &scale).amax());
-        let mut found = Self {
-            state: &above.state - &below.state,
-            given: &above.given - &below.given,
-            state_size: one.max(other),
-            given_sizes: above.given.abs().sup(&below.given.abs()),
-            scale,
-            function,
+        let states = scale.len();
+        let scaled = |rates: &Rates| {
+            let [states, given] = [&rates.state, &rates.given].map(DMatrix::ncols);
+            DMatrix::from_fn(states, states + given, |row, column| {
+                let entry = match column < states {
+                    true => rates.state[(row, column)] * scale[column],
+                    false => rates.given[(row, column - states)],
+                };
+                entry / scale[row]
+            })
         };
-        found.remove_multiples();
+        let [one, other] = [below, above].map(scaled);
+        let sizes = one.abs().sup(&other.abs());
+        let largest = sizes.columns(0, states).amax();
+        let size = |column: usize| match column < states {
+            true => largest,
+            false => sizes.column(column).amax(),
+        };
+        let entries = function.state.iter().zip(&scale);
+        let entries = entries.map(|(entry, scale)| entry * scale);
+        let mut found = Self {
+            roundings: (0..sizes.ncols())
+                .map(|column| MIN_RELATIVE_JUMP * size(column))
+                .collect(),
+            columns: other - one,
+            function: RowDVector::from_iterator(states, entries),
+            scale,
+        };
+        found.remove_multiples(function);
+        for (mut column, rounding) in found.columns.column_iter_mut().zip(&found.roundings) {
+            if column.amax() <= *rounding {
+                column.fill(0.0);
+            }
+        }
         found
     }
 
     /// Subtracts the multiples of the function, which vanish on the surface.
-    fn remove_multiples(&mut self) {
-        let entries = self.function.state.iter().zip(&self.scale);
-        let sizes = entries.map(|(entry, scale)| (entry * scale).abs());
-        let largest = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((place, _)) = largest.filter(|(_, size)| *size > 0.0) else {
+    fn remove_multiples(&mut self, function: &Row) {
+        let place = self.function.transpose().iamax();
+        let entry = self.function[place];
+        if entry == 0.0 {
             return;
-        };
-        let multiple = self.state.column(place) / self.function.state[place];
-        for (matrix, row) in [
-            (&mut self.state, &self.function.state),
-            (&mut self.given, &self.function.given),
-        ] {
-            for (mut column, entry) in matrix.column_iter_mut().zip(row) {
-                column -= &multiple * *entry;
-            }
+        }
+        let multiple = self.columns.column(place) / entry;
+        let entries: Vec<f64> = self
+            .function
+            .iter()
+            .chain(&function.given)
+            .copied()
+            .collect();
+        for (mut column, entry) in self.columns.column_iter_mut().zip(entries) {
+            column -= &multiple * entry;
         }
     }
 
-    /// Returns the difference if it is constant on the surface.
-    fn constant_jump(&self) -> Option<DVector<f64>> {
-        let state = scale_matrix(&self.state, &self.scale);
-        let is_constant = state.amax() <= MIN_RELATIVE_JUMP * self.state_size;
-        let inputs = 1..self.given.ncols();
-        let mut inputs = inputs.map(|input| {
-            let sizes = self.given_sizes.column(input);
-            self.given.column(input).amax() <= MIN_RELATIVE_JUMP * sizes.amax()
+    /// Returns the reduction of the rate of the function by the difference: positive for forces that lead back.
+    fn function_reduction(&self) -> Row {
+        let states = self.scale.len();
+        let rates = -&self.function * &self.columns;
+        let by_state = rates.iter().zip(&self.scale);
+        Row {
+            state: by_state.map(|(rate, scale)| rate / scale).collect(),
+            given: rates.iter().skip(states).copied().collect(),
+        }
+    }
+
+    /// Returns the difference that reduces the rate of the function by 1, if its direction is constant on the surface and
+    /// changes the function.
+    fn find_direction(&self) -> Option<DVector<f64>> {
+        let columns = self.columns.column_iter().zip(&self.roundings);
+        let present = columns.filter(|(column, _)| column.amax() > 0.0);
+        let (clearest, _) = present.max_by(|a, b| {
+            let [a, b] = [a, b].map(|(column, rounding)| column.amax() / *rounding);
+            a.total_cmp(&b)
+        })?;
+        let rate = (&self.function * clearest)[0];
+        let size = (self.function.abs() * clearest.abs())[0];
+        if rate.abs() <= MIN_RELATIVE_JUMP * size {
+            return None;
+        }
+        let direction = clearest / -rate;
+        let mut columns = self.columns.column_iter().zip(&self.roundings);
+        let is_constant = columns.all(|(column, rounding)| {
+            let rate = (&self.function * column)[0];
+            (column + &direction * rate).amax() <= *rounding
         });
-        (is_constant && inputs.all(|is_constant| is_constant)).then(|| self.given.column(0).into())
+        let scale = DVector::from_column_slice(&self.scale);
+        is_constant.then(|| direction.component_mul(&scale))
     }
 
     /// Returns true if the difference changes the rate of the function.
     fn changes_function(&self) -> bool {
-        let row = RowDVector::from_row_slice(&self.function.state);
-        let changes = |difference: &DMatrix<f64>| {
-            let change = &row * difference;
-            let size = row.abs() * difference.abs();
-            let mut entries = change.iter().zip(size.iter());
-            entries.any(|(change, size)| change.abs() > MIN_RELATIVE_JUMP * size)
-        };
-        let state = scale_matrix(&self.state, &self.scale);
-        let is_rounding = state.amax() <= MIN_RELATIVE_JUMP * self.state_size;
-        !is_rounding && changes(&self.state) || changes(&self.given)
+        self.columns.column_iter().any(|column| {
+            let rate = (&self.function * column)[0];
+            let size = (self.function.abs() * column.abs())[0];
+            rate.abs() > MIN_RELATIVE_JUMP * size
+        })
     }
 }
 

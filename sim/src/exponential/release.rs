@@ -1,7 +1,8 @@
-//! The time at which a surface no longer holds a motion: there the share of one side in the convex
-//! combination that keeps the motion on the surface leaves the interval from 0 to 1.
+//! The time at which a surface no longer holds a motion: there the holding force leaves the interval between the forces on
+//! both sides.
 
 use super::crossing::first_crossing;
+use super::regime::HoldingForce;
 use super::remainder::Remainder;
 use super::remainder_search::OFFSET_STEPS;
 use super::surfaces::{Side, dot};
@@ -19,15 +20,8 @@ pub(super) struct Release {
     pub to: Side,
     /// Time from the beginning of the step, s.
     pub tau: f64,
-    /// Rate at which the nonlinear remainder changes the share, 1/s.
+    /// Rate at which the nonlinear remainder changes the holding force.
     pub slope: f64,
-}
-
-impl Release {
-    /// The share at which the surface releases the motion.
-    pub fn bound(self) -> f64 {
-        f64::from(u8::from(self.to == Side::Above))
-    }
 }
 
 impl ExponentialIntegrator {
@@ -43,21 +37,21 @@ impl ExponentialIntegrator {
         let releases = held.flat_map(|(place, held)| {
             let borne = |remainder: &Remainder| remainder.borne.get(place).copied().unwrap_or(0.0);
             let slope = (borne(end.1) - borne(begin.1)) / length;
-            let at = |(state, remainder): End<'_>| {
-                let share = held.share.evaluate(state, &motion.given) + borne(remainder);
-                let forced = dot(&held.share.state[self.degrees..], &remainder.force);
+            let at = |(state, remainder): End<'_>, force: &HoldingForce| {
+                let value = force.value.evaluate(state, &motion.given) + borne(remainder);
+                let forced = dot(&force.value.state[self.degrees..], &remainder.force);
                 (
-                    share,
-                    held.share_rate.evaluate(state, &motion.given) + forced + slope,
+                    value,
+                    force.rate.evaluate(state, &motion.given) + forced + slope,
                 )
             };
-            let (begin, end) = (at(begin), at(end));
             [Side::Below, Side::Above].map(|to| {
-                let (inside, bound) = match to {
-                    Side::Above => (Side::Below, 1.0),
-                    Side::Below | Side::Held => (Side::Above, 0.0),
+                let inside = match to {
+                    Side::Above => Side::Below,
+                    Side::Below | Side::Held => Side::Above,
                 };
-                let ends = ((begin.0 - bound, begin.1), (end.0 - bound, end.1));
+                let force = held.force_to(to);
+                let ends = (at(begin, force), at(end, force));
                 let tau = first_crossing(inside, ends, length)?;
                 Some(Release {
                     place,
@@ -103,9 +97,14 @@ impl ExponentialIntegrator {
         let held = self.regimes[motion.regime].held.iter().zip(borne);
         let released: Vec<(usize, Side)> = held
             .filter_map(|(held, borne)| {
-                let share = held.share.evaluate(&motion.state, &motion.given) + borne;
-                let is_held = (0.0..=1.0).contains(&share);
-                (!is_held).then(|| (held.surface, Side::from_value(share - 1.0)))
+                let [low, high] = [&held.above_low, &held.above_high]
+                    .map(|force| force.value.evaluate(&motion.state, &motion.given) + borne);
+                let side = match (low < 0.0, high > 0.0) {
+                    (true, _) => Some(Side::Below),
+                    (false, true) => Some(Side::Above),
+                    (false, false) => None,
+                };
+                Some((held.surface, side?))
             })
             .collect();
         if released.is_empty() {

@@ -48,6 +48,17 @@ impl Row {
         dot(&self.state, state) + dot(&self.given, given)
     }
 
+    /// Returns the difference from another function.
+    pub fn subtract(&self, other: &Self) -> Self {
+        let difference = |one: &[f64], other: &[f64]| -> Vec<f64> {
+            one.iter().zip(other).map(|(a, b)| a - b).collect()
+        };
+        Self {
+            state: difference(&self.state, &other.state),
+            given: difference(&self.given, &other.given),
+        }
+    }
+
     /// The value of the function at a state and at inputs without the leading unit constant.
     pub fn evaluate_with_inputs(&self, state: &[f64], inputs: &[f64]) -> f64 {
         dot(&self.state, state) + self.given[0] + dot(&self.given[1..], inputs)

@@ -14,6 +14,10 @@ const GRAZING: f64 = 1e-9;
 /// Steps over which drives are held, at their mean over both ends.
 const DRIVEN_STEPS: usize = 2;
 
+/// Distance from a holding surface at which a model is evaluated on one side, as a fraction of the
+/// effect of the difference of both sides on the surface's function in one step.
+const OFFSET_IN_DIFFERENCES: f64 = 1e-6;
+
 /// A neighbouring motion through a part of a step is right to this part of its size.
 const PART_ERROR: f64 = 1e-9;
 
@@ -133,7 +137,8 @@ impl<'d> Tangents<'d> {
     pub fn find_drives(&mut self, regime: &Regime, at: (f64, &[f64], &[f64])) {
         if self.driven > 0 {
             let forced = self.states - self.degrees;
-            drives_in(regime, &mut *self.drives, at, (&mut self.here, forced));
+            let out = (&mut self.here[..], forced);
+            drives_in(regime, &mut *self.drives, at, out);
         }
         self.on_surface = false;
     }
@@ -176,7 +181,8 @@ impl<'d> Tangents<'d> {
         if self.driven > 0 {
             let forced = self.states - self.degrees;
             let there = (&mut self.there[..], forced);
-            drives_in(regime, &mut *self.drives, (t, state, &given[1..]), there);
+            let at = (t, state, &given[1..]);
+            drives_in(regime, &mut *self.drives, at, there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
                 *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
@@ -356,25 +362,33 @@ fn drives_in(
         return;
     }
     let mut below = state.to_vec();
-    let held = regime.held.iter();
-    for held in held.clone() {
+    let shares: Vec<(&HeldSurface, f64, f64)> = (regime.held.iter())
+        .map(|held| {
+            let (difference, share) = held.difference_and_share(state, inputs);
+            (
+                held,
+                OFFSET_IN_DIFFERENCES * regime.length * difference.abs(),
+                share,
+            )
+        })
+        .collect();
+    for (held, distance, _) in &shares {
         let function = regime.functions[held.surface].evaluate_with_inputs(&below, inputs);
-        move_across(&mut below, held, -held.distance - function);
+        move_across(&mut below, held, -distance - function);
     }
     drives.write_differences(t, &below, inputs, out);
     let (all_below, mut above) = (out.to_vec(), out.to_vec());
-    for held in held {
-        let share = held.share.evaluate_with_inputs(state, inputs);
+    for (held, distance, share) in &shares {
         let mut beyond = below.clone();
-        move_across(&mut beyond, held, 2.0 * held.distance);
+        move_across(&mut beyond, held, 2.0 * distance);
         drives.write_differences(t, &beyond, inputs, &mut above);
         for ((slot, above), below) in out.iter_mut().zip(&above).zip(&all_below) {
             *slot += share * (above - below);
         }
     }
-    let mut shares = Vec::new();
+    let mut forces = Vec::new();
     for drive in out.chunks_exact_mut(forced.max(1)) {
-        regime.subtract_held(drive, &mut shares);
+        regime.subtract_held(drive, &mut forces);
     }
 }
 

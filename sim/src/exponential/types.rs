@@ -41,8 +41,8 @@ pub struct ExponentialIntegrator {
 pub enum UnsupportedModel {
     /// Unsupported terms, or invalid parameters.
     UnsupportedTerms,
-    /// A surface holds the motion by forces that depend on the state or the inputs.
-    VaryingHoldingForces,
+    /// A surface holds the motion by forces whose direction depends on the state or the inputs.
+    VaryingHoldingDirection,
     /// Too many steps between two samples; the number required.
     TooManySteps(f64),
 }
