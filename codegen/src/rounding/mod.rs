@@ -1,8 +1,8 @@
 //! Bounds of the rounding errors of a program over ranges of time, states, inputs and parameters.
 //!
 //! `scalars` lists the operations on single numbers, `analysis` bounds each number and its error over a box, with the
-//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `quantities` lists the
-//! numbers with a bound, and `obstacle` describes the reason for a missing one.
+//! rules of `format` and `slopes`, and `boxes` divides the ranges until the bound is close. `points` bounds errors at single
+//! points. `quantities` lists the numbers with a bound, and `obstacle` describes the reason for a missing one.
 //!
 //! The error of a quantity is the difference between the value that emitted code computes and the exact value of the same
 //! formulas. Constants, tables, time, states, inputs and parameters are exact: the numbers of the call. In single
@@ -13,6 +13,7 @@ mod analysis;
 mod boxes;
 mod format;
 mod obstacle;
+mod points;
 mod quantities;
 mod scalars;
 mod slopes;
@@ -21,6 +22,7 @@ pub use analysis::{Bounded, bound_by_sensitivities, bound_numbers};
 pub use boxes::{Ranges, bound_root};
 pub use format::Format;
 pub use obstacle::{Cause, Obstacle, point_names};
+pub use points::PointBounds;
 pub use quantities::{Quantity, quantities};
 pub use scalars::{Scalar, ScalarOp, Scalars};
 

@@ -11,7 +11,7 @@ use eomgen_sim::ode::{
     ObservedStep, Surface, SurfaceKind, SurfaceMode, System, jacobian_by_differences,
 };
 
-use crate::audit::{Auditor, EnergyAndPower};
+use crate::audit::{Auditor, Energies, EnergyAndPower, EnergyRoundings};
 use crate::contacts::Contacts;
 use crate::corners::{CornerEnergy, Corners};
 use crate::jacobians::{Jacobian, JacobianEvaluator};
@@ -35,6 +35,7 @@ pub struct DrivenModel<E, I> {
     corners: Option<RefCell<Corners>>,
     sliding: Option<RefCell<SurfaceStates>>,
     auditor: Option<RefCell<Auditor>>,
+    energy_roundings: EnergyRoundings,
     meters: RefCell<Meters>,
     /// Typical sizes of the states; empty if all are 1.
     typical_sizes: Vec<f64>,
@@ -52,6 +53,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             corners: None,
             sliding: None,
             auditor: None,
+            energy_roundings: EnergyRoundings::default(),
             meters: RefCell::default(),
             typical_sizes: Vec::new(),
         }
@@ -95,19 +97,6 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
                 evaluator.observables(point, out)
             }),
         }
-    }
-
-    /// Returns energy and power, with the forces during sticking and those of contacts at rest.
-    fn energies(&self, t: f64, state: &[f64]) -> EnergyAndPower {
-        let mut observables = vec![0.0; self.evaluator().program().observables.len()];
-        self.write_observables((t, state), &mut observables);
-        let mut found = EnergyAndPower::from_observables(&observables);
-        if let Some(contacts) = &self.contacts {
-            found.power += self.with_contacts(contacts, (t, state), |contacts, own, inputs| {
-                contacts.power(own, Point { t, state, inputs })
-            });
-        }
-        found
     }
 
     pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
@@ -226,7 +215,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             return false;
         };
         if let Some(auditor) = &self.auditor {
-            let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+            let energies = &mut DrivenEnergies(self);
             let CornerEnergy { before, work } = energy;
             auditor
                 .borrow_mut()
@@ -613,21 +602,21 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             let reached = (before.0.max(t.next_down()), &arrived[..]);
             let is_hit = self.with_contacts(contacts, reached, |contacts, own, inputs| {
                 let mut near = inputs.to_vec();
-                near[..inputs_before.len()].copy_from_slice(inputs_before);
-                let before = Point {
-                    t: before.0,
-                    state: before.1,
-                    inputs: &near,
-                };
-                contacts.apply_impact(own, before, (t, inputs), y)
-            });
+                    near[..inputs_before.len()].copy_from_slice(inputs_before);
+                    let before = Point {
+                        t: before.0,
+                        state: before.1,
+                        inputs: &near,
+                    };
+                    contacts.apply_impact(own, before, (t, inputs), y)
+                });
             let work = contacts.borrow().impact_work();
             jumps = arrived != y;
             if is_hit && self.projection.is_some() {
                 contacts.borrow_mut().offset_for_projection((t, y));
             }
             if let Some(auditor) = self.auditor.as_ref().filter(|_| jumps) {
-                let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+                let energies = &mut DrivenEnergies(self);
                 let states = (&arrived[..], &*y);
                 auditor.borrow_mut().audit_impact(t, states, work, energies);
             }
@@ -662,7 +651,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
             return false;
         };
         if let Some(auditor) = &self.auditor {
-            let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+            let energies = &mut DrivenEnergies(self);
             let CornerEnergy { before, work } = energy;
             auditor
                 .borrow_mut()
@@ -783,7 +772,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
             self.add_rate_roundings(length, &mut rates);
             auditor.raise_to_roundings(&rates, length);
         }
-        let energies = &mut |t: f64, y: &[f64]| self.energies(t, y);
+        let energies = &mut DrivenEnergies(self);
         if let Some(length) = auditor.suspected_crossing() {
             let errors = self.find_errors_of_crossing(length, step.start);
             auditor.judge_crossing(&errors, energies);
@@ -835,6 +824,39 @@ fn first_indefinite_row(matrix: &mut [f64], size: usize) -> Option<usize> {
         }
     }
     None
+}
+
+/// Energy and power of a motion of the model, with the forces during sticking and those of contacts at rest.
+struct DrivenEnergies<'m, E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>>(
+    &'m DrivenModel<E, I>,
+);
+
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Energies for DrivenEnergies<'_, E, I> {
+    fn evaluate(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        let model = self.0;
+        let mut observables = vec![0.0; model.evaluator().program().observables.len()];
+        model.write_observables((t, state), &mut observables);
+        let mut found = EnergyAndPower::from_observables(&observables);
+        if let Some(contacts) = &model.contacts {
+            found.power += model.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.power(own, Point { t, state, inputs })
+            });
+        }
+        found
+    }
+
+    fn bound_roundings(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        let model = self.0;
+        let inputs = &model.inputs.borrow().evaluate(t);
+        let point = Point { t, state, inputs };
+        let mut bounds = model.energy_roundings.bound(&model.evaluator(), point);
+        if let Some(contacts) = &model.contacts {
+            bounds.power += model.with_contacts(contacts, (t, state), |contacts, own, inputs| {
+                contacts.power_rounding(own, Point { t, state, inputs })
+            });
+        }
+        bounds
+    }
 }
 
 /// Observables of a motion of the model.

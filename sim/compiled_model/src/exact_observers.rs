@@ -4,7 +4,7 @@ use eomgen_codegen::program::evaluator::{Enclosure, Evaluator, Point, Stretch};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{ObservedStep, Trajectory};
 
-use crate::audit::{Auditor, EnergyAndPower};
+use crate::audit::{Auditor, Energies, EnergyAndPower, EnergyRoundings};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::observers::{Observers, Results};
@@ -18,8 +18,8 @@ const STICKING_EXCLUSION: &str =
 /// Observers of an exact motion with the energies and observables of its states.
 pub(crate) struct ExactObservers {
     observers: Observers,
-    /// Evaluator of the energies; `None` without audit.
-    energies: Option<Evaluator>,
+    /// Energies; `None` without audit.
+    energies: Option<ExactEnergies>,
     /// Observables of the measured motion; `None` without meters.
     observed: Option<ObservedMotion>,
 }
@@ -44,7 +44,8 @@ impl Instance<'_> {
             let (evaluator, holding) = (self.evaluator()?, self.holding_model()?);
             Ok::<_, Error>(ObservedMotion::new(evaluator, holding, &start, inputs))
         };
-        let energies = observers.auditor.as_ref().map(|_| self.evaluator());
+        let energies =
+            (observers.auditor.as_ref()).map(|_| self.evaluator().map(ExactEnergies::new));
         let observed = (!observers.meters.is_empty()).then(observed);
         Ok(ExactObservers {
             energies: energies.transpose()?,
@@ -67,9 +68,12 @@ impl ExactObservers {
             energies,
             observed,
         } = self;
-        let inputs = &inputs.evaluate(0.5 * (step.start.0 + step.end.0));
+        let inputs = &inputs
+            .evaluate(0.5 * (step.start.0 + step.end.0))
+            .into_owned();
         if let (Some(auditor), Some(energies)) = (&mut observers.auditor, energies) {
-            audit_step(auditor, step, is_held, (energies, inputs));
+            energies.inputs.clone_from(inputs);
+            audit_step(auditor, step, is_held, energies);
         }
         if let Some(observed) = observed {
             measure_step(&mut observers.meters, step, (observed, inputs, is_held));
@@ -89,16 +93,45 @@ fn audit_step(
     auditor: &mut Auditor,
     step: &mut ObservedStep<'_>,
     is_held: bool,
-    (evaluator, inputs): (&mut Evaluator, &[f64]),
+    energies: &mut ExactEnergies,
 ) {
-    let mut observables = vec![0.0; evaluator.program().observables.len()];
-    let mut energies = |t: f64, state: &[f64]| {
-        evaluator.observables(Point { t, state, inputs }, &mut observables);
-        EnergyAndPower::from_observables(&observables)
-    };
     match is_held {
-        true => auditor.exclude_step(step, &mut energies, STICKING_EXCLUSION),
-        false => auditor.audit_step(step, &mut energies),
+        true => auditor.exclude_step(step, energies, STICKING_EXCLUSION),
+        false => auditor.audit_step(step, energies),
+    }
+}
+
+/// Energy and power of an exact motion with constant inputs.
+struct ExactEnergies {
+    evaluator: Evaluator,
+    inputs: Vec<f64>,
+    observables: Vec<f64>,
+    roundings: EnergyRoundings,
+}
+
+impl ExactEnergies {
+    fn new(evaluator: Evaluator) -> Self {
+        Self {
+            observables: vec![0.0; evaluator.program().observables.len()],
+            inputs: Vec::new(),
+            roundings: EnergyRoundings::default(),
+            evaluator,
+        }
+    }
+}
+
+impl Energies for ExactEnergies {
+    fn evaluate(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        let inputs = &self.inputs;
+        let point = Point { t, state, inputs };
+        self.evaluator.observables(point, &mut self.observables);
+        EnergyAndPower::from_observables(&self.observables)
+    }
+
+    fn bound_roundings(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        let inputs = &self.inputs;
+        self.roundings
+            .bound(&self.evaluator, Point { t, state, inputs })
     }
 }
 

@@ -629,3 +629,90 @@ fn last_bounce_under_an_applied_force_is_no_fault() {
         }
     }
 }
+
+/// Checks that no energy audit of a machine fails, by any solver for a general motion. Returns the largest number of
+/// evaluations of its energy.
+fn check_silent_audits(text: &str, until: f64) -> u64 {
+    let model = CompiledModel::from_text("machine.toml", text, Orders::Declared);
+    let model = model.unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let evaluations = [Solver::Rk, Solver::Radau].map(|solver| {
+        let audit = audit(&model, until, solver, 1e-9);
+        assert!(!audit.has_failed(), "{solver}: {audit:?}\n{text}");
+        audit.evaluations
+    });
+    evaluations[0].max(evaluations[1])
+}
+
+#[test]
+fn start_from_rest_with_an_energy_gives_no_warning() {
+    let potentials = [
+        "k*d^2 + 1/2*k*x^2",
+        "-k*d^2*cos(x/d)",
+        "k*d^2*(1 - cos(x/d))",
+        "1/2*k*(x - d)^2 + 1/2*k*(x + d)^2",
+        "1/2*k*x^2 + m*g*x",
+        "1/2*k*(sqrt(x^2 + l^2) - d)^2",
+        "1e6*k*d^2 + 1/2*k*x^2",
+    ];
+    for potential in potentials {
+        for force in ["A*sin(w*t)", "A*(1 - cos(w*t))", "A*w*t"] {
+            for (d, rest) in [(0.2, "0"), (0.03, "-m*g/k")] {
+                let text = format!(
+                    "[model]\nname = \"rest\"\n[parameters]\nm = {{ value = 1.3, unit = \"kg\" }}\n\
+                     k = {{ value = 70, unit = \"N/m\" }}\nA = {{ value = 2, unit = \"N\" }}\n\
+                     w = {{ value = 3, unit = \"1/s\" }}\nd = {{ value = {d}, unit = \"m\" }}\n\
+                     l = {{ value = 0.5, unit = \"m\" }}\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n\
+                     [coordinates]\nx = {{ unit = \"m\", initial = \"{rest}\" }}\n\
+                     [kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"{potential}\"\n\
+                     [forces]\nF = {{ on = \"x\", value = \"{force}\" }}\n"
+                );
+                check_silent_audits(&text, 2.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn block_that_two_frictions_hold_gives_no_warning() {
+    for (mass, amplitude, frequency, friction, weight, coefficient) in [
+        (1.794, 2.746, 8.724, 0.512, 4.169, 0.209),
+        (0.705, 6.618, 6.006, 1.247, 9.531, 0.396),
+        (0.8, 4.733, 5.916, 0.184, 4.226, 0.4),
+    ] {
+        for scale in ["1", "10", "100", "0.001"] {
+            let text = format!(
+                "[model]\nname = \"block\"\n[parameters]\nm = {{ value = {mass}, unit = \"kg\" }}\n\
+                 A = {{ value = {amplitude}, unit = \"N\" }}\nw = {{ value = {frequency}, unit = \"1/s\" }}\n\
+                 F = {{ value = {friction}, unit = \"N\" }}\nN = {{ value = {weight}, unit = \"N\" }}\n\
+                 mu = {{ value = {coefficient} }}\n[coordinates]\nX = {{ unit = \"m\" }}\nY = {{ unit = \"m\" }}\n\
+                 [definitions]\nx = \"X/{scale}\"\ny = \"Y/{scale}\"\n\
+                 [kinetic]\nT = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n\
+                 [forces]\npress = {{ on = \"y\", value = \"-N\" }}\ndrive = {{ on = \"x\", value = \"A*sin(w*t)\" }}\n\
+                 dry = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n[impacts]\n\
+                 floor = {{ when = \"y\", restitution = 0.2, friction = \"mu\", slip = \"dot(x)\" }}\n"
+            );
+            check_silent_audits(&text, 0.3);
+        }
+    }
+}
+
+#[test]
+fn block_at_rest_on_a_running_belt_gives_no_warning() {
+    for (mass, weight, friction, coefficient, speed, place) in [
+        (0.747, 5.061, 1.534, 0.155, 0.495, 0.17),
+        (1.3, 18.0, 3.1, 0.11, 0.9, 0.0),
+        (0.4, 9.0, 0.8, 0.06, 0.21, 0.3),
+    ] {
+        let text = format!(
+            "[model]\nname = \"belt\"\n[parameters]\nm = {{ value = {mass}, unit = \"kg\" }}\n\
+             N = {{ value = {weight}, unit = \"N\" }}\nF = {{ value = {friction}, unit = \"N\" }}\n\
+             mu = {{ value = {coefficient} }}\nv = {{ value = {speed}, unit = \"m/s\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\", initial = {place} }}\ny = {{ unit = \"m\" }}\n\
+             [kinetic]\nT = \"1/2*m*(dot(x)^2 + dot(y)^2)\"\n\
+             [forces]\npress = {{ on = \"y\", value = \"-N\" }}\ndry = {{ on = \"x\", value = \"-F*sign(dot(x))\" }}\n\
+             [impacts]\nbelt = {{ when = \"y\", restitution = 0.8, friction = \"mu\", slip = \"dot(x) - v\" }}\n"
+        );
+        let evaluations = check_silent_audits(&text, 1.5);
+        assert!(evaluations < 5000, "{evaluations}");
+    }
+}

@@ -133,6 +133,15 @@ impl Evaluator {
         &self.program
     }
 
+    /// Returns the independent parameters, SI; those that no value depends on have their default values.
+    pub fn parameter_values(&self) -> Vec<f64> {
+        let mut values = self.program.default_parameters();
+        for (id, place) in &self.parameters {
+            values[*place] = self.memory[self.places.offset(*id)];
+        }
+        values
+    }
+
     /// Computes all values that depend only on the parameters. `parameters` are the independent parameters in
     /// SI units, in the order of the program.
     pub fn prepare(&mut self, parameters: &[f64]) {

@@ -2,7 +2,10 @@
 
 use eomgen_sim::ode::{Interior, ObservedStep, ROUNDING_FACTOR, UNMOVED_SIZE_FRACTION};
 
-use super::allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change, find_uncertain_work};
+use super::allowed_errors::{
+    TOLERANCE_ERROR_FACTOR, find_allowed_change, find_allowed_errors, find_changes,
+    find_uncertain_work,
+};
 use super::refinement::Refinement;
 use super::{Audit, Energies, EnergyAndPower, Imbalance};
 
@@ -56,6 +59,9 @@ pub(crate) struct Auditor {
     sizes: Vec<f64>,
     /// Largest magnitude of each entry of the state.
     magnitudes: Vec<f64>,
+    /// Largest rounding of each entry of the state while surfaces or contacts held the motion. Rates keep it when they
+    /// are released.
+    roundings: Vec<f64>,
     /// Sum of the differences in steps beyond the uncertainties of their work, J.
     drift: f64,
     /// Largest such sum that is not examined, J.
@@ -103,6 +109,7 @@ impl Auditor {
             driven_contacts,
             sizes: magnitudes.clone(),
             magnitudes,
+            roundings: vec![0.0; typical_sizes.len()],
             drift: 0.0,
             drift_limit: 0.0,
             energy: None,
@@ -136,9 +143,11 @@ impl Auditor {
     }
 
     /// Records the energy change of the last step across a surface unless these errors of its state explain it.
-    pub fn judge_crossing(&mut self, errors: &[f64], energies: &mut Energies<'_>) {
+    pub fn judge_crossing(&mut self, errors: &[f64], energies: &mut dyn Energies) {
         let Some(SuspectedCrossing {
-            imbalance, state, ..
+            imbalance,
+            state,
+            length,
         }) = self.suspected.take()
         else {
             return;
@@ -149,13 +158,17 @@ impl Auditor {
             energy_gain,
             tolerance,
         } = imbalance;
-        let end = [(t, &state[..])];
-        let allowed = self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &end, &[]);
-        self.record_excess(t, energy_gain, tolerance.max(allowed));
+        let states = States {
+            ends: &[(t, &state[..])],
+            length,
+        };
+        let allowed = self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &states, &[]);
+        let allowed = tolerance.max(allowed);
+        self.record_unrounded_excess((t, energy_gain, allowed), &states, energies);
     }
 
     /// Audits a step.
-    pub fn audit_step(&mut self, step: &mut ObservedStep<'_>, energies: &mut Energies<'_>) {
+    pub fn audit_step(&mut self, step: &mut ObservedStep<'_>, energies: &mut dyn Energies) {
         let (start, end) = (step.start, step.end);
         if let Some(suspected) = self.suspected.take() {
             self.audit.note(suspected.imbalance);
@@ -176,6 +189,10 @@ impl Auditor {
             self.last_length = length;
         }
         let is_estimated = has_interior || length > MAX_CROSSING_STEP_FRACTION * self.last_length;
+        let states = States {
+            ends: &[start, end],
+            length,
+        };
         // NaN is not negligible.
         let is_negligible = (change - work).abs() <= NEGLIGIBLE_FRACTION * self.last_allowed;
         let mut uncertainty = 0.0;
@@ -185,11 +202,21 @@ impl Auditor {
                 false => TOLERANCE_ERROR_FACTOR,
             };
             let values = [ends.0.energy, ends.1.energy];
-            let allowed = self.find_allowed_change(energies, factor, &[start, end], &values)
+            let allowed = self.find_allowed_change(energies, factor, &states, &values)
                 + find_uncertain_work(end.0, &powers);
             self.last_allowed = allowed;
-            let judged = (ends, change);
-            let found = self.integrate_accurately(step, energies, judged, (factor, allowed));
+            let found = match has_interior {
+                true => {
+                    let judged = (ends, change);
+                    self.integrate_accurately(step, energies, judged, (factor, allowed))
+                }
+                // States inside would follow the rates beyond the surface.
+                false => Balance {
+                    work,
+                    uncertainty: find_spread(&powers) * length,
+                    allowed,
+                },
+            };
             (work, uncertainty) = (found.work, found.uncertainty);
             let tolerance = found.allowed + found.uncertainty;
             if has_interior
@@ -209,35 +236,52 @@ impl Auditor {
         }
         self.audit.energy_change += change;
         self.audit.work += work;
-        let difference = change - work;
-        self.drift += (difference.abs() - uncertainty)
-            .max(0.0)
-            .copysign(difference);
-        self.check_drift(end, energies);
+        self.add_to_drift((change - work, uncertainty), &states, energies);
     }
 
-    /// Records the first sum of the differences that is too large for the motion to be right.
-    fn check_drift(&mut self, (t, state): (f64, &[f64]), energies: &mut Energies<'_>) {
-        let drift = self.drift;
-        let is_small = |limit: f64| drift.is_nan() || drift.abs() <= limit;
-        if self.audit.drift.is_some() || is_small(self.drift_limit) {
+    /// Adds the difference of a step with this uncertainty (J) to the sum of the differences, and records the first sum
+    /// that is too large for the motion to be right.
+    fn add_to_drift(
+        &mut self,
+        (difference, uncertainty): (f64, f64),
+        states: &States<'_>,
+        energies: &mut dyn Energies,
+    ) {
+        let before = self.drift;
+        let add = |uncertainty: f64| {
+            let certain = (difference.abs() - uncertainty).max(0.0);
+            before + certain.copysign(difference)
+        };
+        self.drift = add(uncertainty);
+        if self.audit.drift.is_some() || self.has_small_drift() {
             return;
         }
+        let Some((t, state)) = states.ends.last() else {
+            return;
+        };
         let error = MAX_DRIFT_ERROR.max(self.tolerance);
         let mut evaluations = 0;
         let limit = find_allowed_change(state, &self.magnitudes, error, &mut |state| {
             evaluations += 1;
-            energies(t, state).energy
+            energies.evaluate((*t, state)).energy
         });
         self.audit.evaluations += evaluations;
         self.drift_limit = self.drift_limit.max(limit);
-        if !is_small(self.drift_limit) {
+        if self.has_small_drift() {
+            return;
+        }
+        self.drift = add(uncertainty + self.find_rounding(states, energies));
+        if !self.has_small_drift() {
             self.audit.drift = Some(Imbalance {
-                t,
-                energy_gain: drift,
+                t: *t,
+                energy_gain: self.drift,
                 tolerance: self.drift_limit,
             });
         }
+    }
+
+    fn has_small_drift(&self) -> bool {
+        self.drift.is_nan() || self.drift.abs() <= self.drift_limit
     }
 
     /// Excludes an energy change (J) from the audit, for a reason.
@@ -254,7 +298,7 @@ impl Auditor {
         &mut self,
         start: (f64, &[f64]),
         (before, after): (f64, EnergyAndPower),
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
     ) {
         let change = after.energy - before;
         self.audit.energy_change += change;
@@ -262,10 +306,11 @@ impl Auditor {
             change.abs() <= NEGLIGIBLE_FRACTION / ESTIMATE_FACTOR * self.last_allowed;
         if change != 0.0 && !is_negligible {
             let values = [before, after.energy];
+            let states = States::at_once(std::slice::from_ref(&start));
             let allowed =
-                self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &[start], &values)
+                self.find_allowed_change(energies, TOLERANCE_ERROR_FACTOR, &states, &values)
                     + find_uncertain_work(start.0, &[self.power, after.power]);
-            self.record_excess(start.0, change, allowed);
+            self.record_unrounded_excess((start.0, change, allowed), &states, energies);
         }
     }
 
@@ -284,6 +329,19 @@ impl Auditor {
         });
     }
 
+    /// Records an energy change (J) at a time (s) that exceeds the tolerance (J) by more than rounding at these states.
+    fn record_unrounded_excess(
+        &mut self,
+        (t, energy_gain, tolerance): (f64, f64, f64),
+        states: &States<'_>,
+        energies: &mut dyn Energies,
+    ) {
+        if find_excess(t, energy_gain, tolerance).is_some() {
+            let rounding = self.find_rounding(states, energies);
+            self.record_excess(t, energy_gain, tolerance + rounding);
+        }
+    }
+
     /// Records an energy change that exceeds the tolerance.
     fn record_excess(&mut self, t: f64, energy_gain: f64, tolerance: f64) {
         if let Some(found) = find_excess(t, energy_gain, tolerance) {
@@ -295,7 +353,7 @@ impl Auditor {
     fn integrate_accurately(
         &mut self,
         step: &mut ObservedStep<'_>,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
         (ends, change): ((EnergyAndPower, EnergyAndPower), f64),
         (factor, mut allowed): (f64, f64),
     ) -> Balance {
@@ -304,6 +362,12 @@ impl Auditor {
             uncertainty: f64::INFINITY,
             allowed,
         };
+        let states = [step.start, step.end];
+        let states = States {
+            ends: &states,
+            length: step.end.0 - step.start.0,
+        };
+        let mut rounding = None;
         for (interior, most_panels, balances_panels) in [
             (Interior::Interpolated, MAX_PANELS, false),
             (Interior::Interpolated, MAX_BALANCED_PANELS, true),
@@ -323,12 +387,21 @@ impl Auditor {
             if (change - best.work).abs() <= best.allowed + best.uncertainty {
                 return best;
             }
+            let rounding = *rounding.get_or_insert_with(|| self.find_rounding(&states, energies));
+            best.allowed = allowed + rounding;
+            if (change - best.work).abs() <= best.allowed + best.uncertainty {
+                return best;
+            }
             // Part of the energy may be larger inside the step than at its ends.
             let middle = 0.5 * (step.start.0 + step.end.0);
             if let Some(state) = (step.state_inside)(middle, interior) {
-                let inside = self.find_allowed_change(energies, factor, &[(middle, &state)], &[]);
+                let states = States {
+                    ends: &[(middle, &state[..])],
+                    ..states
+                };
+                let inside = self.find_allowed_change(energies, factor, &states, &[]);
                 allowed = allowed.max(inside);
-                best.allowed = allowed;
+                best.allowed = allowed + rounding;
             }
         }
         best
@@ -338,7 +411,7 @@ impl Auditor {
     pub fn exclude_step(
         &mut self,
         step: &ObservedStep<'_>,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
         reason: &str,
     ) {
         self.raise_sizes(step.end.1);
@@ -358,7 +431,7 @@ impl Auditor {
         t: f64,
         (from, to): (&[f64], &[f64]),
         work: f64,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
     ) {
         let before = self.evaluate(energies, (t, from)).energy;
         let after = self.evaluate(energies, (t, to)).energy;
@@ -375,14 +448,15 @@ impl Auditor {
         self.audit.work += work;
         self.audit.impact_energy += gain;
         if gain > 0.0 {
-            let states = [(t, from), (t, to)];
+            let ends = [(t, from), (t, to)];
+            let states = States::at_once(&ends);
             let allowed = self.find_allowed_change(
                 energies,
                 TOLERANCE_ERROR_FACTOR,
                 &states,
                 &[before, after, work],
             );
-            self.record_excess(t, gain, allowed);
+            self.record_unrounded_excess((t, gain, allowed), &states, energies);
         }
     }
 
@@ -392,7 +466,7 @@ impl Auditor {
         &mut self,
         end: (f64, &[f64]),
         corner: (f64, f64),
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
     ) {
         self.pending_energy += self.audit_jump_of_rates(end, corner, energies) - corner.0;
     }
@@ -402,7 +476,7 @@ impl Auditor {
         &mut self,
         start: (f64, &[f64]),
         corner: (f64, f64),
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
     ) {
         self.energy = Some(self.audit_jump_of_rates(start, corner, energies));
     }
@@ -412,18 +486,20 @@ impl Auditor {
         &mut self,
         (t, state): (f64, &[f64]),
         (before, work): (f64, f64),
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
     ) -> f64 {
         let after = self.evaluate(energies, (t, state)).energy;
         self.audit.energy_change += after - before;
         self.audit.work += work;
+        let ends = [(t, state)];
+        let states = States::at_once(&ends);
         let allowed = self.find_allowed_change(
             energies,
             TOLERANCE_ERROR_FACTOR,
-            &[(t, state)],
+            &states,
             &[before, after, work],
         );
-        self.record_excess(t, after - before - work, allowed);
+        self.record_unrounded_excess((t, after - before - work, allowed), &states, energies);
         after
     }
 
@@ -434,19 +510,22 @@ impl Auditor {
 
     pub(super) fn evaluate(
         &mut self,
-        energies: &mut Energies<'_>,
-        (t, state): (f64, &[f64]),
+        energies: &mut dyn Energies,
+        at: (f64, &[f64]),
     ) -> EnergyAndPower {
         self.audit.evaluations += 1;
-        energies(t, state)
+        energies.evaluate(at)
     }
 
-    /// Raises the sizes of the states to what rounding of these rates changes in a step of `length` s.
+    /// Raises the roundings of the states, and their sizes, to what rounding of these rates changes in a step of `length` s.
     pub fn raise_to_roundings(&mut self, rates: &[f64], length: f64) {
-        let roundings: Vec<f64> = (rates.iter())
+        let changes: Vec<f64> = (rates.iter())
             .map(|rate| ROUNDING_FACTOR * length * rate)
             .collect();
-        self.raise_to_errors(&roundings);
+        for (rounding, change) in self.roundings.iter_mut().zip(&changes) {
+            *rounding = rounding.max(*change);
+        }
+        self.raise_to_errors(&changes);
     }
 
     /// Raises the sizes of the states to those at which the tolerance allows these errors.
@@ -466,34 +545,92 @@ impl Auditor {
         }
     }
 
-    /// Returns the energy change that errors at these states can explain.
+    /// Returns the energy change that errors at these states can explain: those of the energy there, and those of the work
+    /// between them.
     fn find_allowed_change(
         &mut self,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
         factor: f64,
-        states: &[(f64, &[f64])],
+        states: &States<'_>,
         values: &[f64],
     ) -> f64 {
         let mut largest: f64 = 0.0;
-        for (t, state) in states {
-            let mut evaluations = 0;
-            let energy = &mut |state: &[f64]| {
-                evaluations += 1;
-                energies(*t, state).energy
-            };
-            largest = largest.max(find_allowed_change(
-                state,
-                &self.sizes,
-                self.tolerance,
-                energy,
-            ));
-            self.audit.evaluations += evaluations;
+        for (t, state) in states.ends {
+            let errors = find_allowed_errors(state, &self.sizes, self.tolerance);
+            let change = self.find_change((*t, state), &errors, states.length, energies);
+            largest = largest.max(change);
         }
         let rounding = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
         factor * largest + ENERGY_ROUNDING * rounding
     }
+
+    /// Returns the change (J) of the energy at a time (s) and a state, and of the work in a step of `length` s, by these
+    /// errors of the state.
+    fn find_change(
+        &mut self,
+        (t, state): (f64, &[f64]),
+        errors: &[f64],
+        length: f64,
+        energies: &mut dyn Energies,
+    ) -> f64 {
+        let mut evaluations = 0;
+        let [energy, power] = find_changes(state, errors, &mut |state| {
+            evaluations += 1;
+            let EnergyAndPower { energy, power } = energies.evaluate((t, state));
+            [energy, power]
+        });
+        self.audit.evaluations += evaluations;
+        energy + find_work(power, length)
+    }
+
+    /// Returns a bound of the rounding (J) of the energy at states and of the work between them.
+    fn find_rounding(&mut self, states: &States<'_>, energies: &mut dyn Energies) -> f64 {
+        let (mut energy, mut power, mut of_states) = (0.0, 0.0_f64, 0.0_f64);
+        let roundings = std::mem::take(&mut self.roundings);
+        for (t, state) in states.ends {
+            let bounds = energies.bound_roundings((*t, state));
+            energy += bounds.energy;
+            power = power.max(bounds.power);
+            if roundings.iter().any(|rounding| *rounding > 0.0) {
+                let change = self.find_change((*t, state), &roundings, states.length, energies);
+                of_states = of_states.max(change);
+            }
+        }
+        self.roundings = roundings;
+        energy + find_work(power, states.length) + of_states
+    }
+}
+
+/// States whose errors explain an energy change.
+#[derive(Clone, Copy)]
+struct States<'s> {
+    /// Time (s) and state at each.
+    ends: &'s [(f64, &'s [f64])],
+    /// Time between them, s.
+    length: f64,
+}
+
+impl<'s> States<'s> {
+    fn at_once(ends: &'s [(f64, &'s [f64])]) -> Self {
+        Self { ends, length: 0.0 }
+    }
+}
+
+/// Returns the work (J) of a power (W) during a time (s); 0 without time, even if the power is infinite.
+fn find_work(power: f64, length: f64) -> f64 {
+    match length > 0.0 {
+        true => power * length,
+        false => 0.0,
+    }
+}
+
+/// Returns the distance of the largest from the smallest number.
+fn find_spread(numbers: &[f64]) -> f64 {
+    let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    high - low
 }
 
 /// Returns an energy change that exceeds the tolerance. Energies that are not finite are reported with their rows.

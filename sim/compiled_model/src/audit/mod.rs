@@ -9,18 +9,34 @@
 mod allowed_errors;
 mod auditor;
 mod refinement;
+mod roundings;
 #[cfg(test)]
 mod tests;
 mod work;
 
 pub(crate) use allowed_errors::{TOLERANCE_ERROR_FACTOR, find_allowed_change};
 pub(crate) use auditor::Auditor;
+pub(crate) use roundings::EnergyRoundings;
 
-/// Energy and power at a time (s) and a state, in J and W.
-pub(crate) type Energies<'e> = dyn FnMut(f64, &[f64]) -> EnergyAndPower + 'e;
+/// Energy and power along a motion.
+pub(crate) trait Energies {
+    /// Returns energy and power at a time (s) and a state.
+    fn evaluate(&mut self, at: (f64, &[f64])) -> EnergyAndPower;
+
+    /// Returns bounds of the rounding errors of energy and power at a time (s) and a state; 0 if they are unknown.
+    fn bound_roundings(&mut self, _at: (f64, &[f64])) -> EnergyAndPower {
+        EnergyAndPower::default()
+    }
+}
+
+impl<F: FnMut(f64, &[f64]) -> EnergyAndPower> Energies for F {
+    fn evaluate(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        self(t, state)
+    }
+}
 
 /// Energy and power of a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct EnergyAndPower {
     /// Energy, J.
     pub energy: f64,

@@ -14,7 +14,7 @@ fn oscillator(_: f64, state: &[f64]) -> EnergyAndPower {
 
 /// Audits the oscillator's motion in steps of 0.1 s, with states changed by `tamper` from step 20
 /// on.
-fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut Energies<'_>) -> Audit {
+fn audited(tamper: impl Fn(&mut [f64; 2]), energies: &mut dyn Energies) -> Audit {
     let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
     let state = |t: f64| [t.cos(), -t.sin()];
     for count in 0..40 {
@@ -160,4 +160,61 @@ fn fault_of_a_small_motion_is_found() {
     };
     assert_eq!(faults(1.0), 0);
     assert!(faults(1.0 + 1e-4) > 0);
+}
+
+/// The oscillator with a large constant in its energy, which rounds.
+struct Hidden(f64);
+
+impl Energies for Hidden {
+    fn evaluate(&mut self, (t, state): (f64, &[f64])) -> EnergyAndPower {
+        let EnergyAndPower { energy, power } = oscillator(t, state);
+        EnergyAndPower {
+            energy: (energy + self.0) - self.0,
+            power,
+        }
+    }
+
+    fn bound_roundings(&mut self, _: (f64, &[f64])) -> EnergyAndPower {
+        EnergyAndPower {
+            energy: f64::EPSILON * self.0,
+            power: 0.0,
+        }
+    }
+}
+
+#[test]
+fn rounding_of_terms_is_no_fault_but_larger_changes_are() {
+    for constant in [0.0, 1e3, 1e9] {
+        let audit = audited(|_| {}, &mut Hidden(constant));
+        assert!(!audit.has_failed(), "{constant}: {audit:?}");
+    }
+    for (constant, is_found) in [(0.0, true), (1e9, true), (1e13, false)] {
+        let audit = audited(|state| state[1] *= 1.0 + 1e-4, &mut Hidden(constant));
+        assert_eq!(audit.has_failed(), is_found, "{constant}: {audit:?}");
+    }
+}
+
+/// A body at rest under two forces that cancel: its speed has a rounding, and each force a power.
+#[test]
+fn work_by_errors_of_a_rate_at_rest_is_no_fault() {
+    let force = 1e3;
+    let mut pressed = |_: f64, state: &[f64]| EnergyAndPower {
+        energy: 0.5 * state[1] * state[1],
+        power: force * state[1],
+    };
+    let faults = |speed: f64, energies: &mut dyn Energies| {
+        let mut auditor = Auditor::new(Some(1e-9), &[1.0; 2], None);
+        let state = [0.0, speed];
+        for count in 0..40 {
+            let mut step = ObservedStep {
+                start: (0.1 * f64::from(count), &state),
+                end: (0.1 * f64::from(count + 1), &state),
+                state_inside: &mut |_, _| Some(state.to_vec()),
+            };
+            auditor.audit_step(&mut step, energies);
+        }
+        auditor.audit().fault_count
+    };
+    assert_eq!(faults(1e-19, &mut pressed), 0);
+    assert_eq!(faults(1e-5, &mut pressed), 40);
 }

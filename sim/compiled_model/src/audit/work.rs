@@ -25,7 +25,7 @@ impl Auditor {
     pub(super) fn integrate_simpson(
         &mut self,
         step: &mut ObservedStep<'_>,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
         (first, last): (EnergyAndPower, EnergyAndPower),
     ) -> (f64, bool) {
         let (begin, end) = (step.start.0, step.end.0);
@@ -46,7 +46,7 @@ impl Auditor {
     pub(super) fn integrate_work(
         &mut self,
         step: &mut ObservedStep<'_>,
-        energies: &mut Energies<'_>,
+        energies: &mut dyn Energies,
         (first, last): (EnergyAndPower, EnergyAndPower),
         (refinement, allowed): (Refinement, f64),
     ) -> (f64, f64) {
@@ -55,7 +55,7 @@ impl Auditor {
             let t = begin + length * place;
             let state = (step.state_inside)(t, refinement.interior)?;
             self.audit.evaluations += 1;
-            Some(energies(t, &state))
+            Some(energies.evaluate((t, &state)))
         };
         let Some(whole) = integrate_panel(&mut inside, (0.0, 1.0), length) else {
             let spread = (last.power - first.power).abs();

@@ -3,6 +3,7 @@
 //! the loss by restitution. Friction along the slip acts alike, with the loss by friction.
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::ode::ROUNDING_FACTOR;
 
 use super::Contacts;
 use super::tangents::ContactForces;
@@ -10,22 +11,47 @@ use super::tangents::ContactForces;
 impl Contacts {
     /// Returns the power (W) of the forces of the closed contacts.
     pub fn power(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
-        if self.closed.is_empty() {
-            return 0.0;
-        }
-        own.impacts(point, &mut self.at);
-        let forces = self.forces();
-        let normal = self.closed.iter().zip(&forces.normal);
-        let normal = normal.map(|(place, force)| {
+        let terms = self.power_terms(own, point);
+        terms
+            .map(|(force, [rate, workless])| force * (rate - workless))
+            .sum()
+    }
+
+    /// Returns the rounding (W) of that power: a contact that moves at its workless rate has the rounding of both rates.
+    pub fn power_rounding(&mut self, own: &mut Evaluator, point: Point<'_>) -> f64 {
+        let terms = self.power_terms(own, point);
+        let roundings = terms.map(|(force, rates)| {
+            ROUNDING_FACTOR * f64::EPSILON * (force * rates[0].abs().max(rates[1].abs())).abs()
+        });
+        roundings.sum()
+    }
+
+    /// Returns each force of the closed contacts, with the rate of its distance or slip and the rate at which it does no
+    /// work.
+    fn power_terms(
+        &mut self,
+        own: &mut Evaluator,
+        point: Point<'_>,
+    ) -> impl Iterator<Item = (f64, [f64; 2])> {
+        let forces = match self.closed.is_empty() {
+            true => ContactForces::default(),
+            false => {
+                own.impacts(point, &mut self.at);
+                self.forces()
+            }
+        };
+        let places = self.closed.iter();
+        let rates = places.map(|place| {
             let contact = &self.at[*place];
-            force * (contact.rate - contact.workless_rate)
+            let along = contact.friction.as_ref();
+            let along = along.map_or([0.0; 2], |one| [one.slip, one.workless_slip]);
+            ([contact.rate, contact.workless_rate], along)
         });
-        let along = self.closed.iter().zip(&forces.tangential);
-        let along = along.map(|(place, force)| {
-            let friction = self.at[*place].friction.as_ref();
-            force * friction.map_or(0.0, |one| one.slip - one.workless_slip)
-        });
-        normal.chain(along).sum()
+        // There are none without friction.
+        let tangential = forces.tangential.into_iter().chain(std::iter::repeat(0.0));
+        let both = forces.normal.into_iter().zip(tangential);
+        let terms = both.zip(rates);
+        terms.flat_map(|((normal, along), (rates, slips))| [(normal, rates), (along, slips)])
     }
 
     /// Returns the work (J) of the contacts in the last impact.
