@@ -291,6 +291,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> DrivenModel<E, I> {
         act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
     ) -> T {
         let inputs = &self.inputs.borrow().evaluate(t);
+        self.with_contacts_under(contacts, (t, state), inputs, act)
+    }
+
+    /// Calls `act` as [`DrivenModel::with_contacts`], with these inputs of the model.
+    fn with_contacts_under<T>(
+        &self,
+        contacts: &RefCell<Contacts>,
+        (t, state): (f64, &[f64]),
+        inputs: &[f64],
+        act: impl FnOnce(&mut Contacts, &mut Evaluator, &[f64]) -> T,
+    ) -> T {
         let sliding = self.surface_states();
         let contacts = &mut contacts.borrow_mut();
         let Some(sliding) = sliding else {
@@ -597,11 +608,15 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for DrivenMode
         let mut jumps = false;
         if let Some(contacts) = &self.contacts {
             let arrived = y.to_vec();
-            let inputs_before = &self.inputs.borrow().evaluate(before.0);
+            let given = self.inputs.borrow();
+            let inputs_before = &given.evaluate(before.0);
             // The forces, with those that hold the motion, are those at the point of the impact, before inputs jump there.
+            // Other inputs are those at its time, as in the distances that stop a step.
             let reached = (before.0.max(t.next_down()), &arrived[..]);
-            let is_hit = self.with_contacts(contacts, reached, |contacts, own, inputs| {
-                let mut near = inputs.to_vec();
+            let inputs = &given.evaluate_before(t, given.last_sample(reached.0));
+            let is_hit =
+                self.with_contacts_under(contacts, reached, inputs, |contacts, own, inputs| {
+                    let mut near = inputs.to_vec();
                     near[..inputs_before.len()].copy_from_slice(inputs_before);
                     let before = Point {
                         t: before.0,

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use eomgen_codegen::program::evaluator::{Evaluator, ImpactValues, Point};
 use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Request, Solver};
+use eomgen_sim::cubic_spline::CubicSpline;
+use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::program::run_rejected;
 use eomgen_tests::random_numbers::Numbers;
 use nalgebra::{DMatrix, DVector};
@@ -1226,6 +1228,50 @@ fn mass_between_stops_without_play_stays() {
             let states = &motion.trajectory.states;
             assert_eq!(states.len(), 3, "{first}, {second}");
             assert_eq!(states[2], [0.0, 0.0], "{first}, {second}");
+        }
+    }
+}
+
+/// A ball bounces to rest on a floor that moves as the spline through samples. Each impact has the floor at its time.
+#[test]
+fn ball_bounces_to_rest_on_a_floor_with_sampled_motion() {
+    let times: Vec<f64> = (0..=100).map(|row| 0.01 * f64::from(row)).collect();
+    for (frequency, amplitude, restitution, height) in [
+        (12.3, 0.06, 0.3, 0.44),
+        (17.0, 0.11, 0.3, 0.25),
+        (21.7, 0.09, 0.1, 0.31),
+        (14.1, 0.07, 0.1, 0.22),
+        (26.2, 0.05, 0.5, 0.48),
+        (29.3, 0.12, 0.0, 0.37),
+    ] {
+        let floor =
+            |t: &f64| amplitude * ((frequency * t).sin() + 0.3 * (2.3 * frequency * t).sin());
+        let spline = CubicSpline::fit(times.clone(), times.iter().map(floor).collect());
+        let spline = spline.expect("a spline");
+        let inputs = HeldInputs::constant(vec![0.0; 3]).with_prescribed(0, spline.clone());
+        let text = format!(
+            "[model]\nname = \"ball\"\n[parameters]\nm = {{ value = 1, unit = \"kg\" }}\n\
+             g = {{ value = 9.81, unit = \"m/s^2\" }}\n[coordinates]\n\
+             x = {{ unit = \"m\", initial = {height} }}\n[inputs]\ns = {{ unit = \"m\", rates = 2 }}\n\
+             [kinetic]\nT = \"1/2*m*dot(x)^2\"\n[potential]\nV = \"m*g*x\"\n\
+             [impacts]\nfloor = {{ when = \"x - s\", restitution = {restitution} }}\n"
+        );
+        let model = CompiledModel::from_text("ball.toml", &text, Orders::Declared);
+        let model = model.unwrap_or_else(|error| panic!("{error}"));
+        let run = model.with_declared_parameters().expect("an instance");
+        for solver in [Solver::Rk, Solver::Radau] {
+            let motion = run.simulate(run.initial_state(), &times, &inputs, solver);
+            let case = format!("{frequency} {amplitude} {restitution} {height} {solver}");
+            let motion = motion.unwrap_or_else(|error| panic!("{case}: {error}"));
+            let samples = motion
+                .trajectory
+                .times
+                .iter()
+                .zip(&motion.trajectory.states);
+            for (t, state) in samples {
+                let distance = state[0] - spline.evaluate(*t)[0];
+                assert!(distance > -1e-9, "{case}: {distance} m at {t} s");
+            }
         }
     }
 }
