@@ -177,7 +177,14 @@ impl UsageMarks {
     }
 }
 
-pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
+impl Model {
+    /// Calls `see` with each expression of the model, not with its parts.
+    pub fn for_each_expression<'m>(&'m self, see: &mut impl FnMut(&'m Expr)) {
+        for_each_expression(self, see);
+    }
+}
+
+pub fn for_each_expression<'m>(model: &'m Model, see: &mut impl FnMut(&'m Expr)) {
     for parameter in &model.parameters {
         if let ParameterValue::Expression(expr) = &parameter.value {
             see(expr);
@@ -241,7 +248,7 @@ pub fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     }
 }
 
-fn for_each_of_coefficient(kind: &CoefficientKind, see: &mut impl FnMut(&Expr)) {
+fn for_each_of_coefficient<'m>(kind: &'m CoefficientKind, see: &mut impl FnMut(&'m Expr)) {
     match kind {
         CoefficientKind::Value(value) => see(value),
         CoefficientKind::Factor { of, by, times } => {

@@ -103,6 +103,8 @@ mod order;
 #[cfg(feature = "read")]
 pub mod parser;
 #[cfg(feature = "read")]
+mod positions;
+#[cfg(feature = "read")]
 pub mod quantity;
 #[cfg(feature = "read")]
 mod rate_order;

@@ -713,7 +713,7 @@ impl Model {
 
 impl Expr {
     /// Calls `see` with this expression and all its parts, the whole before its parts.
-    pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
+    pub fn visit<'e>(&'e self, see: &mut impl FnMut(&'e Expr)) {
         see(self);
         match &self.kind {
             ExprKind::Number(_)

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::constants;
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
 use crate::model::{Expr, ExprKind, MAX_ORDER, Model, Parameter, ParameterValue, Range};
 use crate::source::sha256;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
+use crate::{constants, positions};
 
 /// Largest number of names in a suggestion.
 const MAX_SUGGESTIONS: usize = 12;
@@ -384,6 +384,11 @@ impl Model {
                     .help("give a `to` greater than `from`"));
             }
         }
+        positions::check(self, &values).map_err(|fault| {
+            ModelError::new(fault.message)
+                .at(fault.span)
+                .help("give a position inside the field")
+        })?;
         constants::check(self, &values).map_err(|fault| {
             ModelError::new(fault.message)
                 .at(fault.span)
