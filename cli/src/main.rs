@@ -23,6 +23,7 @@ mod figures;
 mod history;
 mod input_file;
 mod instruction_table;
+mod integrals;
 mod linearisation;
 mod mode_figure;
 mod model;

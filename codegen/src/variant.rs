@@ -10,6 +10,7 @@ use crate::independence::find_redundancy;
 use crate::independence::rows::ConstraintRows;
 use crate::mechanics::corners::{add_corner_sides, has_jumping_momenta};
 use crate::mechanics::equations::{Equations, derive, derive_with_redundancy};
+use crate::mechanics::fields::resolution::check_coefficients;
 use crate::mechanics::inertia;
 use crate::mechanics::outputs::derive_outputs;
 use crate::mechanics::outputs::{Output, Outputs};
@@ -114,6 +115,7 @@ pub fn derive_equations(model: &Model, orders: &[usize]) -> Result<Equations, Di
         .parameter_values()
         .map_err(|error| error.diagnostic())?;
     let mut equations = derive(model, orders).map_err(DeriveError::diagnostic)?;
+    check_coefficients(model, orders)?;
     check_signs(model, &equations.graph, &equations.residuals, &values)?;
     let Some(program) = constraint_program(model, &equations, &values) else {
         return Ok(equations);

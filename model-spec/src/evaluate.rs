@@ -3,6 +3,7 @@
 
 use crate::ast::BinaryOperator;
 use crate::function::call;
+use crate::interval::Interval;
 use crate::model::{Expr, ExprKind, Model};
 
 /// Evaluates an expression of parameters at their values in SI. Returns NaN if it contains
@@ -31,8 +32,9 @@ fn parameter(leaf: &ExprKind, parameters: &[f64]) -> f64 {
     }
 }
 
-/// Evaluates an expression whose leaves, other than numbers, have the values of `leaf`.
-fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
+/// Evaluates an expression whose leaves, other than numbers, have the values of `leaf`, in SI. Rates,
+/// integrals and values of fields are leaves too.
+pub fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
         ExprKind::Pi => std::f64::consts::PI,
@@ -47,6 +49,38 @@ fn evaluate_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> f64) -> f64 {
                 found.map_or(f64::NAN, |expr| evaluate_with(expr, leaf))
             };
             call(*function, argument(0), argument(1))
+        }
+        other => leaf(other),
+    }
+}
+
+/// Returns the bounds of an expression whose leaves, other than numbers, have the bounds of `leaf`, in SI.
+pub fn enclose_with(expr: &Expr, leaf: &dyn Fn(&ExprKind) -> Interval) -> Interval {
+    let number = |value: f64| Interval {
+        low: value,
+        high: value,
+    };
+    match &expr.kind {
+        ExprKind::Number(value) => number(*value),
+        ExprKind::Pi => number(std::f64::consts::PI),
+        ExprKind::Negate(operand) => enclose_with(operand, leaf).negate(),
+        ExprKind::Binary(operator, left, right) => {
+            let (left, right) = (enclose_with(left, leaf), enclose_with(right, leaf));
+            match operator {
+                BinaryOperator::Add => left.add_interval(right),
+                BinaryOperator::Subtract => left.subtract(right),
+                BinaryOperator::Multiply => left.multiply(right),
+                BinaryOperator::Divide => left.multiply(right.reciprocal()),
+                BinaryOperator::Power if right.low == right.high => left.raise(right.low),
+                BinaryOperator::Power => Interval::ALL,
+            }
+        }
+        ExprKind::Call(function, arguments) => {
+            let bounds: Vec<Interval> = arguments
+                .iter()
+                .map(|part| enclose_with(part, leaf))
+                .collect();
+            Interval::apply_function(*function, &bounds)
         }
         other => leaf(other),
     }

@@ -2,6 +2,7 @@
 //! position along a field.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::diagnostic::Diagnostic;
@@ -11,7 +12,7 @@ use eomgen_model_spec::span::Span;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;
-use crate::mechanics::fields::modes::node_count;
+use crate::mechanics::fields::rule::FieldRule;
 use crate::mechanics::fields::term::Atom;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::arguments::Arguments;
@@ -60,6 +61,7 @@ pub struct Translator<'m> {
     state_rates: HashMap<StateId, NodeId>,
     coefficients: Vec<NodeId>,
     residuals: HashMap<ConstraintId, NodeId>,
+    rules: Vec<Rc<FieldRule>>,
     multipliers: Vec<NodeId>,
     /// Arguments of dot() so far, with their places.
     positions: Vec<(Span, NodeId)>,
@@ -70,10 +72,11 @@ pub struct Translator<'m> {
 impl<'m> Translator<'m> {
     /// Starts a translation; `orders` are the truncation orders of the fields.
     pub fn new(model: &'m Model, orders: &[usize]) -> Self {
-        let fields = model.fields.iter().zip(orders);
-        let nodes: Vec<usize> = fields
-            .map(|(field, order)| node_count(&field.basis, *order))
+        let fields = FieldId::first(model.fields.len()).zip(orders);
+        let rules: Vec<Rc<FieldRule>> = fields
+            .map(|(field, order)| Rc::new(FieldRule::new(model, field, *order)))
             .collect();
+        let nodes: Vec<usize> = rules.iter().map(|rule| rule.node_count()).collect();
         let mut graph = Graph::new(orders, &nodes);
         let rates = model.inputs.iter().map(|input| input.rate);
         graph.set_input_rates(rates.collect());
@@ -91,6 +94,7 @@ impl<'m> Translator<'m> {
             state_rates: HashMap::new(),
             coefficients: Vec::new(),
             residuals: HashMap::new(),
+            rules,
             multipliers: Vec::new(),
             positions: Vec::new(),
             rates: KnownDerivatives::default(),
@@ -368,6 +372,7 @@ impl<'m> Translator<'m> {
             from,
             to,
             length,
+            rule: Rc::clone(&self.rules[field.index()]),
         })
     }
 

@@ -88,11 +88,11 @@ impl Table {
     }
 }
 
-/// Returns the number of Gauss-Legendre nodes for products of two modes up to `order`.
+/// Returns the number of Gauss-Legendre nodes for products of `degree` modes up to `order`; at least two modes count.
 ///
-/// A product of two shapes with wave numbers beta l < pi (order + 1/2) has phases up to pi order on [-1, 1].
+/// A product of p shapes with wave numbers beta l < pi (order + 1/2) has phases up to p pi order/2 on [-1, 1].
 /// A rule of n nodes is exact to degree 2 n - 1, and the Legendre coefficients of such a wave vanish a few
-/// dozen degrees past pi order.
-pub fn quadrature_size(order: usize) -> usize {
-    2 * order + 32
+/// dozen degrees past p pi order/2, which is less than 2 n = 2 p order + 64.
+pub fn quadrature_size(order: usize, degree: u32) -> usize {
+    degree.max(2) as usize * order + 32
 }

@@ -21,6 +21,7 @@ mod oldest_compiler;
 mod operations;
 mod outputs;
 mod reports;
+mod resolution;
 mod size;
 mod solved;
 mod support;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use eomgen_codegen::independence::constraint_program::residual_places;
 use eomgen_codegen::independence::rows::ConstraintRows;
+use eomgen_codegen::mechanics::fields::resolution::check_coefficients;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
@@ -66,8 +67,8 @@ impl CompiledModel {
     /// recomputes all dependent parameters.
     ///
     /// # Errors
-    /// An unknown name, an invalid value, or a parameter that the specification gives by an
-    /// expression. Such an expression is part of the equations: replace it in the model, then
+    /// An unknown name, an invalid value, a coefficient along a field that the quadrature does not resolve at these
+    /// values, or a parameter that the specification gives by an expression. Such an expression is part of the equations: replace it in the model, then
     /// derive again.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
         Instance::new(ModelHandle::Borrowed(self), settings)
@@ -124,6 +125,10 @@ impl<'m> Instance<'m> {
             let wrong = Diagnostic::error(message);
             let wrong = wrong.with_help("set it in the model before the model is derived");
             return Err(Diagnostics::from_one(declared.source.clone(), wrong).into());
+        }
+        if !settings.is_empty() {
+            check_coefficients(&model, compiled.orders())
+                .map_err(|wrong| Diagnostics::from_one(declared.source.clone(), wrong))?;
         }
         let values = model.parameter_values().map_err(refused)?;
         let initial = model.initial_state(compiled.orders()).map_err(refused)?;

@@ -6,8 +6,8 @@ use super::certificate::{
 };
 use super::checks::outputs::CheckContext;
 use super::checks::{
-    MASS_TOLERANCE, ROW_TOLERANCE, balance, casadi, emitted, emitted_c, exact, nesting, outputs,
-    regimes, states, unit, zeros,
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, casadi, emitted, emitted_c, exact, integrals, nesting,
+    outputs, regimes, states, unit, zeros,
 };
 use super::derived_outputs::DerivedOutputs;
 use super::oracle::{Oracle, OracleError};
@@ -216,6 +216,8 @@ fn run_checks(subject: &Subject<'_>) -> Result<(Vec<Check>, Coverage), String> {
     let (mut checks, coverage) = found.map_err(describe_error)?;
     checks.extend_from_slice(subject.not_applicable);
     checks.push(balance::check(&oracle, variant).map_err(describe_error)?);
+    let judged = (subject.model, subject.order, subject.parameters);
+    checks.extend(integrals::check(&oracle, judged).map_err(describe_error)?);
     checks.extend(check_nesting(subject, &oracle, variant)?);
     checks.extend(check_rigid_limit(subject, variant)?);
     let mut outputs = subject.outputs.map(|make| make()).transpose()?;

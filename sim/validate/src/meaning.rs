@@ -37,6 +37,7 @@ pub fn describe(name: &str) -> Option<String> {
         "energy" => "The energy is that of the independent equations.",
         "power" => "The power is that of the independent equations.",
         "guards" => "The signs of the switching functions identify the regime.",
+        "integrals" => "The quadrature resolves the integrals along fields at typical states.",
         "power_balance" => "Along a motion, the energy changes by the power of the forces.",
         "rates_at_zeros" => "Rates are finite where coordinates or rates are zero.",
         "jacobians_at_zeros" => "Jacobians are finite where coordinates or rates are zero.",

@@ -1,9 +1,12 @@
 //! Domain of a field, as nodes of the graph.
 
+use std::rc::Rc;
+
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Basis;
 
 use super::modes;
+use super::rule::FieldRule;
 use super::term::Atom;
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::tables::TableKind;
@@ -20,6 +23,8 @@ pub struct Domain {
     pub to: NodeId,
     /// Length, to - from.
     pub length: NodeId,
+    /// Quadrature rule.
+    pub rule: Rc<FieldRule>,
 }
 
 impl Domain {
@@ -53,6 +58,11 @@ impl Domain {
     pub fn table(&self, graph: &mut Graph, kind: TableKind) -> NodeId {
         let order = graph.orders()[self.field];
         let basis = &self.basis;
-        graph.constants(self.field, kind, || modes::table(basis, order, kind))
+        graph.constants(self.field, kind, || match kind {
+            TableKind::NodePosition | TableKind::NodeWeight | TableKind::ShapeAtNodes(_) => {
+                modes::table_at_nodes(basis, order, &self.rule.quadrature(), kind)
+            }
+            _ => modes::table(basis, order, kind),
+        })
     }
 }

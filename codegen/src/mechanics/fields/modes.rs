@@ -9,8 +9,11 @@ use super::quadrature::{QuadratureRule, composite, gauss_legendre};
 use super::spline::Spline;
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// Smallest number of nodes in each spline piece: a product of two shapes has degree 6.
-const NODES_OF_A_PIECE: usize = 4;
+/// Number of shapes in the energies of a linear machine.
+const PRODUCT_OF_TWO: u32 = 2;
+
+/// Degree of a piece of a spline.
+const DEGREE_OF_A_PIECE: usize = 3;
 
 /// Returns true if the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p. The shapes and the curvatures
 /// of a uniform beam are orthogonal; sines and cosines are also in other derivatives of equal kind.
@@ -25,25 +28,53 @@ pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     }
 }
 
-/// Returns the number of quadrature nodes of a field with this order.
-pub fn node_count(basis: &Basis, order: usize) -> usize {
+/// Returns the number of quadrature nodes between neighbouring knots, for products of up to `degree` shapes. Together,
+/// the pieces of a table have as many as other bases, and each has enough for the products.
+pub(super) fn nodes_of_a_piece(basis: &Basis, order: usize, degree: u32) -> usize {
+    let nodes = quadrature_size(order, degree);
     match basis {
         Basis::Table { table, .. } => {
-            let pieces = table.positions.len() - 1;
-            pieces * nodes_of_a_piece(pieces, order)
+            let exact = (DEGREE_OF_A_PIECE * degree as usize + 1).div_ceil(2);
+            nodes.div_ceil(table.positions.len() - 1).max(exact)
         }
-        Basis::Beam { .. } | Basis::ClampedFreePrinted => quadrature_size(order),
+        Basis::Beam { .. } | Basis::ClampedFreePrinted => nodes,
     }
 }
 
-/// Returns the nodes in each piece: together as many as for other bases, and enough for the products.
-fn nodes_of_a_piece(pieces: usize, order: usize) -> usize {
-    quadrature_size(order)
-        .div_ceil(pieces)
-        .max(NODES_OF_A_PIECE)
+/// Returns the relative positions between which the shapes have all derivatives, with both ends.
+pub(super) fn knots(basis: &Basis) -> Vec<f64> {
+    let Some(table) = basis.table() else {
+        return vec![0.0, 1.0];
+    };
+    let first = table.positions[0];
+    let length = table.positions[table.positions.len() - 1] - first;
+    table
+        .positions
+        .iter()
+        .map(|x| (x - first) / length)
+        .collect()
 }
 
-/// Computes a table for modes 1 to `order`; matrices row by row.
+/// Computes a table at these quadrature nodes; empty for a table of another kind.
+pub(crate) fn table_at_nodes(
+    basis: &Basis,
+    order: usize,
+    rule: &QuadratureRule,
+    kind: TableKind,
+) -> Vec<f64> {
+    match kind {
+        TableKind::NodePosition => rule.nodes.clone(),
+        TableKind::NodeWeight => rule.weights.clone(),
+        TableKind::ShapeAtNodes(derivative) => {
+            let shapes = Shapes::new(basis, order);
+            shapes.values_at_nodes(derivative, &rule.nodes).concat()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Computes a table for modes 1 to `order`; matrices row by row. Tables at quadrature nodes are those for products of
+/// two shapes.
 pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
     let shapes = Shapes::new(basis, order);
     match kind {
@@ -64,18 +95,19 @@ pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
         TableKind::OwnMoment { power, left, right } => {
             shapes.own_moments(basis, power, left, right)
         }
-        TableKind::PairMoment { power, left, right } => shapes.pair_moments(power, left, right),
-        TableKind::NodePosition => shapes.rule(0).nodes,
-        TableKind::NodeWeight => shapes.rule(0).weights,
-        TableKind::ShapeAtNodes(derivative) => {
-            let nodes = shapes.rule(0).nodes;
-            shapes.values_at_nodes(derivative, &nodes).concat()
+        TableKind::PairMoment { power, left, right } => {
+            shapes.pair_moments(basis, power, left, right)
+        }
+        TableKind::NodePosition | TableKind::NodeWeight | TableKind::ShapeAtNodes(_) => {
+            let nodes = nodes_of_a_piece(basis, order, PRODUCT_OF_TWO);
+            let rule = composite(&knots(basis), nodes);
+            table_at_nodes(basis, order, &rule, kind)
         }
     }
 }
 
 /// Shapes of a basis up to an order.
-enum Shapes {
+pub(super) enum Shapes {
     /// Analytic shapes.
     Modes(Vec<Mode>),
     /// Tabulated shapes, with their knots.
@@ -83,7 +115,7 @@ enum Shapes {
 }
 
 impl Shapes {
-    fn new(basis: &Basis, order: usize) -> Self {
+    pub(super) fn new(basis: &Basis, order: usize) -> Self {
         let numbers = 1..=order;
         match basis {
             Basis::Beam { from, to } => {
@@ -91,10 +123,7 @@ impl Shapes {
             }
             Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed_mode).collect()),
             Basis::Table { table, .. } => {
-                let first = table.positions[0];
-                let length = table.positions[table.positions.len() - 1] - first;
-                let knots = table.positions.iter().map(|x| (x - first) / length);
-                let knots: Vec<f64> = knots.collect();
+                let knots = knots(basis);
                 let used = table.shapes.iter().take(order);
                 let splines = used.map(|values| Spline::new(&knots, values)).collect();
                 Self::Splines(knots, splines)
@@ -110,7 +139,8 @@ impl Shapes {
         }
     }
 
-    fn values_at(&self, derivative: u8, s: f64) -> Vec<f64> {
+    /// Returns phi_r^(a)(s) of all modes.
+    pub(super) fn values_at(&self, derivative: u8, s: f64) -> Vec<f64> {
         match self {
             Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
             Self::Splines(_, splines) => splines
@@ -156,7 +186,7 @@ impl Shapes {
         if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
             return self.values(|mode| mode.moment(moment));
         }
-        let QuadratureRule { nodes, weights } = self.rule(moment);
+        let QuadratureRule { nodes, weights } = self.rule(basis, moment);
         let shapes = self.values_at_nodes(derivative, &nodes);
         (0..self.order())
             .map(|r| sum_over(&weights, |g| shapes[g][r]))
@@ -173,12 +203,12 @@ impl Shapes {
                 sign * (power(m.wavenumber, left + right) * one * other)
             });
         }
-        let pairs = self.pair_moments(moment, left, right);
+        let pairs = self.pair_moments(basis, moment, left, right);
         pairs.iter().step_by(self.order() + 1).copied().collect()
     }
 
-    fn pair_moments(&self, moment: u32, left: u8, right: u8) -> Vec<f64> {
-        let QuadratureRule { nodes, weights } = self.rule(moment);
+    fn pair_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
+        let QuadratureRule { nodes, weights } = self.rule(basis, moment);
         let a = self.values_at_nodes(left, &nodes);
         let b = if left == right {
             a.clone()
@@ -199,14 +229,11 @@ impl Shapes {
     }
 
     /// Returns nodes, and weights times s^k.
-    fn rule(&self, moment: u32) -> QuadratureRule {
-        let order = self.order();
+    fn rule(&self, basis: &Basis, moment: u32) -> QuadratureRule {
+        let nodes = nodes_of_a_piece(basis, self.order(), PRODUCT_OF_TWO);
         let mut rule = match self {
-            Self::Modes(_) => gauss_legendre(quadrature_size(order) + moment as usize),
-            Self::Splines(knots, _) => {
-                let nodes = nodes_of_a_piece(knots.len() - 1, order);
-                composite(knots, nodes + moment as usize / 2)
-            }
+            Self::Modes(_) => gauss_legendre(nodes + moment as usize),
+            Self::Splines(knots, _) => composite(knots, nodes + moment as usize / 2),
         };
         for (weight, s) in rule.weights.iter_mut().zip(&rule.nodes) {
             *weight *= (0..moment).fold(1.0, |product, _| product * s);

@@ -3,6 +3,7 @@
 //! - [`states`]: random states in every regime;
 //! - [`zeros`]: states with entries equal to 0;
 //! - [`balance`]: power balance along trajectories;
+//! - [`integrals`]: quadrature of integrands that are no polynomials of the motion;
 //! - [`nesting`]: agreement between orders;
 //! - [`outputs`]: requested outputs;
 //! - [`emitted`]: emitted source, with `number_types` for single precision, SIMD and requested outputs;
@@ -22,6 +23,7 @@ mod controllers;
 pub mod emitted;
 pub mod emitted_c;
 pub mod exact;
+pub mod integrals;
 mod interface;
 pub mod linked_program;
 pub mod nesting;

@@ -4,11 +4,14 @@
 use super::OracleError;
 use super::evaluate::Pass;
 use super::fold::{binary_tree, fold_constants};
+use super::knots::switch_positions;
 use super::places::{FieldDomain, PlaceSet};
+use super::powers::highest_power;
 use super::scene::{Direction, Scene};
 use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
 use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
 pub(super) struct Lowering<'m> {
@@ -42,8 +45,10 @@ impl<'m> Lowering<'m> {
         parameters: &'m [f64],
     ) -> Result<Self, OracleError> {
         let mut lowering = Self::new(model, parameters, "");
-        for field in &model.fields {
-            lowering.add_field(field, order)?;
+        let power = highest_power(model);
+        for (id, field) in FieldId::first(model.fields.len()).zip(&model.fields) {
+            let knots = |ends| switch_positions(model, id, parameters, ends);
+            lowering.add_field(field, order, power, &knots)?;
         }
         let count = model.definitions.len();
         lowering.system.definitions = vec![Tree::Constant(f64::NAN); count];
@@ -86,7 +91,13 @@ impl<'m> Lowering<'m> {
         Ok(tree)
     }
 
-    fn add_field(&mut self, field: &Field, order: usize) -> Result<(), OracleError> {
+    fn add_field(
+        &mut self,
+        field: &Field,
+        order: usize,
+        power: usize,
+        knots: &dyn Fn([f64; 2]) -> Vec<f64>,
+    ) -> Result<(), OracleError> {
         field.name.clone_into(&mut self.subject);
         let (from, to) = (
             self.evaluate_constant(&field.from)?,
@@ -98,7 +109,14 @@ impl<'m> Lowering<'m> {
                 field.name
             )));
         }
-        let domain = FieldDomain::new(from, to, &field.basis, self.system.size, order);
+        let domain = FieldDomain::new(
+            [from, to],
+            &field.basis,
+            self.system.size,
+            order,
+            power,
+            &knots([from, to]),
+        );
         let number = self.system.domains.len();
         self.quadratures.push(self.system.places.len());
         self.system

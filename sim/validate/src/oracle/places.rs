@@ -5,6 +5,7 @@
 //! rule with N nodes integrates cos(w s) to rounding if 2 N exceeds w/2 by a margin that increases
 //! as the cube root of w. A margin of 32 is enough up to S = 128. With 4 S + 40 nodes, 2 N = 8 S +
 //! 80 exceeds 2 pi S + 32 for every S. The surplus covers coefficients that vary along the field.
+//! A product of p > 4 modes gets p S + 40 nodes.
 
 use super::legendre::unit_rule;
 use super::shapes::Shape;
@@ -12,6 +13,9 @@ use super::splines::{self, SplineShape};
 use crate::double_double::DoubleDouble;
 use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
+
+/// Smallest number of modes in a product for which the nodes are enough.
+const MIN_POWER: usize = 4;
 
 /// Number of derivative orders of a mode shape, from 0.
 const DERIVATIVE_ORDERS: usize = 5;
@@ -23,6 +27,10 @@ pub(super) struct FieldDomain {
     /// Index of the field's first mode among the generalised coordinates.
     pub offset: usize,
     pub order: usize,
+    /// Number of nodes of the whole domain.
+    nodes: usize,
+    /// Positions of switches, between 0 and 1.
+    knots: Vec<f64>,
     shapes: Shapes,
 }
 
@@ -34,12 +42,22 @@ enum Shapes {
 }
 
 impl FieldDomain {
-    pub fn new(from: f64, to: f64, basis: &Basis, offset: usize, order: usize) -> Self {
+    /// Creates the domain for integrals of products of up to `power` modes.
+    pub fn new(
+        [from, to]: [f64; 2],
+        basis: &Basis,
+        offset: usize,
+        order: usize,
+        power: usize,
+        knots: &[f64],
+    ) -> Self {
         let numbers = 1..=order;
+        let power = power.max(MIN_POWER);
+        let nodes = power * order + 40;
         let shapes = match basis {
             Basis::Table { table, .. } => Shapes::Splines(
                 numbers.map(|r| SplineShape::new(table, r)).collect(),
-                splines::quadrature_rule(table, order),
+                splines::quadrature_rule(table, nodes, power, knots),
             ),
             Basis::Beam { .. } | Basis::ClampedFreePrinted => {
                 Shapes::Modes(numbers.map(|r| Shape::new(basis, r)).collect())
@@ -50,6 +68,8 @@ impl FieldDomain {
             length: to - from,
             offset,
             order,
+            nodes,
+            knots: knots.to_vec(),
             shapes,
         }
     }
@@ -57,10 +77,13 @@ impl FieldDomain {
     fn quadrature_rule(&self) -> Vec<(DoubleDouble, f64)> {
         match &self.shapes {
             Shapes::Splines(_, rule) => rule.clone(),
-            Shapes::Modes(_) => unit_rule(4 * self.order + 40)
+            Shapes::Modes(_) if self.knots.is_empty() => unit_rule(self.nodes)
                 .iter()
                 .map(|node| (node.position, node.weight))
                 .collect(),
+            Shapes::Modes(_) => {
+                splines::rule_between(&[&[0.0], &self.knots[..], &[1.0]].concat(), self.nodes)
+            }
         }
     }
 

@@ -58,11 +58,25 @@ impl SplineShape {
     }
 }
 
-/// Returns nodes and weights of a rule on [0, 1] that is exact for polynomials between knots.
-pub(super) fn quadrature_rule(table: &ShapeTable, order: usize) -> Vec<(DoubleDouble, f64)> {
+/// Returns nodes and weights of a rule on [0, 1] that is exact for polynomials between the rows and at the switches.
+pub(super) fn quadrature_rule(
+    table: &ShapeTable,
+    nodes: usize,
+    power: usize,
+    switches: &[f64],
+) -> Vec<(DoubleDouble, f64)> {
     let pieces = table.positions.len().max(2) - 1;
-    let rule = unit_rule((4 * order + 40).div_ceil(pieces).max(MIN_NODES_PER_PIECE));
-    relative_positions(table)
+    // A product of p cubic pieces has the degree 3 p.
+    let exact = (3 * power + 1).div_ceil(2).max(MIN_NODES_PER_PIECE);
+    let mut knots = [&relative_positions(table)[..], switches].concat();
+    knots.sort_by(f64::total_cmp);
+    rule_between(&knots, nodes.div_ceil(pieces).max(exact))
+}
+
+/// Returns the Gauss-Legendre rule with this number of nodes between each two neighbouring knots.
+pub(super) fn rule_between(knots: &[f64], nodes: usize) -> Vec<(DoubleDouble, f64)> {
+    let rule = unit_rule(nodes);
+    knots
         .windows(2)
         .flat_map(|ends| {
             let (left, h) = (ends[0], ends[1] - ends[0]);

@@ -1,0 +1,61 @@
+//! Polynomial degree of an integrand in its field.
+
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+
+/// Highest exponent that counts as that of a polynomial.
+const MAX_EXPONENT: f64 = 32.0;
+
+/// Degree of a product of two shapes, which is that of an energy of a linear machine.
+const QUADRATIC: u32 = 2;
+
+/// Returns the highest degree of the integrals over a field in its shapes, at least 2. Integrands that are not
+/// polynomials of the field have no degree and do not count.
+pub(crate) fn highest_degree(model: &Model, of: FieldId) -> u32 {
+    let mut highest = QUADRATIC;
+    model.for_each_expression(&mut |expr| {
+        expr.visit(&mut |part| match &part.kind {
+            ExprKind::Integral { field, integrand } if *field == of => {
+                highest = highest.max(degree(integrand).unwrap_or(QUADRATIC));
+            }
+            _ => {}
+        });
+    });
+    highest
+}
+
+/// Returns the degree in the shapes of the field; `None` if the expression is not a polynomial of them.
+fn degree(expr: &Expr) -> Option<u32> {
+    match &expr.kind {
+        ExprKind::Field(_) | ExprKind::ModeShape(_) => Some(1),
+        ExprKind::Dot(operand) | ExprKind::Diff(operand, _) | ExprKind::Negate(operand) => {
+            degree(operand)
+        }
+        ExprKind::Binary(operator, left, right) => {
+            let (one, other) = (degree(left)?, degree(right)?);
+            match operator {
+                BinaryOperator::Add | BinaryOperator::Subtract => Some(one.max(other)),
+                BinaryOperator::Multiply => Some(one + other),
+                BinaryOperator::Divide => (other == 0).then_some(one),
+                BinaryOperator::Power if one == 0 && other == 0 => Some(0),
+                BinaryOperator::Power => Some(one * whole_exponent(right)?),
+            }
+        }
+        ExprKind::Call(_, arguments) => arguments
+            .iter()
+            .all(|part| degree(part) == Some(0))
+            .then_some(0),
+        _ => Some(0),
+    }
+}
+
+/// Returns the exponent if it is a whole number of at least 0.
+pub(crate) fn whole_exponent(exponent: &Expr) -> Option<u32> {
+    match exponent.kind {
+        ExprKind::Number(n) if n == n.round() && (0.0..=MAX_EXPONENT).contains(&n) => {
+            Some(n as u32)
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,135 @@
+//! Checks the quadrature of integrals over a field.
+//!
+//! An integral with a coefficient that is not a polynomial of the position is evaluated at the quadrature
+//! nodes of its field (`modes`). The error of these nodes is the difference from panels that resolve the
+//! coefficient: bounds of the coefficient by interval arithmetic show where it changes between the nodes.
+//! `products` expands an integrand, `panels` divides the domain, `coefficients` compares both rules, and
+//! `motion` does so at a state for integrands that are no polynomials of the motion.
+
+mod coefficients;
+mod motion;
+mod panels;
+mod products;
+
+use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+use eomgen_model_spec::span::Span;
+
+use super::rule::FieldRule;
+use products::{Expansion, expand, moving_jump};
+
+pub use motion::State;
+
+/// Largest error of an integral by quadrature, relative to the integral of the integrand's magnitude.
+pub const MAX_ERROR: f64 = 1e-9;
+
+/// Integral over a field that needs quadrature.
+struct Quadrature<'m> {
+    field: FieldId,
+    integrand: &'m Expr,
+    expansion: Expansion<'m>,
+}
+
+/// Error of the quadrature of an integral.
+#[derive(Clone, Debug)]
+pub struct QuadratureError {
+    /// Place of the integrand in the specification.
+    pub span: Span,
+    /// Text of the integrand.
+    pub text: String,
+    /// Error, relative to the integral of the integrand's magnitude.
+    pub error: f64,
+    /// Number of quadrature nodes.
+    pub nodes: usize,
+}
+
+/// Checks the integrals with a coefficient that depends on the position, parameters and time only.
+///
+/// # Errors
+/// The first coefficient whose integrals have an error above [`MAX_ERROR`] at the parameters of the model, and a jump
+/// at a position that moves along the field.
+pub fn check_coefficients(model: &Model, orders: &[usize]) -> Result<(), Diagnostic> {
+    if model.fields.is_empty() {
+        return Ok(());
+    }
+    let parameters = model
+        .parameter_values()
+        .map_err(|error| error.diagnostic())?;
+    for integral in find_integrals(model) {
+        if let Some(jump) = moving_jump(model, integral.integrand) {
+            return Err(Diagnostic::error(
+                "the position of this jump moves along the field, so that each quadrature point switches by itself",
+            )
+            .with_span(jump.span, "")
+            .with_help(
+                "write a smooth transition over a length, for example 1/2*(1 + tanh((v*t - x)/b))",
+            ));
+        }
+        let Expansion::Products(products) = &integral.expansion else {
+            continue;
+        };
+        let field = coefficients::CheckedField::new(model, orders, integral.field, &parameters);
+        for product in products {
+            field.check(product)?;
+        }
+    }
+    Ok(())
+}
+
+/// Returns the largest error of integrals that are no polynomials of the motion, at a state; `None` if the model has
+/// no such integral, or none with a finite value at this state.
+pub fn worst_at_state(
+    model: &Model,
+    orders: &[usize],
+    state: State<'_>,
+) -> Option<QuadratureError> {
+    let integrals = find_integrals(model).into_iter();
+    let nonlinear = integrals.filter(|found| matches!(found.expansion, Expansion::Nonlinear));
+    let errors = nonlinear.filter_map(|integral| {
+        let error = motion::error_at(model, orders, &integral, state)?;
+        Some(QuadratureError {
+            span: integral.integrand.span,
+            text: model
+                .source
+                .text
+                .get(text_range(integral.integrand.span))?
+                .to_owned(),
+            error,
+            nodes: FieldRule::new(model, integral.field, orders[integral.field.index()])
+                .node_count(),
+        })
+    });
+    errors.max_by(|one, other| one.error.total_cmp(&other.error))
+}
+
+/// Returns true if an integral of the model is no polynomial of the motion.
+pub fn has_nonlinear_integrals(model: &Model) -> bool {
+    find_integrals(model)
+        .iter()
+        .any(|found| matches!(found.expansion, Expansion::Nonlinear))
+}
+
+fn text_range(span: Span) -> std::ops::Range<usize> {
+    span.start..span.end
+}
+
+/// Returns the integrals of the model, once for each place in the specification.
+fn find_integrals(model: &Model) -> Vec<Quadrature<'_>> {
+    let mut found: Vec<Quadrature<'_>> = Vec::new();
+    if model.fields.is_empty() {
+        return found;
+    }
+    model.for_each_expression(&mut |expr| {
+        expr.visit(&mut |part| {
+            if let ExprKind::Integral { field, integrand } = &part.kind {
+                found.push(Quadrature {
+                    field: *field,
+                    integrand,
+                    expansion: expand(model, integrand),
+                });
+            }
+        });
+    });
+    found
+}

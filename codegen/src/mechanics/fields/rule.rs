@@ -1,0 +1,48 @@
+//! Quadrature rule of a field: Gauss-Legendre nodes between its knots.
+
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::Model;
+
+use super::breaks::fixed_breaks;
+use super::degree::highest_degree;
+use super::modes::{knots, nodes_of_a_piece};
+use super::quadrature::{QuadratureRule, composite};
+
+/// Knots, and the number of nodes between neighbours.
+#[derive(Clone, Debug)]
+pub struct FieldRule {
+    knots: Vec<f64>,
+    nodes_of_a_piece: usize,
+}
+
+impl FieldRule {
+    /// Returns the rule of a field at an order. Knots are the ends, the rows of a table of shapes, and the positions at
+    /// which coefficients switch if these are fixed fractions of the length.
+    pub fn new(model: &Model, field: FieldId, order: usize) -> Self {
+        let basis = &model.fields[field].basis;
+        let nodes_of_a_piece = nodes_of_a_piece(basis, order, highest_degree(model, field));
+        let mut knots = knots(basis);
+        knots.extend(fixed_breaks(model, field));
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        Self {
+            knots,
+            nodes_of_a_piece,
+        }
+    }
+
+    /// Returns the number of nodes.
+    pub fn node_count(&self) -> usize {
+        (self.knots.len() - 1) * self.nodes_of_a_piece
+    }
+
+    /// Returns the knots, ascending from 0 to 1.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Computes nodes and weights.
+    pub fn quadrature(&self) -> QuadratureRule {
+        composite(&self.knots, self.nodes_of_a_piece)
+    }
+}

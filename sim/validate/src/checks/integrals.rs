@@ -1,0 +1,56 @@
+//! Quadrature of integrals over a field whose integrand is no polynomial of the motion, at random states.
+
+use eomgen_codegen::mechanics::fields::resolution::{
+    MAX_ERROR, State, has_nonlinear_integrals, worst_at_state,
+};
+use eomgen_model_spec::model::Model;
+
+use crate::certificate::{Check, Worst};
+use crate::oracle::{Oracle, OracleError};
+use crate::sampler::Sampler;
+
+const NAME: &str = "integrals";
+const SEED: u64 = 0x1a7e_94a1;
+const STATES: usize = 20;
+
+/// Compares the quadrature with panels that resolve the integrand; `None` without such integrals.
+pub fn check(
+    oracle: &Oracle,
+    (model, order, parameters): (&Model, usize, &[f64]),
+) -> Result<Option<Check>, OracleError> {
+    if !has_nonlinear_integrals(model) {
+        return Ok(None);
+    }
+    let orders = vec![order; model.fields.len()];
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let (mut worst, mut states) = (Worst::default(), 0);
+    for _ in 0..STATES {
+        let Some(drawn) = sampler.draw_inside()? else {
+            break;
+        };
+        let sample = drawn.sample;
+        let at = State {
+            parameters,
+            t: sample.time,
+            state: &sample.state,
+            inputs: &sample.inputs,
+        };
+        let Some(found) = worst_at_state(model, &orders, at) else {
+            continue;
+        };
+        states += 1;
+        let detail = format!(
+            "{} points for integral({}), at t = {}, state {:?}",
+            found.nodes, found.text, sample.time, sample.state
+        );
+        worst.include(Worst::from_deviation(found.error, detail));
+    }
+    Ok(Some(match states {
+        0 => Check::not_run(
+            NAME,
+            MAX_ERROR,
+            "the integrals have no value at random states",
+        ),
+        _ => Check::from_deviation(NAME, worst.with_count(states, "states"), MAX_ERROR),
+    }))
+}
