@@ -76,7 +76,7 @@ pub enum Command {
     Derive(Derive),
     /// Emit the equations of motion as source code.
     #[command(
-        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
+        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml \\\n      --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
     /// Emit and certify all variants that a file lists, with a manifest.
@@ -86,7 +86,7 @@ pub enum Command {
     Family(Family),
     /// Compile an emitted source as it is and repeat the checks of its certificate on it.
     #[command(
-        after_help = "Examples:\n  eomgen verify models/slew_3/mod.rs models/slew_3/certificate.json\n  eomgen verify models/slew_3/slew_3.c models/slew_3/certificate.json --cc \"gcc -O2 -ffp-contract=off\""
+        after_help = "Examples:\n  eomgen verify models/slew_1/mod.rs models/slew_1/certificate.json\n  eomgen verify models/slew_1/slew_1.c models/slew_1/certificate.json \\\n      --cc \"gcc -O2 -ffp-contract=off\""
     )]
     Verify(Verify),
     /// List the emitted variants in an object file, a library or a firmware image.
@@ -96,22 +96,22 @@ pub enum Command {
     Identify(Identify),
     /// Bound the executed instructions and the stack of each function of a C file, compiled for a Cortex-M4F or Cortex-M7.
     #[command(
-        after_help = "Example:\n  eomgen instructions arm4/planetary_arm.c --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
+        after_help = "Example:\n  eomgen instructions arm4/planetary_arm.c \\\n      --cc \"arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c99 -O2 -Dplanetary_arm_REAL=float\"\nA function with a loop whose number of iterations is not proven has no bound; the reason is printed, and the status is 1."
     )]
     Instructions(Instructions),
     /// Check the derived equations against independent ones and write a certificate.
     #[command(
-        after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json\n  eomgen validate model-spec/models/pendulum.toml --bounds --range theta=-pi:pi --range theta_dot=-10:10"
+        after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 \\\n      --out certificate.json\n  eomgen validate model-spec/models/pendulum.toml --bounds \\\n      --range theta=-pi:pi --range theta_dot=-10:10"
     )]
     Validate(Validate),
     /// Simulate a model and write the trajectory.
     #[command(
-        after_help = "Examples:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --interval 0.001 --set b_sp=50e-6 --out arm.csv\n  eomgen simulate model-spec/models/pendulum.toml --until 10 --state theta=\"20 deg\" --out swing.csv --plot swing.svg"
+        after_help = "Examples:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 \\\n      --interval 0.001 --set b_sp=50e-6 --out arm.csv\n  eomgen simulate model-spec/models/pendulum.toml --until 10 \\\n      --state theta=\"20 deg\" --out swing.csv --plot swing.svg"
     )]
     Simulate(Simulate),
     /// Linearise a model at a state and print the matrices A, B, C, D.
     #[command(
-        after_help = "Examples:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --out upright.json\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state trim\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi --discrete 0.001"
+        after_help = "Examples:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi \\\n      --out upright.json\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state trim\n  eomgen linearise model-spec/models/furuta_pendulum.toml --state theta=pi \\\n      --discrete 0.001"
     )]
     Linearise(Linearise),
     /// Print natural frequencies, damping ratios and mode shapes at a state.
@@ -141,7 +141,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid or over random samples of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 --out DIR\nShards may run one after another or at the same time, into one folder, or into several folders whose `parts` are collected in\none folder afterwards. Then run `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml \\\n      --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 \\\n      --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 \\\n      --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip \\\n      --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot \\\n      --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR \\\n      --engine slurm --shards 100\n  eomgen sweep SPEC --samples 1000 --seed 1 --measure max:tip --until 2 \\\n      --out DIR\nShards may run one after another or at the same time, into one folder, or into several folders whose `parts` are collected in\none folder afterwards. Then run `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Combine the shards of a sweep; fails if shards are missing.
@@ -156,7 +156,7 @@ pub enum Command {
     Paper(Paper),
     /// Write an interactive simulation of a model as one self-contained HTML file.
     #[command(
-        after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml --state theta_1=\"120 deg\" --out double_pendulum.html"
+        after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml \\\n      --state theta_1=\"120 deg\" --out double_pendulum.html"
     )]
     Page(Page),
     /// Run all steps on the paper's arm, from check to discover, and write one HTML page about them.
