@@ -94,3 +94,43 @@ fn friction_that_holds_takes_few_evaluations_in_any_unit() {
         }
     }
 }
+
+/// A ladder rests on a floor and at a wall, both rough, with rates that are left from an earlier motion.
+#[test]
+fn ladder_with_rates_of_rounding_rests() {
+    for rate in [0.0, 1e-45, 1e-30, 1e-20, 1e-14] {
+        for until in [0.2, 0.5, 1.0] {
+            for size in [1.0, 1e3] {
+                let text = format!(
+                    "[model]\nname = \"ladder\"\n[parameters]\n\
+                     m = {{ value = 1, unit = \"kg\" }}\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n\
+                     J = {{ value = 0.0833, unit = \"kg m^2\" }}\na = {{ value = 0.5, unit = \"m\" }}\n\
+                     mu = {{ value = 0.861 }}\nn = {{ value = {size:?} }}\n\
+                     [coordinates]\n\
+                     X = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+                     Y = {{ unit = \"m\", initial = {:?}, initial_rate = {:?} }}\n\
+                     h = {{ unit = \"rad\", initial = 0.5355, initial_rate = {:?} }}\n\
+                     [definitions]\n\
+                     floor_x = \"X/n + a*cos(h)\"\nfloor_y = \"Y/n - a*sin(h)\"\n\
+                     wall_x = \"X/n - a*cos(h)\"\nwall_y = \"Y/n + a*sin(h)\"\n\
+                     [kinetic]\nT = \"1/2*m*(dot(X)^2 + dot(Y)^2)/n^2 + 1/2*J*dot(h)^2\"\n\
+                     [potential]\nweight = \"m*g*Y/n\"\n\
+                     [impacts]\n\
+                     floor = {{ when = \"floor_y\", restitution = 0, friction = \"mu\", slip = \"dot(floor_x)\" }}\n\
+                     wall = {{ when = \"wall_x\", restitution = 0, friction = \"mu\", slip = \"dot(wall_y)\" }}\n",
+                    size * 0.5 * 0.5355_f64.cos(),
+                    -2.5 * size * rate,
+                    size * 0.5 * 0.5355_f64.sin(),
+                    1.5 * size * rate,
+                    0.8 * rate
+                );
+                for solver in [Solver::Rk, Solver::Radau] {
+                    let times = grid(until, 10);
+                    let motion = simulate_to_end(&text, &times, solver, SETTINGS);
+                    let end = motion.trajectory.states.last().expect("a state");
+                    assert!((end[2] - 0.5355).abs() < 1e-12, "{solver}, {rate}: {end:?}");
+                }
+            }
+        }
+    }
+}

@@ -167,7 +167,7 @@ impl Contacts {
     }
 
     /// Returns the effect of rounding of the rates on each slip. At rest the rates are the rounding of
-    /// earlier, larger ones.
+    /// earlier, larger ones, or of rates that have not moved.
     fn slip_roundings(&mut self, own: &mut Evaluator, point: Point<'_>) -> Vec<f64> {
         let degrees = own.program().degrees_of_freedom();
         own.impacts(point, &mut self.at);
@@ -181,10 +181,12 @@ impl Contacts {
         let mut sums = vec![0.0; here.len()];
         let mut moved = point.state.to_vec();
         for entry in degrees..2 * degrees {
-            if moved[entry] == 0.0 {
+            let unmoved = self.unmoved_rates.get(entry - degrees);
+            let size = moved[entry].abs().max(unmoved.copied().unwrap_or(0.0));
+            if size == 0.0 {
                 continue;
             }
-            moved[entry] *= 1.0 + RELATIVE_CHANGE;
+            moved[entry] += RELATIVE_CHANGE * size;
             let beside = Point {
                 state: &moved,
                 ..point
