@@ -39,9 +39,9 @@ pub const ADDED_STATE_PRIOR_FACTOR: f64 = 10.0;
 
 /// Factors of the typical size within which a shape parameter is searched, such as the Stribeck
 /// speed or the deflection of an end stop. The typical size for friction is a tenth of the usual
-/// speed. A friction that has not fallen at a third of that speed is no Stribeck friction: it would
-/// replace another friction at every speed.
-pub const SHAPE_SEARCH_RANGE: Interval = Interval::new(0.02, 3.0);
+/// speed. A friction that has not fallen at that speed is no Stribeck friction: it would replace
+/// another friction at every speed.
+pub const SHAPE_SEARCH_RANGE: Interval = Interval::new(0.02, 10.0);
 
 /// Relative squared difference below which two columns are equal: the limit of double precision.
 pub const MIN_COLUMN_REMAINDER: f64 = 1e-11;
@@ -439,6 +439,10 @@ pub const MAX_SHAFT_ORDER: u32 = 48;
 
 /// Maximum number of orders from that spectrum, per angle, in addition to `SHAFT_ORDERS`.
 pub const MAX_SPECTRUM_ORDERS: usize = 4;
+
+/// Maximum number of orders that are fitted beside that of a named wave. In a record of 1.2 turns the
+/// spectrum was two orders off.
+pub const MAX_FOLLOWED_ORDERS: usize = 8;
 
 // Screening.
 

@@ -105,24 +105,23 @@ pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
     }
 }
 
-pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
-    let mut used = UsageMarks {
-        parameters: vec![false; model.parameters.len()],
-        inputs: vec![false; model.inputs.len()],
-        definitions: vec![false; model.definitions.len()],
-    };
-    for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
-    used.mark_controllers(model);
-    let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
-    // Given rates of an input may be unused; a used rate counts as a use of the input.
+/// Returns the inputs that no expression contains and no controller measures or drives. Given rates of
+/// an input may be unused; a used rate counts as a use of the input.
+pub fn list_unused_inputs(model: &Model) -> Vec<&Input> {
+    let used = UsageMarks::of(model);
     let used_with_rates = |input: InputId| {
         let rates = std::iter::successors(Some(input), |of| model.inputs[*of].rate);
         rates.into_iter().any(|of| used.inputs[of])
     };
-    let unused_inputs: Vec<&Input> = InputId::first(model.inputs.len())
+    InputId::first(model.inputs.len())
         .filter(|input| model.inputs[*input].rate_of.is_none() && !used_with_rates(*input))
         .map(|input| &model.inputs[input])
-        .collect();
+        .collect()
+}
+
+pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
+    let used = UsageMarks::of(model);
+    let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
     let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
     let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
@@ -132,7 +131,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
             warn(DeclarationKind::Parameter, name, span);
         }
     }
-    for input in unused_inputs {
+    for input in list_unused_inputs(model) {
         warn(DeclarationKind::Input, &input.name, input.span);
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
@@ -151,6 +150,18 @@ struct UsageMarks {
 }
 
 impl UsageMarks {
+    /// Marks what a model uses.
+    fn of(model: &Model) -> Self {
+        let mut used = Self {
+            parameters: vec![false; model.parameters.len()],
+            inputs: vec![false; model.inputs.len()],
+            definitions: vec![false; model.definitions.len()],
+        };
+        for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
+        used.mark_controllers(model);
+        used
+    }
+
     /// Marks what controllers measure and drive.
     fn mark_controllers(&mut self, model: &Model) {
         for controller in &model.controllers {

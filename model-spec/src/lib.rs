@@ -150,6 +150,8 @@ mod units_check;
 pub mod variant;
 
 #[cfg(feature = "read")]
+pub use checks::list_unused_inputs;
+#[cfg(feature = "read")]
 pub use functions::reservation_reason;
 #[cfg(feature = "read")]
 pub use load::{Checked, check, load, load_from};

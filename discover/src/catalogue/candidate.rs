@@ -48,6 +48,9 @@ pub struct Candidate {
     /// Experiment that shows the effect best.
     pub experiment: String,
     pub(crate) changes: Vec<Edit>,
+    /// Changes for the linear part of the model, if the effect states the part of a force that is
+    /// linear between switches.
+    pub(crate) linear_changes: Option<Vec<Edit>>,
     /// Main line of the change.
     pub term: String,
     /// Unknown of the null model that loses its prior, if that is the effect.
@@ -186,11 +189,23 @@ impl Candidate {
         values: &[f64],
         source: &str,
     ) -> Result<String, EditError> {
+        self.write_changes(&self.changes, text, name, values, source)
+    }
+
+    /// Returns a specification with these changes and the parameters of the effect.
+    fn write_changes(
+        &self,
+        changes: &[Edit],
+        text: &str,
+        name: &str,
+        values: &[f64],
+        source: &str,
+    ) -> Result<String, EditError> {
         let pairs = self.parameters.iter().zip(values);
         let mut edits: Vec<Edit> = pairs
             .map(|(parameter, value)| parameter.edit(*value, source))
             .collect();
-        edits.extend(self.changes.iter().cloned());
+        edits.extend(changes.iter().cloned());
         edit::apply(&Source::new(name, text), &edits)
     }
 
@@ -205,10 +220,16 @@ impl Candidate {
         texts: &SpecificationTexts,
         values: &[f64],
     ) -> Result<SpecificationTexts, DiscoverError> {
-        let written = |text: &str| self.write_effect(text, &problem.path, values, "");
-        let extended = written(&texts.full)?;
+        let written = |changes: &[Edit], text: &str| {
+            self.write_changes(changes, text, &problem.path, values, "")
+        };
+        let extended = written(&self.changes, &texts.full)?;
         // Terms that are linear between switches belong to the linear part.
-        let linear = match written(&texts.linear) {
+        let linear = written(
+            self.linear_changes.as_ref().unwrap_or(&self.changes),
+            &texts.linear,
+        );
+        let linear = match linear {
             Ok(extended) if is_linear(&extended, &problem.path, problem.order) => extended,
             _ => texts.linear.clone(),
         };
@@ -342,9 +363,12 @@ fn candidate(
         }
     }
     let mut changes = Vec::new();
+    let mut linear_changes = Vec::new();
     let mut term = String::new();
     for change in &effect.edits {
         changes.extend(instantiate_change(model, change, site, &arguments)?);
+        let linear = change.linear_part();
+        linear_changes.extend(instantiate_change(model, &linear, site, &arguments)?);
         if let Change::Term { value, .. }
         | Change::Definition { value, .. }
         | Change::Force { value, .. }
@@ -363,6 +387,7 @@ fn candidate(
         parameters,
         description: effect.description.clone(),
         experiment: effect.experiment.clone(),
+        linear_changes: effect.states_linear_part().then_some(linear_changes),
         changes,
         term,
         dropped_prior: None,
@@ -388,6 +413,7 @@ pub fn drop_prior(
         description: says.to_owned(),
         experiment: experiment.to_owned(),
         changes: Vec::new(),
+        linear_changes: None,
         term: String::new(),
         dropped_prior: Some(what.clone()),
     }

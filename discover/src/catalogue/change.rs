@@ -65,12 +65,13 @@ const REPLACED: [(&str, Replaced); 7] = [
 ];
 
 /// All keys of an edit.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "add",
     "substitute",
     "name",
     "on",
     "value",
+    "linear",
     "unit",
     "rate",
     "doc",
@@ -126,7 +127,7 @@ fn addition(
 ) -> Option<Change> {
     let known: &[&str] = match what {
         Added::Term(_) | Added::Definition => &["add", "name", "value"],
-        Added::Force => &["add", "name", "on", "value"],
+        Added::Force => &["add", "name", "on", "value", "linear"],
         Added::Coordinate => &["add", "name", "unit", "doc"],
         Added::State => &["add", "name", "unit", "rate", "doc"],
     };
@@ -145,6 +146,10 @@ fn addition(
         Added::Force => Change::Force {
             target: read_expression(&record, "on", placeholders, found)?,
             value: read_expression(&record, "value", placeholders, found)?,
+            linear: match record.get("linear") {
+                Some(_) => Some(read_expression(&record, "linear", placeholders, found)?),
+                None => None,
+            },
             name: name?,
         },
         Added::Coordinate => Change::Coordinate {

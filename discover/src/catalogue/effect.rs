@@ -72,6 +72,20 @@ impl Effect {
         !self.is_user_defined && (has_memory || has_dead_zone)
     }
 
+    /// Returns true if the effect states a part of a force that is linear between switches.
+    pub(super) fn states_linear_part(&self) -> bool {
+        let states = |edit: &Change| {
+            matches!(
+                edit,
+                Change::Force {
+                    linear: Some(_),
+                    ..
+                }
+            )
+        };
+        self.edits.iter().any(states)
+    }
+
     /// Returns true if the effect only scales the stiffness of a spring. A shifted parameter does
     /// the same.
     pub fn scales_stiffness(&self) -> bool {
@@ -191,6 +205,9 @@ pub enum Change {
         target: String,
         /// Expression.
         value: String,
+        /// Part of the expression that is linear between switches, if it is stated. The rest is
+        /// continuous where the expression switches.
+        linear: Option<String>,
     },
     /// A coordinate.
     Coordinate {
@@ -221,6 +238,27 @@ pub enum Change {
         /// New expression.
         replacement: String,
     },
+}
+
+impl Change {
+    /// Returns the change with the part of its expression that is linear between switches, if that
+    /// is stated; otherwise the change itself.
+    pub(super) fn linear_part(&self) -> Self {
+        match self {
+            Self::Force {
+                name,
+                target,
+                linear: Some(linear),
+                ..
+            } => Self::Force {
+                name: name.clone(),
+                target: target.clone(),
+                value: linear.clone(),
+                linear: None,
+            },
+            change => change.clone(),
+        }
+    }
 }
 
 /// Terms in which an expression is replaced.

@@ -42,6 +42,7 @@ pub(crate) fn instantiate_change(
             name,
             target,
             value,
+            ..
         } => Edit::AddForce(NewForce {
             name: free(name),
             on: fill(target)?,

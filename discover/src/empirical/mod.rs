@@ -242,6 +242,7 @@ fn write_candidate(model: &Model, expression: &Expression) -> Candidate {
         description: "a fitted expression for the residual".to_owned(),
         experiment: "records with other combinations of rates, positions and inputs".to_owned(),
         changes,
+        linear_changes: None,
         term: value,
         dropped_prior: None,
     }

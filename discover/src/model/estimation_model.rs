@@ -2,8 +2,8 @@
 //! outputs, and steps that are short enough for the noise of the sensors. It is simulated in
 //! [`crate::model::simulation`].
 
-use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::{Program, ProgramGuard};
 use eomgen_compiled_model::{CompiledModel, Error, ExportedModel, Orders};
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -421,7 +421,7 @@ fn linear_part(
     model: &EstimationModel,
 ) -> Option<LinearPart> {
     let part = compile_model(text, name, order).ok()?;
-    if part.state_names() != model.states {
+    if part.state_names() != model.states || can_hold_more(&model.compiled, &part) {
         return None;
     }
     let own = part.piecewise_linear().ok()?.parameter_names();
@@ -433,6 +433,21 @@ fn linear_part(
     })))
 }
 
+/// Returns true if a model has surfaces that can hold a motion, such as dry friction, which its linear
+/// part lacks. The integrator of the linear part does not see the motion stop there.
+fn can_hold_more(whole: &CompiledModel, part: &CompiledModel) -> bool {
+    let known = &part.program().guards;
+    let is_known = |guard: &ProgramGuard| known.iter().any(|own| own.formula == guard.formula);
+    if whole.program().guards.iter().all(is_known) {
+        return false;
+    }
+    let holding_count = |model: &CompiledModel| {
+        let sided = model.sided_model(&model.program().default_parameters());
+        sided.ok().flatten().map_or(0, |sided| sided.side_count())
+    };
+    holding_count(whole) > holding_count(part)
+}
+
 /// The model of a text.
 fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
     CompiledModel::from_text(name, text, order.map_or(Orders::Declared, Orders::Uniform))
@@ -440,6 +455,8 @@ fn compile_model(text: &str, name: &str, order: Option<usize>) -> Result<Compile
 
 #[cfg(test)]
 mod tests {
+    use eomgen_sim::inputs::HeldInputs;
+
     use super::*;
 
     const SPEAKER: &str = r#"[model]
@@ -453,6 +470,52 @@ x = { unit = "m", range = ["-b", "b"] }
 [kinetic]
 masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
 "#;
+
+    const STAGE: &str = r#"[model]
+name = "stage"
+[parameters]
+m = { value = 2, unit = "kg" }
+T = { value = 5, unit = "N" }
+v_s = { value = 0.1, unit = "m/s" }
+[coordinates]
+x = { unit = "m", initial_rate = 0.4 }
+[kinetic]
+table = "1/2*m*dot(x)^2"
+[forces]
+"#;
+
+    #[test]
+    fn motion_stops_where_friction_holds_it() {
+        let text = |friction: &str| {
+            format!("{STAGE}friction = {{ on = \"x\", value = \"{friction}\" }}\n")
+        };
+        let whole = text("-T*sign(dot(x))*exp(-(dot(x)/v_s)^2) - T*sign(dot(x))/4");
+        let simulate = |linear: Option<&str>| {
+            let mut model =
+                EstimationModel::derive(&whole, linear, "stage", None, &[]).expect("a model");
+            (model.sample, model.refinement) = (0.01, 8.0);
+            let mut simulation = model
+                .create_simulation(&model.values)
+                .expect("a simulation");
+            let samples: Vec<f64> = (0..80).map(|k| 0.01 * f64::from(k)).collect();
+            let inputs = HeldInputs::zero(0);
+            let states = simulation.simulate_states(&[0.0, 0.4], &samples, &inputs);
+            (
+                simulation.uses_integrator(),
+                states.expect("states").last().cloned().expect("a state"),
+            )
+        };
+        let (is_integrated, right) = simulate(None);
+        assert!(!is_integrated && right[1].abs() < 1e-6, "{right:?}");
+        // Without friction the linear part does not see the motion stop.
+        let (is_integrated, end) = simulate(Some(&format!(
+            "{STAGE}free = {{ on = \"x\", value = \"0*T\" }}\n"
+        )));
+        assert!(!is_integrated && end == right, "{end:?} {right:?}");
+        let (is_integrated, end) = simulate(Some(&text("-5/4*T*sign(dot(x))")));
+        assert!(is_integrated && end[1] == 0.0, "{end:?}");
+        assert!((end[0] / right[0] - 1.0).abs() < 1e-4, "{end:?} {right:?}");
+    }
 
     #[test]
     fn an_initial_state_stays_where_the_model_lives() {

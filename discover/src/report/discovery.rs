@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
 
+use crate::catalogue::candidate::Candidate;
 use crate::empirical::EMPIRICAL_EFFECT;
 use crate::experiment::next_experiment::{Experiments, NextExperiment};
 use crate::fit::fit_result::Fit;
@@ -95,6 +96,8 @@ pub(crate) fn list_rejected(
         at: EffectSite {
             effect: of.candidate.effect.clone(),
             site: of.candidate.site.clone(),
+            // The reason contains it.
+            order: None,
         },
         reason: reason(of),
         experiment: of.candidate.experiment.clone(),
@@ -184,16 +187,10 @@ fn found_effect(
         term = format!("{name} = {value}");
         parameters.insert(name, EstimateWithUnit { value, sd, unit });
     }
-    let equivalent = effect.equivalents.iter().map(|other| EffectSite {
-        effect: other.effect.clone(),
-        site: other.site.clone(),
-    });
+    let equivalent = effect.equivalents.iter().map(locate);
     let has_equivalent = !effect.equivalents.is_empty();
     FoundEffect {
-        at: EffectSite {
-            effect: candidate.effect.clone(),
-            site: candidate.site.clone(),
-        },
+        at: locate(candidate),
         description: candidate.description.clone(),
         status: match (candidate.effect.as_str(), has_equivalent, is_sure) {
             (EMPIRICAL_EFFECT, _, _) => EffectStatus::Empirical,
@@ -207,13 +204,19 @@ fn found_effect(
         statistics: effect.statistics.clone(),
         adjusted_p_value: (effect.statistics.p_value)
             .map(|p| problem.tested_hypotheses.adjust_p_value(p)),
-        order: candidate
-            .angle_order
-            .clone()
-            .map(|(angle, order)| ShaftOrder { angle, order }),
         load: candidate.load.clone(),
         experiment: has_equivalent.then(|| candidate.experiment.clone()),
         next_experiment: None,
+    }
+}
+
+/// Returns effect, site and order of a candidate.
+fn locate(candidate: &Candidate) -> EffectSite {
+    let order = candidate.angle_order.clone();
+    EffectSite {
+        effect: candidate.effect.clone(),
+        site: candidate.site.clone(),
+        order: order.map(|(angle, order)| ShaftOrder { angle, order }),
     }
 }
 

@@ -145,7 +145,11 @@ pub(crate) fn sensors_to_json(of: &BTreeMap<String, SensorEstimate>) -> Value {
 }
 
 fn write_site(of: &EffectSite) -> Value {
-    json!({"effect": of.effect, "on": of.site})
+    let mut entry = json!({"effect": of.effect, "on": of.site});
+    if let Some(order) = &of.order {
+        entry["order"] = json!({"angle": order.angle, "order": order.order});
+    }
+    entry
 }
 
 /// Writes a rejected effect. `files` are the experiments for effects that the records cannot show.
@@ -176,9 +180,6 @@ fn effect(of: &FoundEffect, files: &[ExperimentFile]) -> Value {
         "p_value": of.statistics.p_value,
         "p_value_adjusted": of.adjusted_p_value,
     });
-    if let Some(order) = &of.order {
-        entry["order"] = json!({"angle": order.angle, "order": order.order});
-    }
     if let Some(load) = &of.load {
         entry["load"] = json!(load);
     }

@@ -201,6 +201,8 @@ pub struct EffectSite {
     pub effect: String,
     /// Name of the site.
     pub site: String,
+    /// Shaft order of a periodic effect.
+    pub order: Option<ShaftOrder>,
 }
 
 /// Certainty of the name of an effect.
@@ -257,8 +259,6 @@ pub struct FoundEffect {
     pub statistics: TestStatistics,
     /// P-value corrected for all hypotheses tested on the test records.
     pub adjusted_p_value: Option<f64>,
-    /// Angle and order of a periodic effect.
-    pub order: Option<ShaftOrder>,
     /// Spring or mesh whose load scales the effect.
     pub load: Option<String>,
     /// Experiment that separates it from its equivalents, if any.

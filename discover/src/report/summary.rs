@@ -173,13 +173,26 @@ fn name_effect(effect: &FoundEffect) -> String {
         text += &format!(", {}", sizes.join(" and "));
     }
     if effect.status == EffectStatus::Class && !effect.equivalents.is_empty() {
-        let others: Vec<String> = effect.equivalents.iter().map(describe_effect).collect();
+        let others: Vec<String> = effect.equivalents.iter().map(describe_equivalent).collect();
         text += &format!(
             " (or {}; the records do not separate them)",
             others.join(", or ")
         );
     }
     text
+}
+
+/// Returns name, site and order of an effect as words.
+pub(crate) fn describe_equivalent(at: &EffectSite) -> String {
+    match &at.order {
+        Some(order) => format!(
+            "{} ({} per turn of {})",
+            describe_effect(at),
+            order.order,
+            order.angle
+        ),
+        None => describe_effect(at),
+    }
 }
 
 /// Returns name and site of an effect as words.

@@ -53,7 +53,26 @@ fn alternatives(
         return None;
     }
     let rivals = rivals(pool, fitted_hypotheses, answer, response);
-    let (rivals, in_model) = in_model(pool, fitted, &rivals);
+    // If the residual exceeds that of a correct model, test the same effect at all other places: a
+    // prediction along the motion of a wrong place may be far off.
+    let at_floor = fitted.fit.is_at_floor(pool.context.floor);
+    let most = match at_floor {
+        true => thresholds::MAX_RIVAL_COST_RATIO,
+        false => f64::INFINITY,
+    };
+    begin_from_answer(pool, fitted, response, &rivals, most)
+}
+
+/// Begins fits of rivals of a fitted effect, `response`, from its result: those with the lowest
+/// predicted residuals, below `most` times that of the fitted effect.
+pub(super) fn begin_from_answer(
+    pool: &CandidatePool<'_>,
+    fitted: &FittedHypothesis,
+    response: ResponseId,
+    rivals: &[ResponseId],
+    most: f64,
+) -> Option<Vec<(Hypothesis, PreliminaryFit)>> {
+    let (rivals, in_model) = in_model(pool, fitted, rivals);
     if in_model.is_empty() {
         return None;
     }
@@ -62,13 +81,6 @@ fn alternatives(
         in_model.len(),
         pool.candidate(response).label()
     ));
-    // If the residual exceeds that of a correct model, test the same effect at all other places: a
-    // prediction along the motion of a wrong place may be far off.
-    let at_floor = fitted.fit.is_at_floor(pool.context.floor);
-    let most = match at_floor {
-        true => thresholds::MAX_RIVAL_COST_RATIO,
-        false => f64::INFINITY,
-    };
     let mut predictions = predictions(pool, fitted, &in_model, most)?;
     predictions.sort_by(|a, b| a.prediction.cost.total_cmp(&b.prediction.cost));
     predictions.truncate(thresholds::FITS_IN_PARALLEL);

@@ -1,6 +1,7 @@
 //! Result of a round: the named hypothesis.
 
 use crate::search::alternatives::test_alternatives;
+use crate::search::neighbouring_orders::follow_orders;
 use crate::search::pool::CandidatePool;
 use crate::search::round::SearchRound;
 use crate::search::selection::{SelectedHypothesis, select_best_fit, select_hypothesis};
@@ -33,12 +34,10 @@ pub fn select_answer(
         test_alternatives(&pool, &mut fitted_hypotheses, answer);
     }
     fitted_hypotheses.retain(|fitted| fitted.explains_records);
-    select_hypothesis(
-        round.context,
-        TestedPool {
-            candidates,
-            screening,
-            fitted_hypotheses,
-        },
-    )
+    let tested = TestedPool {
+        candidates,
+        screening,
+        fitted_hypotheses,
+    };
+    select_hypothesis(round.context, follow_orders(round.context, tested))
 }

@@ -5,7 +5,7 @@
 //! [`mod@perturbed_response`] (selected in [`mod@responses`]), [`screening`], [`acceptance`],
 //! [`split_sample`]; `motion_of_fit`, [`context`], [`pool`], [`hypothesis`], [`hypothesis_fits`];
 //! `shape_restarts`, `single_candidates`, `pair_halves`, `pairs`; [`tested_pool`], [`parameter_offsets`],
-//! [`selection`], `alternatives`; `excitation_window`, `dropped_priors`, `round`, `answer_selection`,
+//! [`selection`], `alternatives`, `neighbouring_orders`; `excitation_window`, `dropped_priors`, `round`, `answer_selection`,
 //! `unfinished_round`, [`unconfirmed_hypothesis`]; [`search_result`], `rejected_candidates`, [`backward_elimination`];
 //! `scanned_laws`.
 
@@ -19,6 +19,7 @@ mod excitation_window;
 pub mod hypothesis;
 pub mod hypothesis_fits;
 mod motion_of_fit;
+mod neighbouring_orders;
 mod pair_halves;
 mod pairs;
 pub mod parameter_offsets;

@@ -180,3 +180,50 @@ pub fn fit_other_halves(
     fitted_hypotheses.extend(alone);
     fitted_hypotheses
 }
+
+/// Fits pairs in which another candidate of the pool takes the place of one half of a pair: those whose
+/// predicted residual is nearly as low, the best first, at most [`thresholds::MAX_FULL_FITS_PER_ROUND`] for
+/// each half. They are fitted in full if their preliminary fit is nearly as good.
+pub fn fit_replacements(pool: &CandidatePool<'_>, pair: &[ResponseId]) -> Vec<FittedHypothesis> {
+    let hypothesis = |responses: Vec<ResponseId>| {
+        let LinearPrediction { cost, sizes } = pool.screening.predict(&responses);
+        let hypothesis = Hypothesis {
+            responses,
+            replaced_parameter: None,
+            predicted_sizes: sizes,
+        };
+        (cost, hypothesis)
+    };
+    let (cost, own) = hypothesis(pair.to_vec());
+    let mut hypotheses = vec![own];
+    for half in 0..pair.len() {
+        let others = ResponseId::first(pool.screening.responses.len());
+        let others = others.filter(|other| {
+            let mut kept = pair.iter().filter(|kept| **kept != pair[half]);
+            !pair.contains(other) && kept.all(|kept| !pool.has_common_parameter_name(*kept, *other))
+        });
+        let replaced = others.map(|other| {
+            let mut responses = pair.to_vec();
+            responses[half] = other;
+            hypothesis(responses)
+        });
+        let mut found: Vec<(f64, Hypothesis)> = replaced
+            .filter(|(other, _)| *other < thresholds::MAX_RIVAL_COST_RATIO * cost)
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(thresholds::MAX_FULL_FITS_PER_ROUND);
+        hypotheses.extend(found.into_iter().map(|(_, hypothesis)| hypothesis));
+    }
+    if hypotheses.len() == 1 {
+        return Vec::new();
+    }
+    let mut preliminaries = run_preliminary_fits(pool, hypotheses);
+    let own = preliminaries
+        .iter()
+        .find(|(hypothesis, _)| hypothesis.responses == pair);
+    let most = own.map_or(0.0, |(_, own)| thresholds::MAX_RIVAL_COST_RATIO * own.cost);
+    preliminaries.retain(|(hypothesis, preliminary)| {
+        hypothesis.responses != pair && preliminary.cost < most
+    });
+    run_full_fits(pool, preliminaries)
+}

@@ -13,6 +13,7 @@ use crate::model::unknowns::{Unknown, UnknownKind};
 use crate::search::context::RoundContext;
 use crate::search::dropped_priors::list_prior_candidates;
 use crate::search::motion_of_fit::compute_usual_motion;
+use crate::search::pairs::fit_replacements;
 use crate::search::pool::CandidatePool;
 use crate::search::screening::{ScreenedResponse, screen_candidates};
 use crate::search::single_candidates::fit_similar;
@@ -23,8 +24,8 @@ use crate::thresholds;
 pub struct SimilarOffsets {
     /// Screened candidates, the named effect among them, and the fits of the similar candidates.
     pub tested_pool: TestedPool,
-    /// Response of the named effect.
-    pub selected_response: ResponseId,
+    /// Responses of the named effects.
+    pub selected_responses: Vec<ResponseId>,
 }
 
 /// Returns the candidates for shifted parameters that are not unknowns, for errors of inputs, and
@@ -112,7 +113,53 @@ pub fn fit_similar_offsets(
     };
     Some(SimilarOffsets {
         tested_pool: tested,
-        selected_response: own,
+        selected_responses: vec![own],
+    })
+}
+
+/// Fits pairs in which a parameter, an error of an input or a wave takes the place of one half of a
+/// named pair, and keeps those that explain the records. `None` if no candidate is similar. The fit
+/// of the context is the one before the pair was named.
+pub fn fit_similar_pairs(
+    context: RoundContext<'_>,
+    halves: &[Candidate],
+) -> Option<SimilarOffsets> {
+    let waves = halves.iter().flat_map(|half| waves(context, half));
+    let mut offsets: Vec<Candidate> = list_offsets(context).into_iter().chain(waves).collect();
+    offsets.retain(|offset| !halves.iter().any(|half| half.is_same_effect_as(offset)));
+    if offsets.is_empty() {
+        return None;
+    }
+    let labels: Vec<String> = halves.iter().map(Candidate::label).collect();
+    (context.progress)(&format!(
+        "screening {} parameters of the model and of inputs in the place of {}",
+        offsets.len(),
+        labels.join(" or ")
+    ));
+    let is_whole = context.starts_with_whole_windows();
+    let part = match is_whole {
+        true => 1.0,
+        false => thresholds::PRELIMINARY_FRACTION,
+    };
+    let candidates = [halves, &offsets].concat();
+    let screening = screen_candidates(context.problem, context.fit, &candidates, part);
+    let response_of = |candidate: usize| {
+        let is_own = |r: &ScreenedResponse| r.candidate == CandidateId::new(candidate);
+        let place = screening.responses.iter().position(is_own)?;
+        Some(ResponseId::new(place))
+    };
+    let own: Option<Vec<ResponseId>> = (0..halves.len()).map(response_of).collect();
+    let own = own?;
+    let pool = CandidatePool::new(context, &candidates, &screening, is_whole);
+    let mut fitted_hypotheses = fit_replacements(&pool, &own);
+    fitted_hypotheses.retain(|fitted| fitted.explains_records);
+    Some(SimilarOffsets {
+        tested_pool: TestedPool {
+            candidates,
+            screening,
+            fitted_hypotheses,
+        },
+        selected_responses: own,
     })
 }
 

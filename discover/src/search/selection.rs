@@ -54,14 +54,15 @@ pub fn select_hypothesis(
     tested: TestedPool,
 ) -> Option<SelectedHypothesis> {
     let selected = select_best(context, with_other_halves(context, tested))?;
-    let [candidate] = &selected.candidates[..] else {
-        return Some(selected);
-    };
     let fit = &selected.hypothesis.fit;
-    let Some(similar) = parameter_offsets::fit_similar_offsets(context, candidate) else {
+    let similar = match &selected.candidates[..] {
+        [candidate] => parameter_offsets::fit_similar_offsets(context, candidate),
+        halves => parameter_offsets::fit_similar_pairs(context, halves),
+    };
+    let Some(similar) = similar else {
         return Some(selected);
     };
-    let own = similar.selected_response;
+    let own = similar.selected_responses;
     let TestedPool {
         candidates,
         screening,
@@ -78,16 +79,21 @@ pub fn select_hypothesis(
         };
         return select_best(context, better);
     }
-    let of =
-        |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
-    let indistinguishable = others.iter().filter(|fitted| {
-        let similarity = similarity(&candidates, &screening, own, fitted.responses[0]);
-        is_indistinguishable(&selected.hypothesis, fitted, similarity)
-    });
-    let undeclared: Vec<Candidate> = indistinguishable.map(|fitted| of(fitted).clone()).collect();
-    let equivalent = [&selected.equivalents[0][..], &undeclared].concat();
+    let mut equivalents = selected.equivalents;
+    for fitted in &others {
+        // The others of a pair replace one of its halves, at its place.
+        let halves = own.iter().zip(&fitted.responses);
+        let replaced = halves.zip(&mut equivalents).find(|((a, b), _)| a != b);
+        let Some(((own, response), equivalents)) = replaced else {
+            continue;
+        };
+        let similarity = similarity(&candidates, &screening, *own, *response);
+        if is_indistinguishable(&selected.hypothesis, fitted, similarity) {
+            equivalents.push(candidates[screening.responses[*response].candidate].clone());
+        }
+    }
     Some(SelectedHypothesis {
-        equivalents: vec![equivalent],
+        equivalents,
         ..selected
     })
 }
@@ -182,7 +188,7 @@ fn select_best(context: RoundContext<'_>, tested: TestedPool) -> Option<Selected
             continue;
         };
         let (other, own) = (candidate(half.response), &own[half.effect]);
-        if (&other.effect, &other.site) != (&own.effect, &own.site) {
+        if !other.is_same_effect_as(own) || other.angle_order != own.angle_order {
             equivalent[half.effect].push(other.clone());
         }
     }

@@ -1,6 +1,7 @@
 //! Tested candidates of a pool.
 
 use crate::catalogue::candidate::Candidate;
+use crate::ids::ResponseId;
 use crate::search::hypothesis_fits::FittedHypothesis;
 use crate::search::screening::Screening;
 
@@ -12,4 +13,11 @@ pub struct TestedPool {
     pub screening: Screening,
     /// The fitted hypotheses.
     pub fitted_hypotheses: Vec<FittedHypothesis>,
+}
+
+impl TestedPool {
+    /// Returns the candidate of a response.
+    pub fn candidate(&self, response: ResponseId) -> &Candidate {
+        &self.candidates[self.screening.responses[response].candidate]
+    }
 }

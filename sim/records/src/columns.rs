@@ -11,10 +11,10 @@ use crate::refusal::Refusal;
 
 const MAX_RECORD_BYTES: u64 = 256 << 20;
 
-/// Reads columns of a file. A missing number, `NaN`, an infinity or an empty cell becomes NaN.
+/// Reads columns of a file. A missing number, `NaN` or an empty cell becomes NaN.
 ///
 /// # Errors
-/// A file that is unreadable or too large, a missing column, or a cell that is not a number.
+/// A file that is unreadable or too large, a missing column, or a cell that is not a number or is infinite.
 pub fn read_columns(path: &Path, format: &Format, wanted: &[&ColumnKey]) -> Result<Table, Refusal> {
     let bytes = read_bytes(path)?;
     if path.extension().is_some_and(|e| e == "parquet") {

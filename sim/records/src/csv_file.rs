@@ -274,7 +274,17 @@ fn read_number(
         return Ok(f64::NAN);
     }
     if let Some(value) = parse_number(&cell, decimal) {
-        return Ok(if value.is_finite() { value } else { f64::NAN });
+        if value.is_infinite() {
+            return Err(Refusal::line_error(
+                path,
+                line,
+                format!(
+                    "column {}: \"{cell}\" is not a finite number; leave the cell of a missing sample empty",
+                    place + 1
+                ),
+            ));
+        }
+        return Ok(value);
     }
     let other = if decimal == b'.' { ',' } else { '.' };
     let is_other = parse_number(&cell, other as u8).is_some();

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::list_unused_inputs;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_sim::inputs::HeldInputs;
@@ -100,6 +101,8 @@ pub fn input_notes(description: &Description, (model, driven): (&Model, &[&str])
             ));
         }
     }
+    // A reference of controllers that are left out acts on nothing.
+    let unused = list_unused_inputs(model);
     for (place, (input, value)) in model.inputs.iter().zip(undriven).enumerate() {
         let name = &input.name;
         let is_fed = (description.inputs.iter()).any(|column| column.name.text == *name);
@@ -111,7 +114,8 @@ pub fn input_notes(description: &Description, (model, driven): (&Model, &[&str])
             ));
         }
         let is_driven = model.is_controlled(place) || driven.contains(&&**name);
-        if input.rate_of.is_some() || is_fed || is_measured || is_driven {
+        let is_used = unused.iter().all(|of| of.name != *name);
+        if input.rate_of.is_some() || is_fed || is_measured || is_driven || !is_used {
             continue;
         }
         notes.push(match input.rate {

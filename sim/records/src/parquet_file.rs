@@ -165,7 +165,13 @@ fn number_from_field(path: &Path, name: &str, field: &Field) -> Result<f64, Refu
             ));
         }
     };
-    Ok(if value.is_finite() { value } else { f64::NAN })
+    if value.is_infinite() {
+        return Err(Refusal::file_error(
+            path,
+            format!("the column `{name}` contains an infinity; a missing sample is null or NaN"),
+        ));
+    }
+    Ok(value)
 }
 
 #[cfg(test)]

@@ -115,6 +115,8 @@ fn recorded_outputs_drive_the_machine_and_show_its_friction() {
             ),
             "{said}"
         );
+        // The reference acts only through the controller.
+        assert!(!said.contains("is not driven"), "{said}");
         let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(document["verdict"], verdict, "{document}");
         if friction > 0.0 {

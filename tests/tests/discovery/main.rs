@@ -9,6 +9,7 @@ mod effects_placed;
 mod empirical;
 mod equivalent_faults;
 mod feedback;
+mod friction_that_falls;
 mod friction_that_stops;
 mod friction_under_load;
 mod input_faults;

@@ -261,3 +261,109 @@ fn complete_model_gives_no_effect() {
     let found = discover(0.0, 0.0, DATASET);
     assert_eq!(found["verdict"], "no_significant_gap", "{found:#}");
 }
+
+const PENDULUM: &str = r#"
+[model]
+name = "pendulum"
+[parameters]
+m = { value = 1.9, unit = "kg" }
+l = { value = 0.42, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+c = { value = 0.05, unit = "N m s" }
+[coordinates]
+q = { unit = "rad" }
+[inputs]
+u = { unit = "N m" }
+[kinetic]
+bob = "1/2*m*l^2*dot(q)^2"
+[potential]
+weight = "-m*g*l*cos(q)"
+[dissipation]
+pivot = "1/2*c*dot(q)^2"
+[forces]
+motor = { on = "q", value = "u" }
+"#;
+
+const TORQUE: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+[time]
+column = "t"
+unit = "s"
+[motion.q]
+column = "q"
+unit = "rad"
+[channels.tau]
+column = "u"
+unit = "N m"
+noise = 0.02
+observable = "u"
+[uncertain]
+c = { relative = 0.1 }
+"#;
+
+/// Returns the effects found in records of the pendulum that swings by an angle, with so much time between
+/// samples and a torque in addition to that of the model, a function of angle, rate and acceleration.
+fn find_on_pendulum(swing: f64, step: f64, added: fn([f64; 3]) -> f64) -> Vec<Value> {
+    let record = |turn: f64| {
+        let mut noise = LogisticNoise::new(0.02, 0.2 + 0.1 * turn);
+        let mut text = "t,q,u\n".to_owned();
+        for sample in 0..(4.0 / step) as u32 {
+            let t = step * f64::from(sample);
+            let waves = [(0.7, 2.1, 0.0), (0.4, 5.3, 1.0 + turn), (0.1, 11.0, 2.0)];
+            let motion = waves.map(|(size, w, phase)| {
+                let (sine, cosine) = (w * t + phase + turn).sin_cos();
+                [size * sine, size * w * cosine, -size * w * w * sine]
+            });
+            let [q, v, a]: [f64; 3] =
+                std::array::from_fn(|kind| swing * motion.iter().map(|of| of[kind]).sum::<f64>());
+            let inertia = 1.9 * 0.42 * 0.42;
+            let torque = inertia * a + 0.05 * v + 1.9 * 9.81 * 0.42 * q.sin() + added([q, v, a]);
+            text += &format!("{t:.3},{q:.12},{:.6}\n", torque + noise.draw());
+        }
+        text
+    };
+    let folder = write_files(PENDULUM, TORQUE, [0.0, 1.0].map(record));
+    let paths = ["spec.toml", "dataset.toml", "out"].map(|name| folder.path().join(name));
+    let found = program::run_on_dataset("discover", paths.each_ref());
+    found["effects"].as_array().expect("effects").clone()
+}
+
+#[test]
+fn halves_of_a_pair_form_classes_with_parameters() {
+    // An inertia without weight is a heavier bob in less gravity.
+    let effects = find_on_pendulum(1.0, 0.005, |[_, _, a]| 0.2 * 1.9 * 0.42 * 0.42 * a);
+    let of = |effect: &str| {
+        let mut all = effects.iter();
+        let found = all.find(|found| found["effect"] == effect);
+        found.unwrap_or_else(|| panic!("{effect}: {effects:#?}"))
+    };
+    let is_in_class = |of: &Value, effect: &str, on: &str| {
+        let mut class = of["equivalent"].as_array().expect("a list").iter();
+        assert_eq!(of["status"], "class", "{of:#}");
+        assert!(
+            class.any(|other| other["effect"] == effect && other["on"] == on),
+            "{of:#}"
+        );
+    };
+    is_in_class(of("gravity"), "parameter_shift", "g");
+    is_in_class(of("sensor_gain"), "parameter_shift", "m");
+    is_in_class(of("sensor_gain"), "input_gain", "u");
+}
+
+#[test]
+fn inseparable_orders_of_a_ripple_form_a_class() {
+    // The record covers little more than one period of the ripple.
+    let effects = find_on_pendulum(0.15, 0.02, |[q, _, _]| 0.06 * (24.0 * q + 0.4).cos());
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let ripple = &effects[0];
+    assert_eq!(ripple["effect"], "torque_ripple", "{ripple:#}");
+    assert_eq!(ripple["status"], "class", "{ripple:#}");
+    let class = ripple["equivalent"].as_array().expect("a list");
+    let orders = class.iter().chain([ripple]);
+    let orders: Vec<u64> = orders
+        .filter_map(|of| of["order"]["order"].as_u64())
+        .collect();
+    assert!(orders.contains(&24) && orders.len() > 1, "{orders:?}");
+}

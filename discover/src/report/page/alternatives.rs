@@ -66,6 +66,7 @@ impl<'a> Group<'a> {
             describe_effect(&EffectSite {
                 effect: (*effect).to_owned(),
                 site: places.join(", "),
+                order: None,
             })
         });
         each.collect::<Vec<String>>().join("; ")

@@ -8,7 +8,7 @@ use crate::experiment::next_experiment::ExperimentFile;
 use crate::report::experiment::describe_experiment;
 use crate::report::quantity::{format_estimate, format_number, format_percent, format_readable};
 use crate::report::result::{Discovery, EffectStatus, FoundEffect, SearchStep};
-use crate::report::summary::describe_effect;
+use crate::report::summary::{describe_effect, describe_equivalent};
 
 /// Lists the effects; empty if none were found, because the verdict reports this.
 pub(super) fn list_effects(effects: &[FoundEffect], files: &[ExperimentFile]) -> Markup {
@@ -38,11 +38,11 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
                 },
                 EffectStatus::Class => {
                     "The records do not separate it from "
-                    (prose(&effect.equivalents.iter().map(describe_effect).collect::<Vec<String>>().join(", or from "))) "."
+                    (prose(&effect.equivalents.iter().map(describe_equivalent).collect::<Vec<String>>().join(", or from "))) "."
                 },
                 EffectStatus::Empirical => { "It does not identify the cause." },
             }
-            @if let Some(order) = &effect.order {
+            @if let Some(order) = &effect.at.order {
                 " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
             }
             @if let Some(load) = &effect.load {

@@ -33,6 +33,7 @@ fn discovery(text: &str) -> Discovery {
     let at = || EffectSite {
         effect: name(),
         site: name(),
+        order: None,
     };
     let both = TrainTest {
         train: 2e-6,
@@ -75,7 +76,6 @@ fn discovery(text: &str) -> Discovery {
                 p_value: Some(1e-3),
             },
             adjusted_p_value: Some(0.02),
-            order: None,
             load: None,
             experiment: Some(name()),
             next_experiment: Some(next_experiment(text)),

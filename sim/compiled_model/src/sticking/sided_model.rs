@@ -93,7 +93,7 @@ impl SidedModel {
     }
 
     /// Returns the number of functions with a side: surfaces and components of discs.
-    pub(super) fn side_count(&self) -> usize {
+    pub fn side_count(&self) -> usize {
         self.inputs.len() - self.first_side
     }
 

@@ -182,6 +182,11 @@ fn wrong_formats_are_rejected_with_cure() {
             "line 4: column 2: \"x\" is not a number",
         ),
         (
+            with("skip = 2"),
+            "a\nb\nt,angle\n0,-inf\n",
+            "line 4: column 2: \"-inf\" is not a finite number",
+        ),
+        (
             with("comment = \"rem\""),
             "t,angle\n",
             "expected one character",
