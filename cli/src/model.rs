@@ -4,14 +4,36 @@ use std::path::Path;
 
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::Checked;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, print_diagnostics, warn};
 use crate::input_file::register_input;
 
+/// Reads and checks a specification.
+///
+/// # Errors
+/// A dataset file in place of a specification, and all findings of an invalid specification.
+pub fn read(path: &Path) -> Result<Checked> {
+    eomgen_model_spec::load(path).map_err(|found| match is_dataset(&found) {
+        true => Error::input(format!(
+            "{0} is a dataset file; the specification comes first: eomgen compare SPEC.toml {0} --out DIR",
+            path.display()
+        )),
+        false => Error::Specification(found),
+    })
+}
+
+/// Returns true if the text of an invalid specification has the tables of a dataset file.
+fn is_dataset(found: &Diagnostics) -> bool {
+    let text = &found.source().text;
+    let has = |table: &str| text.lines().any(|line| line.trim_end().starts_with(table));
+    has("[records]") && has("[channels.") && !has("[model]")
+}
+
 /// Reads and checks a specification and prints its warnings.
 pub fn load(path: &Path) -> Result<Checked> {
-    let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
+    let checked = read(path)?;
     let source = &checked.model.source;
     source
         .files()

@@ -28,6 +28,26 @@ impl Destination {
         Self::resolve("--out", path, json)
     }
 
+    /// Returns the destination of a table in `--out`, a CSV or Parquet file.
+    ///
+    /// # Errors
+    /// Those of [`Destination::for_output`], and another format.
+    pub fn for_table(path: &Path, json: bool) -> Result<Self> {
+        let ending = path.extension().filter(|_| !is_device(path));
+        let is_known = |ending: &std::ffi::OsStr| {
+            ["csv", "parquet"]
+                .iter()
+                .any(|known| ending.eq_ignore_ascii_case(known))
+        };
+        if ending.is_some_and(|ending| !is_known(ending)) {
+            return Err(Error::input(format!(
+                "--out {}: the rows are a CSV or a Parquet file: give a name that ends in .csv or .parquet",
+                path.display()
+            )));
+        }
+        Self::for_output(path, json)
+    }
+
     /// Returns the destination of `--plot`. `output` is the path of `--out`.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! Operators, words and functions of other languages, with their equivalents here.
 
+use crate::suggest::did_you_mean;
+
 /// Spellings in other languages, and the equivalent here.
 type Foreign = (&'static [&'static str], &'static str);
 
@@ -53,7 +55,7 @@ const WORDS: [Foreign; 4] = [
     ),
 ];
 
-const FUNCTIONS: [Foreign; 9] = [
+const FUNCTIONS: [Foreign; 10] = [
     (&["ifelse", "select", "piecewise", "Piecewise"], IF_HELP),
     (
         &["heaviside", "Heaviside", "step"],
@@ -65,8 +67,83 @@ const FUNCTIONS: [Foreign; 9] = [
     (&["log10"], "the logarithm to base 10 is ln(x)/ln(10)"),
     (&["sgn", "signum"], "write `sign(x)` for -1, 0 or 1"),
     (&["fabs"], "write `abs(x)`"),
-    (&["ddt", "der", "derivative"], "write dot(x) for the rate"),
+    (
+        &["ddt", "der", "derivative", "Derivative", "D"],
+        "write dot(x) for the rate",
+    ),
+    (&["ddot", "dotdot", "d2dt2"], NO_ACCELERATION),
 ];
+
+/// Names of quantities.
+const NAMES: [Foreign; 1] = [(&["time", "Time"], "write `t` for the time")];
+
+/// Parts before and after the name of a quantity that denote its first rate.
+const RATES: [(&str, &str); 13] = [
+    ("", "_dot"),
+    ("", "dot"),
+    ("dot_", ""),
+    ("d", ""),
+    ("d_", ""),
+    ("D", ""),
+    ("d", "_dt"),
+    ("d", "dt"),
+    ("", "_d"),
+    ("", "d"),
+    ("", "'"),
+    ("dot(", ")"),
+    ("der(", ")"),
+];
+
+/// Parts before and after the name of a quantity that denote its second rate.
+const SECOND_RATES: [(&str, &str); 9] = [
+    ("", "_ddot"),
+    ("", "ddot"),
+    ("ddot_", ""),
+    ("dd", ""),
+    ("d2", ""),
+    ("", "_dd"),
+    ("", "''"),
+    ("dot(dot(", "))"),
+    ("ddot(", ")"),
+];
+
+/// Help for an acceleration in an expression.
+pub const NO_ACCELERATION: &str =
+    "a specification contains no accelerations: they follow from the energies";
+
+/// Rate of a known quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ForeignRate<'n> {
+    /// Name of the quantity.
+    pub of: &'n str,
+    /// True for the second rate.
+    pub is_second: bool,
+}
+
+/// Reads a name as the rate of a known quantity, in any usual notation, such as `thetadot` or `dtheta`.
+pub fn read_rate(name: &str, is_known: impl Fn(&str) -> bool) -> Option<ForeignRate<'_>> {
+    let find = |notations: &[(&str, &str)]| {
+        notations.iter().find_map(|(before, after)| {
+            let of = name.strip_prefix(before)?.strip_suffix(after)?;
+            is_known(of).then_some(of)
+        })
+    };
+    let second = || find(&SECOND_RATES).map(|of| (of, true));
+    let (of, is_second) = find(&RATES).map(|of| (of, false)).or_else(second)?;
+    Some(ForeignRate { of, is_second })
+}
+
+/// Suggests the name `NAME_dot` of a rate among the names of states.
+pub fn suggest_state<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> Option<String> {
+    let known: Vec<&str> = known.collect();
+    let rate = read_rate(name, |of| known.contains(&of));
+    let rate = rate.filter(|rate| !rate.is_second);
+    let written = rate.map(|rate| format!("{}_dot", rate.of));
+    match written.filter(|written| known.contains(&written.as_str())) {
+        Some(written) => Some(format!("write `{written}` for the rate")),
+        None => did_you_mean(name, known),
+    }
+}
 
 const AND_HELP: &str = "for both conditions write the product: `above(x - a)*above(b - x)`";
 const OR_HELP: &str =
@@ -81,6 +158,11 @@ const REMAINDER: &str =
 /// Returns the equivalent of an operator, a word or a function of another language.
 pub fn find_equivalent(foreign: &str) -> Option<&'static str> {
     help(OPERATORS.iter().chain(&WORDS).chain(&FUNCTIONS), foreign)
+}
+
+/// Returns the equivalent of the name of a quantity.
+pub fn find_name_equivalent(name: &str) -> Option<&'static str> {
+    help(NAMES.iter(), name)
 }
 
 /// Returns the equivalent of a word between or before operands.
@@ -110,6 +192,34 @@ fn is_symbol(letter: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn usual_notations_of_rates_are_read() {
+        let is_known = |name: &str| ["theta", "x"].contains(&name);
+        let of = |name| read_rate(name, is_known).map(|rate| (rate.of, rate.is_second));
+        for name in [
+            "theta_dot",
+            "thetadot",
+            "dtheta",
+            "d_theta",
+            "dtheta_dt",
+            "thetad",
+            "theta'",
+            "dot(theta)",
+        ] {
+            assert_eq!(of(name), Some(("theta", false)), "{name}");
+        }
+        for name in ["thetaddot", "ddtheta", "theta''", "dot(dot(theta))"] {
+            assert_eq!(of(name), Some(("theta", true)), "{name}");
+        }
+        for name in ["theta", "dot", "dphi", "xdott"] {
+            assert_eq!(of(name), None, "{name}");
+        }
+        let states = ["theta", "x", "theta_dot", "x_dot"];
+        let suggested = |name| suggest_state(name, states.into_iter()).unwrap_or_default();
+        assert!(suggested("dot(theta)").contains("`theta_dot`"));
+        assert!(suggested("tetha_dot").contains("`theta_dot`"));
+    }
 
     #[test]
     fn longest_operator_is_found() {

@@ -135,6 +135,47 @@ impl Inference<'_> {
         }
     }
 
+    /// Suggests the missing factor between the wrong unit of expressions and the expected one, and names parameters
+    /// in them without a unit.
+    pub fn describe_cure(
+        &self,
+        wrong: &[&Expr],
+        inferred: Dimension,
+        expected: Dimension,
+    ) -> Option<String> {
+        let missing = expected.divide(inferred)?;
+        let factor = format!("a factor in {missing} would correct the unit");
+        let mut found = Vec::new();
+        for expr in wrong {
+            self.list_without_unit(expr, &mut found);
+        }
+        Some(match &found[..] {
+            [] => factor,
+            [name] => format!("{factor}; `{name}` has no unit"),
+            several => format!("{factor}; `{}` have no unit", several.join("`, `")),
+        })
+    }
+
+    /// Adds the parameters without a unit in an expression and in the definitions that it contains.
+    fn list_without_unit<'s>(&'s self, expr: &Expr, found: &mut Vec<&'s str>) {
+        let mut definitions = Vec::new();
+        expr.visit(&mut |part| match &part.kind {
+            ExprKind::Parameter(index) => {
+                let parameter = &self.model.parameters[*index];
+                let name = parameter.name.as_str();
+                let has_no_unit = ["", "1"].contains(&parameter.unit.text.as_str());
+                if has_no_unit && !found.contains(&name) {
+                    found.push(name);
+                }
+            }
+            ExprKind::Definition(index) => definitions.push(*index),
+            _ => {}
+        });
+        for index in definitions {
+            self.list_without_unit(&self.model.definitions[index].value, found);
+        }
+    }
+
     /// Checks that two expressions have one unit, and returns it.
     fn expect_same_unit(
         &self,
@@ -149,7 +190,7 @@ impl Inference<'_> {
                 Err(Diagnostic::error(message)
                     .with_span(right.span, UnitPhrase(other).to_string())
                     .with_related_span(left.span, UnitPhrase(one).to_string())
-                    .with_optional_help(difference(other, one)))
+                    .with_optional_help(self.describe_cure(&[left, right], other, one)))
             }
             (one, other) => Ok(one.or(other)),
         }
@@ -297,12 +338,6 @@ fn rational_exponent(expr: &Expr) -> Option<Exponent> {
         }
         _ => None,
     }
-}
-
-/// Suggests the missing factor between a wrong unit and the expected one.
-pub fn difference(inferred: Dimension, expected: Dimension) -> Option<String> {
-    let missing = expected.divide(inferred)?;
-    Some(format!("a factor in {missing} would correct the unit"))
 }
 
 fn unit_overflow_error(span: Span) -> Diagnostic {

@@ -67,14 +67,24 @@ impl Keys {
     /// Returns a table with the necessary keys, as an example; with the first key if none is
     /// necessary.
     pub fn example(&self) -> String {
+        self.example_with(&[])
+    }
+
+    /// Returns the example with given keys and their texts instead of the example's.
+    pub fn example_with(&self, given: &[(&str, String)]) -> String {
         let chosen = self.one_of.first().copied().unwrap_or(self.any_of);
-        let is_shown = |key: &&Key| key.is_required || chosen.contains(&key.name);
+        let text = |key: &Key| given.iter().find(|(name, _)| *name == key.name);
+        let is_shown =
+            |key: &&Key| key.is_required || chosen.contains(&key.name) || text(key).is_some();
         let shown: Vec<&Key> = self.list.iter().filter(is_shown).collect();
         let shown = match shown.is_empty() {
             true => self.list.iter().take(1).collect(),
             false => shown,
         };
-        let shown = shown.iter().map(|key| key.assignment());
+        let shown = shown.iter().map(|key| match text(key) {
+            Some((name, text)) => format!("{name} = {text}"),
+            None => key.assignment(),
+        });
         format!("{{ {} }}", shown.collect::<Vec<_>>().join(", "))
     }
 }

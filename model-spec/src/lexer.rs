@@ -3,6 +3,7 @@
 use crate::diagnostic::{Diagnostic, quote};
 use crate::foreign::{find_equivalent, find_operator};
 use crate::span::Span;
+use crate::toml_file::spell_greek;
 
 /// Token of an expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,8 +137,11 @@ fn stray_character_error(letter: char, span: Span) -> Diagnostic {
         '·' | '×' => "write a product with `*`".to_owned(),
         '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
         _ if letter.is_alphabetic() => {
-            "names consist of the letters a-z and A-Z, digits and `_`".to_owned()
+            let name = spell_greek(&letter.to_string());
+            let name = name.map_or_else(String::new, |name| format!(": write {name}"));
+            format!("names consist of the letters a-z and A-Z, digits and `_`{name}")
         }
+        '°' => "write 20*pi/180 for 20 degrees".to_owned(),
         _ => "an expression consists of numbers, names and + - * / ^ ( ) , [ ]".to_owned(),
     };
     let shown = quote(letter.encode_utf8(&mut [0; 4]));

@@ -32,7 +32,7 @@
 //! run all steps; [`diagnostic`] reports the findings.
 //!
 //! Further modules: [`argument`] (names of arguments in messages), [`control`] (sampled controllers) and [`schedule`] (their times), [`mod@ids`] (indices into the lists of a model), [`rigid_tree`] (frames and
-//! bodies), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
+//! bodies), [`foreign`] (usual notations of other languages), [`shape_table`] (mode shapes from a file), [`edit`] (changes that keep the comments
 //! of a file), [`variant`] (changed numbers), [`assignment`] (numbers from options),
 //! [`interval`] (bounds of expressions), [`mod@keys`] and [`sections`] (table of the sections and keys), [`toml_file`], [`mod@table`], [`record`] and
 //! [`quantity`] (TOML files with positions), [`models`] (shipped specifications). The derivation of equations is in the
@@ -70,7 +70,7 @@ mod expression;
 #[cfg(feature = "read")]
 mod extension;
 #[cfg(feature = "read")]
-mod foreign;
+pub mod foreign;
 pub mod function;
 #[cfg(feature = "read")]
 mod functions;

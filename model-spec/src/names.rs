@@ -38,6 +38,18 @@ pub enum Symbol {
 }
 
 impl Symbol {
+    /// Returns true for a quantity that may have a rate.
+    pub fn moves(self) -> bool {
+        matches!(
+            self,
+            Self::Coordinate(_)
+                | Self::Input(_)
+                | Self::State(_)
+                | Self::Field(_)
+                | Self::Definition(_)
+        )
+    }
+
     pub fn kind(self) -> &'static str {
         match self {
             Self::Parameter(_) => "a parameter",

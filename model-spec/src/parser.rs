@@ -7,6 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::foreign::find_word_equivalent;
 use crate::lexer::{Token, TokenKind};
 use crate::span::Span;
+use crate::unit::Unit;
 
 /// Deepest tree accepted. A sum of 200 terms has this depth.
 pub const MAX_DEPTH: usize = 200;
@@ -31,7 +32,10 @@ pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
     let tree = parser.expression(ADDITIVE)?;
     match parser.peek() {
         None => Ok(tree.syntax),
-        Some(token) => Err(leftover_token_error(token, &tree.syntax)),
+        Some(token) => {
+            let before = parser.next.checked_sub(1).and_then(|last| tokens.get(last));
+            Err(leftover_token_error(before, token, &tree.syntax))
+        }
     }
 }
 
@@ -227,6 +231,10 @@ impl<'t> Parser<'t> {
     }
 
     fn expect_closing(&mut self, expected: &TokenKind, open: Span) -> Result<Span, Diagnostic> {
+        let before = self
+            .next
+            .checked_sub(1)
+            .and_then(|last| self.tokens.get(last));
         match self.take() {
             Some(token) if token.kind == *expected => Ok(token.span),
             Some(token) => {
@@ -234,7 +242,7 @@ impl<'t> Parser<'t> {
                 let unexpected = format!("expected {shown}, found {}", token.kind.to_quoted());
                 let diagnostic = Diagnostic::error(unexpected).with_span(token.span, "here");
                 let diagnostic = diagnostic.with_related_span(open, "to close this bracket");
-                Err(diagnostic.with_optional_help(missing_operator(&token.kind)))
+                Err(diagnostic.with_optional_help(missing_operator(before, &token.kind)))
             }
             None => Err(
                 Diagnostic::error(format!("a {} is missing", expected.to_quoted()))
@@ -286,7 +294,7 @@ fn depth_error(place: Span) -> Diagnostic {
     .with_help("move parts of it to [definitions]")
 }
 
-fn leftover_token_error(token: &Token, before: &Syntax) -> Diagnostic {
+fn leftover_token_error(last: Option<&Token>, token: &Token, before: &Syntax) -> Diagnostic {
     let diagnostic = match token.kind {
         TokenKind::Close | TokenKind::CloseIndex => {
             Diagnostic::error(format!("{} closes nothing", token.kind.to_quoted()))
@@ -306,11 +314,11 @@ fn leftover_token_error(token: &Token, before: &Syntax) -> Diagnostic {
         SyntaxKind::Name(name) => find_word_equivalent(name).map(str::to_owned),
         _ => None,
     };
-    diagnostic.with_optional_help(word.or_else(|| missing_operator(&token.kind)))
+    diagnostic.with_optional_help(word.or_else(|| missing_operator(last, &token.kind)))
 }
 
-/// Returns help for an operand that follows another operand.
-fn missing_operator(found: &TokenKind) -> Option<String> {
+/// Returns help for an operand that follows another operand, whose last token is `before`.
+fn missing_operator(before: Option<&Token>, found: &TokenKind) -> Option<String> {
     if let TokenKind::Name(word) = found
         && let Some(help) = find_word_equivalent(word)
     {
@@ -320,7 +328,29 @@ fn missing_operator(found: &TokenKind) -> Option<String> {
         found,
         TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
     );
-    starts.then(|| "write a product with `*`: 2*x, not 2 x".to_owned())
+    starts.then(|| {
+        let unit = before.and_then(|before| unit_in_expression(&before.kind, found));
+        unit.unwrap_or_else(|| "write a product with `*`: 2*x, not 2 x".to_owned())
+    })
+}
+
+/// Returns help for a number with a unit after it, such as `20 deg`.
+fn unit_in_expression(number: &TokenKind, unit: &TokenKind) -> Option<String> {
+    let (TokenKind::Number(number), TokenKind::Name(word)) = (number, unit) else {
+        return None;
+    };
+    let unit = Unit::parse(word).or_else(|error| match error.spelling {
+        Some(spelling) => Unit::parse(&spelling),
+        None => Err(error),
+    });
+    let unit = unit.ok()?;
+    let in_si = match unit.text.as_str() {
+        "deg" => format!("{number}*pi/180"),
+        _ => unit.to_si(*number).to_string(),
+    };
+    Some(format!(
+        "numbers of an expression are in SI units: write {in_si} for {number} {word}; a product is written with `*`"
+    ))
 }
 
 #[cfg(test)]

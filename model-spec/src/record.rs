@@ -11,12 +11,22 @@ pub struct Record<'d> {
     owner: Name,
     entries: Vec<Entry<'d>>,
     keys: Option<&'static Keys>,
+    /// True for the top level of a file.
+    is_file: bool,
 }
 
 impl<'d> Record<'d> {
+    /// Marks the record as the top level of a file, which messages name without quotes.
+    pub fn as_file(self) -> Self {
+        Self {
+            is_file: true,
+            ..self
+        }
+    }
+
     /// Reads the table of an entry, and reports keys that are not in `keys`.
     pub fn read(entry: &Entry<'d>, keys: &'static Keys, found: &mut Diagnostics) -> Option<Self> {
-        let entries = found.push_error(entry.table(&keys.example()))?;
+        let entries = found.push_error(entry.table_of(keys))?;
         Some(Self::new(entry.name.clone(), entries, keys, found))
     }
 
@@ -56,12 +66,16 @@ impl<'d> Record<'d> {
             .into_iter()
             .partition(|entry| known.contains(&entry.name.text.as_str()));
         for other in others {
-            found.push_with(|| unknown_key_error(&other.name, known));
+            found.push_with(|| match other.is_section() {
+                true => unknown_entry_error(("table", "tables"), &other.name, known),
+                false => unknown_key_error(&other.name, known),
+            });
         }
         Self {
             owner,
             entries,
             keys: None,
+            is_file: false,
         }
     }
 
@@ -92,7 +106,10 @@ impl<'d> Record<'d> {
     ) -> Option<&Entry<'d>> {
         let entry = self.get(key);
         if entry.is_none() {
-            let owner = quote(&self.owner.text);
+            let owner = match self.is_file {
+                true => self.owner.text.clone(),
+                false => quote(&self.owner.text),
+            };
             found.push(
                 Diagnostic::error(format!("{owner} has no `{key}`"))
                     .with_span(self.owner.span, format!("`{key}` is missing"))
@@ -147,8 +164,13 @@ impl<'d> Record<'d> {
 
 /// Reports an unknown key, with the nearest known one.
 pub fn unknown_key_error(name: &Name, known: &[&str]) -> Diagnostic {
-    let listed = format!("the keys are {}", known.join(", "));
-    Diagnostic::error(format!("unknown key {}", quote(&name.text)))
+    unknown_entry_error(("key", "keys"), name, known)
+}
+
+/// Reports an unknown entry of a kind, in the singular and the plural, with the nearest known one.
+fn unknown_entry_error((one, all): (&str, &str), name: &Name, known: &[&str]) -> Diagnostic {
+    let listed = format!("the {all} are {}", known.join(", "));
+    Diagnostic::error(format!("unknown {one} {}", quote(&name.text)))
         .with_span(name.span, "unknown here")
         .with_help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
 }

@@ -1,28 +1,57 @@
 //! Suggests the nearest known name for an unknown one.
 
-/// Returns the nearest known name, if its edit distance is within the limit for its length.
+/// Largest edit distance of a misspelling. At a larger one, a known name that the wrong one begins with is nearer.
+const MAX_MISSPELLING: usize = 2;
+
+/// Shortest known name that a longer one may begin with.
+const MIN_BEGINNING: usize = 3;
+
+/// Returns the nearest known name: one within the limit of the edit distance for its length, or the first words of the
+/// wrong name, such as `initial` for `initial_value`.
 pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     // Names have at most 64 letters; a longer text is no misspelling.
     if wrong.len() > 128 {
         return None;
     }
     let lowered = wrong.to_lowercase();
+    let known: Vec<&str> = known.into_iter().filter(|name| *name != wrong).collect();
+    let similar = nearest_by_letters(&lowered, &known);
+    match similar {
+        Some((distance, name)) if distance <= MAX_MISSPELLING => Some(name),
+        _ => find_beginning(&lowered, &known).or(similar.map(|(_, name)| name)),
+    }
+}
+
+/// Returns the longest known name that is the beginning of a longer one, up to a `_`.
+fn find_beginning<'k>(lowered: &str, known: &[&'k str]) -> Option<&'k str> {
+    let begins = |name: &&&str| {
+        let rest = lowered.strip_prefix(&*name.to_lowercase());
+        name.len() >= MIN_BEGINNING && rest.is_some_and(|rest| rest.starts_with('_'))
+    };
     known
-        .into_iter()
-        .filter(|name| *name != wrong)
+        .iter()
+        .filter(begins)
+        .max_by_key(|name| name.len())
+        .copied()
+}
+
+/// Returns the known name with the least edit distance, and the distance.
+fn nearest_by_letters<'k>(lowered: &str, known: &[&'k str]) -> Option<(usize, &'k str)> {
+    known
+        .iter()
+        .copied()
         .map(|name| {
             count_comparison();
-            let distance = strsim::damerau_levenshtein(&lowered, &name.to_lowercase());
+            let distance = strsim::damerau_levenshtein(lowered, &name.to_lowercase());
             (distance, name)
         })
-        .filter(|(distance, name)| *distance <= max_distance(wrong.len().max(name.len())))
+        .filter(|(distance, name)| *distance <= max_distance(lowered.len().max(name.len())))
         .min_by_key(|(distance, name)| {
             (
                 *distance,
-                std::cmp::Reverse(common_prefix_length(&lowered, name)),
+                std::cmp::Reverse(common_prefix_length(lowered, name)),
             )
         })
-        .map(|(_, name)| name)
 }
 
 /// Returns "did you mean ...?", if a known name is near enough.
@@ -72,6 +101,10 @@ pub(crate) mod tests {
         assert_eq!(nearest("K_sp", known), Some("k_sp"));
         assert_eq!(nearest("cordinates", known), Some("coordinates"));
         assert_eq!(nearest("velocity", known), None);
+        let keys = ["unit", "initial", "initial_rate", "kinetic"];
+        assert_eq!(nearest("initial_value", keys), Some("initial"));
+        assert_eq!(nearest("initial_rat", keys), Some("initial_rate"));
+        assert_eq!(nearest("kinetic_energy", keys), Some("kinetic"));
         assert_eq!(nearest("cosine", ["sin", "cos"]), Some("cos"));
         assert_eq!(nearest(&"x".repeat(10_000), known), None);
     }

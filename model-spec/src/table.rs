@@ -4,10 +4,12 @@
 use toml_edit::{Item, Table, TableLike, Value};
 
 use crate::diagnostic::{Diagnostic, quote};
+use crate::keys::Keys;
 use crate::lexer::check_underflow;
 use crate::quantity::{Name, Number, Quantity, StringValue};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
+use crate::unit::Unit;
 
 /// One `key = value` of a table.
 #[derive(Clone)]
@@ -60,6 +62,43 @@ impl<'d> Entry<'d> {
             Some(table) => Ok(entries(table, self.text)),
             None => Err(self.kind_error("a table", example)),
         }
+    }
+
+    /// Returns the entries of a table with these keys. The error for any other kind of value contains the value, if
+    /// the table has a key `value`.
+    pub fn table_of(&self, keys: &Keys) -> Result<Vec<Entry<'d>>, Diagnostic> {
+        match self.table_like() {
+            Some(table) => Ok(entries(table, self.text)),
+            None => Err(self.kind_error("a table", &keys.example_with(&self.given_values(keys)))),
+        }
+    }
+
+    /// Returns the keys `value` and `unit` of a table that a number or a string stands for, with their text.
+    fn given_values(&self, keys: &Keys) -> Vec<(&'static str, String)> {
+        let span = self.span();
+        let written = self.text.get(span.start..span.end).unwrap_or_default();
+        let is_key = |name: &str| keys.names().any(|key| key == name);
+        match self.value() {
+            _ if !is_key("value") => Vec::new(),
+            Some(Value::Integer(_) | Value::Float(_)) if is_key("unit") => vec![
+                ("value", written.to_owned()),
+                ("unit", "\"UNIT\"".to_owned()),
+            ],
+            Some(Value::String(text)) => match Unit::parse_quantity(text.value()) {
+                Some((number, unit)) if is_key("unit") => vec![
+                    ("value", number.to_string()),
+                    ("unit", format!("\"{unit}\"")),
+                ],
+                _ => vec![("value", written.to_owned())],
+            },
+            Some(Value::Integer(_) | Value::Float(_)) => vec![("value", written.to_owned())],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns true if the value is a table with its own header.
+    pub fn is_section(&self) -> bool {
+        matches!(self.node, Node::Item(Item::Table(table)) if !table.is_dotted())
     }
 
     /// Returns the elements of a list, each with the key of the list and its own position; an

@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Entry, entries};
+use crate::unit::Unit;
 
 /// Reads a TOML file with `of`, which receives the entries of the top level.
 ///
@@ -61,14 +62,121 @@ pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnos
         .collect();
     let behind_quotes = text[..range.start.min(text.len())].ends_with(['"', '\'']);
     let operator = text[range.start.min(text.len())..].starts_with(['^', '*', '/', '+', '-']);
+    let other = foreign_grammar(text, range.start.min(text.len()));
     let help = if message == "duplicate key" {
         Some("give each name once in a section".to_owned())
     } else if behind_quotes && operator {
         Some("quotes enclose the whole expression: \"a^2\", not \"a\"^2".to_owned())
+    } else if let Some(help) = other {
+        Some(help)
     } else {
         (!advice.is_empty()).then(|| advice.join("; "))
     };
     Diagnostic::error(format!("not valid TOML: {message}"))
         .with_span(Span::new(range.start, range.end), "here")
         .with_optional_help(help)
+}
+
+/// Greek letters and their names in English.
+const GREEK: [(&str, &str); 24] = [
+    ("αΑ", "alpha"),
+    ("βΒ", "beta"),
+    ("γΓ", "gamma"),
+    ("δΔ", "delta"),
+    ("εΕ", "epsilon"),
+    ("ζΖ", "zeta"),
+    ("ηΗ", "eta"),
+    ("θΘϑ", "theta"),
+    ("ιΙ", "iota"),
+    ("κΚ", "kappa"),
+    ("λΛ", "lambda_1"),
+    ("μΜµ", "mu"),
+    ("νΝ", "nu"),
+    ("ξΞ", "xi"),
+    ("οΟ", "omicron"),
+    ("πΠ", "pi_1"),
+    ("ρΡ", "rho"),
+    ("σΣς", "sigma"),
+    ("τΤ", "tau"),
+    ("υΥ", "upsilon"),
+    ("φΦϕ", "phi"),
+    ("χΧ", "chi"),
+    ("ψΨ", "psi"),
+    ("ωΩ", "omega"),
+];
+
+/// Returns a name for a name with Greek letters; `None` if it contains none.
+pub(crate) fn spell_greek(name: &str) -> Option<String> {
+    let spelled = name.chars().map(|letter| {
+        let mut greek = GREEK.iter();
+        match greek.find(|(letters, _)| letters.contains(letter)) {
+            Some((_, word)) => (*word).to_owned(),
+            None => letter.to_string(),
+        }
+    });
+    let spelled: String = spelled.collect();
+    (spelled != name).then_some(spelled)
+}
+
+/// Returns the notation of TOML for that of another language at an error.
+fn foreign_grammar(text: &str, place: usize) -> Option<String> {
+    let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
+    let line = text[start..].lines().next().unwrap_or_default();
+    let written = line.trim_start();
+    if ["%", "//", "/*", "--", ";"]
+        .iter()
+        .any(|mark| written.starts_with(mark))
+    {
+        return Some("a comment begins with #".to_owned());
+    }
+    let (key, value) = line
+        .split_once('=')
+        .map_or((line, None), |(k, v)| (k, Some(v)));
+    if place < start + key.len() {
+        let spelled = spell_greek(key.trim())?;
+        return Some(format!(
+            "a name has letters a-z and A-Z, digits and `_`: write {spelled}"
+        ));
+    }
+    value?;
+    if let Some(number) = decimal_comma(line) {
+        return Some(format!("a decimal number has a point: write {number}"));
+    }
+    let before = text[start..place].trim_end();
+    let value = expression_of(&line[place - start..]);
+    if !before.ends_with('=') || value.is_empty() || value.starts_with(['"', '\'', '[', '{']) {
+        return None;
+    }
+    match Unit::parse_quantity(value) {
+        Some((number, unit)) if before.contains('{') => {
+            Some(format!("write value = {number}, unit = \"{unit}\""))
+        }
+        Some((number, unit)) => Some(format!("write {{ value = {number}, unit = \"{unit}\" }}")),
+        None => Some(format!(
+            "quotes enclose an expression or a text: \"{value}\""
+        )),
+    }
+}
+
+/// Returns an expression without quotes: up to the end of the line, or to the first comma or brace outside its brackets.
+fn expression_of(value: &str) -> &str {
+    let mut depth = 0_i32;
+    let end = value.char_indices().find(|(_, letter)| {
+        depth += i32::from("([".contains(*letter)) - i32::from(")]".contains(*letter));
+        depth < 0 || "#}\n".contains(*letter) || (*letter == ',' && depth == 0)
+    });
+    value[..end.map_or(value.len(), |(end, _)| end)].trim()
+}
+
+/// Returns the first number of a line with a decimal comma, written with a point.
+fn decimal_comma(line: &str) -> Option<String> {
+    let is_digit = |letter: char| letter.is_ascii_digit();
+    line.match_indices(',').find_map(|(place, _)| {
+        let (before, after) = (&line[..place], &line[place + 1..]);
+        let whole = before.len() - before.trim_end_matches(is_digit).len();
+        let decimals = after.len() - after.trim_start_matches(is_digit).len();
+        let is_number = whole > 0 && decimals > 0 && !before.contains('[');
+        let number = || format!("{}.{}", &before[before.len() - whole..], &after[..decimals]);
+        is_number.then(number)
+    })
 }

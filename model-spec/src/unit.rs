@@ -26,6 +26,8 @@ pub struct UnitError {
     pub message: String,
     /// The cure, if known.
     pub help: Option<String>,
+    /// The unit in the notation of a specification, if it is written in another usual one.
+    pub spelling: Option<String>,
 }
 
 /// SI prefixes from pico to tera, with their powers of ten.
@@ -67,6 +69,96 @@ const PREFIXED: [(&str, i32, [i32; 7]); 20] = [
     ("H", 0, [1, 2, -2, -2, 0, 0, 0]),
 ];
 
+/// Words for units, without the ending of a plural, and their symbols.
+const WORDS: [(&str, &str); 30] = [
+    ("deg", "deg"),
+    ("degree", "deg"),
+    ("°", "deg"),
+    ("rad", "rad"),
+    ("radian", "rad"),
+    ("newton", "N"),
+    ("gram", "g"),
+    ("metre", "m"),
+    ("meter", "m"),
+    ("second", "s"),
+    ("sec", "s"),
+    ("minute", "min"),
+    ("hour", "h"),
+    ("hr", "h"),
+    ("hertz", "Hz"),
+    ("joule", "J"),
+    ("watt", "W"),
+    ("pascal", "Pa"),
+    ("volt", "V"),
+    ("ampere", "A"),
+    ("amp", "A"),
+    ("kelvin", "K"),
+    ("coulomb", "C"),
+    ("farad", "F"),
+    ("henry", "H"),
+    ("tesla", "T"),
+    ("weber", "Wb"),
+    ("mole", "mol"),
+    ("candela", "cd"),
+    ("ω", "ohm"),
+];
+
+/// Words for prefixes.
+const PREFIX_WORDS: [(&str, &str); 9] = [
+    ("kilo", "k"),
+    ("milli", "m"),
+    ("micro", "u"),
+    ("nano", "n"),
+    ("pico", "p"),
+    ("centi", "c"),
+    ("mega", "M"),
+    ("giga", "G"),
+    ("k", "k"),
+];
+
+/// Raised digits.
+const RAISED: [(char, char); 11] = [
+    ('⁰', '0'),
+    ('¹', '1'),
+    ('²', '2'),
+    ('³', '3'),
+    ('⁴', '4'),
+    ('⁵', '5'),
+    ('⁶', '6'),
+    ('⁷', '7'),
+    ('⁸', '8'),
+    ('⁹', '9'),
+    ('⁻', '-'),
+];
+
+/// Units outside SI, with their cure.
+const OUTSIDE_SI: [(&[&str], &str); 9] = [
+    (
+        &["rpm", "RPM"],
+        "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s",
+    ),
+    (
+        &["in", "inch", "inches"],
+        "give the length in mm: 1 in is 25.4 mm",
+    ),
+    (
+        &["ft", "foot", "feet"],
+        "give the length in m: 1 ft is 0.3048 m",
+    ),
+    (
+        &["lb", "lbs", "lbm"],
+        "give the mass in kg: 1 lb is 0.45359237 kg",
+    ),
+    (&["lbf"], "give the force in N: 1 lbf is 4.4482216152605 N"),
+    (&["psi"], "give the pressure in Pa: 1 psi is 6894.757 Pa"),
+    (&["bar"], "give the pressure in kPa: 1 bar is 100 kPa"),
+    (
+        &["L", "l", "litre", "liter"],
+        "give the volume in m^3: 1 l is 0.001 m^3",
+    ),
+    (&["%", "percent"], "give a fraction: 5 % is 0.05"),
+];
+
 /// Largest exponent accepted in a unit.
 const MAX_EXPONENT: i32 = 12;
 
@@ -82,12 +174,26 @@ impl Unit {
         if text.len() > MAX_LENGTH {
             return Err(UnitError::new("a unit has at most 64 characters", None));
         }
-        let (dimension, scale) = parse_quotient(text)?;
+        let (dimension, scale) = parse_quotient(text).map_err(|error| error.with_spelling(text))?;
         Ok(Self {
             text: text.to_owned(),
             dimension,
             scale,
         })
+    }
+
+    /// Reads a number with a unit after it, such as `20 kg` or `1s`; `None` for any other text.
+    pub fn parse_quantity(text: &str) -> Option<(f64, Self)> {
+        let text = text.trim();
+        let ends = text.char_indices().rev().map(|(end, _)| end);
+        let mut numbers = ends.filter_map(|end| {
+            let (number, unit) = text.split_at(end);
+            Some((number.trim().parse::<f64>().ok()?, unit.trim()))
+        });
+        let (number, unit) = numbers.next()?;
+        let is_unit = unit.starts_with(|first: char| !first.is_ascii_digit());
+        let unit = Self::parse(unit).ok()?;
+        (number.is_finite() && is_unit).then_some((number, unit))
     }
 
     /// Returns the coherent SI unit of a dimension.
@@ -138,6 +244,21 @@ impl UnitError {
         Self {
             message: message.into(),
             help,
+            spelling: None,
+        }
+    }
+
+    /// Adds the notation of a specification for a unit in another usual notation.
+    fn with_spelling(self, text: &str) -> Self {
+        let spelling = respell(text).filter(|spelling| parse_quotient(spelling).is_ok());
+        match spelling {
+            Some(spelling) => Self {
+                message: format!("unknown unit `{text}`"),
+                help: Some(format!("write {spelling}")),
+                spelling: Some(spelling),
+                ..self
+            },
+            None => self,
         }
     }
 
@@ -322,19 +443,73 @@ fn prefixed(symbol: &str, prefix_power: i32) -> Option<Parsed> {
 }
 
 fn unknown_unit_error(symbol: &str) -> UnitError {
+    let mut outside = OUTSIDE_SI.iter();
+    let outside = outside.find(|(words, _)| words.contains(&symbol));
     let help = match symbol {
-        "rpm" => "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s".to_owned(),
-        "°" => "write deg".to_owned(),
+        _ if outside.is_some() => outside.map_or("", |(_, cure)| cure).to_owned(),
         "Nms" => "separate factors by a space: N m s".to_owned(),
         "Kg" => "write kg for the kilogram".to_owned(),
-        "sec" => "write s for the second".to_owned(),
-        _ if symbol.starts_with(['µ', 'μ']) => "write u for micro: um".to_owned(),
         _ => match split_word(symbol) {
             Some(parted) => format!("separate factors by a space: {parted}"),
             None => "use SI units with prefixes, combined as in N s/m or kg m^2".to_owned(),
         },
     };
     UnitError::new(format!("unknown unit `{symbol}`"), Some(help))
+}
+
+/// Writes a unit of another usual notation, such as `m/s**2`, `kg.m²` or `newton`, in that of a specification; `None`
+/// if it is the same.
+fn respell(text: &str) -> Option<String> {
+    let letters: Vec<char> = text.replace("**", "^").chars().collect();
+    let (mut spelled, mut word) = (String::new(), String::new());
+    for (place, letter) in letters.iter().enumerate() {
+        let before = place.checked_sub(1).map(|before| letters[before]);
+        let next = letters.get(place + 1);
+        let raised = RAISED.iter().find(|(raised, _)| raised == letter);
+        let is_raised = before.is_some_and(|before| RAISED.iter().any(|(r, _)| *r == before));
+        if letter.is_alphabetic() || *letter == '°' {
+            word.push(*letter);
+            continue;
+        }
+        let follows_word = !word.is_empty();
+        spelled += &symbol_of(&std::mem::take(&mut word));
+        match (letter, raised) {
+            (_, Some((_, digit))) => {
+                spelled += if is_raised { "" } else { "^" };
+                spelled.push(*digit);
+            }
+            ('·' | '⋅' | '×', _) => spelled.push(' '),
+            ('.', _) if next.is_some_and(|next| next.is_alphabetic()) => spelled.push(' '),
+            ('0'..='9', _) if follows_word => {
+                spelled.push('^');
+                spelled.push(*letter);
+            }
+            ('-', _) if follows_word && next.is_some_and(char::is_ascii_digit) => spelled += "^-",
+            _ => spelled.push(*letter),
+        }
+    }
+    spelled += &symbol_of(&word);
+    (spelled != text).then_some(spelled)
+}
+
+/// Returns the symbol of a unit that is written as a word, or the word itself.
+fn symbol_of(word: &str) -> String {
+    let spelled = word.replace(['µ', 'μ'], "u");
+    let lowered = spelled.to_lowercase();
+    let of = |word: &str| {
+        let one = word.strip_suffix('s').unwrap_or(word);
+        let mut words = WORDS.iter();
+        let found = words.find(|(known, _)| [word, one].contains(known));
+        found.map(|(_, symbol)| *symbol)
+    };
+    let with_prefix = |(word, prefix): &(&str, &str)| {
+        let symbol = of(lowered.strip_prefix(word)?)?;
+        Some(format!("{prefix}{symbol}"))
+    };
+    let whole = of(&lowered).map(str::to_owned);
+    whole
+        .or_else(|| PREFIX_WORDS.iter().find_map(with_prefix))
+        .unwrap_or(spelled)
 }
 
 #[cfg(test)]
@@ -426,9 +601,56 @@ mod tests {
                 error.help.as_deref().unwrap_or("").contains(help),
                 "{text}: {error:?}"
             );
+            assert_eq!(error.spelling.is_some(), text == "µm", "{text}: {error:?}");
         }
         assert!(Unit::parse("((((").is_err());
         assert!(Unit::parse("N/()").is_err());
+    }
+
+    #[test]
+    fn units_in_other_usual_notations_are_rejected_with_theirs() {
+        for (text, spelling) in [
+            ("m/s**2", "m/s^2"),
+            ("m/s2", "m/s^2"),
+            ("m/s²", "m/s^2"),
+            ("m.s-2", "m s^-2"),
+            ("m·s⁻²", "m s^-2"),
+            ("kg.m^2", "kg m^2"),
+            ("kg*m²", "kg*m^2"),
+            ("N·m", "N m"),
+            ("degree", "deg"),
+            ("degrees/second", "deg/s"),
+            ("°/s", "deg/s"),
+            ("rad/sec", "rad/s"),
+            ("newton", "N"),
+            ("Newton", "N"),
+            ("kilogram", "kg"),
+            ("millimetres", "mm"),
+            ("km/hr", "km/h"),
+            ("kΩ", "kohm"),
+            ("µm", "um"),
+        ] {
+            let error = Unit::parse(text).expect_err(text);
+            assert_eq!(error.spelling.as_deref(), Some(spelling), "{text}");
+            let help = error.help.unwrap_or_default();
+            assert!(help.contains(spelling), "{text}: {help}");
+        }
+    }
+
+    #[test]
+    fn numbers_with_a_unit_are_read() {
+        for (text, number, unit) in [
+            ("20 kg", 20.0, "kg"),
+            ("1s", 1.0, "s"),
+            ("-1e-3 m/s^2", -1e-3, "m/s^2"),
+        ] {
+            let read = Unit::parse_quantity(text);
+            let read = read.map(|(number, unit)| (number, unit.text));
+            assert_eq!(read, Some((number, unit.to_owned())), "{text}");
+        }
+        for text in ["", "20", "kg", "20 kgg", "2 1/s", "2*m", "nan s"] {
+            assert!(Unit::parse_quantity(text).is_none(), "{text}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 use crate::ast::BinaryOperator;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
-use crate::infer::{Inference, UnitPhrase, difference};
+use crate::infer::{Inference, UnitPhrase};
 use crate::model::{
     CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, STABILISATION_RATE, Term,
     written_name,
@@ -341,7 +341,11 @@ impl Units<'_, '_> {
                         Diagnostic::error(message)
                             .with_span(component.span, UnitPhrase(own).to_string())
                             .with_related_span(other.span, UnitPhrase(dimension).to_string())
-                            .with_optional_help(difference(own, dimension)),
+                            .with_optional_help(self.known.describe_cure(
+                                &[component, other],
+                                own,
+                                dimension,
+                            )),
                     );
                     return;
                 }
@@ -366,10 +370,11 @@ impl Units<'_, '_> {
         if let Some(Some(inferred)) = self.found.push_error(inferred)
             && inferred != expected
         {
+            let cure = self.known.describe_cure(&[expr], inferred, expected);
             self.found.push(
                 Diagnostic::error(format!("{subject} is {}, {because}", UnitPhrase(inferred)))
                     .with_span(expr.span, UnitPhrase(inferred).to_string())
-                    .with_optional_help(difference(inferred, expected)),
+                    .with_optional_help(cure),
             );
         }
     }

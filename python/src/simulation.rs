@@ -298,9 +298,7 @@ pub fn describe_event(event: &LoggedEvent<'_>) -> EventTuple {
 fn describe_choice(choice: &SolverChoice) -> String {
     match choice {
         SolverChoice::PiecewiseLinear => "the model is piecewise linear".to_owned(),
-        SolverChoice::NotPiecewiseLinear(term) => {
-            format!("the model is not piecewise linear: {term}")
-        }
+        SolverChoice::NotPiecewiseLinear(reason) => reason.clone(),
         SolverChoice::NotSupportedByExact(reason) => {
             format!("the exact solver does not support this motion: {reason}")
         }

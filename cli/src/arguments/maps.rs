@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::shared::{InputValues, Json, ModelFile, ParameterValues, StateValues};
+use super::shared::{InputValues, Json, ModelFile, ParameterValues, StateValues, seconds};
 
 /// System that runs the shards of a sweep on many machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -71,7 +71,7 @@ pub struct Sweep {
     pub periods: usize,
     /// End of the simulation in s, instead of forcing periods. `lyapunov` uses its second half; --section uses all
     /// of it. Default with --record: the end of the record.
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = seconds)]
     pub until: Option<f64>,
     /// Poincaré section: a coordinate or a rate crosses a value upwards, or downwards with `:down`. An angle
     /// in which the equations are periodic crosses once per turn. --transient and --periods then count

@@ -10,6 +10,7 @@ mod shared;
 
 use std::ffi::OsString;
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
 pub use maps::{Engine, Merge, Sweep};
@@ -37,8 +38,47 @@ impl Arguments {
     /// # Errors
     /// Wrong arguments, and requests for help or the version.
     pub fn read() -> Result<Self, clap::Error> {
-        Self::try_parse_from(current_names(std::env::args_os().collect()))
+        let arguments = current_names(std::env::args_os().collect());
+        Self::try_parse_from(&arguments).map_err(|error| add_equivalent(error, &arguments))
     }
+}
+
+/// Words of other programs, and the equivalent here.
+const FOREIGN: [(&[&str], &str); 3] = [
+    (&["--latex", "--tex"], "write --format latex"),
+    (
+        &["matlab", "simulink", "modelica"],
+        "Simulink and Modelica tools read functional mock-up units: write --target fmu3, or fmu2",
+    ),
+    (
+        &["c", "c++", "cpp"],
+        "write --target c99, which is also C++",
+    ),
+];
+
+/// Adds the equivalent of a word of another program to the error about it.
+fn add_equivalent(mut error: clap::Error, arguments: &[OsString]) -> clap::Error {
+    let wrong = [ContextKind::InvalidArg, ContextKind::InvalidValue].map(|kind| error.get(kind));
+    let is_wrong = |word: &str| {
+        let is_given = |text: &String| text.eq_ignore_ascii_case(word);
+        wrong
+            .iter()
+            .flatten()
+            .any(|value| matches!(value, ContextValue::String(text) if is_given(text)))
+            && arguments
+                .iter()
+                .any(|given| given.eq_ignore_ascii_case(word))
+    };
+    let mut foreign = FOREIGN.iter();
+    let found = foreign.find(|(words, _)| words.iter().any(|word| is_wrong(word)));
+    if let Some((_, help)) = found {
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(
+            ContextKind::Suggested,
+            ContextValue::StyledStrs(vec![(*help).into()]),
+        );
+    }
+    error
 }
 
 /// Earlier names of commands, and the current ones.

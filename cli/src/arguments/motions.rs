@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::shared::{
     InputValues, Integration, Json, ModelFile, OutputInterval, ParameterValues, StateValues,
+    seconds,
 };
 
 /// Options of `simulate`.
@@ -13,11 +14,12 @@ use super::shared::{
 pub struct Simulate {
     #[command(flatten)]
     pub model: ModelFile,
-    /// Simulated time, in s. Default with --record: the end of the record.
+    /// Simulated time, in s, or with a unit such as `"10 min"`. Default with --record: the end of the record.
     #[arg(
         long,
         value_name = "T",
         allow_negative_numbers = true,
+        value_parser = seconds,
         required_unless_present = "record"
     )]
     pub until: Option<f64>,
@@ -62,7 +64,7 @@ pub struct Linearise {
     pub point: StateValues,
     /// Sample period, in s. Adds the matrices A_d and B_d of x_(k+1) = A_d x_k + B_d u_k, for inputs held over each
     /// period.
-    #[arg(long, value_name = "PERIOD", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERIOD", allow_negative_numbers = true, value_parser = seconds)]
     pub discrete: Option<f64>,
     /// Output file: JSON, or NumPy arrays if the name ends in `.npz`. Default: JSON on stdout.
     #[arg(long)]

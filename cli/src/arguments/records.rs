@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::shared::{Json, ModelFile, NoiseSeed};
+use super::shared::{Json, ModelFile, NoiseSeed, seconds};
 
 /// Options of `dataset`.
 #[derive(Args)]
@@ -51,7 +51,7 @@ pub struct Discover {
     pub noise: NoiseSeed,
     /// Time limit of the search, in s. Default: no limit. The fit of the given model and the final check run in
     /// any case.
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = seconds)]
     pub limit: Option<f64>,
     /// File (TOML) with additional effects for the catalogue.
     #[arg(long, value_name = "EFFECTS.toml")]

@@ -3,6 +3,20 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::unit::Unit;
+
+/// Parses a time: a number in s, or a number with a unit such as `10 ms`.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    if let Ok(number) = text.trim().parse() {
+        return Ok(number);
+    }
+    match Unit::parse_quantity(text) {
+        Some((number, unit)) if unit.dimension == Dimension::TIME => Ok(unit.to_si(number)),
+        Some((_, unit)) => Err(format!("a time is in s, not in {unit}")),
+        None => Err("expected a number in s, or a number with a unit such as \"10 ms\"".to_owned()),
+    }
+}
 
 /// Modal truncation order.
 #[derive(Args)]
@@ -78,6 +92,7 @@ pub struct OutputInterval {
         long,
         value_name = "DT",
         allow_negative_numbers = true,
+        value_parser = seconds,
         alias = "sample"
     )]
     pub interval: Option<f64>,
@@ -130,6 +145,7 @@ pub struct Integration {
         long,
         value_name = "DT",
         allow_negative_numbers = true,
+        value_parser = seconds,
         visible_alias = "step"
     )]
     pub max_step: Option<f64>,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::arguments::Check;
 use crate::document::SCHEMA;
 use crate::error::{Error, Result, print_diagnostics, print_json, print_text};
-use crate::model::{note_redundancy, orders};
+use crate::model::{note_redundancy, orders, read};
 
 /// Model without errors, orders of its fields, warnings and notes.
 struct CheckedModel {
@@ -42,7 +42,7 @@ pub fn run(options: &Check) -> Result {
 }
 
 fn examine_specification(options: &Check) -> Result<CheckedModel> {
-    let checked = eomgen_model_spec::load(&options.model.spec).map_err(Error::Specification)?;
+    let checked = read(&options.model.spec)?;
     let orders = orders(&checked.model, options.model.order.text())?;
     let redundancy = examine(&checked.model, &orders).map_err(Error::Specification)?;
     Ok(CheckedModel {

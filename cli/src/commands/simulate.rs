@@ -27,7 +27,7 @@ use crate::settings::{as_borrowed, settings, with_settings};
 use crate::table::Table;
 
 pub fn run(options: &Simulate) -> Result {
-    let destination = Destination::for_output(&options.out, options.output.json)?;
+    let destination = Destination::for_table(&options.out, options.output.json)?;
     let figure = options
         .plot
         .as_deref()

@@ -196,7 +196,7 @@ impl Reader<'_> {
             text: "the family file".to_owned(),
             span: eomgen_model_spec::span::Span::new(0, 0),
         };
-        let sections = Record::new(whole, top.to_vec(), &SECTIONS, self.found);
+        let sections = Record::new(whole, top.to_vec(), &SECTIONS, self.found).as_file();
         let help =
             "begin with [family] and name = \"my_family\", then one [[variant]] for each variant";
         let head = sections.require_with("family", help, self.found)?;

@@ -25,7 +25,7 @@ pub fn read_effects(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
             text: "the file of effects".to_owned(),
             span: Span::new(0, 0),
         };
-        let top = Record::with_keys(file, entries.to_vec(), &["effect"], found);
+        let top = Record::with_keys(file, entries.to_vec(), &["effect"], found).as_file();
         let list = top.require_with("effect", "begin each effect with [[effect]]", found)?;
         let list = found.push_error(list.list("[[effect]]"))?;
         Some(

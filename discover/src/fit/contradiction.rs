@@ -249,12 +249,12 @@ fn describe_shift(
 pub(crate) fn format_estimate(parameter: Option<&Parameter>, (value, sd): (f64, f64)) -> String {
     match parameter {
         Some(p) => format!(
-            "{:.3e} +- {:.1e} {}",
+            "{:.3e} ± {:.1e} {}",
             p.unit.from_si(value),
             p.unit.from_si(sd),
             p.unit
         ),
-        None => format!("{value:.3e} +- {sd:.1e}"),
+        None => format!("{value:.3e} ± {sd:.1e}"),
     }
 }
 

@@ -135,10 +135,10 @@ fn simple(parts: &[SimpleTerm], equation: &Equation, is_rate: bool) -> String {
             value,
             sd,
         } = part;
-        let number = |unit: &str| format!("{} +- {}", plain(value.abs()), in_unit(*sd, unit));
+        let number = |unit: &str| format!("{} ± {}", plain(value.abs()), in_unit(*sd, unit));
         match function {
             SimpleFunction::Constant => {
-                format!("a constant {} +- {}", plain(*value), in_unit(*sd, force))
+                format!("a constant {} ± {}", plain(*value), in_unit(*sd, force))
             }
             SimpleFunction::Sign => {
                 format!("{} {} the sign of the {of}", number(force), along(*value))

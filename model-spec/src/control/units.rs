@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::ids::ParameterId;
-use crate::infer::{Inference, UnitPhrase, difference};
+use crate::infer::{Inference, UnitPhrase};
 use crate::model::{
     Controller, Expr, ExprKind, Function, MeasuredQuantity, Model, Parameter, ParameterValue,
     SampleTime, SampledExpression, SampledKind,
@@ -170,11 +170,12 @@ fn expect(
     if let Some(Some(inferred)) = found.push_error(inferred)
         && inferred != expected
     {
+        let cure = known.describe_cure(&[expr], inferred, expected);
         let (is, right) = (UnitPhrase(inferred), UnitPhrase(expected));
         found.push(
             Diagnostic::error(format!("{subject} is {is}, expected {right}"))
                 .with_span(expr.span, is.to_string())
-                .with_optional_help(difference(inferred, expected)),
+                .with_optional_help(cure),
         );
     }
 }

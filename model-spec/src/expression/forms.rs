@@ -4,6 +4,7 @@
 use super::{ResolvedKind, Resolver, Scope, argument_count_error};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quote};
+use crate::foreign::NO_ACCELERATION;
 use crate::ids::FieldId;
 use crate::model::{Expr, ExprKind};
 use crate::names::Symbol;
@@ -75,9 +76,7 @@ impl Resolver<'_> {
             }
             ExprKind::Dot(_) => Err(Diagnostic::error("dot(dot(...)) is an acceleration")
                 .with_span(span, "already a rate")
-                .with_help(
-                    "a specification contains no accelerations: they follow from the energies",
-                )),
+                .with_help(NO_ACCELERATION)),
             ExprKind::Input(input) => match self.names.input_rate(input) {
                 Some(rate) => Ok(ExprKind::Input(rate)),
                 None => Err(Diagnostic::error("the input has no given rate")
@@ -92,14 +91,29 @@ impl Resolver<'_> {
             ExprKind::Parameter(_)
             | ExprKind::Number(_)
             | ExprKind::Pi
-            | ExprKind::ModeShape(_) => Err(no_rate_error(span, "a constant")),
-            ExprKind::Time | ExprKind::Position(_) => Err(no_rate_error(span, "no coordinate")),
-            _ => Err(no_rate_error(span, "an expression")
+            | ExprKind::ModeShape(_) => {
+                Err(no_rate_error(span, "this is a constant, which has no rate"))
+            }
+            ExprKind::Time | ExprKind::Position(_) => {
+                Err(no_rate_error(span, "this is no coordinate"))
+            }
+            _ => Err(no_rate_error(span, "this is an expression")
                 .with_help("move the expression to [definitions] and write dot(NAME)")),
         }
     }
 
     fn diff(&mut self, value: &Syntax, along: &Syntax, times: u8) -> ResolvedKind {
+        if matches!(&along.kind, SyntaxKind::Name(name) if name == "t") {
+            let help = match &value.kind {
+                SyntaxKind::Name(name) => format!("write dot({name}) for the rate"),
+                _ => "write dot(x) for the rate".to_owned(),
+            };
+            return Err(
+                Diagnostic::error("diff() is the derivative along a field, not in time")
+                    .with_span(along.span, "this is the time")
+                    .with_help(help),
+            );
+        }
         let resolved = self.resolve(value)?;
         let Some(field) = field_of(&resolved) else {
             return Err(Diagnostic::error(
@@ -309,9 +323,9 @@ fn derivative_order_error(span: Span) -> Diagnostic {
         .with_span(span, "invalid order")
 }
 
-fn no_rate_error(span: Span, what: &str) -> Diagnostic {
+fn no_rate_error(span: Span, label: &str) -> Diagnostic {
     Diagnostic::error(
         "the argument of dot() must be a coordinate, a definition, a field or at(...) of a field",
     )
-    .with_span(span, format!("this is {what}, which has no rate"))
+    .with_span(span, label)
 }

@@ -6,7 +6,7 @@ mod forms;
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quote};
-use crate::foreign::find_equivalent;
+use crate::foreign::{NO_ACCELERATION, find_equivalent, find_name_equivalent, read_rate};
 use crate::functions::{FORMS, VECTOR_FUNCTIONS, callable_names};
 use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Expr, ExprKind, Function, MAX_ORDER};
@@ -255,12 +255,13 @@ impl<'n> Resolver<'n> {
                     "an observable is only an output: move the expression to [definitions]",
                 );
         }
-        let rate = name
-            .strip_suffix("_dot")
-            .filter(|stem| self.names.get(stem).is_some());
+        let rate = read_rate(name, |of| self.names.get(of).is_some_and(Symbol::moves));
         let help = match rate {
-            Some(stem) => Some(format!("write dot({stem}) for the rate")),
-            None => did_you_mean(name, self.names.known_names().chain(["t", "pi"])),
+            Some(rate) if rate.is_second => Some(NO_ACCELERATION.to_owned()),
+            Some(rate) => Some(format!("write dot({}) for the rate", rate.of)),
+            None => find_name_equivalent(name)
+                .map(str::to_owned)
+                .or_else(|| did_you_mean(name, self.names.known_names().chain(["t", "pi"]))),
         };
         diagnostic
             .with_span(span, "not declared")

@@ -7,3 +7,4 @@ mod extension;
 mod properties;
 mod semantics;
 mod shipped;
+mod usual_notations;

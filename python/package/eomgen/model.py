@@ -134,7 +134,12 @@ class Model:
 
         Raises SpecificationError for an unknown name or an inadmissible value.
         """
-        settings = [(name, _arguments.number(name, value)) for name, value in values.items()]
+        units = self.units
+
+        def expected(name: str) -> str:
+            return f"one number in {units[name]}" if name in units else "one number"
+
+        settings = [(name, _arguments.number(name, value, expected(name))) for name, value in values.items()]
         return Model(self._native.with_parameters(settings))
 
     def rates(self, t: ArrayLike, x: ArrayLike, u: Any = None) -> Array:

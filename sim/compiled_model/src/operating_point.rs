@@ -1,7 +1,7 @@
 //! Operating points: a time, a state and inputs, addressed by name.
 
 use eomgen_codegen::program::evaluator::Point;
-use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::foreign::suggest_state;
 
 use crate::error::Error;
 use crate::instance::Instance;
@@ -60,7 +60,7 @@ impl CompiledModel {
         }
         let inputs = self.model().inputs.iter().map(|input| &*input.name);
         let known = states.iter().map(|name| &**name).chain(inputs);
-        let help = did_you_mean(name, known)
+        let help = suggest_state(name, known)
             .unwrap_or_else(|| format!("there are {}", self.settable_names().join(", ")));
         Err(Error::Request(format!(
             "the model `{}` has no state and no input `{name}`: {help}",

@@ -256,7 +256,11 @@ fn solution(solution: &Solution, has_modes: bool) -> Markup {
         p {
             "Elimination without pivoting, in the cheapest order: " (modes) (interfaces)
             (comma_list(&solution.order, formula)) ". That takes " (solution.operations)
-            " operations per call; the most expensive order takes " (solution.dearest) "."
+            " operations per call"
+            @if solution.dearest != solution.operations {
+                "; the most expensive order takes " (solution.dearest)
+            }
+            "."
         }
     }
 }

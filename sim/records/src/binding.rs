@@ -6,10 +6,12 @@ use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds, ExperimentUnits};
 use crate::given_motion;
+use crate::inputs::check_input_names;
 use crate::motion_rates::GivenColumn;
 use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
 use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::foreign::read_rate;
 use eomgen_model_spec::model::{Model, ObservedRate, ParameterValue};
 use eomgen_model_spec::quantity::{Name, Number};
 use eomgen_model_spec::suggest::did_you_mean;
@@ -44,6 +46,7 @@ pub fn bind_description<'d>(
     check_lists(description, &mut found);
     let time = found.push_error(time_unit(description));
     let inputs = bind_inputs(description, model, &mut found);
+    check_input_names(description, (model, &[]), &mut found);
     let input_priors = input_priors(description, model, &mut found);
     let motion = given_motion::given_columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
@@ -204,7 +207,12 @@ fn bind_channel(
             quote(asked)
         ))
         .with_span(span, "not a quantity of the model")
-        .with_help(computed.or_else(|| did_you_mean(asked, known())).unwrap_or(listed))
+        .with_help(
+            computed
+                .or_else(|| suggest_rate(asked, model))
+                .or_else(|| did_you_mean(asked, known()))
+                .unwrap_or(listed),
+        )
     })?;
     given_motion::check_channel(quantity, !description.motion.is_empty(), asked, span)?;
     let unit = parse_unit(&entry.column.unit, &expected)?;
@@ -244,6 +252,16 @@ fn prior_in_si(prior: Prior, unit: &Unit) -> PriorInSi {
         mean: prior.mean.map(|mean| unit.to_si(mean.value)),
         sd: unit.to_si(prior.sd.value),
     }
+}
+
+/// Suggests the name of a rate that is written in another usual notation, such as `thetadot`.
+fn suggest_rate(asked: &str, model: &Model) -> Option<String> {
+    let rate = read_rate(asked, |of| model.coordinates.iter().any(|c| c.name == of))?;
+    let (of, order, kind) = match rate.is_second {
+        true => (rate.of, "ddot", "acceleration"),
+        false => (rate.of, "dot", "rate"),
+    };
+    Some(format!("write `{of}_{order}` for the {kind}"))
 }
 
 fn find_quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {

@@ -35,7 +35,7 @@ pub fn list_record_files(dataset: &Path, records: &Records) -> Vec<PathBuf> {
     paths.filter_map(Result::ok).collect()
 }
 
-/// Returns the path of a record in the dataset's folder or below. Symbolic links are resolved.
+/// Returns the path of an existing record in the dataset's folder or below. Symbolic links are resolved.
 pub fn resolve_record_path(dataset: &Path, file: &StringValue) -> Result<PathBuf, Diagnostic> {
     let relative = Path::new(&file.text);
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
@@ -44,7 +44,6 @@ pub fn resolve_record_path(dataset: &Path, file: &StringValue) -> Result<PathBuf
         _ => Path::new("."),
     };
     let place = folder.join(relative);
-    // A missing file is reported by the reader.
     let leads_out = match (place.canonicalize(), folder.canonicalize()) {
         (Ok(place), Ok(folder)) => !place.starts_with(folder),
         _ => false,
@@ -58,6 +57,13 @@ pub fn resolve_record_path(dataset: &Path, file: &StringValue) -> Result<PathBuf
             file.span,
             "expected a file in the folder of the dataset file or below",
         ));
+    }
+    if !place.exists() {
+        return Err(
+            Diagnostic::error(format!("the record \"{}\" does not exist", file.text))
+                .with_span(file.span, "there is no such file")
+                .with_help("give its path relative to the folder of the dataset file"),
+        );
     }
     Ok(dataset.parent().unwrap_or(Path::new(".")).join(relative))
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use eomgen_compiled_model::{
     CompiledModel, Instance, Measurement, Motion, Quantity, Request, Solver, Statistic,
 };
-use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::foreign::suggest_state;
 
 use crate::conditions::Conditions;
 use crate::error::SweepError;
@@ -80,7 +80,7 @@ fn find_number(model: &CompiledModel, asked: &str) -> Result<NumberOfQuantity, S
         (Quantity::State(place), model.state_units()[place].clone())
     } else {
         let known = observables.iter().chain(&states).map(String::as_str);
-        let hint = did_you_mean(name, known).unwrap_or_else(|| {
+        let hint = suggest_state(name, known).unwrap_or_else(|| {
             format!(
                 "it has {}",
                 [observables.join(", "), states.join(", ")].join(", ")

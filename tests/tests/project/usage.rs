@@ -326,6 +326,64 @@ fn invalid_parameter_assignments_are_rejected() {
     }
 }
 
+#[test]
+fn times_with_a_unit_are_accepted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (until, interval) in [("0.5 s", "100 ms"), ("500ms", "0.1"), ("0.5", "0.1s")] {
+        let out = folder.path().join("out.csv");
+        let out = out.display().to_string();
+        let printed = run_accepted(&[
+            "simulate",
+            &spec("pendulum"),
+            "--until",
+            until,
+            "--interval",
+            interval,
+            "--out",
+            &out,
+        ]);
+        assert!(printed.contains("6 rows"), "{until}: {printed}");
+    }
+}
+
+#[test]
+fn notations_of_other_programs_are_rejected_with_their_equivalent() {
+    for state in ["dot(theta)=1", "theta'=1", "thetadot=1", "dtheta=1"] {
+        assert_simulate_rejects("pendulum", &["--state", state], "write `theta_dot`");
+    }
+    for name in ["q.mat", "q.json"] {
+        let found = run_rejected(&["simulate", &spec("pendulum"), "--until", "1", "--out", name]);
+        assert!(found.contains(".csv or .parquet"), "{found}");
+    }
+    assert!(run_rejected(&["derive", &spec("pendulum"), "--latex"]).contains("--format latex"));
+    for target in ["matlab", "simulink"] {
+        let found = run_rejected(&[
+            "generate",
+            &spec("emps"),
+            "--target",
+            target,
+            "--out",
+            "never",
+        ]);
+        assert!(found.contains("--target fmu3"), "{found}");
+    }
+}
+
+#[test]
+fn dataset_in_place_of_a_specification_is_recognised() {
+    let measured = eomgen_tests::models::project().join("examples/measured");
+    let [stage, dataset] =
+        ["stage.toml", "dataset.toml"].map(|name| measured.join(name).display().to_string());
+    for command in [
+        &["check", &dataset][..],
+        &["compare", &dataset, &stage, "--out", "never"],
+        &["discover", &dataset, &stage, "--out", "never"],
+    ] {
+        let found = run_rejected(command);
+        assert!(found.contains("is a dataset file"), "{command:?}: {found}");
+    }
+}
+
 /// A coordinate without inertia in the initial state is rejected by all commands that compute
 /// accelerations, with its location. Its equations can be derived.
 #[test]
@@ -402,7 +460,8 @@ fn invalid_times_are_rejected() {
         ("--until", "nan", "after 0"),
         ("--until", "inf", "after 0"),
         ("--until", "1e-320", "after 0"),
-        ("--until", "soon", "invalid"),
+        ("--until", "soon", "expected a number in s"),
+        ("--until", "1 kg", "a time is in s, not in kg"),
         ("--interval", "0", "above 0"),
         ("--interval", "-1", "above 0"),
         ("--interval", "nan", "above 0"),

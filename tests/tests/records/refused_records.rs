@@ -159,7 +159,14 @@ fn contradictory_datasets_are_rejected() {
         ),
         ("[\"test.csv\"]", "[]", "lists no test record"),
         ("[\"test.csv\"]", "[\"train.csv\"]", "in one file"),
-        ("[\"test.csv\"]", "[\"none.csv\"]", "none.csv"),
+        (
+            "[\"test.csv\"]",
+            "[\"none.csv\"]",
+            "the record \"none.csv\" does not exist\n --> ",
+        ),
+        ("[inputs.force]", "[inputs.F]", "write [inputs.force]"),
+        ("length = 0.25", "length = \"1 s\"", "write length = 1"),
+        ("[channels.", "[channel.", "unknown table `channel`"),
         ("[\"test.csv\"]", "[\".\"]", "is not a file"),
         (
             "[\"test.csv\"]",

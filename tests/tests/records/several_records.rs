@@ -21,7 +21,7 @@ fn contradictory_records_are_named_with_their_separate_fits() {
     let found = notes(&result);
     assert!(found.contains("contradict each other"), "{found}");
     assert!(
-        found.contains("train[1]") && found.contains("`F_v`") && found.contains("e2 +- "),
+        found.contains("train[1]") && found.contains("`F_v`") && found.contains("e2 ± "),
         "{found}"
     );
     assert!(warned.contains("contradict each other"), "{warned}");

@@ -81,7 +81,10 @@ fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
                 }
             }
             div data-forms="sine step" hidden[!is_sine] {
-                (change.labelled_control("change", &html! { "amplitude or height" }))
+                (change.labelled_control("change", &html! {
+                    span data-forms="sine" hidden[!is_sine] { "amplitude" }
+                    span data-forms="step" hidden { "height" }
+                }))
             }
             div data-forms="sine" hidden[!is_sine] {
                 (extra("period", "s", PERIOD_S).labelled_control("period", &html! { "period" }))

@@ -111,7 +111,7 @@ fn read_tables(
         text: "the dataset".to_owned(),
         span: Span::new(0, 0),
     };
-    let top = Record::new(file, entries.to_vec(), &keys::TABLES, found);
+    let top = Record::new(file, entries.to_vec(), &keys::TABLES, found).as_file();
     let title = top.text("title", found);
     top.text("source", found);
     let records = top.require("records", found).cloned();

@@ -1,9 +1,12 @@
 //! Tables `[initial]` and `[windows]`: initial states and windows of the records.
 
-use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::quantity::{Name, Number};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::quantity::{Name, Number, StringValue};
 use eomgen_model_spec::record::Record;
+use eomgen_model_spec::suggest::did_you_mean;
 use eomgen_model_spec::table::Entry;
+use eomgen_model_spec::unit::Unit;
 
 use super::keys;
 
@@ -88,13 +91,33 @@ fn read_values(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<InitialStat
     Some(InitialState::Values(given))
 }
 
+/// Reads the length of a window that is a text.
+fn length_in_words(written: &StringValue) -> Result<Option<Number>, Diagnostic> {
+    const RECORD: &str = "record";
+    if written.text == RECORD {
+        return Ok(None);
+    }
+    let duration = Unit::parse_quantity(&written.text);
+    let duration = duration.filter(|(_, unit)| unit.dimension == Dimension::TIME);
+    let help = match duration {
+        Some((number, unit)) => format!("write length = {}", unit.to_si(number)),
+        None => did_you_mean(&written.text, [RECORD])
+            .unwrap_or_else(|| "write a number in s, such as length = 0.25".to_owned()),
+    };
+    Err(
+        Diagnostic::error(format!("`length` cannot be {}", quote(&written.text)))
+            .with_span(written.span, "expected \"record\" or a number in s")
+            .with_help(help),
+    )
+}
+
 pub(super) fn read_windows(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Windows> {
     let record = Record::read(entry, &keys::WINDOWS, found)?;
     let start = |entry: &Entry<'_>| entry.keyword(&[("fitted", false), ("smoothed", true)]);
     let smoothed = record.optional("start", start, found);
     let length = record.require("length", found)?;
     let length = match length.written() {
-        Ok(_) => found.push_error(length.keyword(&[("record", None)])),
+        Ok(written) => found.push_error(length_in_words(&written)),
         Err(_) => found.push_error(length.number()).map(Some),
     };
     let length = length?;

@@ -1,13 +1,13 @@
 //! Quantity on a section: a coordinate with its rate, or a rate with its coordinate.
 
 use eomgen_compiled_model::CompiledModel;
-use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::foreign::suggest_state;
 
 pub fn state_index(model: &CompiledModel, name: &str) -> Result<usize, String> {
     let states = model.state_names();
     let place = states.iter().position(|known| known == name);
     place.ok_or_else(|| {
-        let hint = did_you_mean(name, states.iter().map(String::as_str))
+        let hint = suggest_state(name, states.iter().map(String::as_str))
             .unwrap_or_else(|| format!("it has {}", states.join(", ")));
         let model = &model.model().name;
         format!("the model `{model}` has no coordinate and no rate `{name}`: {hint}")
