@@ -146,7 +146,8 @@ impl Inference<'_> {
         let missing = expected.divide(inferred)?;
         let factor = format!("a factor in {missing} would correct the unit");
         let mut found = Vec::new();
-        for expr in wrong {
+        let with_unit = wrong.iter().filter(|_| !expected.is_dimensionless());
+        for expr in with_unit {
             self.list_without_unit(expr, &mut found);
         }
         Some(match &found[..] {

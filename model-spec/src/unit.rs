@@ -191,7 +191,7 @@ impl Unit {
             Some((number.trim().parse::<f64>().ok()?, unit.trim()))
         });
         let (number, unit) = numbers.next()?;
-        let is_unit = unit.starts_with(|first: char| !first.is_ascii_digit());
+        let is_unit = unit.starts_with(|first: char| first.is_alphabetic() || first == '°');
         let unit = Self::parse(unit).ok()?;
         (number.is_finite() && is_unit).then_some((number, unit))
     }
