@@ -256,7 +256,6 @@ impl UnitError {
                 message: format!("unknown unit `{text}`"),
                 help: Some(format!("write {spelling}")),
                 spelling: Some(spelling),
-                ..self
             },
             None => self,
         }

@@ -6,7 +6,7 @@ use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds, ExperimentUnits};
 use crate::given_motion;
-use crate::inputs::check_input_names;
+use crate::input_columns::check_input_names;
 use crate::motion_rates::GivenColumn;
 use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};

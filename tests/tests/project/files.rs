@@ -69,19 +69,24 @@ fn inputs_are_never_replaced_by_outputs() {
     let text = std::fs::read(spec("pendulum")).expect("a specification");
     std::fs::write(&model, &text).expect("written");
     let (input, out) = (path_text(&model), format!("--out={}", path_text(&model)));
-    let beside = folder.path().join(".").join("model.toml");
-    let beside = path_text(&beside);
+    // Rows are written to CSV files only, and a specification may have any name.
+    let table = folder.path().join("model.csv");
+    std::fs::write(&table, &text).expect("written");
+    let beside = path_text(&folder.path().join(".").join("model.csv"));
+    let table = path_text(&table);
     let extended = folder.path().join("extended.toml");
     std::fs::write(&extended, "[model]\nextends = \"model.toml\"\n").expect("written");
     for arguments in [
-        &["simulate", &input, "--until", "1", "--out", &beside][..],
+        &["simulate", &table, "--until", "1", "--out", &beside][..],
         &["linearise", &input, &out],
         &["validate", &input, "--out", &input],
         &["linearise", &path_text(&extended), "--out", &input],
     ] {
         let message = run_rejected(arguments);
         assert!(message.contains("is an input of this command"), "{message}");
-        assert_eq!(std::fs::read(&model).expect("the file"), text);
+        for kept in [&input, &table] {
+            assert_eq!(std::fs::read(kept).expect("the file"), text);
+        }
     }
 }
 

@@ -186,7 +186,7 @@ fn invalid_records_are_rejected() {
         ),
         (
             "time,f\n0,inf\n1,2\n",
-            "input `force`: 1 of 2 samples are missing",
+            "line 2: column 2: \"inf\" is not a finite number",
         ),
         (
             "time,f\n0,1\n1,\n",
