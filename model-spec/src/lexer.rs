@@ -2,8 +2,8 @@
 
 use crate::diagnostic::{Diagnostic, quote};
 use crate::foreign::{find_equivalent, find_operator};
+use crate::greek::spell_greek;
 use crate::span::Span;
-use crate::toml_file::spell_greek;
 
 /// Token of an expression.
 #[derive(Clone, Debug, PartialEq)]

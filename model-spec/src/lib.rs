@@ -74,6 +74,7 @@ pub mod foreign;
 pub mod function;
 #[cfg(feature = "read")]
 mod functions;
+mod greek;
 #[cfg(feature = "read")]
 pub mod hidden_characters;
 #[cfg(feature = "read")]

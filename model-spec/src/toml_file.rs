@@ -5,6 +5,7 @@ use std::path::Path;
 use toml_edit::Document;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::greek::spell_greek;
 use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Entry, entries};
@@ -75,47 +76,6 @@ pub(crate) fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnos
     Diagnostic::error(format!("not valid TOML: {message}"))
         .with_span(Span::new(range.start, range.end), "here")
         .with_optional_help(help)
-}
-
-/// Greek letters and their names in English.
-const GREEK: [(&str, &str); 24] = [
-    ("αΑ", "alpha"),
-    ("βΒ", "beta"),
-    ("γΓ", "gamma"),
-    ("δΔ", "delta"),
-    ("εΕ", "epsilon"),
-    ("ζΖ", "zeta"),
-    ("ηΗ", "eta"),
-    ("θΘϑ", "theta"),
-    ("ιΙ", "iota"),
-    ("κΚ", "kappa"),
-    ("λΛ", "lambda_1"),
-    ("μΜµ", "mu"),
-    ("νΝ", "nu"),
-    ("ξΞ", "xi"),
-    ("οΟ", "omicron"),
-    ("πΠ", "pi_1"),
-    ("ρΡ", "rho"),
-    ("σΣς", "sigma"),
-    ("τΤ", "tau"),
-    ("υΥ", "upsilon"),
-    ("φΦϕ", "phi"),
-    ("χΧ", "chi"),
-    ("ψΨ", "psi"),
-    ("ωΩ", "omega"),
-];
-
-/// Returns a name for a name with Greek letters; `None` if it contains none.
-pub(crate) fn spell_greek(name: &str) -> Option<String> {
-    let spelled = name.chars().map(|letter| {
-        let mut greek = GREEK.iter();
-        match greek.find(|(letters, _)| letters.contains(letter)) {
-            Some((_, word)) => (*word).to_owned(),
-            None => letter.to_string(),
-        }
-    });
-    let spelled: String = spelled.collect();
-    (spelled != name).then_some(spelled)
 }
 
 /// Returns the notation of TOML for that of another language at an error.

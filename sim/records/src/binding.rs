@@ -6,7 +6,6 @@ use crate::description::columns::{ChannelColumn, Column, InputColumn, Prior};
 use crate::description::motion::InitialState;
 use crate::experiment::{self, ExperimentBounds, ExperimentUnits};
 use crate::given_motion;
-use crate::input_columns::check_input_names;
 use crate::motion_rates::GivenColumn;
 use crate::units::parse_unit;
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quote};
@@ -46,7 +45,6 @@ pub fn bind_description<'d>(
     check_lists(description, &mut found);
     let time = found.push_error(time_unit(description));
     let inputs = bind_inputs(description, model, &mut found);
-    check_input_names(description, (model, &[]), &mut found);
     let input_priors = input_priors(description, model, &mut found);
     let motion = given_motion::given_columns(description, model, &mut found);
     let (mut channels, mut channel_units) = (Vec::new(), Vec::new());

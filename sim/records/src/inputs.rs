@@ -14,7 +14,6 @@ use crate::decimation::Decimation;
 use crate::description::Description;
 use crate::files::{find_record, list_record_files};
 use crate::gaps::find_missing_rows;
-use crate::input_columns::check_input_names;
 use crate::record::RecordReader;
 use crate::refusal::Refusal;
 use crate::samples::MIN_INPUT_SAMPLES;
@@ -51,7 +50,6 @@ pub fn read_inputs(
     }
     let time = found.push_error(binding::time_unit(&description));
     let inputs = binding::bind_inputs(&description, model, &mut found);
-    check_input_names(&description, (model, driven), &mut found);
     let Some(time) = time.filter(|_| found.is_empty()) else {
         return Err(found.into());
     };

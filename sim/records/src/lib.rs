@@ -68,7 +68,6 @@ mod gaps;
 mod given_motion;
 mod header;
 mod initial_readings;
-mod input_columns;
 pub mod inputs;
 mod motion_rates;
 pub mod noise;

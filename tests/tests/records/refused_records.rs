@@ -164,7 +164,6 @@ fn contradictory_datasets_are_rejected() {
             "[\"none.csv\"]",
             "the record \"none.csv\" does not exist\n --> ",
         ),
-        ("[inputs.force]", "[inputs.F]", "write [inputs.force]"),
         ("length = 0.25", "length = \"1 s\"", "write length = 1"),
         ("[channels.", "[channel.", "unknown table `channel`"),
         ("[\"test.csv\"]", "[\".\"]", "is not a file"),
