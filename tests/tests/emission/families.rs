@@ -359,7 +359,7 @@ fn wrong_families_are_rejected_with_their_place() {
         .collect();
     let many = format!("[family]\nname = \"f\"\n{many}");
     for (text, expected) in [
-        (String::new(), "`the family file` has no `family`"),
+        (String::new(), "the family file has no `family`"),
         ("[family]\nname = \"f\"\n".to_owned(), "has no `variant`"),
         ("[family]\n".to_owned(), "has no `name`"),
         ("[family\n".to_owned(), "family.toml:1:8"),
