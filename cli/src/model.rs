@@ -13,7 +13,7 @@ use crate::input_file::register_input;
 /// Reads and checks a specification.
 ///
 /// # Errors
-/// A dataset file in place of a specification, and all findings of an invalid specification.
+/// A dataset file, and all findings of an invalid specification.
 pub fn read(path: &Path) -> Result<Checked> {
     eomgen_model_spec::load(path).map_err(|found| match is_dataset(&found) {
         true => Error::input(format!(

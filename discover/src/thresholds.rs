@@ -440,7 +440,7 @@ pub const MAX_SHAFT_ORDER: u32 = 48;
 /// Maximum number of orders from that spectrum, per angle, in addition to `SHAFT_ORDERS`.
 pub const MAX_SPECTRUM_ORDERS: usize = 4;
 
-/// Maximum number of orders that are fitted beside that of a named wave. In a record of 1.2 turns the
+/// Maximum number of neighbouring orders that are fitted for a named wave. In a record of 1.2 turns the
 /// spectrum was two orders off.
 pub const MAX_FOLLOWED_ORDERS: usize = 8;
 

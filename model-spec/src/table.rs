@@ -73,7 +73,7 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// Returns the keys `value` and `unit` of a table that a number or a string stands for, with their text.
+    /// Returns the keys `value` and `unit` of the table that should be written instead of a number or a string, with their text.
     fn given_values(&self, keys: &Keys) -> Vec<(&'static str, String)> {
         let span = self.span();
         let written = self.text.get(span.start..span.end).unwrap_or_default();

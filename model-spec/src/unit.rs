@@ -444,10 +444,10 @@ fn prefixed(symbol: &str, prefix_power: i32) -> Option<Parsed> {
 fn unknown_unit_error(symbol: &str) -> UnitError {
     let mut outside = OUTSIDE_SI.iter();
     let outside = outside.find(|(words, _)| words.contains(&symbol));
-    let help = match symbol {
-        _ if outside.is_some() => outside.map_or("", |(_, cure)| cure).to_owned(),
-        "Nms" => "separate factors by a space: N m s".to_owned(),
-        "Kg" => "write kg for the kilogram".to_owned(),
+    let help = match (symbol, outside) {
+        (_, Some((_, cure))) => (*cure).to_owned(),
+        ("Nms", _) => "separate factors by a space: N m s".to_owned(),
+        ("Kg", _) => "write kg for the kilogram".to_owned(),
         _ => match split_word(symbol) {
             Some(parted) => format!("separate factors by a space: {parted}"),
             None => "use SI units with prefixes, combined as in N s/m or kg m^2".to_owned(),

@@ -1,4 +1,4 @@
-//! Orders beside that of a named wave over an angle. The spectrum of a residual resolves an order to
+//! Neighbouring orders of a named wave over an angle. The spectrum of a residual resolves an order to
 //! one over the turns of the record, and the motion of a model without the wave shifts its lines.
 //! Neighbouring orders are fitted until the best one has worse neighbours.
 
@@ -17,7 +17,8 @@ use crate::search::tested_pool::TestedPool;
 use crate::thresholds;
 
 /// Fits the neighbouring orders of the best hypothesis, if that is a wave over an angle, and those of
-/// each order that leaves nearly as little: no more than a correct model if the best one does. Orders of teeth follow from their numbers and stay.
+/// each order that leaves nearly as little: no more than a correct model if the best one does. Orders
+/// of teeth follow from their numbers and stay.
 pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> TestedPool {
     let mut tried: Vec<u32> = Vec::new();
     while tried.len() < thresholds::MAX_FOLLOWED_ORDERS {
@@ -45,8 +46,8 @@ pub fn follow_orders(context: RoundContext<'_>, mut tested: TestedPool) -> Teste
     tested
 }
 
-/// Returns the best hypothesis, if it is a wave over an angle, and the orders beside those that
-/// leave nearly as little, without those that are fitted or tried.
+/// Returns the best hypothesis, if it is a wave over an angle, and the neighbours of the orders
+/// that leave nearly as little, without those that are fitted or tried.
 fn find_missing_orders(
     context: RoundContext<'_>,
     tested: &TestedPool,
@@ -72,14 +73,14 @@ fn find_missing_orders(
         false => fitted.fit.rms() < most,
     };
     let near = same.iter().filter(|(_, fitted)| is_near(fitted));
-    let mut beside: Vec<u32> = near.flat_map(|(order, _)| [order - 1, order + 1]).collect();
-    beside.sort_unstable();
-    beside.dedup();
-    beside.retain(|order| {
+    let mut neighbours: Vec<u32> = near.flat_map(|(order, _)| [order - 1, order + 1]).collect();
+    neighbours.sort_unstable();
+    neighbours.dedup();
+    neighbours.retain(|order| {
         let is_fitted = same.iter().any(|(known, _)| known == order);
         (1..=thresholds::MAX_SHAFT_ORDER).contains(order) && !is_fitted && !tried.contains(order)
     });
-    (!beside.is_empty()).then(|| (wave.clone(), beside))
+    (!neighbours.is_empty()).then(|| (wave.clone(), neighbours))
 }
 
 /// Returns the candidates of all fitted hypotheses.

@@ -1,4 +1,4 @@
-//! Motions that dry friction holds beside forces that differ by the direction of motion.
+//! Motions that dry friction holds, with further forces that differ by the direction of motion.
 
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
@@ -33,11 +33,35 @@ fn integrator(friction: &str) -> Result<ExponentialIntegrator, UnsupportedModel>
     ExponentialIntegrator::new(exact.evaluator(&VALUES), SAMPLE, 1.0)
 }
 
-#[test]
-fn friction_holds_beside_damping_that_differs_by_direction() {
-    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * SAMPLE).collect();
+/// Returns times of samples (s) and an input with steps.
+fn steps_of_force() -> (Vec<f64>, HeldInputs) {
+    let times = (0..=200).map(|k| f64::from(k) * SAMPLE);
     let changes = vec![0.0, 0.3, 0.8, 1.2, 1.5];
-    let inputs = HeldInputs::new(changes, vec![8.0, -1.0, -7.0, 2.0, 6.0], 1).expect("inputs");
+    let inputs = HeldInputs::new(changes, vec![8.0, -1.0, -7.0, 2.0, 6.0], 1);
+    (times.collect(), inputs.expect("inputs"))
+}
+
+/// Returns the states of the block, which starts at rest, with this friction.
+fn simulate(friction: &str, times: &[f64], inputs: &HeldInputs) -> Vec<Vec<f64>> {
+    let mut states = Vec::new();
+    let options = Options {
+        force: None,
+        tangents: None,
+    };
+    let found = integrator(friction).expect("can be integrated").simulate(
+        &[0.0, 0.0],
+        times,
+        inputs,
+        options,
+        &mut |_, state, _| states.push(state.to_vec()),
+    );
+    found.expect("a motion");
+    states
+}
+
+#[test]
+fn friction_holds_with_damping_that_differs_by_direction() {
+    let (times, inputs) = steps_of_force();
     for friction in [
         "-T*sign(dot(x)) - c*abs(dot(x))",
         "-T*sign(dot(x)) - c*max(dot(x), 0)",
@@ -50,17 +74,7 @@ fn friction_holds_beside_damping_that_differs_by_direction() {
         let expected = propagator
             .simulate(&[0.0, 0.0], (0.0, 2.0), &times, &inputs, &mut |_| {})
             .expect("a motion");
-        let mut states = Vec::new();
-        let options = Options {
-            force: None,
-            tangents: None,
-        };
-        integrator(friction)
-            .expect("can be integrated")
-            .simulate(&[0.0, 0.0], &times, &inputs, options, &mut |_, state, _| {
-                states.push(state.to_vec());
-            })
-            .expect("a motion");
+        let states = simulate(friction, &times, &inputs);
         for (t, (found, expected)) in times.iter().zip(states.iter().zip(&expected.states)) {
             let difference = (found[0] - expected[0]).abs();
             assert!(difference < 1e-9, "{friction} at {t} s: {difference:e}");
@@ -71,25 +85,13 @@ fn friction_holds_beside_damping_that_differs_by_direction() {
 /// The forces of both sides have the same direction.
 #[test]
 fn friction_holds_with_forces_that_depend_on_input_and_position() {
-    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) * SAMPLE).collect();
-    let changes = vec![0.0, 0.3, 0.8, 1.2, 1.5];
-    let inputs = HeldInputs::new(changes, vec![8.0, -1.0, -7.0, 2.0, 6.0], 1).expect("inputs");
+    let (times, inputs) = steps_of_force();
     for friction in [
         "-(T + 0.1*u)*sign(dot(x)) - c*abs(dot(x))",
         "-(T + T*x/l)*sign(dot(x))",
         "-T*abs(x - l)/l*sign(dot(x))",
     ] {
-        let mut states = Vec::new();
-        let options = Options {
-            force: None,
-            tangents: None,
-        };
-        integrator(friction)
-            .expect("can be integrated")
-            .simulate(&[0.0, 0.0], &times, &inputs, options, &mut |_, state, _| {
-                states.push(state.to_vec());
-            })
-            .expect("a motion");
+        let states = simulate(friction, &times, &inputs);
         let expected = step_implicitly(friction, &times, &inputs);
         for (t, (found, expected)) in times.iter().zip(states.iter().zip(&expected)) {
             let difference = (found[0] - expected).abs();

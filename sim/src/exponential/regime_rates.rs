@@ -2,7 +2,7 @@
 //! their exponential is taken.
 
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 use crate::balancing::{MAX_ENTRY_PER_S, balance, scale_matrix};
 
@@ -238,11 +238,7 @@ impl SideDifference {
             let [a, b] = [a, b].map(|(column, rounding)| column.amax() / *rounding);
             a.total_cmp(&b)
         })?;
-        let rate = (&self.function * clearest)[0];
-        let size = (self.function.abs() * clearest.abs())[0];
-        if rate.abs() <= MIN_RELATIVE_JUMP * size {
-            return None;
-        }
+        let rate = self.find_function_change(clearest)?;
         let direction = clearest / -rate;
         let mut columns = self.columns.column_iter().zip(&self.roundings);
         let is_constant = columns.all(|(column, rounding)| {
@@ -255,11 +251,15 @@ impl SideDifference {
 
     /// Returns true if the difference changes the rate of the function.
     fn changes_function(&self) -> bool {
-        self.columns.column_iter().any(|column| {
-            let rate = (&self.function * column)[0];
-            let size = (self.function.abs() * column.abs())[0];
-            rate.abs() > MIN_RELATIVE_JUMP * size
-        })
+        let mut columns = self.columns.column_iter();
+        columns.any(|column| self.find_function_change(column).is_some())
+    }
+
+    /// Returns the change of the function's rate by a column; `None` if it is rounding.
+    fn find_function_change(&self, column: DVectorView<'_, f64>) -> Option<f64> {
+        let rate = (&self.function * column)[0];
+        let size = (self.function.abs() * column.abs())[0];
+        (rate.abs() > MIN_RELATIVE_JUMP * size).then_some(rate)
     }
 }
 

@@ -49,8 +49,8 @@ pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
     QuadratureRule { nodes, weights }
 }
 
-/// Returns P_n(x) and its derivative.
-fn legendre(n: usize, x: f64) -> (f64, f64) {
+/// Returns P_n(x) and its derivative; the derivative is not finite at -1 and 1.
+pub(super) fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {
         let k = k as f64;

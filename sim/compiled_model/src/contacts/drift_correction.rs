@@ -54,7 +54,7 @@ impl Contacts {
     }
 
     /// Returns true if an open contact touches a body that surfaces hold.
-    pub(super) fn is_held_beside(&self, place: usize) -> bool {
+    pub(super) fn touches_held_body(&self, place: usize) -> bool {
         !self.drifts[place].is_empty()
     }
 

@@ -104,7 +104,7 @@ impl Contacts {
                 self.rests(*place)
                     || hits.contains(place)
                     || collapsing.contains(place)
-                    || self.is_held_beside(*place)
+                    || self.touches_held_body(*place)
                     || impact.distance <= within
             })
             .collect();

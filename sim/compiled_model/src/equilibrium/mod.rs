@@ -87,7 +87,8 @@ pub struct EquilibriumRequest<'r> {
 impl Instance<'_> {
     /// Finds the equilibrium nearest to the start. Coordinates and first-order states are
     /// unknowns, except fixed ones. A first-order state whose rate is 0 at rest for any value, such
-    /// as that of a hysteresis, keeps its value if an equilibrium has it. Inputs have their default or given values. If coordinates,
+    /// as that of a hysteresis, keeps its value if an equilibrium has it. Inputs have their default
+    /// or given values. If coordinates,
     /// speeds or first-order states are fixed, the inputs that are not fixed are unknowns too and
     /// hold the machine there.
     ///
@@ -114,17 +115,21 @@ impl Instance<'_> {
         let mut search = Search::new(&holding, &directions, unknowns.clone())?;
         let start = at.clone();
         let lasting = search.find_lasting_states(&at);
-        unknowns.retain(|unknown| !lasting.contains(unknown));
-        let mut others = Search::new(&holding, &directions, unknowns)?;
-        let first = match others.run(&mut at) {
-            Err(_) if !lasting.is_empty() => {
-                at = start.clone();
-                search.run(&mut at)
+        let mut without_lasting = None;
+        if !lasting.is_empty() {
+            unknowns.retain(|unknown| !lasting.contains(unknown));
+            let mut others = Search::new(&holding, &directions, unknowns)?;
+            match others.run(&mut at) {
+                Ok(residual) => {
+                    search = others;
+                    without_lasting = Some(residual);
+                }
+                Err(_) => at = start.clone(),
             }
-            first => {
-                search = others;
-                first
-            }
+        }
+        let first = match without_lasting {
+            Some(residual) => Ok(residual),
+            None => search.run(&mut at),
         };
         let held = match &first {
             Err(_) if request.fixed_values.is_empty() => holding.find_held_rates(&start)?,

@@ -4,8 +4,9 @@ use eomgen_model_spec::diagnostic::Diagnostic;
 use eomgen_model_spec::evaluate::{enclose_with, evaluate, evaluate_at_time, evaluate_with};
 use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::interval::Interval;
-use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
+use eomgen_model_spec::model::{ExprKind, Field, Model};
 
+use super::super::contents::contents;
 use super::super::modes::Shapes;
 use super::super::quadrature::QuadratureRule;
 use super::super::rule::FieldRule;
@@ -13,7 +14,7 @@ use super::MAX_ERROR;
 use super::panels::{Panels, Profile, divide};
 use super::products::{Coefficient, Product};
 
-/// Number of combinations of all modes that are tried besides single modes.
+/// Number of combinations of all modes that are tried in addition to single modes.
 const COMBINATIONS: usize = 3;
 
 /// Shapes per panel: with 24 nodes, the product of their waves is exact to rounding.
@@ -61,8 +62,8 @@ impl<'m> CheckedField<'m> {
         if self.order == 0 && !product.shapes.is_empty() {
             return Ok(());
         }
-        let coefficients = product.coefficients.iter();
-        let has_time = coefficients.clone().any(|c| self.contains_time(c.value));
+        let mut coefficients = product.coefficients.iter();
+        let has_time = coefficients.any(|c| contents(self.model, c.value).time);
         let times = match has_time {
             true => times(),
             false => vec![0.0],
@@ -74,18 +75,6 @@ impl<'m> CheckedField<'m> {
             }
         }
         Ok(())
-    }
-
-    fn contains_time(&self, expr: &Expr) -> bool {
-        let mut found = false;
-        expr.visit(&mut |part| match &part.kind {
-            ExprKind::Time => found = true,
-            ExprKind::Definition(index) => {
-                found |= self.contains_time(&self.model.definitions[*index].value);
-            }
-            _ => {}
-        });
-        found
     }
 
     /// Returns the largest error of the product with single modes and combinations of them, and the narrowest panel.

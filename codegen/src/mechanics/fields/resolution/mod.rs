@@ -93,7 +93,7 @@ pub fn worst_at_state(
             text: model
                 .source
                 .text
-                .get(text_range(integral.integrand.span))?
+                .get(integral.integrand.span.start..integral.integrand.span.end)?
                 .to_owned(),
             error,
             nodes: FieldRule::new(model, integral.field, orders[integral.field.index()])
@@ -108,10 +108,6 @@ pub fn has_nonlinear_integrals(model: &Model) -> bool {
     find_integrals(model)
         .iter()
         .any(|found| matches!(found.expansion, Expansion::Nonlinear))
-}
-
-fn text_range(span: Span) -> std::ops::Range<usize> {
-    span.start..span.end
 }
 
 /// Returns the integrals of the model, once for each place in the specification.

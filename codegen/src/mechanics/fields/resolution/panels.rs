@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::interval::Interval;
 
-use super::super::quadrature::{QuadratureRule, gauss_legendre};
+use super::super::quadrature::{QuadratureRule, gauss_legendre, legendre};
 
 /// Number of nodes of a panel.
 const NODES: usize = 24;
@@ -131,21 +131,10 @@ fn legendre_tails(rule: &QuadratureRule) -> Vec<Vec<f64>> {
     last.map(|degree| {
         let nodes = rule.nodes.iter().zip(&rule.weights);
         nodes
-            .map(|(s, weight)| (2 * degree + 1) as f64 * weight * legendre(degree, 2.0 * s - 1.0))
+            .map(|(s, weight)| (2 * degree + 1) as f64 * weight * legendre(degree, 2.0 * s - 1.0).0)
             .collect()
     })
     .collect()
-}
-
-fn legendre(degree: usize, x: f64) -> f64 {
-    let (mut previous, mut current) = (1.0, x);
-    for k in 2..=degree {
-        let k = k as f64;
-        let next = ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k;
-        previous = current;
-        current = next;
-    }
-    current
 }
 
 #[cfg(test)]
