@@ -83,6 +83,18 @@ fn discrete_matrices_match_motions_with_held_inputs() {
 }
 
 #[test]
+fn period_has_a_unit() {
+    let document = run_json(&[
+        "linearise",
+        &shipped("loudspeaker"),
+        "--discrete",
+        "0.5 ms",
+        "--json",
+    ]);
+    assert_eq!(document["period"], 5e-4);
+}
+
+#[test]
 fn inadmissible_periods_and_prescribed_motion_are_rejected() {
     let pendulum = shipped("furuta_pendulum");
     for (period, message) in [
@@ -90,7 +102,7 @@ fn inadmissible_periods_and_prescribed_motion_are_rejected() {
         ("-1e-3", "expected a time in s above 0"),
         ("nan", "expected a time in s above 0"),
         ("1e12", "give a shorter period"),
-        ("1 ms", "invalid float literal"),
+        ("1 kg", "a time is in s, not in kg"),
     ] {
         let period = format!("--discrete={period}");
         let at = ["--state", "theta=pi"];
