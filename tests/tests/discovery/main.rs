@@ -2,7 +2,6 @@
 
 mod arm;
 mod blind;
-mod documented_example;
 mod effects_files;
 mod effects_found;
 mod effects_placed;
