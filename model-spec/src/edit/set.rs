@@ -1,15 +1,15 @@
 //! Sets the number and the origin of a parameter, or the model of a sensor.
 
-use toml_edit::{DocumentMut, Item, Table, Value};
+use toml_edit::{DocumentMut, Item, RawString, Table, Value};
 
 use super::{EditError, SetParameter, SetSensor};
 
 /// Replaces the value of a parameter, a number or an expression, by a number.
 pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), EditError> {
-    let entry = document
+    let mut entry = document
         .get_mut("parameters")
         .and_then(|item| item.get_mut(&edit.name));
-    let Some(table) = entry.and_then(Item::as_table_like_mut) else {
+    let Some(table) = entry.as_deref_mut().and_then(Item::as_table_like_mut) else {
         return Err(EditError::MissingTerm {
             section: "parameters".to_owned(),
             name: edit.name.clone(),
@@ -25,8 +25,24 @@ pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), 
         replace(table.get_mut("source"), source);
     } else {
         table.insert("source", Item::Value(source));
+        remove_inner_spaces(entry);
     }
     Ok(())
+}
+
+/// Removes spaces before the commas of an inline table: the space before its closing brace belongs to its last value,
+/// which an insertion makes the last but one.
+fn remove_inner_spaces(entry: Option<&mut Item>) {
+    let Some(table) = entry.and_then(Item::as_inline_table_mut) else {
+        return;
+    };
+    let inner = table.len().saturating_sub(1);
+    for (_, value) in table.iter_mut().take(inner) {
+        let suffix = value.decor().suffix().and_then(RawString::as_str);
+        if suffix.is_some_and(|suffix| suffix.trim().is_empty()) {
+            value.decor_mut().set_suffix("");
+        }
+    }
 }
 
 /// Sets gain, bias and delay of a sensor, and the observable.

@@ -2,7 +2,7 @@
 
 use eomgen_model_spec::edit::{
     Edit, EditError, NewCoordinate, NewForce, NewParameter, NewState, NewTerm, NewValue, Section,
-    Substitution, apply,
+    SetParameter, Substitution, apply,
 };
 use eomgen_model_spec::source::Source;
 
@@ -70,6 +70,21 @@ fn added_lines(edited: &str) -> Vec<String> {
     }
     assert_eq!(original.next(), None, "a line is missing in\n{edited}");
     added
+}
+
+#[test]
+fn added_source_of_a_parameter_has_no_space_before_its_comma() {
+    let edit = Edit::SetParameter(SetParameter {
+        name: text("k"),
+        value: 310.0,
+        source: text("fitted"),
+    });
+    let edited = apply(&source(), &[edit]).expect("valid");
+    let expected = SPRING.replace(
+        "k = { value = 300, unit = 'N/m', doc = \"stiffness\" }",
+        "k = { value = 310.0, unit = 'N/m', doc = \"stiffness\", source = \"fitted\" }",
+    );
+    assert_eq!(edited, expected);
 }
 
 #[test]
