@@ -1,6 +1,6 @@
 //! Sections of the tour's page, except the equations.
 
-use eomgen_page::{aligned, collapsible_file, figure, table};
+use eomgen_page::{aligned, collapsible_file, figure, stacked_table, table};
 use maud::{Markup, html};
 
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
@@ -76,7 +76,7 @@ pub(super) fn certificate(checks: &[CheckRow]) -> Markup {
             ". A value is the largest deviation, relative unless stated otherwise; it must not exceed the "
             "tolerance."
         }
-        (table(&["check", "value", "tolerance", "result"], &rows))
+        (stacked_table(&["check", "value", "tolerance", "result"], &rows))
     }
 }
 

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use crate::aligned::aligned;
 use crate::formula::{entry_name, formula};
-use crate::parts::table;
+use crate::parts::stacked_table;
 
 /// Number of modes whose values are shown.
 const MAX_SHOWN_MODES: usize = 8;
@@ -82,8 +82,9 @@ fn introduction(report: &Report, has_modes: bool) -> Markup {
 fn comma_list<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
     html! {
         @for (place, item) in items.iter().enumerate() {
-            @if place > 0 { ", " }
-            (set(item))
+            @if place > 0 { " " }
+            // No line breaks before a comma.
+            span.word { (set(item)) @if place + 1 < items.len() { "," } }
         }
     }
 }
@@ -168,7 +169,7 @@ fn coefficients(lines: &[CoefficientLine]) -> Markup {
             "Names as in the specification; values in SI units for its parameters, by the modes "
             i { "i" } " and " i { "j" } " of a coefficient with these indices."
         }
-        (table(&["coefficient", "formula", "value"], &rows))
+        (stacked_table(&["coefficient", "formula", "value"], &rows))
     }
 }
 

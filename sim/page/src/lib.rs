@@ -28,4 +28,4 @@ pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;
 pub use formula::{formula, name_letters};
 pub use number::number;
-pub use parts::{Figure, collapsible_file, figure, prose, section, table};
+pub use parts::{Figure, collapsible_file, figure, prose, section, stacked_table, table};

@@ -14,9 +14,18 @@ pub fn section(heading: &str, content: &Markup) -> Markup {
 
 /// Returns a table; `rows` are its `tr` elements.
 pub fn table(headings: &[&str], rows: &Markup) -> Markup {
+    table_of_class(None, headings, rows)
+}
+
+/// Returns a table. In a narrow window, the first cell of a row is above the others.
+pub fn stacked_table(headings: &[&str], rows: &Markup) -> Markup {
+    table_of_class(Some("stacked"), headings, rows)
+}
+
+fn table_of_class(class: Option<&str>, headings: &[&str], rows: &Markup) -> Markup {
     html! {
         div.wide {
-            table {
+            table class=[class] {
                 thead { tr { @for heading in headings { th scope="col" { (heading) } } } }
                 tbody { (rows) }
             }
@@ -34,11 +43,12 @@ pub fn collapsible_file(summary: &str, text: &str, is_open: bool) -> Markup {
     }
 }
 
-/// Returns prose, with the parts between backticks and names with underscores as code.
+/// Returns prose, with the parts between backticks and names with underscores as code. No line breaks before a percent
+/// sign.
 pub fn prose(text: &str) -> Markup {
     html! {
         @for (place, part) in text.split('`').enumerate() {
-            @if place % 2 == 1 { code { (part) } } @else { (named_words(part)) }
+            @if place % 2 == 1 { code { (part) } } @else { (named_words(&part.replace(" %", "\u{a0}%"))) }
         }
     }
 }
@@ -99,6 +109,10 @@ mod tests {
         let set = |text: &str| prose(text).into_string();
         assert_eq!(set("run `a < b` now"), "run <code>a &lt; b</code> now");
         assert_eq!(set("plain"), "plain");
+        assert_eq!(
+            set("by 8.2 %, `a % b`"),
+            "by 8.2\u{a0}%, <code>a % b</code>"
+        );
         assert_eq!(
             set("Found: T_c = 3 N, b."),
             "Found: <code>T_c</code> = 3 N, b."

@@ -66,7 +66,7 @@ fn effect(effect: &FoundEffect, files: &[ExperimentFile]) -> Markup {
             }
             dt { "evidence" }
             dd {
-                "reduction of the held-out residual: " (format_percent(effect.statistics.held_out_reduction))
+                "reduction of the held-out residual: " (prose(&format_percent(effect.statistics.held_out_reduction)))
                 ", " (format_number(effect.statistics.reduction_in_standard_errors, 2)) " standard errors"
                 @if let Some(p) = effect.adjusted_p_value {
                     "; probability that noise alone gives as much for any fitted effect: " (probability(p))
@@ -160,12 +160,12 @@ pub(super) fn show_change(before: &str, after: &str) -> Markup {
     section(
         "Changes of the specification",
         &html! {
-            pre {
+            pre.changes {
                 @for line in old.iter().filter(|line| !new.contains(line)) {
-                    span.removed { "- " (line) } "\n"
+                    span.removed { "- " (line) }
                 }
                 @for line in new.iter().filter(|line| !old.contains(line)) {
-                    span.added { "+ " (line) } "\n"
+                    span.added { "+ " (line) }
                 }
             }
         },

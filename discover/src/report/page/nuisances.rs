@@ -1,6 +1,6 @@
 //! Nuisances of the fit: declared and estimated values.
 
-use eomgen_page::{section, table};
+use eomgen_page::{section, stacked_table};
 use maud::{Markup, html};
 
 use crate::report::quantity::{format_estimate, format_tenths};
@@ -23,7 +23,7 @@ pub(super) fn list_nuisances(compared: &CommonResult) -> Markup {
                     "may be missing, or the declared uncertainty is too small."
                 }
             }
-            (table(&["", "declared", "fitted", "deviation"], &rows))
+            (stacked_table(&["", "declared", "fitted", "deviation"], &rows))
             p.note {
                 "Declared: mean and standard deviation from the specification and the dataset. Deviation: \
                  distance "

@@ -105,8 +105,8 @@ fn formula_at_level(formula: &Formula, level: Level) -> Markup {
 fn term(term: &Term, is_first: bool) -> Markup {
     let magnitude = term.factor.abs();
     html! {
-        // As the first element of its row, the sign would have the spacing of a prefix.
-        @if term.factor < 0.0 && is_first { mo { "\u{2212}" } }
+        // Without a form, the sign would have the spacing that follows from its position in the row.
+        @if term.factor < 0.0 && is_first { mo form="prefix" { "\u{2212}" } }
         @else if term.factor < 0.0 { mo form="infix" { "\u{2212}" } }
         @else if !is_first { mo form="infix" { "+" } }
         @match &term.of {

@@ -69,13 +69,20 @@ function cleared(canvas) {
   return { context, width, height };
 }
 
+/** Writes an exponent as a superscript: 2.5e-7 becomes 2.5·10⁻⁷. */
+function powerOfTen(text) {
+  const [mantissa, exponent] = text.split("e");
+  const raised = [...exponent.replace("+", "")].map((digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]));
+  return `${mantissa}·10${raised.join("")}`;
+}
+
 /** Formats a number with few digits and a minus sign. */
 function shown(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   const text =
     size !== 0 && (size < 1e-3 || size >= 1e5)
-      ? value.toExponential(Math.max(0, digits - 2))
+      ? powerOfTen(value.toExponential(Math.max(0, digits - 2)))
       : String(Number(value.toPrecision(digits)));
   return text.replaceAll("-", "−");
 }

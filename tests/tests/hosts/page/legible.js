@@ -1,9 +1,28 @@
 // Runs in a page under test: returns unreadable texts.
+
+/** Widest column, px, that counts as narrow for text of several words. */
+const NARROW_COLUMN = 120;
+
+/** Returns the ink of an element with one character over its base line, px: [top, bottom] on the page. */
+function ink(element) {
+  const style = getComputedStyle(element);
+  const context = document.createElement("canvas").getContext("2d");
+  context.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+  let letter = element.textContent;
+  // Browsers draw a single Latin letter as a mathematical one.
+  if (element.tagName === "mi" && /^[a-z]$/.test(letter)) letter = String.fromCodePoint(0x1d44e + letter.charCodeAt(0) - 97);
+  const measured = context.measureText(letter);
+  const range = document.createRange();
+  range.selectNodeContents(element);
+  const base = range.getBoundingClientRect().top + measured.fontBoundingBoxAscent;
+  return [base - measured.actualBoundingBoxAscent, base + measured.actualBoundingBoxDescent];
+}
+
 (async () => {
   const wait = (time) => new Promise((done) => setTimeout(done, time));
   for (const folded of document.querySelectorAll("details")) folded.open = true;
   await wait(500);
-  const seen = { smallest: Infinity, smallestText: "", identifiers: [], cut: [], backgrounds: [] };
+  const seen = { smallest: Infinity, smallestText: "", identifiers: [], cut: [], columns: [], dots: [], backgrounds: [] };
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const element = node.parentElement;
@@ -16,8 +35,18 @@
     // Descriptions of parameters are the author's.
     if (!element.closest("code, pre, .control small") && /\b[A-Za-z]+_[A-Za-z0-9_]+\b|`/.test(text)) seen.identifiers.push(text);
   }
-  for (const command of document.querySelectorAll("dd pre")) {
+  for (const command of document.querySelectorAll("dd pre, pre.changes")) {
     if (command.scrollWidth > command.clientWidth) seen.cut.push(command.textContent);
+  }
+  for (const cell of document.querySelectorAll("tbody th, tbody td, dd")) {
+    const words = cell.querySelector("math, pre") ? [] : cell.textContent.trim().split(/\s+/);
+    if (words.length > 5 && cell.clientWidth > 0 && cell.clientWidth < NARROW_COLUMN) seen.columns.push(cell.textContent);
+  }
+  for (const rate of document.querySelectorAll("mover")) {
+    const [letter, dots] = rate.children;
+    if (letter.textContent.length !== 1 || rate.getClientRects().length === 0) continue;
+    const gap = ink(letter)[0] - ink(dots)[1];
+    if (gap < 0.5) seen.dots.push([letter.textContent, gap]);
   }
   for (const svg of document.querySelectorAll("figure svg")) {
     if (svg.getClientRects().length > 0) seen.backgrounds.push(getComputedStyle(svg.querySelector("rect")).fill);

@@ -1,17 +1,18 @@
-//! Legibility of the tour, of the reports and of interactive pages: no lettering below 11 px in a narrow window, no
-//! names of the program in prose, no cut commands, and figures in the colours of the page.
+//! Legibility of the tour, of the reports and of interactive pages: no lettering below 11 px in any window, no
+//! names of the program in prose, no cut commands, no columns of single words, dots of rates above their letters, and
+//! figures in the colours of the page.
 
 use std::path::Path;
 
 use eomgen_tests::measured::{DESCRIPTION, Measured};
-use eomgen_tests::models::path;
+use eomgen_tests::models::{path, project};
 use eomgen_tests::program::run_accepted;
 use serde_json::{Value, json};
 
 use super::browser::{BrowserSettings, WIDE_WINDOW, browser, run_probe_script};
 use super::{drawn_example, write_page};
 
-/// Smallest lettering in a narrow window, px.
+/// Smallest lettering, px.
 const SMALLEST: f64 = 11.0;
 
 const NARROW_DARK: BrowserSettings = BrowserSettings {
@@ -20,16 +21,23 @@ const NARROW_DARK: BrowserSettings = BrowserSettings {
     still: false,
 };
 
-/// Asserts the legibility of a page, narrow and dark, and wide and light.
+/// Window of a tablet.
+const MEDIUM: BrowserSettings = BrowserSettings {
+    width: 800,
+    dark: false,
+    still: false,
+};
+
+/// Asserts the legibility of a page, narrow and dark, and medium and wide and light.
 fn assert_legible(browser: &str, page: &Path) {
-    for look in [NARROW_DARK, WIDE_WINDOW] {
+    for look in [NARROW_DARK, MEDIUM, WIDE_WINDOW] {
         let seen = run_probe_script("legible.js", browser, page, look);
         assert_eq!(seen["errors"], json!([]), "{seen}");
         assert_eq!(seen["excess"], 0, "wider than its window: {seen}");
         let size = seen["smallest"].as_f64().expect("a number");
         // Scaled figures have rounded sizes.
-        assert!(size > SMALLEST - 0.05 || look.width > 400, "{seen}");
-        for key in ["identifiers", "cut"] {
+        assert!(size > SMALLEST - 0.05, "{seen}");
+        for key in ["identifiers", "cut", "columns", "dots"] {
             assert_eq!(seen[key], json!([]), "{key}: {seen}");
         }
         let figures = seen["backgrounds"].as_array().expect("a list");
@@ -111,6 +119,22 @@ fn reports_are_legible_and_name_their_records() {
         let Some(browser) = browser() else { return };
         assert_legible(browser, &measured.file("out/report.html"));
     }
+}
+
+#[test]
+fn numbers_on_canvas_have_powers_of_ten() {
+    if browser().is_none() {
+        return;
+    }
+    let script = project().join("sim/page/src/play/canvas.js");
+    let script = std::fs::read_to_string(script).expect("a script")
+        + "\nconsole.log([-2.5e-7, 1e16, 0, 12.5].map((value) => shown(value, 3)).join(' '))";
+    let output = std::process::Command::new("node")
+        .args(["-e", &script])
+        .output()
+        .expect("node can be run");
+    let written = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(written, "−2.5·10⁻⁷ 1.0·10¹⁶ 0 12.5\n");
 }
 
 #[test]
