@@ -15,6 +15,10 @@ const RISE_S: (f64, f64, f64) = (0.5, 0.05, 5.0);
 /// Change of an input that starts as a sine, as a fraction of half its range.
 const FIRST_CHANGE_FRACTION: f64 = 0.5;
 
+/// The same for a prescribed motion, and its period, s: large accelerations break the machine.
+const FIRST_MOTION_FRACTION: f64 = 0.1;
+const FIRST_MOTION_PERIOD_S: f64 = 10.0;
+
 /// Returns the controls. If `is_driven`, the first input starts as a sine.
 pub(super) fn panel(quantities: &Quantities<'_>, is_driven: bool) -> Markup {
     let inputs = quantities.inputs.iter().enumerate();
@@ -63,11 +67,14 @@ fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
         low,
         high,
     };
-    let change = match is_sine {
-        true => FIRST_CHANGE_FRACTION * half,
-        false => CHANGE_FRACTION * half,
+    let (period, shortest, longest) = PERIOD_S;
+    let (fraction, period) = match (is_sine, rates.is_empty()) {
+        (true, true) => (FIRST_CHANGE_FRACTION, period),
+        (true, false) => (FIRST_MOTION_FRACTION, FIRST_MOTION_PERIOD_S),
+        (false, _) => (CHANGE_FRACTION, period),
     };
-    let change = extra("change", &value.unit, (change, -half, half));
+    let change = extra("change", &value.unit, (fraction * half, -half, half));
+    let period = extra("period", "s", (period, shortest, longest));
     let form = format!("form-{}", value.place);
     html! {
         div data-signal data-place=(value.place) data-rates=(rates.join(" ")) {
@@ -87,7 +94,7 @@ fn signal(signal: &Signal<'_>, is_sine: bool) -> Markup {
                 }))
             }
             div data-forms="sine" hidden[!is_sine] {
-                (extra("period", "s", PERIOD_S).labelled_control("period", &html! { "period" }))
+                (period.labelled_control("period", &html! { "period" }))
             }
             div data-forms="step" hidden {
                 (extra("rise time", "s", RISE_S).labelled_control("rise", &html! { "rise time" }))

@@ -68,8 +68,12 @@ impl<'m> Quantities<'m> {
             input.rate_of.is_none() && !model.is_controlled(*place)
         });
         let inputs = inputs.map(|(place, ((input, range), value))| {
-            let (low, high) = range.unwrap_or((-10.0, 10.0));
             let rates = std::iter::successors(input.rate, |rate| model.inputs[*rate].rate);
+            let (low, high) = range.unwrap_or_else(|| match input.rate {
+                // A prescribed motion has the size of the machine.
+                Some(_) => around_zero(reach(&input.unit.to_string(), machine_size(compiled))),
+                None => around_zero(10.0),
+            });
             Signal {
                 value: Slider {
                     name: input.name.clone(),
@@ -140,19 +144,12 @@ fn initial_state<'m>(
     let rates = places.iter().map(|place| place + degrees);
     let first_order = 2 * degrees..names.len();
     let all = places.iter().copied().chain(rates).chain(first_order);
-    let lengths = compiled.program().parameters.iter();
-    let size = lengths
-        .filter(|parameter| parameter.quantity.unit == "m")
-        .map(|parameter| parameter.value.abs())
-        .fold(0.0, f64::max);
-    let size = if size > 0.0 { size } else { 1.0 };
+    let size = machine_size(compiled);
     all.map(|place| {
         let value = initial[place];
         let declared = ranges.get(place).copied().flatten();
-        let (low, high) = declared.unwrap_or_else(|| {
-            let reach = reach(&units[place], size).max(1.5 * value.abs());
-            (-reach, reach)
-        });
+        let (low, high) = declared
+            .unwrap_or_else(|| around_zero(reach(&units[place], size).max(1.5 * value.abs())));
         let coordinate = model.coordinates.get(place).map(|known| &known.doc);
         let state = place
             .checked_sub(2 * degrees)
@@ -169,6 +166,20 @@ fn initial_state<'m>(
         }
     })
     .collect()
+}
+
+fn around_zero(reach: f64) -> (f64, f64) {
+    (-reach, reach)
+}
+
+/// Returns the largest length among the parameters, m; 1 if there is none.
+fn machine_size(compiled: &CompiledModel) -> f64 {
+    let lengths = compiled.program().parameters.iter();
+    let size = lengths
+        .filter(|parameter| parameter.quantity.unit == "m")
+        .map(|parameter| parameter.value.abs())
+        .fold(0.0, f64::max);
+    if size > 0.0 { size } else { 1.0 }
 }
 
 /// Returns the default half-range of a slider for a unit. `size` is the length of the machine, m.

@@ -11,6 +11,9 @@ const SLIDER_STEPS: f64 = 400.0;
 /// Significant digits of a number field.
 const SHOWN_DIGITS: usize = 6;
 
+/// Smallest value of a number field, as a fraction of a step of its slider; smaller ones are rounding errors.
+const ROUNDING_FRACTION: f64 = 1e-9;
+
 /// Quantity that a page can change.
 #[derive(Clone, Debug)]
 pub struct Slider<'m> {
@@ -74,7 +77,12 @@ impl<'m> Slider<'m> {
 
         let id = format!("{kind}-{place}");
         let step = (high / SLIDER_STEPS - low / SLIDER_STEPS).max(f64::MIN_POSITIVE);
-        let [value, low, high, step] = [rounded(*value), *low, *high, step].map(format_number);
+        let shown = if value.abs() < ROUNDING_FRACTION * step {
+            0.0
+        } else {
+            rounded(*value)
+        };
+        let [value, low, high, step] = [shown, *low, *high, step].map(format_number);
         html! {
             div.control data-kind=(kind) data-place=(place) data-factor=(format_number(*factor)) {
                 label.name for=(id) {
@@ -172,6 +180,23 @@ mod tests {
         for (value, shown) in [(31.41592653589793, 31.4159), (-2.5e-5, -2.5e-5), (0.0, 0.0)] {
             assert_eq!(rounded(value), shown);
         }
+    }
+
+    #[test]
+    fn rounding_error_is_shown_as_zero() {
+        let slider = |value: f64| Slider {
+            name: "phi".to_owned(),
+            unit: "rad".to_owned(),
+            doc: "",
+            place: 0,
+            factor: 1.0,
+            value,
+            low: -3.0,
+            high: 3.0,
+        };
+        let field = |value| slider(value).control("initial").into_string();
+        assert!(field(8e-28).contains("value=\"0\""), "{}", field(8e-28));
+        assert!(field(8e-8).contains("value=\"8e-8\""), "{}", field(8e-8));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Inputs of interactive pages: an input has one control, whose rates follow from its signal.
 
-use eomgen_tests::models::path;
+use eomgen_tests::models::{path, project};
 use eomgen_tests::program::run_accepted;
 
 #[test]
@@ -41,6 +41,20 @@ fn machine_at_rest_starts_with_a_sine() {
     let moving = page("crane");
     assert!(!moving.contains("stays at rest"));
     assert!(!moving.contains("<option value=\"sine\" selected>"));
+}
+
+/// A crane that starts with a slow turn of its jib, not one of several turns per second.
+#[test]
+fn prescribed_motion_starts_slowly() {
+    let spec = project().join("examples/recipes/slewing_crane.toml");
+    let page = run_accepted(&["page", &spec.display().to_string(), "--out", "-"]);
+    let field = |name: &str| {
+        let end = format!("\" aria-label=\"{name} of gamma in ");
+        let before = page.split(&end).next().expect("a field");
+        let value = before.rsplit("value=\"").next().expect("a value");
+        value.parse::<f64>().expect("a number")
+    };
+    assert_eq!([field("change"), field("period")], [0.314159, 10.0]);
 }
 
 /// Returns the number of mentions in the script.
