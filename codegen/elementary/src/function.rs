@@ -1,116 +1,104 @@
-//! Functions by name: arity, native value and kernel.
+//! Functions by name: arguments, description, native value and kernel.
 
 use crate::kernel::Kernel;
 use crate::precision::{Double, Precision};
 use crate::real::Real;
 use crate::record::record;
 
-/// Elementary function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Function {
-    /// [`crate::abs`].
-    Abs,
-    /// [`crate::sign`].
-    Sign,
-    /// [`crate::min`].
-    Min,
-    /// [`crate::max`].
-    Max,
-    /// [`crate::sqrt`].
-    Sqrt,
-    /// [`crate::exp`].
-    Exp,
-    /// [`crate::exp_minus_one`].
-    ExpMinusOne,
-    /// [`crate::ln`].
-    Ln,
-    /// [`crate::sinh`].
-    Sinh,
-    /// [`crate::cosh`].
-    Cosh,
-    /// [`crate::tanh`].
-    Tanh,
-    /// [`crate::sin`].
-    Sin,
-    /// [`crate::cos`].
-    Cos,
-    /// [`crate::tan`].
-    Tan,
-    /// [`crate::asin`].
-    Asin,
-    /// [`crate::acos`].
-    Acos,
-    /// [`crate::atan`].
-    Atan,
-    /// [`crate::atan2`], arguments `y, x`.
-    Atan2,
-    /// [`crate::pow`], arguments `x, y`.
-    Pow,
-    /// [`crate::quantise`], arguments `x, step`.
-    Quantise,
+/// Largest number of arguments.
+const MOST_ARGUMENTS: usize = 2;
+
+/// Defines [`Function`]. A row has the variant, the generic function of this crate with the names of its
+/// arguments, and the description, which emitted code repeats.
+macro_rules! functions {
+    ($($variant:ident $name:ident($($argument:ident),+) $description:literal;)+) => {
+        /// Elementary or piecewise function.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Function {
+            $(#[doc = $description] $variant,)+
+        }
+
+        impl Function {
+            /// Every function.
+            pub const ALL: [Function; [$(stringify!($name)),+].len()] = [$(Function::$variant),+];
+
+            /// Returns the name of the generic function in this crate.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Function::$variant => stringify!($name),)+
+                }
+            }
+
+            /// Returns the names of the arguments.
+            pub fn arguments(self) -> &'static [&'static str] {
+                match self {
+                    $(Function::$variant => &[$(stringify!($argument)),+],)+
+                }
+            }
+
+            /// Returns the description as one line.
+            pub fn description(self) -> &'static str {
+                match self {
+                    $(Function::$variant => $description,)+
+                }
+            }
+
+            /// Calls the generic function with as many arguments as it has.
+            #[inline]
+            fn compute<R: Real>(self, arguments: [R; MOST_ARGUMENTS]) -> R {
+                match self {
+                    $(Function::$variant => {
+                        let [$($argument,)+ ..] = arguments;
+                        crate::$name($($argument),+)
+                    })+
+                }
+            }
+        }
+    };
+}
+
+functions! {
+    Abs abs(x) "Absolute value.";
+    Sign sign(x) "Sign, with sign(0) = 0.";
+    Min min(x, y) "Smaller of two numbers, NaN if either is NaN.";
+    Max max(x, y) "Larger of two numbers, NaN if either is NaN.";
+    Sqrt sqrt(x) "Square root.";
+    Exp exp(x) "Exponential function.";
+    ExpMinusOne exp_minus_one(x) "exp(x) - 1.";
+    Ln ln(x) "Natural logarithm.";
+    Sinh sinh(x) "Hyperbolic sine.";
+    Cosh cosh(x) "Hyperbolic cosine.";
+    Tanh tanh(x) "Hyperbolic tangent.";
+    Sin sin(x) "Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.";
+    Cos cos(x) "Cosine for |x| up to 1e9 (4194303 in single precision), NaN beyond.";
+    Tan tan(x) "Tangent for |x| up to 1e9 (4194303 in single precision), NaN beyond.";
+    Asin asin(x) "Inverse sine.";
+    Acos acos(x) "Inverse cosine.";
+    Atan atan(x) "Inverse tangent.";
+    Atan2 atan2(y, x) "Angle of the point (x, y).";
+    Pow pow(x, y) "x to the power y.";
+    Quantise quantise(x, step)
+        "Multiple of a step that is nearest to x, halves away from zero.";
+    Deadzone deadzone(p, b) "Deflection beyond the backlash: f_k of Eq. (7).";
+    Contact contact(p, b) "1 if |p| > b, else 0: the contact of Eq. (8).";
+    Above above(p) "1 if p > 0, else 0.";
+    PivotReciprocal pivot_reciprocal(pivot)
+        "1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.";
 }
 
 impl Function {
-    /// Every function.
-    pub const ALL: [Function; 20] = [
-        Function::Abs,
-        Function::Sign,
-        Function::Min,
-        Function::Max,
-        Function::Sqrt,
-        Function::Exp,
-        Function::ExpMinusOne,
-        Function::Ln,
-        Function::Sinh,
-        Function::Cosh,
-        Function::Tanh,
-        Function::Sin,
-        Function::Cos,
-        Function::Tan,
-        Function::Asin,
-        Function::Acos,
-        Function::Atan,
-        Function::Atan2,
-        Function::Pow,
-        Function::Quantise,
-    ];
-
-    /// Returns the name of the generic function in this crate.
-    pub fn name(self) -> &'static str {
-        match self {
-            Function::Abs => "abs",
-            Function::Sign => "sign",
-            Function::Min => "min",
-            Function::Max => "max",
-            Function::Sqrt => "sqrt",
-            Function::Exp => "exp",
-            Function::ExpMinusOne => "exp_minus_one",
-            Function::Ln => "ln",
-            Function::Sinh => "sinh",
-            Function::Cosh => "cosh",
-            Function::Tanh => "tanh",
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Asin => "asin",
-            Function::Acos => "acos",
-            Function::Atan => "atan",
-            Function::Atan2 => "atan2",
-            Function::Pow => "pow",
-            Function::Quantise => "quantise",
-        }
-    }
-
     /// Returns the number of arguments.
     pub fn arity(self) -> usize {
-        match self {
-            Function::Min
-            | Function::Max
-            | Function::Atan2
-            | Function::Pow
-            | Function::Quantise => 2,
-            _ => 1,
-        }
+        self.arguments().len()
+    }
+
+    /// Returns true if emitted code has one text of the function for all types of numbers. Its operations are
+    /// arithmetic and [`Real::select_less`], and derivatives follow from them.
+    pub fn is_generic(self) -> bool {
+        matches!(
+            self,
+            Function::Deadzone | Function::Contact | Function::Above | Function::PivotReciprocal
+        )
     }
 
     /// Returns the primitive operations of the function in double precision, with one output.
@@ -121,43 +109,18 @@ impl Function {
     /// Returns the primitive operations of the function in a format, with one output.
     pub fn kernel_in<P: Precision>(self) -> Kernel {
         record::<P>(self.arity(), |arguments| match *arguments {
-            [first] => vec![self.apply_real(first, first)],
-            [first, second] => vec![self.apply_real(first, second)],
+            [first] => vec![self.compute([first, first])],
+            [first, second] => vec![self.compute([first, second])],
             _ => Vec::new(),
         })
     }
 
     /// Computes the value natively, with the same bits as the kernel. A missing argument is NaN.
+    #[inline]
     pub fn apply<R: Real>(self, arguments: &[R]) -> R {
         let nan = R::constant(f64::NAN);
         let argument = |i: usize| arguments.get(i).copied().unwrap_or(nan);
-        self.apply_real(argument(0), argument(1))
-    }
-
-    /// Calls the generic function; functions of one argument ignore the second.
-    fn apply_real<R: Real>(self, first: R, second: R) -> R {
-        match self {
-            Function::Abs => crate::abs(first),
-            Function::Sign => crate::sign(first),
-            Function::Min => crate::min(first, second),
-            Function::Max => crate::max(first, second),
-            Function::Sqrt => crate::sqrt(first),
-            Function::Exp => crate::exp(first),
-            Function::ExpMinusOne => crate::exp_minus_one(first),
-            Function::Ln => crate::ln(first),
-            Function::Sinh => crate::sinh(first),
-            Function::Cosh => crate::cosh(first),
-            Function::Tanh => crate::tanh(first),
-            Function::Sin => crate::sin(first),
-            Function::Cos => crate::cos(first),
-            Function::Tan => crate::tan(first),
-            Function::Asin => crate::asin(first),
-            Function::Acos => crate::acos(first),
-            Function::Atan => crate::atan(first),
-            Function::Atan2 => crate::atan2(first, second),
-            Function::Pow => crate::pow(first, second),
-            Function::Quantise => crate::quantise(first, second),
-        }
+        self.compute([argument(0), argument(1)])
     }
 }
 

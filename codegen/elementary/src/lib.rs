@@ -25,8 +25,8 @@
 //!
 //! # The pipeline
 //! `precision` (constants of the formats) -> `real` (the primitive operations) -> `approximation`, `pair` (polynomials, reductions, error-free sums and
-//! products) -> `sine`, `exponential`, `logarithm`, `root`, `inverse_trigonometric`, `power`, `trivial` (the
-//! functions) -> `record` -> `kernel` -> `function` (tracing).
+//! products) -> `sine`, `exponential`, `logarithm`, `root`, `inverse_trigonometric`, `power`, `trivial`,
+//! `piecewise` (the functions) -> `record` -> `kernel` -> `function` (tracing).
 //!
 //! # Accuracy and size
 //! Errors are the largest measured, in units in the last place of the result, compared with 128-bit
@@ -54,6 +54,8 @@
 //! | [`atan2`] | all | 1.45 | 77 |
 //! | [`pow`] | all; `x < 0` with integral `y` | 0.76 | 228 |
 //! | [`abs`], [`sign`], [`min`], [`max`] | all | exact | 1, 2, 2, 2 |
+//! | [`deadzone`], [`contact`], [`above`] | all | exact; `p - b` rounded | 4, 3, 1 |
+//! | [`pivot_reciprocal`] | `pivot > 0`, NaN else | 0.5: correctly rounded | 2 |
 //! | [`quantise`] | up to `2^51` steps | a rounded quotient and product | 10 |
 #![cfg_attr(not(feature = "trace"), no_std)]
 
@@ -62,6 +64,7 @@ mod exponential;
 mod inverse_trigonometric;
 mod logarithm;
 mod pair;
+mod piecewise;
 mod power;
 mod precision;
 mod real;
@@ -79,6 +82,7 @@ mod record;
 pub use exponential::{cosh, exp, exp_minus_one, sinh, tanh};
 pub use inverse_trigonometric::{acos, asin, atan, atan2};
 pub use logarithm::ln;
+pub use piecewise::{above, contact, deadzone, pivot_reciprocal};
 pub use power::pow;
 pub use precision::{Double, Precision, Single};
 pub use real::Real;

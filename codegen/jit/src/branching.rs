@@ -54,7 +54,12 @@ impl Writer<'_, '_, '_> {
                         operand
                     });
                     let values = &written.values;
-                    self.primitive(operation, |operand| values[operand], written.arguments)
+                    self.primitive(
+                        written.kernel,
+                        operation,
+                        |operand| values[operand],
+                        written.arguments,
+                    )
                 }
             };
             written.values[place] = value;

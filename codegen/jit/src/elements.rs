@@ -5,6 +5,7 @@ use eomgen_codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 
 use crate::lanes::{Array, ElementRef, Lanes, MAX_REGISTER_VECTOR, pairs};
 use crate::stage::Writer;
+use eomgen_elementary::Function as Elementary;
 
 /// Returns the flags of a memory access; every address is inside the caller's memory.
 fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
@@ -124,7 +125,7 @@ impl Writer<'_, '_, '_> {
             }
             Op::Power(a, b) => {
                 let operands = both(self, [a, b]);
-                self.power(operands, lanes)
+                self.function(Elementary::Pow, operands, lanes)
             }
             Op::Call(function, arguments) => {
                 let arguments = arguments.map(|argument| of(self, argument));
@@ -141,7 +142,7 @@ impl Writer<'_, '_, '_> {
             }
             Op::PivotReciprocal(a) => {
                 let a = of(self, a);
-                self.pivot_reciprocal(a, lanes)
+                self.function(Elementary::PivotReciprocal, [a], lanes)
             }
             // Leaves and matrix operations, which `stage` must bind.
             other => self.misplaced_value(id, &other, lanes),

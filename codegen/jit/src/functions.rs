@@ -1,5 +1,4 @@
-//! Functions of numbers: elementary functions from their kernels, piecewise functions and selections, without
-//! branches.
+//! Functions of numbers from their kernels, and selections, without branches.
 //!
 //! All functions work on two lanes with bit masks as comparisons; a single number is in both. A division by 0
 //! or a NaN in one lane has no effect on the other.
@@ -9,7 +8,7 @@ use std::rc::Rc;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 use eomgen_codegen::program::Arguments;
-use eomgen_codegen::program::evaluator::{PiecewiseFunction, piecewise_function};
+use eomgen_codegen::program::evaluator::elementary;
 use eomgen_elementary::{Function as Elementary, Kernel, Operation};
 use eomgen_model_spec::model::Function;
 
@@ -27,55 +26,30 @@ const ALIGNER: f64 = (1_u64 << 52) as f64;
 impl Writer<'_, '_, '_> {
     /// Computes a function of the expression language.
     pub fn call(&mut self, function: Function, arguments: Arguments<Value>, lanes: Lanes) -> Value {
+        let function = elementary(function);
         match arguments {
-            Arguments::One(one) => self.combine_lanes(one, lanes, |writer, [a]| {
-                writer.law(function, [a, a], &[a], lanes)
-            }),
-            Arguments::Two(two) => self.combine_lanes(two, lanes, |writer, two| {
-                writer.law(function, two, &two, lanes)
-            }),
+            Arguments::One(one) => self.function(function, one, lanes),
+            Arguments::Two(two) => self.function(function, two, lanes),
         }
     }
 
-    /// Computes a function of one or two numbers, each in both lanes; with one argument, p and b are equal.
-    fn law(
+    /// Computes a function with a kernel.
+    pub fn function<const N: usize>(
         &mut self,
-        function: Function,
-        [p, b]: [Value; 2],
-        arguments: &[Value],
+        function: Elementary,
+        arguments: [Value; N],
         lanes: Lanes,
     ) -> Value {
-        match piecewise_function(function) {
-            PiecewiseFunction::Elementary(elementary) => {
-                self.elementary(elementary, arguments, lanes)
-            }
-            PiecewiseFunction::Deadzone => self.deadzone(p, b),
-            PiecewiseFunction::Contact => self.contact(p, b),
-            PiecewiseFunction::Above => self.above(p),
-        }
-    }
-
-    /// Computes a^b.
-    pub fn power(&mut self, base_and_exponent: [Value; 2], lanes: Lanes) -> Value {
-        self.combine_lanes(base_and_exponent, lanes, |writer, both| {
-            writer.elementary(Elementary::Pow, &both, lanes)
+        self.combine_lanes(arguments, lanes, |writer, arguments| {
+            writer.operations(function, &arguments, lanes)
         })
     }
 
     /// Computes the square root of one number if a > 0, else NaN.
     pub fn positive_root(&mut self, a: Value) -> Value {
         self.combine_lanes([a], Lanes::One, |writer, [a]| {
-            let root = writer.elementary(Elementary::Sqrt, &[a], Lanes::One);
+            let root = writer.operations(Elementary::Sqrt, &[a], Lanes::One);
             writer.select_if_positive(a, root)
-        })
-    }
-
-    /// Computes 1/a if a > 0, else NaN.
-    pub fn pivot_reciprocal(&mut self, a: Value, lanes: Lanes) -> Value {
-        self.combine_lanes([a], lanes, |writer, [a]| {
-            let one = writer.literal(1.0, Lanes::Two);
-            let reciprocal = writer.instructions().fdiv(one, a);
-            writer.select_if_positive(a, reciprocal)
         })
     }
 
@@ -129,44 +103,8 @@ impl Writer<'_, '_, '_> {
         self.literal(f64::from_bits(bits), Lanes::Two)
     }
 
-    /// Computes f_k of Eq. (7).
-    fn deadzone(&mut self, p: Value, b: Value) -> Value {
-        let sign = self.bits(SIGN);
-        let minus_b = self.instructions().bxor(b, sign);
-        let above = self.compare(FloatCC::GreaterThan, p, b);
-        let held = self.instructions().bitselect(above, b, p);
-        let below = self.compare(FloatCC::GreaterThan, minus_b, held);
-        let held = self.instructions().bitselect(below, minus_b, held);
-        self.instructions().fsub(p, held)
-    }
-
-    /// Computes the indicator of |p| > b, Eq. (8).
-    fn contact(&mut self, p: Value, b: Value) -> Value {
-        let [above, below] = self.beyond(p, b);
-        let either = self.instructions().bor(above, below);
-        let one = self.literal(1.0, Lanes::Two);
-        self.instructions().band(either, one)
-    }
-
-    fn above(&mut self, p: Value) -> Value {
-        let zero = self.literal(0.0, Lanes::Two);
-        let one = self.literal(1.0, Lanes::Two);
-        let positive = self.compare(FloatCC::GreaterThan, p, zero);
-        self.instructions().band(positive, one)
-    }
-
-    /// Returns the masks of p > b and of p < -b.
-    fn beyond(&mut self, p: Value, b: Value) -> [Value; 2] {
-        let sign = self.bits(SIGN);
-        let minus_b = self.instructions().bxor(b, sign);
-        [
-            self.compare(FloatCC::GreaterThan, p, b),
-            self.compare(FloatCC::LessThan, p, minus_b),
-        ]
-    }
-
-    /// Computes an elementary function operation by operation; `lanes` is the number of different numbers.
-    fn elementary(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
+    /// Computes a function operation by operation; `lanes` is the number of different numbers.
+    fn operations(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
         let kernels = &mut self.shared.kernels;
         let entry = kernels.entry(function).or_insert_with(|| {
             let kernel = function.kernel();
@@ -184,7 +122,7 @@ impl Writer<'_, '_, '_> {
     fn kernel(&mut self, kernel: &Kernel, arguments: &[Value]) -> Value {
         let mut values = Vec::with_capacity(kernel.operations.len());
         for operation in &kernel.operations {
-            let value = self.primitive(*operation, |place| values[place], arguments);
+            let value = self.primitive(kernel, *operation, |place| values[place], arguments);
             values.push(value);
         }
         values[kernel.outputs[0]]
@@ -193,6 +131,7 @@ impl Writer<'_, '_, '_> {
     /// Writes one operation of a kernel; `value` returns the results of the operations before it.
     pub fn primitive(
         &mut self,
+        kernel: &Kernel,
         operation: Operation,
         value: impl Fn(usize) -> Value,
         inputs: &[Value],
@@ -220,8 +159,15 @@ impl Writer<'_, '_, '_> {
                 otherwise,
             } => {
                 let mask = self.compare(FloatCC::LessThan, value(left), value(right));
-                self.instructions()
-                    .bitselect(mask, value(then), value(otherwise))
+                // All bits of zero are 0.
+                match kernel.operations[otherwise] {
+                    O::Constant(zero) if zero.to_bits() == 0 => {
+                        self.instructions().band(mask, value(then))
+                    }
+                    _ => self
+                        .instructions()
+                        .bitselect(mask, value(then), value(otherwise)),
+                }
             }
             O::SelectEqual {
                 left,

@@ -1,4 +1,4 @@
-//! Functions that emitted stages call: helpers as text, and elementary functions from their kernels.
+//! Functions that emitted stages call: from their kernels, and helpers as text.
 
 use super::comments::comment;
 use super::expression::Writer;
@@ -6,24 +6,24 @@ use super::names::fill_template;
 use super::primitives::{CFormat, bits, primitives};
 use crate::program::Program;
 use crate::statements::layout::block;
-use crate::statements::{KernelStatements, RequiredFunctions, describe_elementary};
+use crate::statements::{Helper, KernelStatements, RequiredFunctions};
 use eomgen_elementary::{Double, Function as Elementary, Single};
 
 /// Writes the functions that stages call. Elementary functions are written in both formats, of which the
 /// preprocessor selects one.
 pub(super) fn functions(program: &Program, needed: &RequiredFunctions, stages: &str) -> String {
-    let mut helpers = String::new();
-    for (needed, item) in [
-        (needed.deadzone, DEADZONE),
-        (needed.contact, CONTACT),
-        (needed.above, ABOVE),
-        (needed.deadzone_on_side, DEADZONE_ON_SIDE),
-        (needed.contact_on_side, TOUCHING),
-        (needed.outside_zero_interval, EITHER),
-        (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
-        (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
+    let kernels = needed.kernels.iter();
+    let mut helpers: String = kernels
+        .filter(|function| function.is_generic())
+        .map(|function| generic_function(program, *function))
+        .collect();
+    for (helper, item) in [
+        (Helper::DeadzoneOnSide, DEADZONE_ON_SIDE),
+        (Helper::Touching, TOUCHING),
+        (Helper::Either, EITHER),
+        (Helper::Cholesky, CHOLESKY),
     ] {
-        if needed {
+        if needed.has_any(&[helper]) {
             helpers += &fill_template(program, item);
         }
     }
@@ -47,12 +47,8 @@ fn elementary_functions<P: CFormat>(
     needed: &RequiredFunctions,
     called: &str,
 ) -> String {
-    let mut elementary = needed.elementary.clone();
-    if needed.cholesky || needed.cholesky_of_matrix {
-        elementary.insert(Elementary::Sqrt);
-    }
     let mut text = String::new();
-    for function in elementary {
+    for &function in needed.kernels.iter().filter(|f| !f.is_generic()) {
         let call = fill_template(program, &format!("NAME_{}(", function.name()));
         // A sine or cosine that all stages compute as a pair needs no separate function.
         let paired = matches!(function, Elementary::Sin | Elementary::Cos);
@@ -76,32 +72,44 @@ fn elementary_functions<P: CFormat>(
     fill_template(program, &bits::<P>()) + &operations + &text
 }
 
-/// Writes an elementary function. That of double precision is rounded to the type of numbers.
-fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> String {
-    let arguments: &[&str] = match (function, function.arity()) {
-        (Elementary::Atan2, _) => &["y", "x"],
-        (_, 2) => &["x", "y"],
-        _ => &["x"],
-    };
-    let typed = |what: &str| {
-        let typed: Vec<String> = arguments
-            .iter()
-            .map(|name| format!("{what} {name}"))
-            .collect();
-        typed.join(", ")
-    };
-    let name = function.name();
-    let kernel = KernelStatements::new::<P>(function, arguments);
-    let writer = Writer::in_format::<P>(program);
+/// Writes a function of numbers of any type.
+fn generic_function(program: &Program, function: Elementary) -> String {
+    let head = format!(
+        "static NAME_real NAME_{}({}) {{",
+        function.name(),
+        parameters(function, "NAME_real")
+    );
+    let lines = lines::<Double>(function, &Writer::new(program));
+    comment(&[function.description().to_owned()])
+        + &block(&fill_template(program, &head), &lines, "}")
+}
+
+/// Writes the parameters of a function of numbers of one type.
+fn parameters(function: Elementary, number: &str) -> String {
+    let names = function.arguments().iter();
+    let typed: Vec<String> = names.map(|name| format!("{number} {name}")).collect();
+    typed.join(", ")
+}
+
+/// Writes the operations of a function and the return of its value.
+fn lines<P: CFormat>(function: Elementary, writer: &Writer) -> String {
+    let kernel = KernelStatements::new::<P>(function);
     let mut lines = writer.statements(&kernel.computed);
     if let Some(value) = kernel.value() {
         lines += &format!("return {};\n", writer.expression(value));
     }
-    let description = comment(&[describe_elementary(function).to_owned()]);
+    lines
+}
+
+/// Writes an elementary function. That of double precision is rounded to the type of numbers.
+fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> String {
+    let name = function.name();
+    let lines = lines::<P>(function, &Writer::in_format::<P>(program));
+    let description = comment(&[function.description().to_owned()]);
     let inline = inline::<P>(matches!(function, Elementary::Sin | Elementary::Cos));
     let outer = format!(
         "static {inline}NAME_real NAME_{name}({}) {{",
-        typed("NAME_real")
+        parameters(function, "NAME_real")
     );
     let outer = fill_template(program, &outer);
     if P::NUMBER == "float" {
@@ -109,9 +117,10 @@ fn elementary_function<P: CFormat>(program: &Program, function: Elementary) -> S
     }
     let head = format!(
         "static double NAME_{name}_in_double({}) {{",
-        typed("double")
+        parameters(function, "double")
     );
-    let passed: Vec<String> = arguments
+    let passed: Vec<String> = function
+        .arguments()
         .iter()
         .map(|name| format!("(double){name}"))
         .collect();
@@ -149,35 +158,11 @@ fn sine_and_cosine<P: CFormat>(program: &Program) -> String {
         inline::<P>(true),
         P::NUMBER
     );
-    let description = describe_elementary(Elementary::Sin).replace("Sine", "Sine and cosine");
+    let description = Elementary::Sin
+        .description()
+        .replace("Sine", "Sine and cosine");
     comment(&[description]) + &block(&fill_template(program, &head), &lines, "}")
 }
-
-/// f_k of Eq. (7).
-const DEADZONE: &str = "\
-/** Deflection beyond the backlash: f_k of Eq. (7). */
-static NAME_real NAME_deadzone(NAME_real p, NAME_real b) {
-    const NAME_real held = p > b ? b : p;
-    return p - (-b > held ? -b : held);
-}
-";
-
-/// Indicator of Eq. (8), in the precision of the numbers. It compares the magnitude, because gcc compiles two
-/// comparisons to a branch but one to a selection.
-const CONTACT: &str = "\
-/** 1 if |p| > b, else 0: the contact of Eq. (8). */
-static NAME_real NAME_contact(NAME_real p, NAME_real b) {
-    const NAME_real size = -p > p ? -p : p;
-    return size > b ? R(1.0) : R(0.0);
-}
-";
-
-const ABOVE: &str = "\
-/** 1 if p > 0, else 0. */
-static NAME_real NAME_above(NAME_real p) {
-    return p > R(0.0) ? R(1.0) : R(0.0);
-}
-";
 
 /// f_k on a given side of its dead zone.
 const DEADZONE_ON_SIDE: &str = "\
@@ -200,15 +185,6 @@ const EITHER: &str = "\
 /** 1 if a switching function is on either side of its zero interval, else 0. */
 static uint32_t NAME_either(uint32_t above, uint32_t below) {
     return above | below;
-}
-";
-
-/// Reciprocal of a pivot, NaN if it is not positive.
-const PIVOT_RECIPROCAL: &str = "\
-/** 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite. */
-static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
-    const NAME_real reciprocal = R(1.0) / pivot;
-    return pivot > R(0.0) ? reciprocal : R(NAME_nan());
 }
 ";
 

@@ -100,6 +100,17 @@ impl Encoded for u8 {
     }
 }
 
+/// Encoded as the place in the list of all functions, to whose end new ones are added.
+impl Encoded for Elementary {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.push(*self as u8);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        Self::ALL.get(usize::from(u8::decode(bytes)?)).copied()
+    }
+}
+
 impl Encoded for bool {
     fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.push(u8::from(*self));
@@ -332,28 +343,6 @@ encode_enumerations! {
         17 => Deadzone,
         18 => Contact,
         19 => Above,
-    }
-    Elementary {
-        0 => Abs,
-        1 => Sign,
-        2 => Min,
-        3 => Max,
-        4 => Sqrt,
-        5 => Exp,
-        6 => ExpMinusOne,
-        7 => Ln,
-        8 => Sinh,
-        9 => Cosh,
-        10 => Tanh,
-        11 => Sin,
-        12 => Cos,
-        13 => Tan,
-        14 => Asin,
-        15 => Acos,
-        16 => Atan,
-        17 => Atan2,
-        18 => Pow,
-        19 => Quantise,
     }
     MeasuredSource {
         0 => Time,

@@ -4,6 +4,8 @@
 use eomgen_model_spec::function::Function;
 use eomgen_model_spec::interval::Interval;
 
+use crate::program::evaluator::elementary;
+
 use super::format::above;
 use super::obstacle::{Cause, Obstacle};
 use super::scalars::{ScalarOp, Scalars};
@@ -211,7 +213,10 @@ fn bound_number(
                 None => Rounding::Nearest,
                 Some(count) => Rounding::LastPlaces(count),
             };
-            let value = Interval::apply_function(function, &[a.value, b.value][..arity(function)]);
+            let value = Interval::apply_function(
+                function,
+                &[a.value, b.value][..elementary(function).arity()],
+            );
             result(value, propagated, rounding)
         }
         ScalarOp::Select([a, b, then, otherwise]) => match chosen(known, a, b) {
@@ -328,7 +333,7 @@ fn partials(
         }
         ScalarOp::Call(function, a, b) => {
             let [by_first, by_second] = slopes(function, wide(a), wide(b));
-            let second = (arity(function) == 2).then_some((b, by_second));
+            let second = (elementary(function).arity() == 2).then_some((b, by_second));
             [Some((a, by_first)), second]
         }
         ScalarOp::Select([a, b, then, otherwise]) => match chosen(known, a, b) {
@@ -342,17 +347,6 @@ fn partials(
         },
     };
     parts.into_iter().flatten()
-}
-
-fn arity(function: Function) -> usize {
-    match function {
-        Function::Atan2
-        | Function::Min
-        | Function::Max
-        | Function::Deadzone
-        | Function::Contact => 2,
-        _ => 1,
-    }
 }
 
 fn widen(value: Interval, error: f64) -> Interval {

@@ -1,36 +1,30 @@
 //! Helper functions of an emitted file: their selection, and the text of the small ones. `kernels` writes
-//! elementary functions.
+//! those with kernels.
 
 use super::expression::Conversions;
-use super::kernels::elementary_function;
-use super::piecewise::{
-    ABOVE, CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING,
-};
+use super::kernels::function;
+use super::piecewise::{CHOSEN, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING};
 use super::slopes;
-use crate::statements::RequiredFunctions;
-use eomgen_elementary::Function as Elementary;
+use crate::statements::{Helper, RequiredFunctions};
 
 /// Writes the required functions.
 pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
+    let sides = [
+        Helper::DeadzoneOnSide,
+        Helper::Touching,
+        Helper::Either,
+        Helper::Chosen,
+    ];
+    let has = |helper: Helper| needed.has_any(&[helper]);
     let mut text = String::new();
     for (needed, item) in [
-        (needed.deadzone, DEADZONE),
-        (needed.contact, CONTACT),
-        (needed.above, ABOVE),
-        (needed.deadzone_on_side, DEADZONE_ON_SIDE),
-        (needed.contact_on_side, TOUCHING),
-        (needed.outside_zero_interval, EITHER),
-        (needed.selection, CHOSEN),
-        (
-            needed.deadzone_on_side
-                || needed.contact_on_side
-                || needed.outside_zero_interval
-                || needed.selection,
-            POSITIVE,
-        ),
-        (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
-        (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
-        (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
+        (has(Helper::DeadzoneOnSide), DEADZONE_ON_SIDE),
+        (has(Helper::Touching), TOUCHING),
+        (has(Helper::Either), EITHER),
+        (has(Helper::Chosen), CHOSEN),
+        (needed.has_any(&sides), POSITIVE),
+        (has(Helper::Cholesky), CHOLESKY),
+        (has(Helper::CholeskyOfMatrix), CHOLESKY_OF_MATRIX),
         (
             conversions.converted || conversions.converted_matrix,
             CONVERTED,
@@ -41,33 +35,19 @@ pub fn items(needed: &RequiredFunctions, conversions: Conversions) -> String {
             READ_ARRAY,
         ),
         (conversions.read_matrix, READ_MATRIX),
-        (needed.sum || needed.sum_of_few, PAIRED),
-        (needed.sum_of_few, SUM_OF_FEW),
-        (needed.sum, SUM),
+        (needed.has_any(&[Helper::Sum, Helper::SumOfFew]), PAIRED),
+        (has(Helper::SumOfFew), SUM_OF_FEW),
+        (has(Helper::Sum), SUM),
     ] {
         if needed {
             text.push_str(item);
         }
     }
-    let mut elementary = needed.elementary.clone();
-    if needed.cholesky || needed.cholesky_of_matrix {
-        elementary.insert(Elementary::Sqrt);
-    }
-    text + &slopes::with_slopes(&elementary)
+    text + &slopes::with_slopes(&needed.kernels)
         .into_iter()
-        .map(elementary_function)
+        .map(function)
         .collect::<String>()
 }
-
-/// Reciprocal of a pivot, NaN if it is not positive.
-const PIVOT_RECIPROCAL: &str = "\
-/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
-    let reciprocal = T::number(1.0) / pivot;
-    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
-}
-";
 
 /// Cholesky factorisation and solution; the solution is also used by rates for SIMD lanes.
 const CHOLESKY: &str = "\

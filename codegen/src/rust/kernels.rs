@@ -1,51 +1,53 @@
-//! Elementary functions as emitted Rust, from their kernels. `slopes` writes their derivatives.
+//! Functions as emitted Rust, from their kernels. `slopes` writes derivatives of those that are not generic.
 
 use super::expression::Writer;
 use super::slopes;
+use crate::statements::KernelStatements;
 use crate::statements::layout::block;
 use crate::statements::layout::{DEEPER, SHALLOWER};
-use crate::statements::{KernelStatements, describe_elementary};
 use eomgen_elementary::{Double, Function as Elementary, Single};
 
-/// Writes the function that stages call, and the type that represents it.
-pub(super) fn elementary_function(function: Elementary) -> String {
-    let (name, type_name) = (function.name(), slopes::type_name(function));
-    let description = describe_elementary(function);
-    let binary = function.arity() == 2;
-    let (family, apply, [x, y]) = match (function, binary) {
-        (Elementary::Atan2, _) => ("FunctionOfTwo", "function_of_two", ["y", "x"]),
-        (_, true) => ("FunctionOfTwo", "function_of_two", ["x", "y"]),
-        (_, false) => ("Function", "function", ["x", ""]),
-    };
-    let (second, argument) = if binary {
-        (format!(", {y}: T"), y)
-    } else {
-        (String::new(), "")
-    };
+/// Writes the function that stages call, and the type that represents it if its derivative is given.
+pub(super) fn function(function: Elementary) -> String {
     let call = format!(
-        "/// {description}\n#[inline(always)]\nfn {name}<T: Scalar>({x}: T{second}) -> T {{\n"
-    ) + &format!("{DEEPER}{x}.{apply}::<{type_name}>({argument})\n{SHALLOWER}}}\n");
-    let arguments: &[&str] = if binary { &[x, y] } else { &[x] };
-    let function_of_kernel = |name: &str, kernel: KernelStatements| {
+        "/// {}\n#[inline(always)]\n{} {{\n",
+        function.description(),
+        head(function.name(), function, "Scalar")
+    );
+    let kernel = KernelStatements::new::<Double>(function);
+    let Some(slope) = slopes::slope(function) else {
+        return call + &format!("{DEEPER}{}{SHALLOWER}}}\n", lines(&kernel));
+    };
+    let type_name = slopes::type_name(function);
+    let (family, apply, x, y) = match *function.arguments() {
+        [x, y] => ("FunctionOfTwo", "function_of_two", x, y),
+        [x, ..] => ("Function", "function", x, ""),
+        [] => return String::new(),
+    };
+    let value = |name: &str, kernel: &KernelStatements| {
+        let head = head(name, function, "Real");
         block(
-            &format!("#[inline(always)]\nfn {name}<T: Real>({x}: T{second}) -> T {{"),
-            &lines(&kernel),
+            &format!("#[inline(always)]\n{head} {{"),
+            &lines(kernel),
             "}",
         )
     };
-    let value = function_of_kernel(
-        "value",
-        KernelStatements::new::<Double>(function, arguments),
-    ) + &function_of_kernel(
-        "single",
-        KernelStatements::new::<Single>(function, arguments),
-    );
-    call + &format!("enum {type_name} {{}}\n")
+    let values =
+        value("value", &kernel) + &value("single", &KernelStatements::new::<Single>(function));
+    call + &format!("{DEEPER}{x}.{apply}::<{type_name}>({y})\n{SHALLOWER}}}\n")
+        + &format!("enum {type_name} {{}}\n")
         + &block(
             &format!("impl {family} for {type_name} {{"),
-            &(value + &slopes::slope(function)),
+            &(values + &slope),
             "}",
         )
+}
+
+/// Writes the signature of a function of numbers of one type.
+fn head(name: &str, function: Elementary, numbers: &str) -> String {
+    let arguments = function.arguments().iter();
+    let typed: Vec<String> = arguments.map(|argument| format!("{argument}: T")).collect();
+    format!("fn {name}<T: {numbers}>({}) -> T", typed.join(", "))
 }
 
 fn lines(kernel: &KernelStatements) -> String {

@@ -1,34 +1,4 @@
-//! Emitted helpers of piecewise functions, with a selection in every call, or for a side given by the
-//! constant number of a regime.
-
-/// f_k of Eq. (7).
-pub const DEADZONE: &str = "\
-/// Deflection beyond the backlash: f_k of Eq. (7).
-#[inline(always)]
-fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let held = T::select_greater(p, b, b, p);
-    p - T::select_greater(-b, held, -b, held)
-}
-";
-
-/// Indicator of |p| > b, Eq. (8).
-pub const CONTACT: &str = "\
-/// Returns 1 if |p| > b, else 0: the contact of Eq. (8).
-#[inline(always)]
-fn contact<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
-    T::select_greater(p, b, T::number(1.0), beyond)
-}
-";
-
-/// Indicator of p > 0.
-pub const ABOVE: &str = "\
-/// Returns 1 if p > 0, else 0.
-#[inline(always)]
-fn above<T: Scalar>(p: T) -> T {
-    T::select_greater(p, T::number(0.0), T::number(1.0), T::number(0.0))
-}
-";
+//! Emitted helpers of piecewise functions for a side given by the constant number of a regime.
 
 /// f_k on a given side of its dead zone.
 pub const DEADZONE_ON_SIDE: &str = "\

@@ -7,29 +7,13 @@ use crate::statements::layout::block;
 use eomgen_elementary::Function as Elementary;
 
 /// Returns the emitted type that represents a function.
-pub fn type_name(function: Elementary) -> &'static str {
-    match function {
-        Elementary::Abs => "Abs",
-        Elementary::Sign => "Sign",
-        Elementary::Min => "Min",
-        Elementary::Max => "Max",
-        Elementary::Sqrt => "Sqrt",
-        Elementary::Exp => "Exp",
-        Elementary::ExpMinusOne => "ExpMinusOne",
-        Elementary::Ln => "Ln",
-        Elementary::Sinh => "Sinh",
-        Elementary::Cosh => "Cosh",
-        Elementary::Tanh => "Tanh",
-        Elementary::Sin => "Sin",
-        Elementary::Cos => "Cos",
-        Elementary::Tan => "Tan",
-        Elementary::Asin => "Asin",
-        Elementary::Acos => "Acos",
-        Elementary::Atan => "Atan",
-        Elementary::Atan2 => "Atan2",
-        Elementary::Pow => "Pow",
-        Elementary::Quantise => "Quantise",
+pub fn type_name(function: Elementary) -> String {
+    let mut name = String::new();
+    for word in function.name().split('_') {
+        let (first, rest) = word.split_at(1);
+        name += &(first.to_uppercase() + rest);
     }
+    name
 }
 
 /// Adds the functions that the derivatives call.
@@ -47,8 +31,8 @@ pub fn with_slopes(functions: &BTreeSet<Elementary>) -> BTreeSet<Elementary> {
     all
 }
 
-/// Writes the function `slope`, or `slopes` by both arguments.
-pub fn slope(function: Elementary) -> String {
+/// Writes the function `slope`, or `slopes` by both arguments; None for a generic function.
+pub fn slope(function: Elementary) -> Option<String> {
     let signature = match function {
         Elementary::Atan2 => "fn slopes<T: Scalar>(y: T, x: T, _: T) -> [T; 2] {",
         Elementary::Min | Elementary::Max => "fn slopes<T: Scalar>(x: T, y: T, _: T) -> [T; 2] {",
@@ -62,15 +46,15 @@ pub fn slope(function: Elementary) -> String {
         Elementary::Sign => "fn slope<T: Scalar>(_: T, _: T) -> T {",
         _ => "fn slope<T: Scalar>(x: T, _: T) -> T {",
     };
-    block(
+    Some(block(
         &format!("#[inline(always)]\n{signature}"),
-        lines(function),
+        lines(function)?,
         "}",
-    )
+    ))
 }
 
-fn lines(function: Elementary) -> &'static str {
-    match function {
+fn lines(function: Elementary) -> Option<&'static str> {
+    Some(match function {
         Elementary::Abs => {
             "let (one, zero) = (T::number(1.0), T::number(0.0));\n\
              T::select_greater(x, zero, one, T::select_greater(zero, x, -one, zero))\n"
@@ -106,5 +90,9 @@ fn lines(function: Elementary) -> &'static str {
              [by_base, value * ln(x)]\n"
         }
         Elementary::Quantise => "[T::number(0.0), T::number(0.0)]\n",
-    }
+        Elementary::Deadzone
+        | Elementary::Contact
+        | Elementary::Above
+        | Elementary::PivotReciprocal => return None,
+    })
 }

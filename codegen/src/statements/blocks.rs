@@ -5,6 +5,7 @@ use super::body::Body;
 use super::emit_error::{EmitError, EmitResult};
 use super::expression::Expression;
 use super::index::Index;
+use super::needed::Helper;
 use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, ValueId};
 
@@ -65,7 +66,7 @@ impl Body<'_> {
         let name = self.name(id)?;
         match self.program.value(id).op.clone() {
             Op::Cholesky(matrix) => {
-                self.needed.cholesky = true;
+                self.needed.add(Helper::Cholesky);
                 let matrix = self.numbers(matrix)?;
                 self.push(Statement::Cholesky {
                     name: name.clone(),
@@ -94,7 +95,7 @@ impl Body<'_> {
                 self.push(Statement::loop_over_elements(rows, row));
             }
             Op::CholeskySolve(factor, right) => {
-                self.needed.cholesky_of_matrix = true;
+                self.needed.add(Helper::CholeskyOfMatrix);
                 let factor = self.numbers(factor)?;
                 let right = self.numbers(right)?;
                 self.push(Statement::CholeskySolve {

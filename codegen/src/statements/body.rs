@@ -9,7 +9,7 @@ use super::emit_error::EmitResult;
 use super::expression::{Array, Expression};
 use super::index::Index;
 use super::names::Names;
-use super::needed::RequiredFunctions;
+use super::needed::{Helper, RequiredFunctions};
 use super::sides::Switches;
 use super::stage::Notes;
 use super::statement::{Place, Statement};
@@ -225,9 +225,9 @@ impl<'a> Body<'a> {
         let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
         if length > PARTIAL_SUMS {
-            self.needed.sum = true;
+            self.needed.add(Helper::Sum);
         } else {
-            self.needed.sum_of_few = true;
+            self.needed.add(Helper::SumOfFew);
         }
         self.push(Statement::Sum {
             name: name.clone(),
@@ -248,7 +248,7 @@ impl<'a> Body<'a> {
             }
         }
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
-            self.needed.cholesky = true;
+            self.needed.add(Helper::Cholesky);
             let name = self.name(id)?;
             let factor = self.numbers(factor)?;
             let right = self.vector_array(vector, length)?;

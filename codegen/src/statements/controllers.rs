@@ -7,7 +7,7 @@ use super::expression::{Expression, Structure};
 use super::file::File;
 use super::needed::RequiredFunctions;
 use super::statement::Statement;
-use crate::program::evaluator::{PiecewiseFunction, piecewise_function};
+use crate::program::evaluator::elementary;
 use crate::program::{ControlOp, ProgramController, Quantity};
 
 /// Largest number of operations in one emitted expression.
@@ -176,12 +176,11 @@ impl ControlWriter<'_> {
             ControlOp::Divide(a, b) => Expression::divide(at(a), at(b)),
             ControlOp::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|a| at(a).clone()).collect();
-                Expression::Call(self.needed.name(piecewise_function(*function)), arguments)
+                Expression::Call(self.needed.name(elementary(*function)), arguments)
             }
             ControlOp::Elementary(function, both) => {
-                let function = PiecewiseFunction::Elementary(*function);
                 let arguments = both.iter().map(|a| at(a).clone()).collect();
-                Expression::Call(self.needed.name(function), arguments)
+                Expression::Call(self.needed.name(*function), arguments)
             }
             ControlOp::Select(parts) => {
                 Expression::Select(Box::new(parts.map(|part| known[part].clone())))

@@ -4,32 +4,6 @@ use super::expression::Expression;
 use super::statement::Statement;
 use eomgen_elementary::{Function as Elementary, Kernel, Operation, Precision, sin_cos_kernel};
 
-/// Returns the description of an elementary function.
-pub fn describe_elementary(function: Elementary) -> &'static str {
-    match function {
-        Elementary::Abs => "Absolute value.",
-        Elementary::Sign => "Sign, with sign(0) = 0.",
-        Elementary::Min => "Smaller of two numbers, NaN if either is NaN.",
-        Elementary::Max => "Larger of two numbers, NaN if either is NaN.",
-        Elementary::Sqrt => "Square root.",
-        Elementary::Exp => "Exponential function.",
-        Elementary::ExpMinusOne => "exp(x) - 1.",
-        Elementary::Ln => "Natural logarithm.",
-        Elementary::Sinh => "Hyperbolic sine.",
-        Elementary::Cosh => "Hyperbolic cosine.",
-        Elementary::Tanh => "Hyperbolic tangent.",
-        Elementary::Sin => "Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
-        Elementary::Cos => "Cosine for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
-        Elementary::Tan => "Tangent for |x| up to 1e9 (4194303 in single precision), NaN beyond.",
-        Elementary::Asin => "Inverse sine.",
-        Elementary::Acos => "Inverse cosine.",
-        Elementary::Atan => "Inverse tangent.",
-        Elementary::Atan2 => "Angle of the point (x, y).",
-        Elementary::Pow => "x to the power y.",
-        Elementary::Quantise => "Multiple of a step that is nearest to x, halves away from zero.",
-    }
-}
-
 /// Largest number of operations in one emitted expression of a kernel.
 const EXPRESSION_SIZE: usize = 6;
 
@@ -42,9 +16,9 @@ pub struct KernelStatements {
 }
 
 impl KernelStatements {
-    /// Writes the kernel of `function` in a format with these argument names.
-    pub fn new<P: Precision>(function: Elementary, arguments: &[&str]) -> Self {
-        Self::from_kernel(&function.kernel_in::<P>(), arguments)
+    /// Writes the kernel of a function in a format.
+    pub fn new<P: Precision>(function: Elementary) -> Self {
+        Self::from_kernel(&function.kernel_in::<P>(), function.arguments())
     }
 
     /// Writes the kernel of the sine and the cosine in a format, in this order.
@@ -59,7 +33,9 @@ impl KernelStatements {
         for (index, operation) in kernel.operations.iter().enumerate() {
             let expression = expression(*operation, arguments, &expressions);
             let single = uses[index] <= 1 && expression.size() <= EXPRESSION_SIZE;
-            if !operation.is_computed() || single {
+            // The negation of a name is as short as another name.
+            let negated_name = matches!(operation, Operation::Neg(_)) && expression.size() == 1;
+            if !operation.is_computed() || single || negated_name {
                 expressions.push(expression);
             } else {
                 let name = format!("v{index}");

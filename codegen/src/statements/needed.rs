@@ -4,59 +4,56 @@ use std::collections::BTreeSet;
 
 use eomgen_elementary::Function as Elementary;
 
-use crate::program::evaluator::PiecewiseFunction;
+/// Function that each language writes in its own way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Helper {
+    /// f_k of Eq. (7) on a given side.
+    DeadzoneOnSide,
+    /// Contact on a given side.
+    Touching,
+    /// Indicator for a function on either side of its zero interval.
+    Either,
+    /// Selection by a given condition.
+    Chosen,
+    /// Cholesky factorisation and solution.
+    Cholesky,
+    /// Cholesky solution for the columns of a matrix.
+    CholeskyOfMatrix,
+    /// Sums of more elements than there are partial sums.
+    Sum,
+    /// Sums of at most as many elements as there are partial sums.
+    SumOfFew,
+}
 
 /// Functions that a file must define.
 #[derive(Clone, Debug, Default)]
 pub struct RequiredFunctions {
-    /// Elementary functions.
-    pub elementary: BTreeSet<Elementary>,
-    /// f_k of Eq. (7).
-    pub deadzone: bool,
-    /// Indicator of Eq. (8).
-    pub contact: bool,
-    /// Indicator of one side.
-    pub above: bool,
-    /// f_k on a given side.
-    pub deadzone_on_side: bool,
-    /// Contact on a given side.
-    pub contact_on_side: bool,
-    /// Indicator for a function on either side of its zero interval.
-    pub outside_zero_interval: bool,
-    /// Selection by a given condition.
-    pub selection: bool,
-    /// Reciprocals of pivots.
-    pub pivot_reciprocal: bool,
-    /// Cholesky factorisation and solution.
-    pub cholesky: bool,
-    /// Cholesky solution for the columns of a matrix.
-    pub cholesky_of_matrix: bool,
-    /// Sums of more elements than there are partial sums.
-    pub sum: bool,
-    /// Sums of at most as many elements as there are partial sums.
-    pub sum_of_few: bool,
+    /// Functions written from their kernels.
+    pub kernels: BTreeSet<Elementary>,
+    helpers: BTreeSet<Helper>,
 }
 
 impl RequiredFunctions {
-    /// Adds a function and returns its name.
-    pub fn name(&mut self, function: PiecewiseFunction) -> &'static str {
-        match function {
-            PiecewiseFunction::Elementary(elementary) => {
-                self.elementary.insert(elementary);
-                elementary.name()
+    /// Adds a function with a kernel and returns its name.
+    pub fn name(&mut self, function: Elementary) -> &'static str {
+        self.kernels.insert(function);
+        function.name()
+    }
+
+    /// Adds a helper and the functions that it calls.
+    pub fn add(&mut self, helper: Helper) {
+        self.helpers.insert(helper);
+        match helper {
+            Helper::CholeskyOfMatrix => self.add(Helper::Cholesky),
+            Helper::Cholesky => {
+                self.kernels.insert(Elementary::Sqrt);
             }
-            PiecewiseFunction::Deadzone => {
-                self.deadzone = true;
-                "deadzone"
-            }
-            PiecewiseFunction::Contact => {
-                self.contact = true;
-                "contact"
-            }
-            PiecewiseFunction::Above => {
-                self.above = true;
-                "above"
-            }
+            _ => {}
         }
+    }
+
+    /// Returns true if the file must define one of these helpers.
+    pub fn has_any(&self, helpers: &[Helper]) -> bool {
+        helpers.iter().any(|helper| self.helpers.contains(helper))
     }
 }

@@ -6,10 +6,9 @@ use super::emit_error::{EmitError, EmitResult};
 use super::expression::{Array, Expression, Structure};
 use super::index::Index;
 use super::sides::decide_by_regime;
-use crate::program::evaluator::piecewise_function;
+use crate::program::evaluator::elementary;
 use crate::program::{Argument, Extent, Op, Output, Program, ValueId, Variable};
 use eomgen_elementary::Function as Elementary;
-use eomgen_model_spec::model::Function;
 
 impl<'a> Body<'a> {
     /// Returns a scalar.
@@ -77,19 +76,13 @@ impl<'a> Body<'a> {
             (Op::Subtract(..), [a, b]) => Expression::subtract(a, b),
             (Op::Multiply(..), [a, b]) => Expression::multiply(a, b),
             (Op::Divide(..), [a, b]) => Expression::divide(a, b),
-            (Op::Power(..), _) => {
-                self.needed.elementary.insert(Elementary::Pow);
-                Expression::Call("pow", operands.to_vec())
-            }
-            (Op::PivotReciprocal(_), _) => {
-                self.needed.pivot_reciprocal = true;
-                Expression::Call("pivot_reciprocal", operands.to_vec())
-            }
+            (Op::Power(..), _) => self.call(Elementary::Pow, operands),
+            (Op::PivotReciprocal(_), _) => self.call(Elementary::PivotReciprocal, operands),
             (Op::Select { .. }, [a, b, then, otherwise]) => {
                 let parts = [a, b, then, otherwise].map(Expression::clone);
                 Expression::Select(Box::new(parts))
             }
-            (Op::Call(function, _), _) => self.call(*function, operands),
+            (Op::Call(function, _), _) => self.call(elementary(*function), operands),
             _ => {
                 return Err(EmitError::misplaced_value(
                     id,
@@ -99,9 +92,8 @@ impl<'a> Body<'a> {
         })
     }
 
-    fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
-        let name = self.needed.name(piecewise_function(function));
-        Expression::Call(name, arguments.to_vec())
+    fn call(&mut self, function: Elementary, arguments: &[Expression]) -> Expression {
+        Expression::Call(self.needed.name(function), arguments.to_vec())
     }
 
     /// Returns the expression of a constant, table, state or coefficient, or None for other values.

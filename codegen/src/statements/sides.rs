@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use eomgen_model_spec::model::Function;
 
 use super::expression::Expression;
-use super::needed::RequiredFunctions;
+use super::needed::{Helper, RequiredFunctions};
 use crate::program::{Decision, Op, Program, ValueId};
 
 /// Values whose branch a regime decides.
@@ -31,7 +31,7 @@ pub(super) fn decide_by_regime(
     let one = || Expression::Number(1.0);
     Some(match (op, operands, decided) {
         (Op::Call(Function::Deadzone, _), [p, b], Decision::Between { above, beyond }) => {
-            needed.deadzone_on_side = true;
+            needed.add(Helper::DeadzoneOnSide);
             let sides = [positive(above), positive(beyond), p.clone(), b.clone()];
             Expression::Call("deadzone_on_side", sides.to_vec())
         }
@@ -79,11 +79,11 @@ fn positive(place: usize) -> Expression {
 fn touching(decided: Decision, needed: &mut RequiredFunctions) -> Option<Expression> {
     let (name, sides) = match decided {
         Decision::Between { above, beyond } => {
-            needed.contact_on_side = true;
+            needed.add(Helper::Touching);
             ("touching", [above, beyond])
         }
         Decision::Outside { above, below } => {
-            needed.outside_zero_interval = true;
+            needed.add(Helper::Either);
             ("either", [above, below])
         }
         Decision::Surface(_) | Decision::NegatedSurface(_) => return None,
@@ -97,6 +97,6 @@ fn choose_expression(
     otherwise: &Expression,
     needed: &mut RequiredFunctions,
 ) -> Expression {
-    needed.selection = true;
+    needed.add(Helper::Chosen);
     Expression::Call("chosen", vec![first, then.clone(), otherwise.clone()])
 }

@@ -8,5 +8,6 @@ mod cuda;
 mod fmi;
 mod mujoco;
 mod page;
+mod piecewise;
 mod python;
 mod slurm;

@@ -171,6 +171,10 @@ fn operation_counts_are_as_documented() {
         ("atan2", 77),
         ("pow", 228),
         ("quantise", 10),
+        ("deadzone", 4),
+        ("contact", 3),
+        ("above", 1),
+        ("pivot_reciprocal", 2),
     ];
     assert_eq!(counted, documented);
     assert_eq!(sin_cos_kernel::<Double>().operation_count(), 71);

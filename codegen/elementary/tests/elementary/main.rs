@@ -4,6 +4,7 @@ mod exponential;
 mod hard_cases;
 mod kernels;
 mod oracle;
+mod piecewise_cases;
 mod powers_and_roots;
 mod single_precision;
 mod special_values;

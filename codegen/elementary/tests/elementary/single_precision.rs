@@ -271,6 +271,10 @@ fn operation_counts_are_as_documented() {
         ("atan2", 64),
         ("pow", 206),
         ("quantise", 10),
+        ("deadzone", 4),
+        ("contact", 3),
+        ("above", 1),
+        ("pivot_reciprocal", 2),
     ];
     assert_eq!(counted, documented);
     assert_eq!(sin_cos_kernel::<Single>().operation_count(), 49);

@@ -1,6 +1,8 @@
 //! Zeros, infinities, NaN and the ends of domains, as tables.
 
+use crate::piecewise_cases::{OF_DEFLECTION, OF_ONE_NUMBER};
 use eomgen_elementary::Function::{self, *};
+use eomgen_elementary::{Operation, Single};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
@@ -40,10 +42,14 @@ fn odd_functions_keep_zeros_and_subnormals() {
 }
 
 #[test]
-fn every_function_of_nan_is_nan() {
+fn every_function_of_nan_but_indicators_is_nan() {
+    let indicators = [Contact, Above];
     for function in Function::ALL {
+        if indicators.contains(&function) {
+            continue;
+        }
         assert_value(function, &[NAN, NAN], NAN);
-        if function.arity() == 2 && function != Pow {
+        if function.arity() == 2 && ![Pow, Deadzone].contains(&function) {
             assert_value(function, &[NAN, 1.0], NAN);
             assert_value(function, &[1.0, NAN], NAN);
             assert_value(function, &[NAN, 0.0], NAN);
@@ -237,6 +243,55 @@ fn sign_magnitude_minimum_and_maximum() {
     ] {
         assert_value(Min, &[a, b], least);
         assert_value(Max, &[a, b], greatest);
+    }
+}
+
+#[test]
+fn piecewise_functions_have_one_value_in_both_formats() {
+    let check = |function: Function, arguments: &[f64], expected: f64| {
+        assert_value(function, arguments, expected);
+        let narrow: Vec<f32> = arguments.iter().map(|number| *number as f32).collect();
+        let value = f64::from(function.apply(&narrow));
+        let same = value.to_bits() == expected.to_bits() || value.is_nan() && expected.is_nan();
+        assert!(
+            same,
+            "{function:?}{narrow:?} is {value:e}, not {expected:e}"
+        );
+    };
+    for [p, b, deadzone, contact] in OF_DEFLECTION {
+        check(Deadzone, &[p, b], deadzone);
+        check(Contact, &[p, b], contact);
+    }
+    for [p, above, reciprocal] in OF_ONE_NUMBER {
+        check(Above, &[p], above);
+        check(PivotReciprocal, &[p], reciprocal);
+    }
+}
+
+/// Their text in emitted code serves all types of numbers.
+#[test]
+fn generic_functions_have_the_same_arithmetic_and_selections_in_both_formats() {
+    for function in Function::ALL.into_iter().filter(|f| f.is_generic()) {
+        let kernel = function.kernel();
+        assert_eq!(
+            format!("{kernel:?}"),
+            format!("{:?}", function.kernel_in::<Single>())
+        );
+        for operation in kernel.operations {
+            use Operation as O;
+            let generic = matches!(
+                operation,
+                O::Input(_)
+                    | O::Constant(_)
+                    | O::Add(..)
+                    | O::Sub(..)
+                    | O::Mul(..)
+                    | O::Div(..)
+                    | O::Neg(_)
+                    | O::SelectLess { .. }
+            );
+            assert!(generic, "{function:?}: {operation:?}");
+        }
     }
 }
 

@@ -27,7 +27,7 @@ use bounds_memory::BoundsMemory;
 pub use code::{MachineCode, Stage};
 pub use corners::CornerValues;
 pub use enclosure::{DEGREE, Enclosure};
-pub use functions::{PiecewiseFunction, call, piecewise_function};
+pub use functions::{call, elementary};
 pub use impacts::{FrictionValues, ImpactValues};
 pub use number::Number;
 pub use places::Places;

@@ -183,7 +183,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=7cb2ad15a553802bc34ecaefbe66f0c412f881866b6b9cf3686334d3d257eca0 generator=0.2.0;";
+pub static IDENTITY: [u8; 206] = *b"eomgen-identity name=hub_beam_tip_mass specification=5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e source=a95e4366fe84222819756ade67f7dc1e29a06e860e8c1f7ca1474a4dd775ae00 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -973,13 +973,6 @@ impl Real for f32 {
     }
 }
 
-/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
-    let reciprocal = T::number(1.0) / pivot;
-    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
-}
-
 /// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
@@ -1013,4 +1006,10 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
         s[k] = element(k);
     }
     paired::<N, T>(&s)
+}
+
+/// 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    T::select_greater(pivot, T::number(0.0), T::number(1.0) / pivot, T::number(f64::NAN))
 }

@@ -116,7 +116,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=19e402553d6b58e1cc4900bf19a4d198d7aa4552ec896cfad000f73db670761f generator=0.2.0;";
+pub static IDENTITY: [u8; 197] = *b"eomgen-identity name=pendulum specification=683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694 source=6621f738defbc1a6e2ecca427fe71e04d33b557f6f2e6fb15a3f3fba4a78905a generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -516,13 +516,6 @@ impl Real for f32 {
     }
 }
 
-/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
-    let reciprocal = T::number(1.0) / pivot;
-    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
-}
-
 /// Sine for |x| up to 1e9 (4194303 in single precision), NaN beyond.
 #[inline(always)]
 fn sin<T: Scalar>(x: T) -> T {
@@ -709,4 +702,10 @@ impl Function for Cos {
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }
+}
+
+/// 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    T::select_greater(pivot, T::number(0.0), T::number(1.0) / pivot, T::number(f64::NAN))
 }

@@ -287,7 +287,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_1 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=80b7b803c23e717ef1fa0dbd04022a4da1b32d507edb2aca51c19d8bc4ea22f9 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_1 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=09ed526a47149ed745554df71711db2daf9dc56da2c1adfc36242328b902ff60 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1344,27 +1344,6 @@ impl Real for f32 {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
-#[inline(always)]
-fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let held = T::select_greater(p, b, b, p);
-    p - T::select_greater(-b, held, -b, held)
-}
-
-/// Returns 1 if |p| > b, else 0: the contact of Eq. (8).
-#[inline(always)]
-fn contact<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
-    T::select_greater(p, b, T::number(1.0), beyond)
-}
-
-/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
-    let reciprocal = T::number(1.0) / pivot;
-    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
-}
-
 /// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
@@ -1586,4 +1565,23 @@ impl Function for Cos {
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }
+}
+
+/// Deflection beyond the backlash: f_k of Eq. (7).
+#[inline(always)]
+fn deadzone<T: Scalar>(p: T, b: T) -> T {
+    let v2 = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, v2, -b, v2)
+}
+
+/// 1 if |p| > b, else 0: the contact of Eq. (8).
+#[inline(always)]
+fn contact<T: Scalar>(p: T, b: T) -> T {
+    T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))
+}
+
+/// 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    T::select_greater(pivot, T::number(0.0), T::number(1.0) / pivot, T::number(f64::NAN))
 }

@@ -310,7 +310,7 @@ pub mod observable {
 }
 
 /// Identity, for `eomgen identify`; `source` is the SHA-256 of this file without the line below.
-pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=34bbf7a005510c3b3df96cbfd32f99cd3694c90eefa06d8b42376a52bc9da313 generator=0.2.0;";
+pub static IDENTITY: [u8; 210] = *b"eomgen-identity name=planetary_arm_order_2 specification=f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e source=39c21ed71c2b52706cc95411713d844ff3e24d6b6d4933015c6a938257dac6a3 generator=0.2.0;";
 
 /// Parameters of the model. `Default` has the values of the specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1367,27 +1367,6 @@ impl Real for f32 {
     }
 }
 
-/// Deflection beyond the backlash: f_k of Eq. (7).
-#[inline(always)]
-fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let held = T::select_greater(p, b, b, p);
-    p - T::select_greater(-b, held, -b, held)
-}
-
-/// Returns 1 if |p| > b, else 0: the contact of Eq. (8).
-#[inline(always)]
-fn contact<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
-    T::select_greater(p, b, T::number(1.0), beyond)
-}
-
-/// Returns 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
-    let reciprocal = T::number(1.0) / pivot;
-    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
-}
-
 /// Converts numbers to another type.
 #[inline(always)]
 fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
@@ -1609,4 +1588,23 @@ impl Function for Cos {
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }
+}
+
+/// Deflection beyond the backlash: f_k of Eq. (7).
+#[inline(always)]
+fn deadzone<T: Scalar>(p: T, b: T) -> T {
+    let v2 = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, v2, -b, v2)
+}
+
+/// 1 if |p| > b, else 0: the contact of Eq. (8).
+#[inline(always)]
+fn contact<T: Scalar>(p: T, b: T) -> T {
+    T::select_greater(T::select_greater(-p, p, -p, p), b, T::number(1.0), T::number(0.0))
+}
+
+/// 1/pivot for a positive pivot, else NaN: the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    T::select_greater(pivot, T::number(0.0), T::number(1.0) / pivot, T::number(f64::NAN))
 }

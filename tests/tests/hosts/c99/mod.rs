@@ -31,7 +31,7 @@ fn supported_outputs() -> Vec<Output> {
 }
 
 /// Returns true if C and C++ compilers exist; otherwise reports the skip.
-fn has_compilers() -> bool {
+pub(super) fn has_compilers() -> bool {
     let works = |program: &str| Command::new(program).arg("--version").output().is_ok();
     let there = works("cc") && works("c++");
     if !there {
@@ -40,7 +40,7 @@ fn has_compilers() -> bool {
     there
 }
 
-fn run(command: &mut Command) -> String {
+pub(super) fn run(command: &mut Command) -> String {
     let output = command.output().expect("the command starts");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command:?}\n{said}");

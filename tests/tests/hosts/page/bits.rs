@@ -21,11 +21,11 @@ pub fn node() -> bool {
     there
 }
 
-struct Case {
-    parameters: Vec<f64>,
-    time: f64,
-    state: Vec<f64>,
-    inputs: Vec<f64>,
+pub struct Case {
+    pub parameters: Vec<f64>,
+    pub time: f64,
+    pub state: Vec<f64>,
+    pub inputs: Vec<f64>,
 }
 
 /// Returns states in every regime with default and other parameters, and cases with non-finite or
@@ -78,7 +78,7 @@ fn interpret(evaluator: &mut Evaluator, case: &Case) -> Vec<f64> {
 }
 
 /// Returns the module's parameters before any write, then its results for all cases.
-fn run_module(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
+pub fn run_module(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let numbers = cases.iter().flat_map(|case| {
         let parts = [

@@ -1,7 +1,7 @@
 //! `eomgen page`: bits of its WebAssembly module, the pages in a browser, rejected options, and the
 //! interactive report of `discover`, and the legibility of all pages.
 
-mod bits;
+pub(super) mod bits;
 mod browser;
 mod command;
 mod drawing;
