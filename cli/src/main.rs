@@ -23,7 +23,6 @@ mod figures;
 mod history;
 mod input_file;
 mod instruction_table;
-mod integrals;
 mod linearisation;
 mod mode_figure;
 mod model;

@@ -270,6 +270,8 @@ fn observe(instance: &Instance<'_>, motion: Motion, request: &Request<'_>) -> Re
     let moved = InitialChange::describe_all("initial state", &motion.initial_changes);
     let warnings = moved.into_iter().chain(energy);
     let warnings = warnings.chain(overlap.as_ref().map(Overlap::warning_message));
+    let integral = instance.find_unresolved_integral(&motion)?;
+    let warnings = warnings.chain(integral.map(|found| found.warning_message()));
     Ok(Found {
         warnings: warnings.collect(),
         motion,

@@ -461,3 +461,30 @@ def test_prescribed_motion_has_spline_rates():
     assert np.abs(r["theta"] - known.y[0][::10]).max() < 1e-8
     with pytest.raises(TypeError, match="the input s at t = .*: expected 3 numbers"):
         crane.simulate(until=3, inputs={"s": lambda t: (drive(t), 0.0), "l": 6.0})
+
+
+ARC = """
+[model]
+name = "arc"
+[parameters]
+mu = { value = 2, unit = "kg/m" }
+F = { value = 40, unit = "N" }
+l = { value = 1.5, unit = "m" }
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "pinned_pinned"
+coordinates = "q"
+order = 2
+unit = "m"
+[kinetic]
+beam = "1/2*integral(mu*dot(w)^2, w)"
+[potential]
+arc = "integral(F*(sqrt(1 + diff(w, x)^2) - 1), w)"
+"""
+
+
+def test_integral_that_quadrature_does_not_resolve_gives_a_warning():
+    with pytest.warns(UserWarning, match=r"integrate `integral\(F\*\(sqrt.*relative error"):
+        eomgen.load(ARC).simulate(until=0.01, interval=0.01, state={"q_1": 15, "q_2": 3})

@@ -16,7 +16,6 @@ use crate::document::SCHEMA;
 use crate::error::{Error, Result, warn};
 use crate::event_log;
 use crate::history;
-use crate::integrals::warn_of_integrals;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, describe_work, follow, follow_with, table};
 use crate::operating_point::initial_state;
@@ -65,7 +64,9 @@ pub fn run(options: &Simulate) -> Result {
         None => follow(&run, &request)?,
     };
     warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
-    warn_of_integrals(&run, &motion)?;
+    if let Some(found) = run.find_unresolved_integral(&motion)? {
+        warn(&format!("warning: {}", found.warning_message()));
+    }
     let audited = AuditResult::new(&run, &motion, tolerance)?;
     audited.warn();
     let table = table(&run, &motion)?;

@@ -121,6 +121,8 @@ mod sticking;
 mod stop_reasons;
 #[cfg(feature = "derive")]
 mod typical_sizes;
+#[cfg(feature = "derive")]
+mod unresolved_integrals;
 
 pub use audit::{Audit, Imbalance};
 pub use controllers::{
@@ -169,3 +171,5 @@ pub use statistics::{Measurement, Quantity, Statistic};
 pub use sticking::{SidedModel, StickingMotion};
 #[cfg(feature = "derive")]
 pub use typical_sizes::TypicalSizes;
+#[cfg(feature = "derive")]
+pub use unresolved_integrals::UnresolvedIntegral;

@@ -32,6 +32,7 @@ mod release_from_friction;
 mod stopped;
 mod stops_without_play;
 mod taylor;
+mod unresolved_integrals;
 mod unsupported_by_exact;
 mod vector_friction;
 mod woodpecker;
